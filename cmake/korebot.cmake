@@ -1,0 +1,12 @@
+# Toolchain of the K-Team KoreBot (Intel XScale PXA255: ARMv5TE, no FPU). Static: the target needs nothing but a kernel.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR armv5te)
+set(CMAKE_C_COMPILER arm-linux-gnueabi-gcc)
+set(CMAKE_CXX_COMPILER arm-linux-gnueabi-g++)
+set(CMAKE_C_FLAGS_INIT "-march=armv5te -mtune=xscale -marm -msoft-float")
+set(CMAKE_CXX_FLAGS_INIT "-march=armv5te -mtune=xscale -marm -msoft-float -Wno-psabi")
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-static")
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-arm -cpu pxa255)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)

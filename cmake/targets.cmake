@@ -1,0 +1,42 @@
+# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings as errors.
+set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Werror -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
+    -Wcast-qual -Wwrite-strings -Wpointer-arith -Wformat=2 -Wswitch-enum -Wvla)
+set(TRACTION_C_WARNINGS ${TRACTION_WARNINGS} -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition)
+set(TRACTION_CXX_WARNINGS ${TRACTION_WARNINGS} -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi)
+
+# Applies warnings and the floating-point contract (-ffp-contract=off: no fused multiply-add, so x86 and ARM agree).
+function(traction_own target)
+  target_compile_options(${target} PRIVATE
+    $<$<COMPILE_LANGUAGE:C>:${TRACTION_C_WARNINGS}> $<$<COMPILE_LANGUAGE:CXX>:${TRACTION_CXX_WARNINGS}> -ffp-contract=off)
+  target_compile_features(${target} PUBLIC c_std_11)
+  if(NOT CMAKE_CROSSCOMPILING)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+  endif()
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  if(TRACTION_SANITIZE)
+    target_compile_options(${target} PUBLIC -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+# traction_library(NAME sources...)
+function(traction_library name)
+  add_library(${name} STATIC ${ARGN})
+  traction_own(${name})
+endfunction()
+
+# traction_test(NAME LABEL label SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the emulator
+# when cross-compiling.
+function(traction_test name)
+  cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${T_SOURCES})
+  traction_own(${name})
+  target_link_libraries(${name} PRIVATE ${T_LIBS} GTest::gtest GTest::gtest_main)
+  # gtest's macros convert and shadow in ways that are theirs, not ours
+  target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-undef -Wno-switch-enum>)
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  if(NOT T_TIMEOUT)
+    set(T_TIMEOUT 120)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT})
+endfunction()

@@ -1,0 +1,33 @@
+// progress.h - shows how far long work is: one line redrawn on a terminal, nothing in a pipe.
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <string>
+
+namespace traction::cli {
+
+// Counts steps of known total. Thread-safe: workers may call step() side by side.
+class Progress {
+  public:
+    // what: a few words for people ("simulate sand"). total: number of steps, > 0.
+    Progress(std::string what, long total);
+    ~Progress(); // wipes the line
+    Progress(const Progress &) = delete;
+    Progress &operator=(const Progress &) = delete;
+
+    void step(long count = 1);
+
+  private:
+    void draw();
+    std::string what_;
+    long total_;
+    long done_ = 0;
+    bool terminal_;
+    std::mutex mutex_;
+    std::chrono::steady_clock::time_point start_;
+    std::chrono::steady_clock::time_point drawn_;
+};
+
+} // namespace traction::cli
