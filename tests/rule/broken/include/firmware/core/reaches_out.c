@@ -1,0 +1,2 @@
+// Breaks the include rule on purpose: the core may not know the HAL.
+#include "hal/hal.h"

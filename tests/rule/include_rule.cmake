@@ -1,0 +1,61 @@
+# Who may include whom (docs/architecture.md, include table). Run: cmake -DROOT=<tree> -P include_rule.cmake
+# Fails with one line per offending include.
+cmake_minimum_required(VERSION 3.25)
+set(same_folder "[^/]+")
+# folder | project includes it may name | system includes it may name ("" = any)
+set(rules
+  "firmware/core|${same_folder}|firmware/core/.+|stdint.h|stdbool.h|stddef.h|math.h"
+  "firmware/app|${same_folder}|firmware/(core|app)/.+|hal/hal.h|*"
+  "hal|${same_folder}|firmware/core/signals.h|hal/.+|*"
+  "hal/sim|${same_folder}|firmware/core/signals.h|hal/.+|sim/.+|*"
+  "sim|${same_folder}|sim/.+|*"
+  "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
+# System headers that are somebody's own: folder that may have them
+set(owned "linux/.+=hal/linux" "gpiod.h=hal/linux" "sys/socket.h=(hal/linux|firmware/app|host_tools)"
+  "ode/.+=sim/plant|tests" "ceres/.+=host_tools/lab" "muParser.h=host_tools/lab")
+
+set(offences "")
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/firmware/*.[ch] ${ROOT}/hal/*.[ch] ${ROOT}/hal/*.cpp ${ROOT}/sim/*.h
+  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp)
+foreach(file IN LISTS files)
+  set(rule "")
+  foreach(candidate IN LISTS rules) # the last that matches is the most specific
+    string(REGEX REPLACE "\\|.*" "" folder "${candidate}")
+    if(file MATCHES "^${folder}/")
+      set(rule "${candidate}")
+    endif()
+  endforeach()
+  string(REPLACE "|" ";" allowed "${rule}")
+  list(POP_FRONT allowed folder)
+  string(REPLACE ";" "|" allowed "${allowed}")
+  string(REGEX REPLACE "\\|?\\*" "" allowed_names "${allowed}")
+  file(STRINGS ${ROOT}/${file} lines REGEX "^[ \t]*#[ \t]*include")
+  foreach(line IN LISTS lines)
+    if(line MATCHES "include[ \t]*\"([^\"]+)\"")
+      set(header "${CMAKE_MATCH_1}")
+      if(NOT header MATCHES "^(${allowed_names})$")
+        string(APPEND offences "${file} may not include \"${header}\"\n")
+      endif()
+    elseif(line MATCHES "include[ \t]*<([^>]+)>")
+      set(header "${CMAKE_MATCH_1}")
+      if(NOT allowed MATCHES "\\*" AND NOT header MATCHES "^(${allowed_names})$")
+        string(APPEND offences "${file} may not include <${header}>\n")
+      endif()
+      foreach(entry IN LISTS owned)
+        string(REGEX REPLACE "=.*" "" owned_header "${entry}")
+        string(REGEX REPLACE ".*=" "" owner "${entry}")
+        if(header MATCHES "^${owned_header}$" AND NOT file MATCHES "^(${owner})/")
+          string(APPEND offences "${file} may not include <${header}>: that is ${owner}'s\n")
+        endif()
+      endforeach()
+    endif()
+  endforeach()
+endforeach()
+list(LENGTH files count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "no source files under ${ROOT}: the rule was not checked")
+endif()
+if(offences)
+  message(FATAL_ERROR "include rule broken:\n${offences}")
+endif()
+message(STATUS "include rule holds in ${count} files")
