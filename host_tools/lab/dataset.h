@@ -1,0 +1,69 @@
+// dataset.h - a log as the forward model wants it: inputs on one uniform grid, and the measured rows of every balance.
+//
+// Inputs (encoder angle, speed and acceleration by zero-phase local polynomials, duty, battery voltage, yaw rate) are resampled.
+// Measurements keep their own times: a row is the mean of a balance over [t0, t1], its prediction the mean over the same window.
+// A signal that the log lacks removes its balance and leaves a message.
+#pragma once
+
+#include "model.h"
+
+#include "host_tools/log/log.h"
+
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+// What is compared. Per-wheel kinds come once per wheel.
+enum class BalanceKind {
+    current_torque,  // wheel current from the torque balance (17)
+    current_voltage, // wheel current from the voltage balance
+    accel,           // longitudinal specific force
+    radar,           // ground speed by radar, averaged over its window
+    camera_x,        // camera displacement per interval, along the body's x
+    camera_y,        // the same along body y (planar machines)
+    camera_yaw,      // camera heading change per interval (planar machines)
+    yaw_moment,      // yaw acceleration
+    force,           // drawbar pull of one wheel on a bench
+    torque,          // measured wheel torque on a bench
+};
+
+struct Balance {
+    BalanceKind kind;
+    int wheel = -1;
+    std::string name;  // "wheel0.current_A"
+    std::string title; // for people
+    std::string unit;
+    double noise = 0;  // standard deviation of one row, measurement noise alone
+    std::string noise_source;
+    std::vector<double> t0_s, t1_s, measured; // one entry per row
+};
+
+struct WheelInput {
+    std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
+    std::vector<double> duty;                                 // empty when unknown
+};
+
+struct Dataset {
+    double start_s = 0, step_s = 0.01; // grid: time[k] = start_s + k * step_s
+    std::size_t count = 0;
+    bool independent_rows = false;      // a table of steady states, not a time series
+    std::vector<WheelInput> wheel;
+    std::vector<double> battery_V;      // empty when unknown
+    std::vector<double> yaw_rate_rad_s; // empty when unknown
+    std::vector<double> yaw_rad;        // empty when unknown: integral of the rate, or the camera's
+    std::vector<double> body_speed_m_s; // imposed speed; empty otherwise
+    std::vector<std::vector<double>> load_N; // measured wheel loads; empty when not logged
+    std::vector<Balance> balance;
+    std::vector<std::string> messages;  // what is missing and what that removes
+    std::string log_file, scenario, date;
+    double duration_s = 0;
+
+    double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
+};
+
+// Never throws for a poor log: what cannot be used is left out with a message. `repeat`: a second run of the same drive, whose
+// difference gives the noise; nullptr when there is none.
+Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat = nullptr);
+
+} // namespace traction::lab

@@ -1,0 +1,61 @@
+// forward.h - what the model says the sensors should have read: semi-inverse output error.
+//
+// The encoder speeds (and duty, battery voltage, yaw rate) are given; the body's speed is integrated from the model's forces:
+//   M dv/dt = sum_i (Ft_i - Rr_i) + F_body, implicit Euler, root bracketed (stiff: dF/dv * dt / M is 20 on concrete)     (1)
+//   torque balance:  KG*I = Gr(w) + J*dw/dt + R*Ft                                               (17) Lhomme-Desages
+//   voltage balance: I = (duty*V - ke*w)/Ra, from clean voltage and speed, never from the noisy current              (2)
+// Stages are cached: a parameter that leaves the motion alone costs only the balances it touches.
+#pragma once
+
+#include "dataset.h"
+#include "physics.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace traction::lab {
+
+// Trajectory of one pass, on the grid.
+struct Motion {
+    std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, accel_m_s2, path_m, body_force_N; // accel: specific force along x
+    struct Wheel {
+        std::vector<double> traction_N, slip, load_N, ground_speed_m_s;
+    };
+    std::vector<Wheel> wheel;
+    std::vector<double> yaw_moment_rad_s2;
+};
+
+class Forward {
+  public:
+    explicit Forward(const Dataset &data);
+
+    // Predictions of every row of every balance, in the order of data.balance.
+    Eigen::VectorXd predict(const Physics &physics);
+
+    // The same when only the stages in `touched` (see Stage) differ from `base`, the prediction of the last set_base().
+    Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel);
+    void set_base(const Physics &physics);
+    const Eigen::VectorXd &base() const { return base_prediction_; }
+    const Motion &motion() const { return base_motion_; }
+    const std::vector<std::vector<double>> &winding_current_A() const { return base_current_; } // per wheel, torque balance
+
+    std::size_t rows() const { return row_count_; }
+    std::size_t first_row(std::size_t balance) const { return first_row_[balance]; }
+
+  private:
+    void integrate(const Physics &physics, Motion &motion, const Motion *guess) const;
+    void electrical(const Physics &physics, const Motion &motion, int wheel, std::vector<double> &current,
+                    Eigen::VectorXd &out, bool torque, bool voltage) const;
+    void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
+
+    const Dataset *data_;
+    std::size_t row_count_ = 0;
+    std::vector<std::size_t> first_row_;
+    Motion base_motion_, scratch_;
+    std::vector<std::vector<double>> base_current_;
+    Eigen::VectorXd base_prediction_;
+    bool have_base_ = false;
+};
+
+} // namespace traction::lab
