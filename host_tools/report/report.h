@@ -1,0 +1,35 @@
+// report.h - turns a result of the lab, or a set of figures, into one HTML file that works from disk without a network.
+//
+// The page is chosen by result["schema"]:
+//   "traction.lab/1"      what compare, diagnose, add, fit and check put out (docs/json_schema.md)
+//   "traction.figures/1"  a set of figures with what a source says beside what we measured:
+//     { "schema": "traction.figures/1", "title": str, "intro": str,
+//       "figures": [ { "id": str, "title": str, "paper": str, "ours": str, "verdict": "agrees|differs|<words>",
+//                      "svg": str (to_svg of svg.h), "notes": str } ],
+//       "tables":  [ { "title": str, "columns": [str], "rows": [[str|number|null]], "notes": str } ] }
+// Any absent key is an absent part of the page; nothing but "schema" is required.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <stdexcept>
+#include <string>
+
+namespace traction::report {
+
+// A result that no page knows how to show. The message is complete.
+struct ReportError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// The page as text. Throws ReportError when the schema is unknown.
+std::string to_html(const nlohmann::json &result);
+
+// Writes the page to `path`: to a temporary beside it, then renamed. Throws ReportError, or std::ios_base::failure /
+// std::filesystem::filesystem_error when the file cannot be written.
+void write_html(const nlohmann::json &result, const std::string &path);
+
+// Writes any text the same way (SVG, for one).
+void write_text(const std::string &text, const std::string &path);
+
+} // namespace traction::report
