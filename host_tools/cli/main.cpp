@@ -66,6 +66,8 @@ int run(int argc, char **argv) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
         app.exit(error);
         return exit_usage;
+    } catch (const log::FileError &error) {
+        return fail(exit_io, error.what());
     } catch (const log::LogError &error) {
         return fail(exit_bad_input, error.what());
     } catch (const std::filesystem::filesystem_error &error) {

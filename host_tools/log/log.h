@@ -37,6 +37,11 @@ struct LogError : std::runtime_error {
     std::size_t column; // 1-based field number; 0 when the whole line is meant
 };
 
+// The file itself cannot be opened, read or written.
+struct FileError : LogError {
+    using LogError::LogError;
+};
+
 // Reads a CSV log. With map_path, a foreign CSV is read through that TOML map. Throws LogError.
 Log read_csv(const std::string &path, const std::string &map_path = "");
 

@@ -1,0 +1,335 @@
+#include "map.h"
+#include "vocabulary.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <toml++/toml.h>
+
+namespace traction::log {
+
+namespace {
+
+std::size_t line_of(const toml::node &node) { return node.source().begin.line; }
+
+// One table of the map: typed keys, and an error for a key nobody knows.
+class Keys {
+  public:
+    Keys(const std::string &path, const toml::table &table, std::string where) : path_(path), table_(table), where_(std::move(where)) {}
+
+    bool has(const char *key) { return look(key) != nullptr; }
+    std::string text(const char *key, const std::string &fallback) { return get<std::string>(key, "a text in quotes").value_or(fallback); }
+    std::optional<double> number(const char *key) {
+        const toml::node *node = look(key);
+        if (node == nullptr) return std::nullopt;
+        const std::optional<double> value = node->value<double>();
+        if (!node->is_number() || !value || !std::isfinite(*value)) fail(*node, key, "a finite number");
+        return value;
+    }
+    double number(const char *key, double fallback) { return number(key).value_or(fallback); }
+    bool flag(const char *key) { return get<bool>(key, "true or false").value_or(false); }
+    std::vector<double> numbers(const char *key) {
+        std::vector<double> values;
+        const toml::node *node = look(key);
+        if (node == nullptr) return values;
+        if (!node->is_array()) fail(*node, key, "a list of numbers, such as [-1, 999]");
+        for (const toml::node &item : *node->as_array()) {
+            if (!item.is_number()) fail(item, key, "a list of numbers, such as [-1, 999]");
+            values.push_back(*item.value<double>());
+        }
+        return values;
+    }
+    // A column by name, or by number from 1.
+    std::string column(const char *key) {
+        const toml::node *node = look(key);
+        if (node == nullptr) return "";
+        if (const auto number = node->value_exact<std::int64_t>()) return std::to_string(*number);
+        const auto name = node->value_exact<std::string>();
+        if (!name || name->empty()) fail(*node, key, "the name of a column, or its number from 1");
+        return *name;
+    }
+    const toml::node *look(const char *key) {
+        known_.insert(key);
+        return table_.get(key);
+    }
+    // To call when every key has been looked at.
+    void none_unknown() const {
+        for (const auto &[key, node] : table_) {
+            if (known_.count(std::string(key.str())) != 0) continue;
+            std::string list;
+            for (const std::string &name : known_) list += (list.empty() ? "" : ", ") + name;
+            throw LogError(path_, line_of(node), 0, "unknown key '" + std::string(key.str()) + "' in " + where_, "use one of: " + list);
+        }
+    }
+    [[noreturn]] void fail(const toml::node &node, const char *key, const std::string &wanted) const {
+        throw LogError(path_, line_of(node), 0, "'" + std::string(key) + "' in " + where_ + " has the wrong value", "write " + wanted);
+    }
+    std::size_t line() const { return line_of(table_); }
+    [[noreturn]] void fail(const std::string &what, const std::string &mend) const { throw LogError(path_, line(), 0, what, mend); }
+
+  private:
+    template <class T> std::optional<T> get(const char *key, const char *wanted) {
+        const toml::node *node = look(key);
+        if (node == nullptr) return std::nullopt;
+        const std::optional<T> value = node->value_exact<T>();
+        if (!value) fail(*node, key, wanted);
+        return value;
+    }
+    const std::string &path_;
+    const toml::table &table_;
+    std::string where_;
+    std::set<std::string> known_;
+};
+
+const toml::table &as_table(const std::string &path, const toml::node &node, const char *key) {
+    if (!node.is_table()) throw LogError(path, line_of(node), 0, std::string("'") + key + "' is not a table", std::string("write [") + key + "] or [[" + key + "]] on a line of its own");
+    return *node.as_table();
+}
+
+MapSignal read_signal(const std::string &path, const toml::table &table, std::size_t index) {
+    Keys keys(path, table, "[[signal]] number " + std::to_string(index));
+    MapSignal signal;
+    signal.line = keys.line();
+    signal.name = keys.text("name", "");
+    if (signal.name.empty()) keys.fail("[[signal]] number " + std::to_string(index) + " has no name", "write name = \"wheel0.speed_rad_s\" or another name of docs/log_format.md");
+    if (find_quantity(signal.name) == nullptr) {
+        std::string si_name;
+        double factor = 1;
+        if (convert_unit(signal.name, si_name, factor)) {
+            keys.fail("signal '" + signal.name + "' is not in SI", "write name = \"" + si_name + "\" and scale = " + std::to_string(factor));
+        }
+        keys.fail("signal '" + signal.name + "' is not in the vocabulary", "use a name of docs/log_format.md");
+    }
+    signal.column = keys.column("column");
+    signal.value = keys.number("value");
+    if (signal.column.empty() == !signal.value) {
+        keys.fail("signal '" + signal.name + "' needs either 'column' or 'value'", "write column = \"its column\", or value = 24.0 for a constant");
+    }
+    signal.scale = keys.number("scale", 1);
+    const double sign = keys.number("sign", 1);
+    if (sign != 1 && sign != -1) keys.fail("sign of '" + signal.name + "' is neither 1 nor -1", "write sign = -1, and put the size in 'scale'");
+    if (signal.scale == 0) keys.fail("scale of '" + signal.name + "' is 0", "write the unit's size, e.g. 0.001 for millimetres");
+    signal.scale *= sign;
+    signal.offset = keys.number("offset", 0);
+    signal.delay_s = keys.number("delay_s", 0);
+    signal.is_unsigned = keys.flag("unsigned");
+    signal.unwrap = keys.flag("unwrap");
+    signal.period = keys.number("period", 2 * std::numbers::pi);
+    if (!(signal.period > 0)) keys.fail("period of '" + signal.name + "' is not above 0", "write the size of one turn in the signal's unit");
+    signal.differentiate = keys.flag("differentiate");
+    signal.window_s = keys.number("window_s", 0.1);
+    if (!(signal.window_s > 0)) keys.fail("window_s of '" + signal.name + "' is not above 0", "write the span of time to fit the slope over, e.g. 0.1");
+    signal.drop_repeats = keys.flag("drop_repeats");
+    signal.noise = keys.number("noise");
+    signal.quantum = keys.number("quantum");
+    signal.missing = keys.numbers("missing");
+    keys.none_unknown();
+    return signal;
+}
+
+void read_time(const std::string &path, const toml::table &table, Map &map) {
+    Keys keys(path, table, "[time]");
+    map.dialect.time_column = keys.column("column");
+    map.time_scale = keys.number("scale", 1);
+    map.time_offset_s = keys.number("offset_s", 0);
+    map.from_zero = keys.flag("from_zero");
+    map.row_period_s = keys.number("row_period_s", 0);
+    const bool trials = keys.flag("rows_are_trials");
+    keys.none_unknown();
+    if (!(map.time_scale > 0)) keys.fail("scale of the time is not above 0", "write seconds per unit of the column, e.g. 0.001 for milliseconds");
+    if ((map.dialect.time_column.empty() ? 0 : 1) + (map.row_period_s > 0 ? 1 : 0) + (trials ? 1 : 0) != 1) {
+        keys.fail("[time] needs one of 'column', 'row_period_s', 'rows_are_trials'", "write column = \"the column of time\"");
+    }
+    if (map.row_period_s <= 0 && map.dialect.time_column.empty()) map.header["rows"] = "trials";
+}
+
+void read_filters(const std::string &path, const toml::node &node, Map &map) {
+    if (!node.is_array()) throw LogError(path, line_of(node), 0, "'where' is not a list of tables", "write [[where]] on a line of its own");
+    for (const toml::node &item : *node.as_array()) {
+        Keys keys(path, as_table(path, item, "where"), "[[where]]");
+        RowFilter filter;
+        filter.column = keys.column("column");
+        if (filter.column.empty()) keys.fail("[[where]] names no column", "write column = \"...\"");
+        if (const auto equals = keys.number("equals")) filter.minimum = filter.maximum = *equals;
+        filter.minimum = keys.number("min", filter.minimum);
+        filter.maximum = keys.number("max", filter.maximum);
+        keys.none_unknown();
+        map.dialect.filters.push_back(filter);
+    }
+}
+
+void read_header(const std::string &path, const toml::table &table, Map &map) {
+    for (const auto &[key, node] : table) {
+        std::string value;
+        if (const auto text = node.value_exact<std::string>()) {
+            value = *text;
+        } else if (const auto number = node.value<double>()) {
+            char buffer[32];
+            value.assign(buffer, std::to_chars(buffer, buffer + sizeof buffer, *number).ptr);
+        } else {
+            throw LogError(path, line_of(node), 0, "header entry '" + std::string(key.str()) + "' is neither text nor number", "write a text in quotes or a number");
+        }
+        map.header[std::string(key.str())] = value;
+    }
+}
+
+} // namespace
+
+Map read_map(const std::string &path) {
+    const FileBytes bytes(path, std::size_t{1} << 20);
+    toml::table root;
+    try {
+        root = toml::parse(bytes.view(), path);
+    } catch (const toml::parse_error &error) {
+        throw LogError(path, error.source().begin.line, error.source().begin.column, "this is not TOML: " + std::string(error.description()), "correct the line");
+    }
+    Map map;
+    map.path = path;
+    map.dialect.native = false;
+    Keys keys(path, root, "the map");
+    const std::string format = keys.text("format", "");
+    if (format != "traction-map 1") keys.fail("the map's format is '" + format + "'", "write format = \"traction-map 1\" on its first line");
+    const std::string separator = keys.text("separator", "");
+    if (separator.size() > 1) keys.fail("separator '" + separator + "' is longer than one character", "write separator = \";\" or leave it out to have it guessed");
+    if (!separator.empty()) map.dialect.separator = separator[0];
+    const double skip = keys.number("skip_rows", 0);
+    if (skip < 0 || skip > 1e6 || skip != std::floor(skip)) keys.fail("skip_rows is not a small whole number", "write how many lines stand above the row of names");
+    map.dialect.skip_rows = static_cast<std::size_t>(skip);
+    if (keys.has("row_of_names")) map.dialect.row_of_names = keys.flag("row_of_names");
+    const toml::node *time = keys.look("time");
+    if (time == nullptr) keys.fail("the map has no [time]", "write [time] and column = \"the column of time\"");
+    read_time(path, as_table(path, *time, "time"), map);
+    if (const toml::node *header = keys.look("header")) read_header(path, as_table(path, *header, "header"), map);
+    if (const toml::node *where = keys.look("where")) read_filters(path, *where, map);
+    const toml::node *signals = keys.look("signal");
+    if (signals == nullptr || !signals->is_array() || signals->as_array()->empty()) keys.fail("the map has no [[signal]]", "write [[signal]] with name and column for each signal");
+    keys.none_unknown();
+    std::set<std::string> names;
+    for (const toml::node &node : *signals->as_array()) {
+        map.signals.push_back(read_signal(path, as_table(path, node, "signal"), map.signals.size() + 1));
+        const MapSignal &signal = map.signals.back();
+        if (!names.insert(signal.name).second) throw LogError(path, signal.line, 0, "signal '" + signal.name + "' stands twice", "keep one of them");
+        const std::string &key = signal.name;
+        const auto put = [&](const std::string &prefix, const std::optional<double> &value) {
+            if (!value) return;
+            char buffer[32];
+            map.header[prefix + key] = std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, *value).ptr);
+        };
+        put("noise.", signal.noise);
+        put("quantum.", signal.quantum);
+        if (signal.is_unsigned) map.header["unsigned." + key] = "1";
+        if (signal.value) map.header["constant." + key] = "1";
+    }
+    return map;
+}
+
+namespace {
+
+void unwrap(std::vector<double> &value, double period) {
+    double turns = 0;
+    for (std::size_t i = 1; i < value.size(); ++i) {
+        const double step = value[i] + turns - value[i - 1];
+        turns -= period * std::round(step / period);
+        value[i] += turns;
+    }
+}
+
+// Slope of the straight line through the samples within window/2 on either side; a sample without a neighbour there has none.
+Signal differentiate(const Signal &signal, double window_s) {
+    Signal rate{signal.name, {}, {}};
+    const std::size_t count = signal.t_s.size();
+    std::size_t first = 0, end = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        while (first < i && signal.t_s[first] < signal.t_s[i] - window_s / 2) ++first;
+        while (end < count && signal.t_s[end] <= signal.t_s[i] + window_s / 2) ++end;
+        double st = 0, sv = 0, stt = 0, stv = 0;
+        const double n = static_cast<double>(end - first);
+        for (std::size_t k = first; k < end; ++k) {
+            const double t = signal.t_s[k] - signal.t_s[i], v = signal.value[k] - signal.value[i];
+            st += t, sv += v, stt += t * t, stv += t * v;
+        }
+        const double denominator = n * stt - st * st;
+        if (end - first < 2 || !(denominator > 0)) continue;
+        rate.t_s.push_back(signal.t_s[i]);
+        rate.value.push_back((n * stv - st * sv) / denominator);
+    }
+    return rate;
+}
+
+void drop_repeats(Signal &signal) {
+    Signal kept{signal.name, {}, {}};
+    for (std::size_t i = 0; i < signal.value.size(); ++i) {
+        if (i != 0 && signal.value[i] == signal.value[i - 1]) continue;
+        kept.t_s.push_back(signal.t_s[i]);
+        kept.value.push_back(signal.value[i]);
+    }
+    signal = std::move(kept);
+}
+
+Signal make_signal(const MapSignal &rule, Column column, const std::string &path, std::vector<Repair> &repairs) {
+    if (!rule.missing.empty()) {
+        Column kept = column;
+        kept.signal.t_s.clear(), kept.signal.value.clear();
+        for (std::size_t i = 0; i < column.signal.value.size(); ++i) {
+            if (std::find(rule.missing.begin(), rule.missing.end(), column.signal.value[i]) != rule.missing.end()) continue;
+            kept.signal.t_s.push_back(column.signal.t_s[i]);
+            kept.signal.value.push_back(column.signal.value[i]);
+        }
+        kept.backs.clear(); // their indices are of the full column; order is mended all the same
+        column = std::move(kept);
+    }
+    put_in_order(column, path, repairs);
+    Signal signal = std::move(column.signal);
+    signal.name = rule.name;
+    for (double &value : signal.value) value = rule.scale * value + rule.offset;
+    if (rule.unwrap) unwrap(signal.value, rule.period);
+    if (rule.drop_repeats) drop_repeats(signal);
+    if (rule.differentiate) signal = differentiate(signal, rule.window_s);
+    if (rule.is_unsigned) {
+        for (double &value : signal.value) value = std::fabs(value);
+    }
+    return signal;
+}
+
+} // namespace
+
+Log read_through_map(const FileBytes &bytes, const std::string &path, const Map &map, std::vector<Repair> &repairs, const ReadLimits &limits) {
+    Dialect dialect = map.dialect;
+    std::set<std::string> wanted;
+    for (const MapSignal &signal : map.signals) {
+        if (!signal.column.empty()) wanted.insert(signal.column);
+    }
+    dialect.wanted = [&](const std::string &name) { return wanted.count(name) != 0; };
+    Table table = read_table(bytes.view(), path, dialect, limits, repairs);
+    const double start = map.from_zero && !table.row_time.empty() ? table.row_time.front() : 0;
+    const double scale = map.row_period_s > 0 ? map.row_period_s : map.time_scale;
+    Log log;
+    log.source = path;
+    log.header = std::move(table.header);
+    for (const auto &[key, value] : map.header) log.header[key] = value;
+    for (const MapSignal &rule : map.signals) {
+        Column column;
+        if (rule.value) {
+            column.signal.t_s = table.row_time;
+            column.signal.value.assign(table.row_time.size(), 0.0);
+            std::sort(column.signal.t_s.begin(), column.signal.t_s.end());
+            column.signal.t_s.erase(std::unique(column.signal.t_s.begin(), column.signal.t_s.end()), column.signal.t_s.end());
+            column.signal.value.assign(column.signal.t_s.size(), *rule.value);
+        } else {
+            const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const Column &c) { return c.signal.name == rule.column; });
+            if (found == table.columns.end()) {
+                throw LogError(map.path, rule.line, 0, "signal '" + rule.name + "' wants column '" + rule.column + "', which " + path + " does not have", "correct the name (columns there: " + table.names.front() + " ... " + table.names.back() + ")");
+            }
+            column = *found;
+        }
+        Signal signal = rule.value ? Signal{rule.name, column.signal.t_s, column.signal.value} : make_signal(rule, std::move(column), path, repairs);
+        for (double &t : signal.t_s) t = (t - start) * scale + map.time_offset_s - rule.delay_s;
+        keep_what_is_a_number(signal, repairs);
+        log.signals.push_back(std::move(signal));
+    }
+    return log;
+}
+
+} // namespace traction::log

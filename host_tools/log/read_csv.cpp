@@ -1,0 +1,64 @@
+#include "map.h"
+#include "read.h"
+#include "table.h"
+#include "vocabulary.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace traction::log {
+
+namespace {
+
+// "wheel0.speed_rpm" becomes "wheel0.speed_rad_s"; a name outside the vocabulary is kept and said.
+void name_in_vocabulary(Column &column, const std::vector<std::string> &names, std::vector<Repair> &repairs) {
+    Signal &signal = column.signal;
+    if (find_quantity(signal.name) != nullptr || signal.name.rfind("truth.", 0) == 0) return;
+    const std::string at = "column " + std::to_string(column.number) + ": '" + signal.name + "' ";
+    std::string si_name;
+    double factor = 1;
+    if (convert_unit(signal.name, si_name, factor) && std::find(names.begin(), names.end(), si_name) == names.end()) {
+        char text[40];
+        std::snprintf(text, sizeof text, "%.7g", factor);
+        repairs.push_back({"unit_converted", si_name, signal.value.size(), 0, at + "is converted to '" + si_name + "' by the factor " + text});
+        for (double &value : signal.value) value *= factor;
+        signal.name = si_name;
+        keep_what_is_a_number(signal, repairs);
+        return;
+    }
+    repairs.push_back({"unknown_name", signal.name, signal.value.size(), 0, at + "is not in the vocabulary, kept under its own name and used by no balance"});
+}
+
+Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Repair> &repairs, const ReadLimits &limits) {
+    Table table = read_table(bytes.view(), path, Dialect{}, limits, repairs);
+    Log log;
+    log.header = std::move(table.header);
+    log.source = path;
+    std::vector<std::string> names = table.names;
+    for (Column &column : table.columns) {
+        put_in_order(column, path, repairs);
+        const std::string before = column.signal.name;
+        name_in_vocabulary(column, names, repairs);
+        if (column.signal.name != before) names.push_back(column.signal.name); // rpm and deg_s of one quantity: the first wins
+        log.signals.push_back(std::move(column.signal));
+    }
+    return log;
+}
+
+} // namespace
+
+Log read_csv(const std::string &path, const std::string &map_path, std::vector<Repair> &repairs, const ReadLimits &limits) {
+    const std::size_t before = repairs.size();
+    const FileBytes bytes(path, limits.bytes);
+    Log log = map_path.empty() ? read_native(bytes, path, repairs, limits) : read_through_map(bytes, path, read_map(map_path), repairs, limits);
+    for (std::size_t i = before; i < repairs.size(); ++i) log.repairs.push_back(repairs[i].text);
+    return log;
+}
+
+Log read_csv(const std::string &path, const std::string &map_path) {
+    std::vector<Repair> repairs;
+    return read_csv(path, map_path, repairs);
+}
+
+} // namespace traction::log
