@@ -1,0 +1,261 @@
+#include "control.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+// What the control part of a tick reads: measurements and estimates in SI.
+typedef struct {
+    const command_t *command;
+    const sense_output_t *sense;
+    slip_output_t slip[WHEEL_COUNT];
+    float speed_m_s;
+} estimate_t;
+
+void control_reset(const control_config_t *config, control_state_t *state)
+{
+    const control_state_t zero = {0};
+    *state = zero;
+    ground_speed_reset(&config->ground_speed, &state->ground_speed);
+}
+
+static float feed_forward(const control_config_t *config, float reference_rad_s, float battery_V)
+{
+    return config->feed_forward ? motor_duty_for_speed(&config->motor, reference_rad_s, battery_V) : 0.0f;
+}
+
+// --- estimate
+
+static float rim_hint_m_s(const control_config_t *config, const sense_output_t *sense)
+{
+    const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
+    return 0.25f * sum * config->slip.wheel_radius_m;
+}
+
+static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
+                                            const sensor_frame_t *frame, trace_t *trace)
+{
+    doppler_output_t doppler = {0};
+    if ((sense->usable & FRAME_RADAR) != 0u) {
+        doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, frame->radar_samples);
+    }
+    if (doppler.fresh) {
+        state->doppler_m_s = doppler.speed_m_s;
+    }
+    const ground_speed_input_t input = {
+        .accel_x_m_s2 = sense->accel_x_m_s2,
+        .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
+        .doppler_m_s = doppler.speed_m_s,
+        .doppler_late_s = (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz,
+        .doppler_fresh = doppler.fresh,
+        .doppler_quiet = doppler.quiet,
+        .wheel_m_s = rim_hint_m_s(config, sense),
+    };
+    const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
+    trace->radar_speed_m_s = state->doppler_m_s;
+    trace->radar_fresh = doppler.fresh;
+    trace->speed_m_s = speed.speed_m_s;
+    trace->speed_std_m_s = speed.std_m_s;
+    trace->accel_bias_m_s2 = speed.bias_m_s2;
+    trace->standstill = speed.standstill;
+    return speed;
+}
+
+// Ground speed of a wheel's centre along its heading: the body's, and what the yaw rate adds at half a track to the side.
+static float wheel_ground_m_s(const control_config_t *config, int wheel, float speed_m_s, float yaw_rate_rad_s)
+{
+    const bool left = wheel == WHEEL_REAR_LEFT || wheel == WHEEL_FRONT_LEFT;
+    const float offset = config->geometry.half_track_m * yaw_rate_rad_s;
+    return left ? speed_m_s - offset : speed_m_s + offset;
+}
+
+static void estimate_wheels(const control_config_t *config, estimate_t *estimate, trace_t *trace)
+{
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        wheel_trace_t *wheel = &trace->wheel[i];
+        const sense_output_t *sense = estimate->sense;
+        const motor_output_t motor =
+            motor_measure(&config->motor, sense->current_A[i], sense->speed_rad_s[i], sense->accel_rad_s2[i]);
+        estimate->slip[i] = slip_measure(&config->slip, sense->speed_rad_s[i],
+                                         wheel_ground_m_s(config, i, estimate->speed_m_s, sense->gyro_z_rad_s));
+        wheel->speed_rad_s = sense->speed_rad_s[i];
+        wheel->accel_rad_s2 = sense->accel_rad_s2[i];
+        wheel->current_A = sense->current_A[i];
+        wheel->torque_Nm = motor.torque_Nm;
+        wheel->traction_N = motor.traction_N;
+        wheel->slip = estimate->slip[i].slip;
+        wheel->slip_valid = estimate->slip[i].valid;
+    }
+}
+
+// --- control
+
+static void drive_wheel_speed(const control_config_t *config, control_state_t *state, const estimate_t *estimate, int i,
+                              float reference_rad_s, bool fresh_loop, wheel_trace_t *wheel)
+{
+    const float speed_rad_s = estimate->sense->speed_rad_s[i];
+    if (fresh_loop) {
+        wheel_pid_preset(&config->wheel_pid, &state->wheel_pid[i], state->duty[i], speed_rad_s,
+                         feed_forward(config, speed_rad_s, estimate->sense->battery_V));
+    }
+    const float slewed = wheel_pid_slew(&config->wheel_pid, &state->wheel_pid[i], reference_rad_s);
+    const wheel_pid_input_t input = {
+        .speed_rad_s = speed_rad_s,
+        .accel_rad_s2 = estimate->sense->accel_rad_s2[i],
+        .feed_forward = feed_forward(config, slewed, estimate->sense->battery_V),
+    };
+    const wheel_pid_output_t out = wheel_pid_step(&config->wheel_pid, &state->wheel_pid[i], &input);
+    wheel->set_speed_rad_s = slewed;
+    wheel->duty = out.duty;
+    wheel->saturated = out.saturated;
+}
+
+static void drive_wheel_slip(const control_config_t *config, control_state_t *state, const estimate_t *estimate, int i,
+                             float slip_ref, bool fresh_loop, wheel_trace_t *wheel)
+{
+    const slip_pi_input_t input = {.slip_ref = slip_ref, .slip = estimate->slip[i].slip, .speed_m_s = estimate->speed_m_s};
+    if (fresh_loop) {
+        slip_pi_preset(&config->slip_pi, &state->slip_pi[i], state->duty[i], &input);
+    }
+    const slip_pi_output_t out = slip_pi_step(&config->slip_pi, &state->slip_pi[i], &input);
+    wheel->duty = out.duty;
+    wheel->saturated = out.saturated;
+}
+
+// Wheel speed that has slip `slip_ref` at the ground speed at which a rolling wheel turns at `rolling_rad_s`; limited by wheel_max.
+static float speed_for_slip(const control_config_t *config, float rolling_rad_s, float slip_ref)
+{
+    const float limit = config->speed_control.wheel_max_rad_s;
+    const float along = rolling_rad_s >= 0.0f ? slip_ref : -slip_ref; // slip is signed in the body frame
+    const float ratio = along >= 0.0f ? 1.0f / fixed_clamp(1.0f - along, 0.1f, 1.0f) : 1.0f + along;
+    return fixed_clamp(rolling_rad_s * ratio, -limit, limit);
+}
+
+static void drive_mode(const control_config_t *config, control_state_t *state, const estimate_t *estimate, control_mode_t mode,
+                       trace_t *trace)
+{
+    const command_t *command = estimate->command;
+    const bool new_mode = mode != state->mode;
+    uint8_t slip_active = 0;
+    speed_control_output_t platform = {0.0f, 0.0f};
+    float front_rad_s = 0.0f;
+    if (new_mode) {
+        state->speed_control.integral_rad_s = 0.0f;
+        state->soil_sweep.elapsed_ticks = 0;
+    }
+    if (mode == MODE_PLATFORM_SPEED || mode == MODE_SLIP || mode == MODE_SOIL_SWEEP) {
+        const speed_control_input_t input = {
+            .speed_ref_m_s = command->platform_speed_m_s,
+            .yaw_rate_ref_rad_s = mode == MODE_SOIL_SWEEP ? 0.0f : command->yaw_rate_rad_s,
+            .speed_m_s = estimate->speed_m_s,
+            .saturated = state->saturated,
+        };
+        platform = speed_control_step(&config->speed_control, &state->speed_control, &input);
+    }
+    if (mode == MODE_SOIL_SWEEP) {
+        const float v_ref = fixed_clamp(fixed_finite(command->platform_speed_m_s), -config->speed_control.speed_max_m_s,
+                                        config->speed_control.speed_max_m_s);
+        front_rad_s = soil_sweep_step(&config->soil_sweep, &state->soil_sweep, v_ref).front_rad_s;
+    }
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        wheel_trace_t *wheel = &trace->wheel[i];
+        const uint8_t bit = (uint8_t)(1u << (uint32_t)i);
+        const bool left = i == WHEEL_REAR_LEFT || i == WHEEL_FRONT_LEFT;
+        const bool front = i == WHEEL_FRONT_LEFT || i == WHEEL_FRONT_RIGHT;
+        const bool had_slip = !new_mode && (state->slip_active & bit) != 0u;
+        const float side_rad_s = left ? platform.left_rad_s : platform.right_rad_s;
+        if (mode == MODE_OPEN_LOOP) {
+            wheel->duty = fixed_clamp(fixed_finite(command->duty[i]), -1.0f, 1.0f);
+        } else if (mode == MODE_WHEEL_SPEED) {
+            const float limit = config->speed_control.wheel_max_rad_s;
+            const float reference = fixed_clamp(fixed_finite(command->wheel_speed_rad_s[i]), -limit, limit);
+            drive_wheel_speed(config, state, estimate, i, reference, new_mode, wheel);
+        } else if (mode == MODE_SLIP && (command->slip_wheels & bit) != 0u) {
+            const float slip_ref = fixed_clamp(fixed_finite(command->slip_ref), -1.0f, 1.0f);
+            if (estimate->slip[i].valid) {
+                slip_active |= bit;
+                drive_wheel_slip(config, state, estimate, i, slip_ref, !had_slip, wheel);
+            } else {
+                drive_wheel_speed(config, state, estimate, i, speed_for_slip(config, side_rad_s, slip_ref), new_mode || had_slip, wheel);
+            }
+        } else if (mode == MODE_PLATFORM_SPEED || mode == MODE_SLIP) {
+            drive_wheel_speed(config, state, estimate, i, side_rad_s, new_mode || had_slip, wheel);
+        } else if (mode == MODE_SOIL_SWEEP) {
+            drive_wheel_speed(config, state, estimate, i, front ? front_rad_s : side_rad_s, new_mode, wheel);
+        }
+    }
+    state->slip_active = slip_active;
+}
+
+// --- safety
+
+static safety_output_t judge(const control_config_t *config, control_state_t *state, const estimate_t *estimate,
+                             const sensor_frame_t *frame)
+{
+    safety_input_t input = {
+        .frame = frame,
+        .command_age_ticks = estimate->command->age_ticks,
+        .command_stop = estimate->command->mode == MODE_STOP,
+        .usable = estimate->sense->usable,
+        .absurd = estimate->sense->absurd,
+        .battery_V = estimate->sense->battery_V,
+        .ground_speed_m_s = estimate->speed_m_s,
+    };
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        const float rim = fabsf(estimate->sense->speed_rad_s[i]) * config->slip.wheel_radius_m;
+        input.speed_rad_s[i] = estimate->sense->speed_rad_s[i];
+        input.current_A[i] = estimate->sense->current_A[i];
+        input.rim_max_m_s = i == 0 || rim > input.rim_max_m_s ? rim : input.rim_max_m_s;
+        input.rim_min_m_s = i == 0 || rim < input.rim_min_m_s ? rim : input.rim_min_m_s;
+    }
+    return safety_step(&config->safety, &state->safety, &input);
+}
+
+static control_mode_t mode_of(const command_t *command, bool motors_off)
+{
+    const bool known = command->mode > MODE_STOP && command->mode < MODE_COUNT;
+    return known && !motors_off ? command->mode : MODE_STOP;
+}
+
+static void actuate(const control_config_t *config, control_state_t *state, const estimate_t *estimate, const safety_output_t *safety,
+                    control_mode_t mode, trace_t *trace)
+{
+    state->saturated = false;
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        wheel_trace_t *wheel = &trace->wheel[i];
+        if ((safety->limited & (1u << (uint32_t)i)) != 0u) {
+            wheel->duty = motor_duty_limited(&config->motor, wheel->duty, estimate->sense->speed_rad_s[i], estimate->sense->battery_V,
+                                             config->safety.current_continuous_A);
+        }
+        wheel->duty = mode == MODE_STOP ? 0.0f : fixed_clamp(fixed_finite(wheel->duty), -1.0f, 1.0f);
+        trace->actuator.duty_q15[i] = fixed_q15_from_float(wheel->duty);
+        state->duty[i] = wheel->duty;
+        state->saturated = state->saturated || wheel->saturated;
+    }
+    trace->actuator.motor_enable = mode != MODE_STOP;
+    trace->actuator.status_led = safety->faults != 0u;
+    trace->mode = mode;
+    trace->faults = safety->faults;
+    state->mode = mode;
+}
+
+trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command, const sensor_frame_t *frame)
+{
+    trace_t trace = {0};
+    const sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    trace.tick = frame->tick;
+    trace.present = frame->present;
+    trace.battery_voltage_V = sense.battery_V;
+    trace.accel_x_m_s2 = sense.accel_x_m_s2;
+    trace.gyro_z_rad_s = sense.gyro_z_rad_s;
+
+    estimate_t estimate = {.command = command, .sense = &sense};
+    estimate.speed_m_s = estimate_speed(config, state, &sense, frame, &trace).speed_m_s;
+    estimate_wheels(config, &estimate, &trace);
+
+    const safety_output_t safety = judge(config, state, &estimate, frame);
+    const control_mode_t mode = mode_of(command, safety.motors_off);
+    drive_mode(config, state, &estimate, mode, &trace);
+    actuate(config, state, &estimate, &safety, mode, &trace);
+    return trace;
+}

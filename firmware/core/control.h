@@ -1,0 +1,73 @@
+// control.h - one tick of the rover: sense, estimate, control, safety. The only function that composes the others.
+//
+// Data flow: frame (raw counts) -> sense -> doppler -> ground_speed -> slip, motor -> mode -> duty -> safety -> trace.
+// control_step is a pure function of its arguments: same frames, same command, same state, same bits, on x86 and on ARM.
+#ifndef TRACTION_FIRMWARE_CORE_CONTROL_H
+#define TRACTION_FIRMWARE_CORE_CONTROL_H
+
+#include "doppler.h"
+#include "ground_speed.h"
+#include "motor.h"
+#include "safety.h"
+#include "sense.h"
+#include "signals.h"
+#include "slip.h"
+#include "slip_pi.h"
+#include "soil_sweep.h"
+#include "speed_control.h"
+#include "wheel_pid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// What the rover is, for whoever needs it whole; the modules below hold the copies they use.
+typedef struct {
+    float wheel_radius_m;
+    float half_wheelbase_m;
+    float half_track_m;
+    float mass_kg;
+} rover_geometry_t;
+
+typedef struct {
+    rover_geometry_t geometry;
+    sense_config_t sense;
+    doppler_config_t doppler;
+    ground_speed_config_t ground_speed;
+    slip_config_t slip;
+    motor_config_t motor;
+    wheel_pid_config_t wheel_pid;
+    slip_pi_config_t slip_pi;
+    speed_control_config_t speed_control;
+    soil_sweep_config_t soil_sweep;
+    safety_config_t safety;
+    bool feed_forward; // the wheel loops know the motor; false is a plain PID
+} control_config_t; // constant while running
+
+typedef struct {
+    sense_state_t sense;
+    doppler_state_t doppler;
+    ground_speed_state_t ground_speed;
+    wheel_pid_state_t wheel_pid[WHEEL_COUNT];
+    slip_pi_state_t slip_pi[WHEEL_COUNT];
+    speed_control_state_t speed_control;
+    soil_sweep_state_t soil_sweep;
+    safety_state_t safety;
+    control_mode_t mode;             // in force in the last tick
+    uint8_t slip_active;             // bit i: wheel i was driven by its slip loop in the last tick
+    float duty[WHEEL_COUNT];         // written in the last tick
+    bool saturated;                  // a wheel had no duty left in the last tick
+    float doppler_m_s;               // last Doppler value
+} control_state_t;
+
+void control_reset(const control_config_t *config, control_state_t *state);
+
+// Any frame and any command are accepted. Ensures |duty| <= 1, and duty 0 with the bridges released while a stopping fault is latched.
+trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command,
+                     const sensor_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

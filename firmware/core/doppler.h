@@ -1,0 +1,55 @@
+// doppler.h - magnitude of the ground speed from the radar's echo, one value per hop of samples.
+//
+//   paper: v = f_peak c / (2 f0 cos theta_d)                                         (1)  = (11), zero frequency excluded
+//   ours:  v = argmin over v of  sum_k P[k] / S_v[k]  +  a ln-volume(S_v),  a = sum_k P[k]     (2)
+//
+// Source: (11) Lhomme-Desages; (2) is the likelihood of exponentially distributed powers around a spectrum S_v known up to
+// its amplitude (Whittle), S_v from the beam's geometry (doppler_template.h).
+#ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
+#define TRACTION_FIRMWARE_CORE_DOPPLER_H
+
+#include "fft.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
+
+// Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
+typedef struct {
+    float speed_min_m_s;      // first grid speed
+    float log_step;           // ln of the ratio of neighbouring speeds
+    float paper_m_s_per_Hz;   // c / (2 f0 cos theta_d) of (11)
+    float sample_rate_Hz;
+    int32_t speeds;           // grid size
+    int32_t first_bin;        // spectral bins used: first_bin .. first_bin + bins - 1
+    int32_t bins;
+    const int16_t *inverse;   // [speeds][bins] 1/S_v[k], scaled
+    const int32_t *volume;    // [speeds] ln-volume of S_v in the units of (2)
+} doppler_template_t;
+
+typedef struct {
+    const doppler_template_t *beam;
+    doppler_method_t method;
+    int32_t offset_count;     // ADC value of no signal
+    int32_t hop;              // samples between values, 1..256
+    float scale;              // calibrated speed over geometric speed [1]
+    float quiet_power_count2; // in-band mean power below which there is no echo [ADC count^2]
+} doppler_config_t;
+
+typedef struct {
+    int16_t sample[FFT_LENGTH]; // oldest first
+    int32_t filled;             // valid samples so far
+} doppler_state_t; // zeroed = reset
+
+typedef struct {
+    bool fresh;         // a value was made in this call
+    bool quiet;         // no echo above the noise: the speed means nothing
+    float speed_m_s;    // magnitude
+    int32_t late_samples; // samples that arrived after the window's end
+} doppler_output_t;
+
+// Any counts are accepted (limited to 0..1023); samples beyond `count` are not read.
+doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count);
+
+#endif

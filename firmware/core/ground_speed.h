@@ -1,0 +1,71 @@
+// ground_speed.h - signed ground speed from the accelerometer and the radar's speed magnitude.
+//
+//   paper: v[k+1] = v[k] + a T,  P += Qv;  Doppler: K = P/(P + R)                     (1)  = (13), (14)
+//   ours:  v[k+1] = v[k] + (a - b) T,  b[k+1] = b[k]                                  (2)
+//          z + sum_j w_j (V(t) - V(t - s_j)) = v + tau b + n,  tau = sum_j w_j s_j    (3)
+//
+// (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
+// window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
+#ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
+#define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { GROUND_SPEED_HISTORY = 64 };
+
+typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t;
+
+typedef struct {
+    ground_speed_method_t method;
+    float tick_s;                  // T
+    float speed_noise_m2_s2;       // Qv per tick
+    float bias_noise_m2_s4;        // Qb per tick
+    float bias_start_m_s2;         // standard deviation of the bias at reset
+    float bias_max_m_s2;           // |b| limit
+    float doppler_noise_m2_s2;     // R, constant part
+    float doppler_noise_m_s;       // R per |v|
+    float doppler_accel_s2;        // R per a^2
+    float gate_sigma;              // values further than this from the prediction are refused
+    int32_t gate_patience;         // refusals in a row after which the next value is taken as the truth
+    int32_t quiet_needed;          // quiet Doppler values in a row that mean standstill
+    float sign_hysteresis_m_s;     // |v| above which the sign may not flip without the wheels
+} ground_speed_config_t;
+
+typedef struct {
+    float speed_m_s;
+    float bias_m_s2;
+    float p_vv, p_vb, p_bb;
+    int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
+    int32_t head;
+    float integral_rest_m_s;       // part of V below one unit
+    int32_t refused;
+    int32_t quiet;
+    bool standstill;
+    bool started;                  // false until the first Doppler value or standstill
+} ground_speed_state_t;
+
+typedef struct {
+    float accel_x_m_s2;
+    float doppler_m_s;             // magnitude
+    float doppler_late_s;          // age of the window's end
+    float wheel_m_s;               // rim speed of the wheels as a hint for the sign
+    bool accel_valid;
+    bool doppler_fresh;
+    bool doppler_quiet;
+} ground_speed_input_t;
+
+typedef struct {
+    float speed_m_s;
+    float std_m_s;
+    float bias_m_s2;
+    bool standstill;
+} ground_speed_output_t;
+
+void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_t *state);
+
+// Any value is accepted; NaN or infinity in a measurement counts as "no measurement".
+ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state,
+                                        const ground_speed_input_t *input);
+
+#endif

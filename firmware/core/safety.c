@@ -1,0 +1,138 @@
+#include "safety.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+// Which latch a lost sensor sets, by the number of its FRAME_* bit.
+static const uint32_t lost_fault[SAFETY_SENSORS] = {
+    FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_CURRENT_LOST, FAULT_CURRENT_LOST,
+    FAULT_CURRENT_LOST, FAULT_CURRENT_LOST, FAULT_BATTERY_LOST, FAULT_ACCEL_LOST,   FAULT_GYRO_LOST,    FAULT_RADAR_LOST,
+};
+
+// Counts how long a cause has lasted; true once it has lasted longer than `limit_s`.
+static bool lasted(float *elapsed_s, bool cause, float tick_s, float limit_s)
+{
+    *elapsed_s = cause ? fixed_clamp(*elapsed_s + tick_s, 0.0f, limit_s + 2.0f * tick_s) : 0.0f;
+    return *elapsed_s > limit_s;
+}
+
+static uint32_t check_sensors(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
+{
+    uint32_t faults = 0;
+    for (uint32_t i = 0; i < SAFETY_SENSORS; i++) {
+        const uint32_t bit = 1u << i;
+        const bool absurd = (input->absurd & bit) != 0u;
+        const bool good = (input->usable & bit) != 0u;
+        state->bad_ticks[i] = good ? 0u : state->bad_ticks[i] + (state->bad_ticks[i] < UINT32_MAX ? 1u : 0u);
+        state->absurd_ticks[i] = !absurd ? 0u : state->absurd_ticks[i] + (state->absurd_ticks[i] < UINT32_MAX ? 1u : 0u);
+        if ((config->required & bit) != 0u && state->bad_ticks[i] > config->patience_ticks) {
+            faults |= lost_fault[i];
+        }
+        if (state->absurd_ticks[i] > config->patience_ticks) {
+            faults |= FAULT_ABSURD_SENSOR;
+        }
+    }
+    return faults;
+}
+
+static uint32_t check_time(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
+{
+    uint32_t faults = 0;
+    const uint32_t tick = input->frame->tick;
+    if (state->started && tick != state->last_tick + 1u) {
+        const uint32_t jump = tick - state->last_tick - 1u; // wraps to a huge number when time stands still or runs back
+        const uint32_t room = UINT32_MAX - state->missed;
+        state->missed += jump < room ? jump : room;
+        state->good_ticks = 0;
+    } else if (state->missed > 0u && ++state->good_ticks >= config->missed_forget_ticks) {
+        const uint32_t most = config->missed_ticks_max + 1u; // so that a long gap is forgotten in a stated time
+        state->missed = (state->missed > most ? most : state->missed) - 1u;
+        state->good_ticks = 0;
+    }
+    state->last_tick = tick;
+    state->started = true;
+    if (state->missed > config->missed_ticks_max) {
+        faults |= FAULT_MISSED_TICKS;
+    }
+    if (input->command_age_ticks > config->command_patience_ticks) {
+        faults |= FAULT_COMMAND_TIMEOUT;
+    }
+    return faults;
+}
+
+// (1), (2) and stall of one wheel; sets its bit in *limit when its current must be limited.
+static uint32_t check_wheel(const safety_config_t *config, safety_state_t *state, const safety_input_t *input, int wheel, uint32_t *limit)
+{
+    uint32_t faults = 0;
+    const float current_A = fixed_clamp(input->current_A[wheel], -100.0f, 100.0f); // [A] far beyond any rail: keeps (1), (2) finite
+    const float square = current_A * current_A;
+    const float excess = square - config->current_continuous_A * config->current_continuous_A;
+    state->i2t_A2s[wheel] = fixed_clamp(state->i2t_A2s[wheel] + excess * config->tick_s, 0.0f, 2.0f * config->i2t_max_A2s); // (1)
+    if (state->i2t_A2s[wheel] > config->i2t_max_A2s) {
+        faults |= FAULT_OVER_CURRENT;
+        *limit |= 1u << (uint32_t)wheel;
+    }
+    const float heat_W = square * config->resistance_ohm - state->rise_K[wheel] / config->thermal_K_W;
+    state->rise_K[wheel] = fixed_clamp(state->rise_K[wheel] + config->tick_s / config->thermal_J_K * heat_W, 0.0f, 1000.0f); // (2)
+    if (state->rise_K[wheel] > config->temperature_rise_max_K) {
+        faults |= FAULT_OVER_TEMPERATURE;
+    }
+    const bool stalled =
+        fabsf(current_A) > config->stall_current_A && fabsf(input->speed_rad_s[wheel]) < config->stall_speed_rad_s;
+    if (lasted(&state->stall_s[wheel], stalled, config->tick_s, config->stall_s)) {
+        faults |= FAULT_STALL;
+        *limit |= 1u << (uint32_t)wheel;
+    }
+    return faults;
+}
+
+static uint32_t check_battery(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
+{
+    const bool low = (input->usable & FRAME_BATTERY) != 0u && !(input->battery_V >= config->battery_min_V);
+    return lasted(&state->low_battery_s, low, config->tick_s, config->battery_s) ? FAULT_LOW_BATTERY : 0u;
+}
+
+// The rover passes faster than any wheel explains, or the radar repeats one value while every wheel turns.
+static uint32_t check_agreement(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
+{
+    uint32_t faults = 0;
+    const float explained = input->rim_max_m_s * config->disagree_ratio + config->disagree_m_s;
+    if (lasted(&state->disagree_s, fabsf(input->ground_speed_m_s) > explained, config->tick_s, config->disagree_s)) {
+        faults |= FAULT_SPEED_DISAGREE;
+    }
+    bool frozen = false;
+    if ((input->usable & FRAME_RADAR) != 0u) {
+        frozen = input->rim_min_m_s > config->disagree_m_s;
+        for (uint32_t i = 0; i < input->frame->radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; i++) {
+            frozen = frozen && input->frame->radar_count[i] == state->radar_last_count;
+            state->radar_last_count = input->frame->radar_count[i];
+        }
+        if (lasted(&state->radar_frozen_s, frozen, config->tick_s, config->disagree_s)) {
+            faults |= FAULT_RADAR_LOST;
+        }
+    }
+    return faults;
+}
+
+safety_output_t safety_step(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
+{
+    uint32_t limit = 0;
+    uint32_t now = input->frame->emergency_stop ? (uint32_t)FAULT_EMERGENCY_STOP : 0u;
+    now |= check_sensors(config, state, input);
+    now |= check_time(config, state, input);
+    for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
+        now |= check_wheel(config, state, input, wheel, &limit);
+    }
+    now |= check_battery(config, state, input);
+    now |= check_agreement(config, state, input);
+
+    state->faults = input->command_stop ? now : (state->faults | now);
+    state->limited = input->command_stop ? limit : (state->limited | limit);
+    const safety_output_t out = {
+        .faults = state->faults,
+        .motors_off = (state->faults & ~(uint32_t)SAFETY_LIMITING) != 0u,
+        .limited = state->limited,
+    };
+    return out;
+}

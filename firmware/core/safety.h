@@ -1,0 +1,85 @@
+// safety.h - the last word of every tick: which faults are latched, whether the bridges may be on, how much current a wheel gets.
+//
+//   x_i[k] = max(0, x_i[k-1] + (I_i^2 - I_cont^2) T);  over-current when x_i > x_max        (1)  i^2 t
+//   h_i[k] = h_i[k-1] + T (I_i^2 Ra - h_i[k-1]/R_th)/C_th                                  (2)  winding above ambient
+//   A sensor is lost when it was silent or absurd for more than its patience; a count of bad ticks goes up by 1 in a bad tick
+//   and is cleared by a good one.
+//
+// Table of faults, causes and reactions: docs/firmware.md. A latch clears in a tick that commands MODE_STOP while its cause is gone.
+#ifndef TRACTION_FIRMWARE_CORE_SAFETY_H
+#define TRACTION_FIRMWARE_CORE_SAFETY_H
+
+#include "signals.h"
+
+// Faults that release the bridges of all wheels; the others limit one wheel's current.
+enum {
+    SAFETY_LIMITING = FAULT_OVER_CURRENT | FAULT_STALL,
+};
+
+typedef struct {
+    float tick_s;
+    uint32_t required;              // FRAME_* bits that the rover must have
+    uint32_t patience_ticks;        // silent or absurd ticks in a row that are forgiven
+    uint32_t command_patience_ticks;// age of a command that is forgiven
+    uint32_t missed_ticks_max;      // missed ticks that are forgiven
+    uint32_t missed_forget_ticks;   // one missed tick is forgotten per this many good ones
+    float current_continuous_A;     // I_cont
+    float i2t_max_A2s;              // x_max
+    float stall_current_A;
+    float stall_speed_rad_s;
+    float stall_s;
+    float resistance_ohm;           // Ra
+    float thermal_K_W;              // R_th
+    float thermal_J_K;              // C_th
+    float temperature_rise_max_K;
+    float battery_min_V;
+    float battery_s;                // how long the battery must be low
+    float disagree_m_s;             // ground speed beyond what the fastest wheel explains, absolute part
+    float disagree_ratio;           // and relative part
+    float disagree_s;
+} safety_config_t;
+
+enum { SAFETY_SENSORS = 12 }; // one per FRAME_* bit
+
+typedef struct {
+    uint32_t faults;                // latched
+    uint32_t limited;               // bit i: wheel i is limited to the continuous current
+    uint32_t bad_ticks[SAFETY_SENSORS];
+    uint32_t absurd_ticks[SAFETY_SENSORS];
+    uint32_t last_tick;
+    uint32_t missed;
+    uint32_t good_ticks;
+    float i2t_A2s[WHEEL_COUNT];
+    float rise_K[WHEEL_COUNT];
+    float stall_s[WHEEL_COUNT];
+    float low_battery_s;
+    float disagree_s;
+    uint16_t radar_last_count;
+    float radar_frozen_s;           // how long the radar repeated one value while the wheels turned
+    bool started;
+} safety_state_t; // zeroed = reset
+
+typedef struct {
+    const sensor_frame_t *frame;
+    uint32_t command_age_ticks;
+    bool command_stop;              // the user commands MODE_STOP
+    uint32_t usable;                // FRAME_* bits of sense_output_t
+    uint32_t absurd;
+    float speed_rad_s[WHEEL_COUNT];
+    float current_A[WHEEL_COUNT];
+    float battery_V;
+    float ground_speed_m_s;
+    float rim_max_m_s;              // largest |R w| of the wheels
+    float rim_min_m_s;              // smallest |R w|
+} safety_input_t;
+
+typedef struct {
+    uint32_t faults;
+    bool motors_off;
+    uint32_t limited;               // bit i: wheel i only gets the continuous current
+} safety_output_t;
+
+// Any value is accepted; a NaN counts as a cause where it is compared.
+safety_output_t safety_step(const safety_config_t *config, safety_state_t *state, const safety_input_t *input);
+
+#endif

@@ -1,0 +1,54 @@
+// sense.h - raw counts to SI, with the age of every sensor and what is absurd about it.
+//
+//   w[k]  = q (c[k] - c[k-1]) / T                                                (1)  delay T/2, noise q/(T sqrt 6)
+//   dw[k] = q (c[k] - 2 c[k-4] + c[k-8]) / (4T)^2                                (2)  delay 4T,  noise q sqrt(6/12)/(4T)^2
+//
+// q = wheel angle per pulse. With 6000 pulses and T = 10 ms: (1) 5 ms, 0.043 rad/s; (2) 40 ms, 0.46 rad/s^2 (derived here from
+// a uniform rounding error of one pulse). A silent encoder is extrapolated at its last speed; its next count is then exact again.
+#ifndef TRACTION_FIRMWARE_CORE_SENSE_H
+#define TRACTION_FIRMWARE_CORE_SENSE_H
+
+#include "signals.h"
+
+enum { SENSE_HISTORY = 8 };
+
+typedef struct {
+    float tick_s;                 // T
+    float encoder_rad_per_count;  // q
+    float current_A_per_count;
+    float battery_V_per_count;
+    float accel_m_s2_per_count;
+    float gyro_rad_s_per_count;
+    int32_t current_offset_count; // 0 A
+    int32_t current_max_count;    // the converter's rail
+    int32_t battery_max_count;
+    int32_t radar_max_count;
+    int32_t encoder_step_max;     // more pulses in one tick than any wheel can make
+} sense_config_t;
+
+typedef struct {
+    int32_t count[WHEEL_COUNT][SENSE_HISTORY]; // ring of past counts
+    int32_t head;
+    float speed_rad_s[WHEEL_COUNT];
+    float current_A[WHEEL_COUNT];
+    float battery_V;
+    float accel_x_m_s2;
+    float gyro_z_rad_s;
+    uint32_t encoder_seen;        // bit i: wheel i has had a first count
+} sense_state_t; // zeroed = reset
+
+typedef struct {
+    float speed_rad_s[WHEEL_COUNT];
+    float accel_rad_s2[WHEEL_COUNT];
+    float current_A[WHEEL_COUNT];
+    float battery_V;
+    float accel_x_m_s2;
+    float gyro_z_rad_s;
+    uint32_t usable;              // FRAME_* bits that are present and sane
+    uint32_t absurd;              // FRAME_* bits that are present and impossible
+} sense_output_t;
+
+// Any frame is accepted. A part that is absent or absurd keeps its last value.
+sense_output_t sense_measure(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame);
+
+#endif
