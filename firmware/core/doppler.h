@@ -13,6 +13,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
 // Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
@@ -51,5 +55,9 @@ typedef struct {
 
 // Any counts are accepted (limited to 0..1023); samples beyond `count` are not read.
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -4,6 +4,14 @@
 
 #include "doppler.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 extern const doppler_template_t doppler_template_mdu1130; // 9.9 GHz, 36 x 72 deg
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

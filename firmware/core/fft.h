@@ -9,9 +9,17 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { FFT_LENGTH = 256, FFT_BINS = 128 };
 
 // power[1..127] by (2); power[0] = 0, as zero frequency is never used. Any samples are accepted; nothing saturates or wraps.
 void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -12,6 +12,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { GROUND_SPEED_HISTORY = 64 };
 
 typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t;
@@ -67,5 +71,9 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
 // Any value is accepted; NaN or infinity in a measurement counts as "no measurement".
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state,
                                         const ground_speed_input_t *input);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

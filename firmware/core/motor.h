@@ -11,6 +11,10 @@
 #ifndef TRACTION_FIRMWARE_CORE_MOTOR_H
 #define TRACTION_FIRMWARE_CORE_MOTOR_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     float torque_constant_Nm_A;   // KG, at the wheel
     float back_emf_Vs;            // ke, at the wheel
@@ -38,5 +42,9 @@ float motor_duty_for_speed(const motor_config_t *config, float speed_rad_s, floa
 
 // Duty limited so that by (a) the winding current stays within +-limit_A at the present speed.
 float motor_duty_limited(const motor_config_t *config, float duty, float speed_rad_s, float supply_V, float limit_A);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include "signals.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // Faults that release the bridges of all wheels; the others limit one wheel's current.
 enum {
     SAFETY_LIMITING = FAULT_OVER_CURRENT | FAULT_STALL,
@@ -81,5 +85,9 @@ typedef struct {
 
 // Any value is accepted; a NaN counts as a cause where it is compared.
 safety_output_t safety_step(const safety_config_t *config, safety_state_t *state, const safety_input_t *input);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -10,6 +10,10 @@
 
 #include "signals.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { SENSE_HISTORY = 8 };
 
 typedef struct {
@@ -50,5 +54,9 @@ typedef struct {
 
 // Any frame is accepted. A part that is absent or absurd keeps its last value.
 sense_output_t sense_measure(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

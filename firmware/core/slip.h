@@ -11,6 +11,10 @@
 
 #include <stdbool.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     float wheel_radius_m; // R, under load, > 0
     float valid_m_s;      // below this both speeds are too small for their ratio to mean anything
@@ -23,5 +27,9 @@ typedef struct {
 
 // Any value is accepted; NaN or infinity gives slip 0, not valid.
 slip_output_t slip_measure(const slip_config_t *config, float wheel_speed_rad_s, float ground_speed_m_s);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -12,6 +12,10 @@
 
 #include <stdbool.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     float kp;              // Kp   [duty per unit slip] >= 0
     float ki_T;            // Ki*T [duty per unit slip] >= 0, T = control period
@@ -42,5 +46,9 @@ slip_pi_output_t slip_pi_step(const slip_pi_config_t *config, slip_pi_state_t *s
 
 // Bumpless start: the next output is near `duty` at the present error.
 void slip_pi_preset(const slip_pi_config_t *config, slip_pi_state_t *state, float duty, const slip_pi_input_t *input);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -10,6 +10,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     float wheel_radius_m;   // R
     float tick_s;           // T
@@ -29,5 +33,9 @@ typedef struct {
 
 // NaN speed counts as 0.
 soil_sweep_output_t soil_sweep_step(const soil_sweep_config_t *config, soil_sweep_state_t *state, float speed_ref_m_s);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

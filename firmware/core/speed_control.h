@@ -10,6 +10,10 @@
 
 #include <stdbool.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     float wheel_radius_m;      // R
     float half_track_m;        // b
@@ -40,5 +44,9 @@ typedef struct {
 // Any value is accepted; NaN in a reference counts as 0, a NaN speed as v = v*.
 speed_control_output_t speed_control_step(const speed_control_config_t *config, speed_control_state_t *state,
                                           const speed_control_input_t *input);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include <stdbool.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     float kp_s;           // Kp   [duty per rad/s] >= 0
     float ki_T_s;         // Ki*T [duty per rad/s] >= 0
@@ -45,5 +49,9 @@ wheel_pid_output_t wheel_pid_step(const wheel_pid_config_t *config, wheel_pid_st
 
 // Bumpless start: the next output starts at `duty`, the reference at the present speed.
 void wheel_pid_preset(const wheel_pid_config_t *config, wheel_pid_state_t *state, float duty, float speed_rad_s, float feed_forward);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,0 +1,86 @@
+#include "firmware/core/slip.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace {
+
+constexpr slip_config_t config = {.wheel_radius_m = 0.057f, .valid_m_s = 0.05f};
+
+float slip(float w, float v) { return slip_measure(&config, w, v).slip; }
+
+TEST(Slip, follows_equation_1_for_forward_travel)
+{
+    for (float v = 0.05f; v <= 1.0f; v += 0.05f) {
+        for (float w = 1.0f; w <= 25.0f; w += 0.5f) {
+            const double rim = 0.057 * static_cast<double>(w);
+            const double ground = static_cast<double>(v);
+            const double expected = rim >= ground ? 1 - ground / rim : rim / ground - 1; // (1), in double
+            EXPECT_NEAR(slip(w, v), expected, 4e-7); // three float roundings of a number below 1: 3 * 2^-24, doubled
+        }
+    }
+}
+
+TEST(Slip, is_odd_under_reversal_of_both)
+{
+    for (float v = -1.0f; v <= 1.0f; v += 0.07f) {
+        for (float w = -20.0f; w <= 20.0f; w += 0.7f) {
+            EXPECT_EQ(slip(-w, -v), -slip(w, v));
+        }
+    }
+}
+
+TEST(Slip, is_full_where_wheel_and_ground_oppose)
+{
+    EXPECT_EQ(slip(3.0f, -0.2f), 1.0f);
+    EXPECT_EQ(slip(-3.0f, 0.2f), -1.0f);
+}
+
+TEST(Slip, is_one_for_a_wheel_that_spins_in_place_and_minus_one_for_a_blocked_wheel)
+{
+    EXPECT_EQ(slip(3.0f, 0.0f), 1.0f);
+    EXPECT_EQ(slip(0.0f, 0.2f), -1.0f);
+    EXPECT_EQ(slip(0.0f, 0.0f), 0.0f);
+}
+
+TEST(Slip, is_valid_only_where_one_of_the_speeds_means_something)
+{
+    EXPECT_FALSE(slip_measure(&config, 0.1f, 0.04f).valid);
+    EXPECT_TRUE(slip_measure(&config, 0.1f, 0.06f).valid);
+    EXPECT_TRUE(slip_measure(&config, 1.0f, 0.0f).valid);
+}
+
+TEST(Slip, is_continuous_away_from_rest)
+{
+    // |ds| <= (R |dw| + |dv|) * 2 / max(|R w|, |v|): derived from (1)'s partial derivatives
+    for (float v = -1.0f; v <= 1.0f; v += 0.013f) {
+        for (float w = -20.0f; w <= 20.0f; w += 0.13f) {
+            const float scale = std::fmax(std::fabs(0.057f * w), std::fabs(v));
+            if (scale < 0.05f) {
+                continue;
+            }
+            const float step = 1e-4f;
+            EXPECT_LE(std::fabs(slip(w, v + step) - slip(w, v)), 2.0f * step / scale + 1e-6f);
+        }
+    }
+}
+
+TEST(Slip, is_bounded_and_defined_for_every_extreme)
+{
+    const float inf = std::numeric_limits<float>::infinity();
+    const float extremes[] = {0.0f, -0.0f, 1e-45f, -1e-45f, 1e-38f, 3e38f, -3e38f, inf, -inf, std::nanf(""), 1.0f, -1.0f};
+    for (const float w : extremes) {
+        for (const float v : extremes) {
+            const slip_output_t out = slip_measure(&config, w, v);
+            EXPECT_GE(out.slip, -1.0f);
+            EXPECT_LE(out.slip, 1.0f);
+            if (!std::isfinite(w) || !std::isfinite(v)) {
+                EXPECT_FALSE(out.valid);
+            }
+        }
+    }
+}
+
+} // namespace
