@@ -11,8 +11,8 @@ namespace traction::log {
 
 namespace {
 
-// "wheel0.speed_rpm" becomes "wheel0.speed_rad_s"; a name outside the vocabulary is kept and said.
-void name_in_vocabulary(Column &column, const std::vector<std::string> &names, std::vector<Repair> &repairs) {
+// "wheel0.speed_rpm" becomes "wheel0.speed_rad_s"; a name outside the vocabulary is kept.
+void name_in_vocabulary(Column &column, const std::vector<std::string> &names, std::vector<Repair> &repairs, std::vector<std::string> &unknown) {
     Signal &signal = column.signal;
     if (find_quantity(signal.name) != nullptr || signal.name.rfind("truth.", 0) == 0) return;
     const std::string at = "column " + std::to_string(column.number) + ": '" + signal.name + "' ";
@@ -27,7 +27,17 @@ void name_in_vocabulary(Column &column, const std::vector<std::string> &names, s
         keep_what_is_a_number(signal, repairs);
         return;
     }
-    repairs.push_back({"unknown_name", signal.name, signal.value.size(), 0, at + "is not in the vocabulary, kept under its own name and used by no balance"});
+    unknown.push_back(signal.name);
+}
+
+void say_unknown(const std::vector<std::string> &unknown, std::size_t columns, std::vector<Repair> &repairs) {
+    if (unknown.empty()) return;
+    std::string text = unknown.size() == columns ? "no column is" : std::to_string(unknown.size()) + (unknown.size() == 1 ? " column is not" : " columns are not");
+    text += " in the vocabulary (";
+    for (std::size_t i = 0; i < unknown.size() && i < 4; ++i) text += (i == 0 ? "'" : ", '") + unknown[i] + "'";
+    text += unknown.size() > 4 ? ", ...): " : "): ";
+    text += unknown.size() == columns ? "a foreign file wants a map (--map)" : "kept under their own names, used by no balance";
+    repairs.push_back({"unknown_name", unknown.front(), unknown.size(), 0, text});
 }
 
 Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Repair> &repairs, const ReadLimits &limits) {
@@ -35,14 +45,15 @@ Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Rep
     Log log;
     log.header = std::move(table.header);
     log.source = path;
-    std::vector<std::string> names = table.names;
+    std::vector<std::string> names = table.names, unknown;
     for (Column &column : table.columns) {
         put_in_order(column, path, repairs);
         const std::string before = column.signal.name;
-        name_in_vocabulary(column, names, repairs);
+        name_in_vocabulary(column, names, repairs, unknown);
         if (column.signal.name != before) names.push_back(column.signal.name); // rpm and deg_s of one quantity: the first wins
         log.signals.push_back(std::move(column.signal));
     }
+    say_unknown(unknown, table.columns.size(), repairs);
     return log;
 }
 

@@ -435,11 +435,13 @@ bool is_clock_jump(const Signal &signal, std::size_t back) {
     constexpr std::size_t span = 10; // [samples] assumed; a late row or two is a matter of order, not of the clock
     const double start = signal.t_s[back], top = *std::max_element(signal.t_s.begin(), signal.t_s.begin() + static_cast<std::ptrdiff_t>(back));
     std::size_t before = 0, after = 0;
-    for (std::size_t i = 0; i < back; ++i) before += signal.t_s[i] > start;
+    double last = start;
     for (std::size_t i = back; i < signal.t_s.size() && signal.t_s[i] < top; ++i) {
-        if (i > back && signal.t_s[i] <= signal.t_s[i - 1]) break;
+        if (i > back && signal.t_s[i] <= last) break;
+        last = signal.t_s[i];
         ++after;
     }
+    for (std::size_t i = 0; i < back; ++i) before += signal.t_s[i] >= start && signal.t_s[i] <= last;
     return before >= span && after >= span;
 }
 
