@@ -13,11 +13,19 @@ std::string place(const std::string &file, std::size_t line, std::size_t column)
     return text;
 }
 
+// A message is one line of printable text, whatever a damaged file put into a name.
+std::string printable(std::string text) {
+    for (char &c : text) {
+        if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+    }
+    return text;
+}
+
 } // namespace
 
 LogError::LogError(std::string file_name, std::size_t line_number, std::size_t column_number, const std::string &what_is_wrong,
                    const std::string &mend)
-    : std::runtime_error(place(file_name, line_number, column_number) + ": " + what_is_wrong + "; to mend: " + mend),
+    : std::runtime_error(printable(place(file_name, line_number, column_number) + ": " + what_is_wrong + "; to mend: " + mend)),
       file(std::move(file_name)), line(line_number), column(column_number) {}
 
 const Signal *Log::find(std::string_view name) const {
