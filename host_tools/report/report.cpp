@@ -1,0 +1,59 @@
+#include "report.h"
+
+#include "page.h"
+
+#include <filesystem>
+#include <fstream>
+#include <ios>
+#include <string_view>
+
+namespace traction::report {
+
+namespace {
+
+// JSON that may stand inside a <script> element: no "<" is left that could end it (HTML standard, section 4.12.1.3).
+std::string embeddable(const nlohmann::json &result) {
+    const std::string text = result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    std::string out;
+    out.reserve(text.size());
+    for (const char c : text) {
+        if (c == '<') out += "\\u003c";
+        else out += c;
+    }
+    return out;
+}
+
+} // namespace
+
+std::string to_html(const nlohmann::json &result) {
+    const std::string schema = result.is_object() ? result.value("schema", nlohmann::json()).dump() : "no object";
+    if (schema != "\"traction.lab/1\"" && schema != "\"traction.figures/1\"")
+        throw ReportError("schema: " + schema + ": no page shows it; give a result with \"schema\": \"traction.lab/1\" or \"traction.figures/1\"");
+    const std::string_view page = page_template(), mark = "__TRACTION_RESULT__";
+    const std::size_t place = page.find(mark);
+    if (place == std::string_view::npos) throw std::logic_error("the report page has no place for its data");
+    std::string out(page.substr(0, place));
+    out += embeddable(result);
+    out += page.substr(place + mark.size());
+    return out;
+}
+
+void write_html(const nlohmann::json &result, const std::string &path) { write_text(to_html(result), path); }
+
+void write_text(const std::string &text, const std::string &path) {
+    const std::string part = path + ".part";
+    try {
+        std::ofstream file;
+        file.exceptions(std::ios::failbit | std::ios::badbit);
+        file.open(part, std::ios::binary);
+        file << text;
+        file.close();
+        std::filesystem::rename(part, path);
+    } catch (...) {
+        std::error_code ignored;
+        std::filesystem::remove(part, ignored);
+        throw;
+    }
+}
+
+} // namespace traction::report

@@ -1,0 +1,29 @@
+// main.js - the page: reads the result that stands in the document and shows it by its schema.
+import './page.css';
+import 'uplot/dist/uPlot.min.css';
+import { h } from './dom.js';
+import { figures } from './figures.js';
+import { lab } from './lab.js';
+
+const result = JSON.parse(document.getElementById('result').textContent);
+const page = document.getElementById('page');
+document.title = result.title || 'Traction report';
+
+const { parts, then } = result.schema === 'traction.figures/1' ? figures(result) : lab(result);
+const sections = parts.filter(Boolean);
+
+page.replaceChildren(
+  h('header', {}, h('h1', {}, document.title),
+    h('nav', { 'aria-label': 'Contents' }, h('ul', {}, sections.filter((p) => p.id && p.dataset.short).map((p) =>
+      h('li', {}, h('a', { href: `#${p.id}` }, p.dataset.short)))))),
+  ...sections,
+  h('footer', {}, h('button', { type: 'button', onclick: save }, 'Save the data (JSON)'),
+    ' The whole result stands inside this file; nothing is loaded from anywhere.'));
+then?.();
+document.documentElement.dataset.ready = 'yes';
+
+function save() {
+  const address = URL.createObjectURL(new Blob([JSON.stringify(result, null, 1)], { type: 'application/json' }));
+  h('a', { href: address, download: 'result.json' }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 1000);
+}

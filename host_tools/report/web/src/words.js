@@ -1,0 +1,66 @@
+// words.js - numbers, intervals and verdicts as people read them.
+
+export const isNumber = (x) => typeof x === 'number' && Number.isFinite(x);
+export const list = (x) => (Array.isArray(x) ? x : []);
+
+export function num(x, digits = 3) {
+  if (!isNumber(x)) return '–';
+  if (x === 0) return '0';
+  const size = Math.abs(x);
+  if (size >= 1e6 || size < 1e-4) return x.toExponential(Math.max(0, digits - 1)).replace('-', '−').replace('e+', 'e');
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return x.toFixed(Math.min(decimals, 12)).replace('-', '−');
+}
+
+export const percent = (x) => (isNumber(x) ? `${num(100 * x)} %` : '–');
+export const unit = (u) => (u && u !== '1' ? ` ${u}` : '');
+export const seconds = (a, b) => `${num(a, 4)}–${num(b, 4)} s`;
+
+// 0.15 [0.13 to 0.17] N m
+export function sized(p) {
+  if (!p) return '–';
+  const range = isNumber(p.low) && isNumber(p.high) ? ` [${num(p.low)} to ${num(p.high)}]` : '';
+  return `${num(p.value)}${range}${unit(p.unit)}`;
+}
+
+export const parameters = (ps) => Object.entries(ps ?? {}).map(([name, p]) => `${name} = ${sized(p)}`);
+
+export function variant(v) {
+  return Object.entries(v ?? {}).map(([name, value]) => `${name} = ${isNumber(value) ? num(value) : value}`).join(', ');
+}
+
+export function effectName(c) {
+  return c.effect + (isNumber(c.wheel) && c.wheel >= 0 ? ` (wheel ${c.wheel})` : '');
+}
+
+// mark: readable without colour
+const verdicts = {
+  named: ['✔', 'named'],
+  class: ['≈', 'cannot be told apart'],
+  not_significant: ['·', 'not significant'],
+  too_small: ['·', 'too small to matter'],
+  wrong_sign: ['✘', 'unphysical sign'],
+  not_excited: ['?', 'this log cannot show it'],
+};
+export function candidateVerdict(c) {
+  const [mark, words] = verdicts[c.verdict] ?? ['', String(c.verdict ?? '–').replaceAll('_', ' ')];
+  return `${mark} ${words}${c.verdict === 'class' && isNumber(c.class) ? ` (class ${c.class})` : ''}`;
+}
+
+const kinds = {
+  named: 'An effect is named',
+  class: 'One of several, which this log cannot tell apart',
+  partial: 'An effect is named, but explains only a part',
+  unknown: 'None of the known effects',
+  nothing: 'Nothing to find',
+};
+export const verdictKind = (v) => kinds[v.kind] ?? v.kind;
+
+// "error 3.1 × noise floor: there is something to find"; 1.1: half of what the noise of two runs can move the ratio by, *assumed*
+export function scoreLine(score) {
+  if (!score) return '';
+  const ratio = isNumber(score.ratio) ? score.ratio : score.error / score.floor;
+  if (!isNumber(ratio)) return score.verdict ?? `error ${num(score.error)}, noise floor unknown`;
+  const words = score.verdict || (ratio > 1.1 ? 'there is something to find' : 'nothing to find');
+  return words.includes('noise floor') ? words : `error ${num(ratio)} × noise floor: ${words}`;
+}

@@ -1,0 +1,30 @@
+import { defineConfig } from 'vite';
+
+// Puts the one script and the one style sheet into the page, so that a single file opens from disk.
+function oneFile() {
+  return {
+    name: 'one-file',
+    enforce: 'post',
+    generateBundle(_, bundle) {
+      const page = Object.values(bundle).find((file) => file.fileName.endsWith('.html'));
+      let html = page.source;
+      for (const file of Object.values(bundle)) {
+        if (file.fileName.endsWith('.js')) {
+          const code = file.code.replaceAll('</script', '<\\/script');
+          html = html.replace(/<script[^>]*\ssrc="[^"]*"[^>]*><\/script>/, '');
+          html = html.replace('</body>', () => `<script type="module">${code}</script>\n</body>`);
+        } else if (file.fileName.endsWith('.css')) {
+          html = html.replace(/<link[^>]*rel="stylesheet"[^>]*>/, () => `<style>${file.source}</style>`);
+        } else continue;
+        delete bundle[file.fileName];
+      }
+      page.source = html;
+    },
+  };
+}
+
+export default defineConfig({
+  base: './',
+  build: { target: 'es2020', modulePreload: false, cssCodeSplit: false, assetsInlineLimit: 1e6 },
+  plugins: [oneFile()],
+});
