@@ -3,9 +3,12 @@
 
 #include "host_tools/report/report.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
+#include <system_error>
 
 namespace traction::cli {
 
@@ -16,10 +19,9 @@ struct ReportOptions {
 };
 
 nlohmann::json read_result(const std::string &path) {
-    std::ifstream file;
-    file.exceptions(std::ios::failbit | std::ios::badbit);
-    file.open(path);
-    file.exceptions(std::ios::badbit);
+    errno = 0;
+    std::ifstream file(path);
+    if (!file) throw std::filesystem::filesystem_error("cannot read", path, std::error_code(errno, std::generic_category()));
     try {
         return nlohmann::json::parse(file);
     } catch (const nlohmann::json::parse_error &error) {

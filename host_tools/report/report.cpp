@@ -2,9 +2,11 @@
 
 #include "page.h"
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <ios>
+#include <stdexcept>
+#include <system_error>
 #include <string_view>
 
 namespace traction::report {
@@ -42,18 +44,17 @@ void write_html(const nlohmann::json &result, const std::string &path) { write_t
 
 void write_text(const std::string &text, const std::string &path) {
     const std::string part = path + ".part";
-    try {
-        std::ofstream file;
-        file.exceptions(std::ios::failbit | std::ios::badbit);
-        file.open(part, std::ios::binary);
-        file << text;
-        file.close();
-        std::filesystem::rename(part, path);
-    } catch (...) {
+    errno = 0;
+    std::ofstream file(part, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) {
+        const int cause = errno != 0 ? errno : EIO;
         std::error_code ignored;
         std::filesystem::remove(part, ignored);
-        throw;
+        throw std::filesystem::filesystem_error("cannot write", path, std::error_code(cause, std::generic_category()));
     }
+    std::filesystem::rename(part, path);
 }
 
 } // namespace traction::report

@@ -25,8 +25,8 @@ struct ReportError : std::runtime_error {
 // The page as text. Throws ReportError when the schema is unknown.
 std::string to_html(const nlohmann::json &result);
 
-// Writes the page to `path`: to a temporary beside it, then renamed. Throws ReportError, or std::ios_base::failure /
-// std::filesystem::filesystem_error when the file cannot be written.
+// Writes the page to `path`: to a temporary beside it, then renamed. Throws ReportError, or std::filesystem::filesystem_error when
+// the file cannot be written.
 void write_html(const nlohmann::json &result, const std::string &path);
 
 // Writes any text the same way (SVG, for one).

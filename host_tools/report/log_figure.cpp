@@ -1,0 +1,121 @@
+#include "log_figure.h"
+
+#include "axis.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace traction::report {
+
+namespace {
+
+constexpr std::size_t most_in_a_panel = 8; // as many as there are styles
+
+// Suffix of a name and how a reader writes the unit; longer suffixes first, so that m_s2 is not taken for s2.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> units{{
+    {"rad_s2", "rad/s²"}, {"rad_s", "rad/s"}, {"deg_s", "deg/s"}, {"m_s3", "m/s³"}, {"m_s2", "m/s²"}, {"mm_s", "mm/s"}, {"m_s", "m/s"},
+    {"Nms", "N m s"}, {"Nm", "N m"}, {"count", "count"}, {"rad", "rad"}, {"deg", "deg"}, {"degC", "°C"}, {"ohm", "ohm"}, {"rpm", "rpm"},
+    {"mA", "mA"}, {"mm", "mm"}, {"Hz", "Hz"}, {"Pa", "Pa"}, {"N", "N"}, {"A", "A"}, {"V", "V"}, {"m", "m"}, {"s", "s"}}};
+
+std::string_view suffix_of(const std::string &signal) {
+    for (const auto &[suffix, unit] : units)
+        if (signal.size() > suffix.size() + 1 && signal.ends_with(suffix) && signal[signal.size() - suffix.size() - 1] == '_') return suffix;
+    return "";
+}
+
+// What follows the object: "speed_rad_s" of "wheel0.speed_rad_s".
+std::string quantity_of(const std::string &signal) { return signal.substr(signal.find('.') == std::string::npos ? 0 : signal.find('.') + 1); }
+
+std::string panel_key(const std::string &signal) {
+    const std::string unit = unit_of(signal);
+    return unit.empty() || unit == "count" ? quantity_of(signal) : "[" + unit + "]";
+}
+
+bool matches(std::string_view pattern, std::string_view name) {
+    if (pattern.empty()) return name.empty();
+    if (pattern.front() == '*') return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
+    return !name.empty() && pattern.front() == name.front() && matches(pattern.substr(1), name.substr(1));
+}
+
+// Number of letters to change, insert or drop (Levenshtein) between two names.
+std::size_t distance(const std::string &a, const std::string &b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t corner = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t best = std::min({row[j] + 1, row[j - 1] + 1, corner + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+            corner = std::exchange(row[j], best);
+        }
+    }
+    return row.back();
+}
+
+log::LogError no_such_signal(const log::Log &log, const std::string &name) {
+    std::vector<std::pair<std::size_t, std::string>> near;
+    for (const log::Signal &signal : log.signals) near.emplace_back(distance(name, signal.name), signal.name);
+    std::sort(near.begin(), near.end());
+    std::string mend = near.empty() ? "the log holds no signal at all" : "the nearest are";
+    for (std::size_t i = 0; i < std::min<std::size_t>(4, near.size()); ++i) mend += (i == 0 ? " " : ", ") + near[i].second;
+    return {log.source, 0, 0, "signal \"" + name + "\" is not in this log", mend};
+}
+
+std::vector<const log::Signal *> chosen_signals(const log::Log &log, const std::vector<std::string> &patterns) {
+    std::vector<const log::Signal *> chosen;
+    if (patterns.empty())
+        for (const log::Signal &signal : log.signals) chosen.push_back(&signal);
+    for (const std::string &pattern : patterns) {
+        bool found = false;
+        for (const log::Signal &signal : log.signals) {
+            if (!matches(pattern, signal.name)) continue;
+            found = true;
+            if (std::find(chosen.begin(), chosen.end(), &signal) == chosen.end()) chosen.push_back(&signal);
+        }
+        if (!found) throw no_such_signal(log, pattern);
+    }
+    return chosen;
+}
+
+Series series_of(const log::Signal &signal, const LogFigureOptions &options) {
+    Series series{.name = signal.name};
+    for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
+        if (signal.t_s[i] < options.from_s || signal.t_s[i] > options.to_s) continue;
+        series.x.push_back(signal.t_s[i]);
+        series.y.push_back(signal.value[i]);
+    }
+    return series;
+}
+
+} // namespace
+
+std::string unit_of(const std::string &signal) {
+    const std::string_view suffix = suffix_of(signal);
+    for (const auto &[name, unit] : units)
+        if (name == suffix) return std::string(unit);
+    return "";
+}
+
+Figure log_figure(const log::Log &log, const LogFigureOptions &options) {
+    Figure figure{.title = std::filesystem::path(log.source).filename().string(), .x_label = "time [s]"};
+    const auto scenario = log.header.find("scenario");
+    if (scenario != log.header.end()) figure.title += " - " + scenario->second;
+    std::vector<std::string> keys; // of the panels, in the same order
+    for (const log::Signal *signal : chosen_signals(log, options.signals)) {
+        const std::string key = panel_key(signal->name);
+        std::size_t at = figure.panels.size();
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            if (keys[i] == key && figure.panels[i].series.size() < most_in_a_panel) at = i;
+        if (at == figure.panels.size()) {
+            keys.push_back(key);
+            figure.panels.push_back({.y_label = key});
+        }
+        figure.panels[at].series.push_back(series_of(*signal, options));
+    }
+    return figure;
+}
+
+} // namespace traction::report
