@@ -1,0 +1,87 @@
+// machine.h - the independent rover: planar (forward and yaw), four wheels, its own equations, stiff steps of 1 ms.
+//
+//   M dv/dt = sum_i (F_i - Q_i) + B          Izz dr/dt = b sum_i (+-)(F_i - Q_i) - scrub                        (a)
+//   J dw/dt = KG*I - G(w) - R*F,  I = soft(u - ke*w, dead)/Ra                          (17)-(18) Lhomme-Desages  (b)
+//   F = Fm*f(|s|)*sign(R*w - v), f from (20) or (21); s = (R*w - v)/max(|R*w|, |v|, 1 cm/s), odd, bounded         (c)
+//   sigma dz/dt = max(|R*w|, |v|, 2 cm/s)*(s - z): the slip that grips is z where there is a relaxation length    (d)
+// State y = [v, r, w0..3, then z0..3 and gear angles and motor speeds where hidden effects need them], stepped by the linearly
+// implicit second-order ROS2 (Verwer, Spee, Blom, Hundsdorfer 1999), gamma = 1 - 1/sqrt(2), L-stable; Jacobian by differences.
+#pragma once
+
+#include "kinds.h"
+#include "random.h"
+
+#include <Eigen/Core>
+
+#include <deque>
+#include <vector>
+
+namespace traction::generator {
+
+enum class Soil { sand, gravel, concrete };
+
+// One machine: SPEC table I and (17)-(21), then spread by `draw` as real machines are.
+struct Machine {
+    double mass = 2.88, yaw_inertia = 0.0391; // yaw: a plate of 30 x 27 cm, assumed
+    double radius = 0.057, half_base = 0.083, half_track = 0.12, gravity = 9.81;
+    double KG = 0.265, ke = 0.265, Ra = 3.24, J = 5e-3;
+    double viscous = 1.6e-3, coulomb = 0.03;
+    double battery_V = 7.2, battery_ohm = 0.06; // internal resistance assumed
+    double motor_share = 0.9;                   // of J on the motor's side of the gear, assumed
+    Soil soil = Soil::sand;
+    double mu = 0, sc = 0, rolling = 0;
+    double grip_noise = 0, grip_length = 0.2;   // random field, relative rms and correlation length [m]
+};
+
+Machine nominal(Soil soil);
+Machine draw(Soil soil, Random &random); // 1-3 % off nominal, as machines of one type are
+
+// Grip over the ground: a sum of plane waves with Gaussian wave numbers, so Gaussian correlation (spectral method, Shinozuka).
+class GroundField {
+  public:
+    GroundField(double rms, double length_m, Random &random);
+    double at(double x_m, double y_m) const; // relative change
+  private:
+    struct Wave { double kx, ky, phase; };
+    std::vector<Wave> waves_;
+    double amplitude_;
+};
+
+struct WheelState {
+    double angle = 0, motor_angle = 0, current = 0, grip = 1, heat = 0, bristle = 0, load = 0, force = 0;
+};
+
+class World {
+  public:
+    World(const Machine &machine, const Hidden &hidden, Random &random);
+    void step(const PerWheel &duty); // 1 ms
+
+    double t = 0, x = 0, y = 0, yaw = 0, path = 0, accel = 0, specific_force = 0, battery = 0;
+    std::array<WheelState, wheels> wheel;
+    double v() const { return state_[0]; }
+    double yaw_rate() const { return state_[1]; }
+    double wheel_speed(int i) const { return state_[2 + i]; }
+    double motor_speed(int i) const { return backlash_ ? state_[motor_at_ + i] : state_[2 + i]; }
+
+  private:
+    using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 18, 1>;
+    struct Forces { double F, Q, torque, I; };
+    void rate(const Vector &state, Vector &derivative);
+    double friction(int i, double w) const;
+    double current(int i, double w) const;
+    double shear(double s) const;
+    void set_loads();
+    void set_grip();
+    void integrate_slow(double v_mid, double r_mid);
+
+    Machine m_;
+    Hidden h_;
+    GroundField field_;
+    Vector state_;
+    bool relaxed_, backlash_;
+    int slip_at_ = 0, gear_at_ = 0, motor_at_ = 0;
+    PerWheel voltage_{}, current_now_{}, radius_{}, KG_{}, ke_{}, Ra_{};
+    std::deque<PerWheel> delayed_;
+};
+
+} // namespace traction::generator
