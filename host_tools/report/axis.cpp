@@ -25,7 +25,7 @@ double nice_step(double rough) {
 std::string tick_label(double value, double step, double biggest) {
     if (std::fabs(value) < step * 1e-6) return "0";
     if (biggest >= 1e5 || biggest < 1e-3) {
-        const int digits = static_cast<int>(std::clamp(std::ceil(std::log10(biggest / step)) + 1, 1.0, 13.0));
+        const int digits = static_cast<int>(std::clamp(std::ceil(std::log10(biggest / step)) + 1, 1.0, 16.0));
         return number(value, digits);
     }
     const int decimals = static_cast<int>(std::clamp(-std::floor(std::log10(step) + 1e-9), 0.0, 15.0));

@@ -60,7 +60,9 @@ function options(host, height, label, series, extra = {}) {
     hooks: {
       setScale: [(u, key) => {
         // a drag or a double click on one plot reaches all of them
-        if (key === 'x' && u.ready_) queueMicrotask(() => zoom(u.scales.x.min, u.scales.x.max));
+        if (key !== 'x') return;
+        u.root.dataset.range = `${u.scales.x.min} ${u.scales.x.max}`;
+        if (u.ready_) queueMicrotask(() => zoom(u.scales.x.min, u.scales.x.max));
       }],
       ...extra.hooks,
     },
