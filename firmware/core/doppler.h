@@ -1,10 +1,12 @@
 // doppler.h - magnitude of the ground speed from the radar's echo, one value per hop of samples.
 //
 //   paper: v = f_peak c / (2 f0 cos theta_d)                                         (1)  = (11), zero frequency excluded
-//   ours:  v = argmin over v of  sum_k P[k] / S_v[k]  +  a ln-volume(S_v),  a = sum_k P[k]     (2)
+//   ours:  v = argmin over v of J(v) = sum_k P[k] / S_v[k]  +  a sum_k ln S_v[k],  a = sum_k P[k]     (2)
 //
-// Source: (11) Lhomme-Desages; (2) is the likelihood of exponentially distributed powers around a spectrum S_v known up to
-// its amplitude (Whittle), S_v from the beam's geometry (doppler_template.h).
+// Source: (11) Lhomme-Desages. (2), derived here: powers of a noise-like echo are exponentially distributed around a S_v[k] with
+// sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
+// geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
+// ln v. Powers are reduced to 15 bits of their sum: J is exact in 32 bits.
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -21,15 +23,15 @@ typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
 // Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
 typedef struct {
-    float speed_min_m_s;      // first grid speed
-    float log_step;           // ln of the ratio of neighbouring speeds
+    float log_step;           // ln of the ratio of neighbouring grid speeds
     float paper_m_s_per_Hz;   // c / (2 f0 cos theta_d) of (11)
     float sample_rate_Hz;
     int32_t speeds;           // grid size
     int32_t first_bin;        // spectral bins used: first_bin .. first_bin + bins - 1
     int32_t bins;
-    const int16_t *inverse;   // [speeds][bins] 1/S_v[k], scaled
-    const int32_t *volume;    // [speeds] ln-volume of S_v in the units of (2)
+    const float *speed_m_s;   // [speeds] the grid, rising
+    const int16_t *inverse;   // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
+    const int32_t *volume;    // [speeds] q * sum_k ln S_v[k]
 } doppler_template_t;
 
 typedef struct {

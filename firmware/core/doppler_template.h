@@ -8,7 +8,10 @@
 extern "C" {
 #endif
 
-extern const doppler_template_t doppler_template_mdu1130; // 9.9 GHz, 36 x 72 deg
+extern const doppler_template_t doppler_template_mdu1130;    // 9.9 GHz, 36 x 72 deg: the paper's
+extern const doppler_template_t doppler_template_dj_radar_2; // 24.13 GHz, 15 deg
+extern const doppler_template_t doppler_template_dj_radar_3; // 24.13 GHz, 20 x 16 deg
+extern const doppler_template_t doppler_template_drs1000;    // 35.5 GHz, 12 deg
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,51 @@
 
 #include <stdint.h>
 
+// 1: use the DSP multiplications of ARMv5TE, 0: plain C. Same bits either way.
+#ifndef FIXED_ARM_DSP
+#if defined(__ARM_FEATURE_DSP) && defined(__arm__)
+#define FIXED_ARM_DSP 1
+#else
+#define FIXED_ARM_DSP 0
+#endif
+#endif
+
+// (value * low half of q15) >> 16 and (value * high half of q15) >> 16: Q15 product, halved.
+#if FIXED_ARM_DSP
+static inline int32_t fixed_mul_low(int32_t value, uint32_t q15)
+{
+    int32_t out;
+    __asm__("smulwb %0, %1, %2" : "=r"(out) : "r"(value), "r"(q15));
+    return out;
+}
+static inline int32_t fixed_mul_high(int32_t value, uint32_t q15)
+{
+    int32_t out;
+    __asm__("smulwt %0, %1, %2" : "=r"(out) : "r"(value), "r"(q15));
+    return out;
+}
+// sum + ((value * high half of q15) >> 16); the sum must not overflow
+static inline int32_t fixed_mac_high(int32_t sum, int32_t value, uint32_t q15)
+{
+    int32_t out;
+    __asm__("smlawt %0, %1, %2, %3" : "=r"(out) : "r"(value), "r"(q15), "r"(sum));
+    return out;
+}
+#else
+static inline int32_t fixed_mul_low(int32_t value, uint32_t q15)
+{
+    return (int32_t)(((int64_t)value * (int16_t)(q15 & 0xffffu)) >> 16);
+}
+static inline int32_t fixed_mul_high(int32_t value, uint32_t q15)
+{
+    return (int32_t)(((int64_t)value * (int16_t)(q15 >> 16)) >> 16);
+}
+static inline int32_t fixed_mac_high(int32_t sum, int32_t value, uint32_t q15)
+{
+    return sum + fixed_mul_high(value, q15);
+}
+#endif
+
 // Value limited to [low, high]; NaN gives low. Requires low <= high.
 static inline float fixed_clamp(float value, float low, float high)
 {

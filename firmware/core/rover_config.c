@@ -38,7 +38,7 @@ static doppler_config_t doppler_default(void)
 {
     const doppler_config_t doppler = {
         .beam = &doppler_template_mdu1130,
-        .method = DOPPLER_ARGMAX,
+        .method = DOPPLER_LIKELIHOOD,
         .offset_count = 512, // [count] assumed: mid-scale of 10 bit
         .hop = 64,
         .scale = 1.0f,       // until `traction calibrate` has measured it
