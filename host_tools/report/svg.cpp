@@ -179,11 +179,11 @@ std::string draw_rules(const Frame &frame, const Panel &panel) {
         if (rule.vertical) {
             const double x = frame.px(rule.value);
             if (x < frame.x || x > frame.x + frame.width) continue;
-            out += line(x, frame.y, x, frame.y + frame.height, "ink", look) + svg_text(x + 4, frame.y + 11, rule.name, {.size = 10});
+            out += line(x, frame.y, x, frame.y + frame.height, "ink", look) + svg_text(x + 4, frame.y + 11, rule.name, {.size = 10, .halo = true});
         } else {
             const double y = frame.py(rule.value);
             out += line(frame.x, y, frame.x + frame.width, y, "ink", look) +
-                   svg_text(frame.x + frame.width - 4, y - 3, rule.name, {.anchor = "end", .size = 10});
+                   svg_text(frame.x + frame.width - 4, y - 3, rule.name, {.anchor = "end", .size = 10, .halo = true});
         }
     }
     return out;
@@ -315,7 +315,9 @@ Axis up_axis(const Panel &panel, double height) {
         if (!rule.vertical) see(rule.value);
     if (panel.log_y) return make_log_axis(range);
     if (bars || panel.from_zero) range.include(0);
-    return make_axis(range, bars ? 0.08 : 0.04, std::max(2, static_cast<int>(height / 34)));
+    Axis axis = make_axis(range, bars ? 0.12 : 0.04, std::max(2, static_cast<int>(height / 34)));
+    if (bars && range.low >= 0 && range.high > 0) axis.low = 0; // bars stand on the frame
+    return axis;
 }
 
 Axis across_axis(const Figure &figure, double width) {
@@ -329,10 +331,13 @@ Axis across_axis(const Figure &figure, double width) {
 
 bool has_heat(const Panel &panel) { return panel.heat.x_edges.size() >= 2; }
 
+// Heat maps and bars have an x axis of their own.
+bool shares_x(const Panel &panel) { return !has_heat(panel) && panel.categories.empty(); }
+
 std::string draw_panel(const Panel &panel, Frame frame, const Figure &figure, bool lowest) {
     if (has_heat(panel)) return draw_heat(frame, panel);
     frame.up = up_axis(panel, frame.height);
-    std::string out = draw_axes(frame, panel, lowest, figure.x_label) + draw_rules(frame, panel);
+    std::string out = draw_axes(frame, panel, lowest, figure.x_label);
     std::size_t slots = 0, slot = 0;
     for (const Series &series : panel.series) slots += series.mark == Mark::bar ? 1 : 0;
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -346,7 +351,7 @@ std::string draw_panel(const Panel &panel, Frame frame, const Figure &figure, bo
         case Mark::bar: out += draw_bars(frame, panel, series, style, slot++, slots); break;
         }
     }
-    return out;
+    return out + draw_rules(frame, panel); // their names stay readable over the data
 }
 
 double height_of(const Panel &panel, std::size_t panels) {
@@ -377,7 +382,7 @@ std::string to_svg(const Figure &figure) {
         body += draw_legend(legend, left_px, y, inner);
         if (!legend.empty()) y += (legend.back().row + 1) * legend_row_px + 2;
         const double height = height_of(panel, figure.panels.size());
-        const bool lowest = i + 1 == figure.panels.size() || has_heat(panel) || has_heat(figure.panels[i + 1]);
+        const bool lowest = has_heat(panel) || (shares_x(panel) && (i + 1 == figure.panels.size() || !shares_x(figure.panels[i + 1])));
         body += "<g class=\"panel\">\n" + draw_panel(panel, {left_px, y, inner, height, across, {}}, figure, lowest) + "</g>\n";
         const bool labelled = lowest || !panel.categories.empty();
         y += height + gap_px + (labelled ? tick_room_px : 0) + (lowest ? x_label_px : 0) - (labelled ? gap_px / 2 : 0);

@@ -71,6 +71,7 @@ std::string svg_text(double x, double y, const std::string &text, const TextLook
     if (text.empty()) return "";
     const std::string cx = coordinate(x), cy = coordinate(y);
     std::string out = *look.fill != '\0' ? "<text fill=\"" + std::string(look.fill) + "\"" : "<text class=\"words\" fill=\"#111111\"";
+    if (look.halo) out += " stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"";
     out += " x=\"" + cx + "\" y=\"" + cy + "\" font-size=\"" + coordinate(look.size) + "\"";
     if (std::string_view(look.anchor) != "start") out += " text-anchor=\"" + std::string(look.anchor) + "\"";
     if (look.bold) out += " font-weight=\"bold\"";

@@ -21,6 +21,7 @@ struct TextLook {
     bool bold = false;
     bool turned = false; // reads upwards
     const char *fill = ""; // empty: the ink of the page
+    bool halo = false;     // a rim of paper, where it crosses data
 };
 
 // One text element at its baseline; nothing for an empty text.

@@ -45,7 +45,7 @@ claim('diagnose: every part of the result has its section, in the order of the q
   const { page, close } = await open('diagnose');
   assert.deepEqual(await sectionIds(page), ['verdict', 'messages', 'ladder', 'candidates', 'classes', 'unknown', 'next', 'balances', 'regimes', 'whiteness',
     'not-excited', 'lineage']);
-  assert.match(await page.textContent('#verdict'), /error 3\.1\d? × noise floor: there is something to find/);
+  assert.match(await page.textContent('#verdict'), /error 3\.1 × noise floor: there is something to find/);
   assert.equal((await page.$$('#candidates tbody tr')).length, 6);
   assert.match(await page.textContent('#candidates tbody tr'), /slip_sinkage.*66.*0\.15.*0\.13.*0\.17.*named/s);
   assert.equal((await page.$$('#balances canvas')).length, 22); // two plots for each of 11 balances
@@ -65,7 +65,7 @@ claim('a worst window, a drag and the keys zoom every plot alike, and the whole 
   const { page, trouble, close } = await open('diagnose');
   const ranges = () => page.$$eval('.u-over', (all) => all.length && new Set(all.map((e) => e.closest('.uplot').dataset.range)).size);
   await page.click('#balances button.window');
-  await page.waitForFunction(() => document.querySelector('.toolbar output').textContent === '60–65 s'.replace('60', '60.00').replace('65', '65.00'));
+  await page.waitForFunction(() => document.querySelector('.toolbar output').textContent === '60–65 s');
   assert.equal(await ranges(), 1);
   await page.click('.toolbar button');
   const whole = await shown(page);

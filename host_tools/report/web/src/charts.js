@@ -1,6 +1,6 @@
 // charts.js - small still charts in SVG: correlations with their band, a shape with its band, evidence along the log.
 import { s } from './dom.js';
-import { isNumber, list, num } from './words.js';
+import { isNumber, list, num, unitText } from './words.js';
 
 function extent(values, withZero) {
   const finite = values.filter(isNumber);
@@ -24,7 +24,7 @@ function frame(width, height, xs, ys, xLabel, yLabel, description) {
   const px = (x) => left + ((x - xs[0]) / (xs[1] - xs[0])) * (width - left - right);
   const py = (y) => height - bottom - ((y - ys[0]) / (ys[1] - ys[0])) * (height - top - bottom);
   const root = s('svg', { class: 'chart', viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': description });
-  for (const y of ticks(...ys, 4))
+  for (const y of ticks(...ys, 6))
     root.append(s('line', { class: 'grid', x1: left, x2: width - right, y1: py(y), y2: py(y) }),
       s('text', { x: left - 5, y: py(y) + 4, 'text-anchor': 'end' }, num(y, 2)));
   for (const x of ticks(...xs, 5))
@@ -46,7 +46,7 @@ export function correlation(c, description) {
   lags.forEach((lag, i) => {
     if (!isNumber(values[i])) return;
     stems += `M${px(lag).toFixed(1)},${py(0).toFixed(1)}V${py(values[i]).toFixed(1)}`;
-    if (Math.abs(values[i]) > band && lags.length <= 200) root.append(s('circle', { class: 'out', cx: px(lag), cy: py(values[i]), r: 2.6 }));
+    if (Math.abs(values[i]) > band && values[i] < 1 && lags.length <= 200) root.append(s('circle', { class: 'out', cx: px(lag), cy: py(values[i]), r: 2.6 }));
   });
   root.append(s('path', { class: 'stems', d: stems || 'M0,0' }));
   root.append(s('line', { class: 'zero', x1: px(x0), x2: px(x1), y1: py(0), y2: py(0) }));
@@ -56,8 +56,8 @@ export function correlation(c, description) {
 // y(x) with the band low..high
 export function shape(u) {
   const xs = list(u.x), ys = list(u.y), low = list(u.low), high = list(u.high);
-  const { root, px, py } = frame(620, 260, extent(xs), extent([...ys, ...low, ...high], true), `${u.variable} [${u.unit_x || '1'}]`,
-    `${u.balance ?? 'residual'} [${u.unit_y || '1'}]`, `shape of the unexplained part over ${u.variable}`);
+  const { root, px, py } = frame(620, 260, extent(xs), extent([...ys, ...low, ...high], true), `${u.variable} [${unitText(u.unit_x || '1')}]`,
+    `${u.balance ?? 'residual'} [${unitText(u.unit_y || '1')}]`, `shape of the unexplained part over ${u.variable}`);
   const at = (values) => xs.map((x, i) => (isNumber(values[i]) ? `${px(x).toFixed(1)},${py(values[i]).toFixed(1)}` : null)).filter(Boolean);
   if (low.length && high.length) root.append(s('path', { class: 'band', d: `M${[...at(low), ...at(high).reverse()].join(' ')}z` }));
   root.append(s('line', { class: 'zero', x1: px(extent(xs)[0]), x2: px(extent(xs)[1]), y1: py(0), y2: py(0) }));

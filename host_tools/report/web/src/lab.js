@@ -2,8 +2,9 @@
 import { h, table } from './dom.js';
 import { correlation, evidenceStrip, shape } from './charts.js';
 import { balancePlots, onZoom, settle, zoom, zoomOut } from './timeplots.js';
-import { candidateVerdict, effectName, isNumber, list, num, parameters, percent, scoreLine, seconds, sized, unit, variant, verdictKind }
-  from './words.js';
+import {
+  candidateVerdict, effectName, even, isNumber, list, num, parameters, percent, scoreLine, seconds, sized, unit, variant, verdictKind,
+} from './words.js';
 
 function section(id, short, title, ...content) {
   return h('section', { id, 'data-short': short }, h('h2', {}, title), ...content);
@@ -42,7 +43,7 @@ function ladder(result) {
     { head: 'floor', number: true }, { head: 'held out / floor', number: true }],
   steps.map((r) => [r.label, h('div', { class: 'bars', 'aria-hidden': 'true' }, bar(r.train, 'train'), bar(r.heldout, 'heldout'),
     isNumber(r.floor) && h('div', { class: 'floor', style: `left:${((r.floor / most) * 100).toFixed(2)}%` })),
-  num(r.train), num(r.heldout), num(r.floor), isNumber(r.heldout) && r.floor > 0 ? num(r.heldout / r.floor) : '–'])));
+  even(r.train, 3), even(r.heldout, 3), even(r.floor, 3), isNumber(r.heldout) && r.floor > 0 ? even(r.heldout / r.floor, 3) : '–'])));
 }
 
 function candidates(result) {
@@ -128,8 +129,8 @@ function balances(result) {
     { head: 'NRMSE', number: true, title: 'RMSE over the noise σ' }, { head: 'bias', number: true }, { head: 'R²', number: true },
     { head: 'outside the band', number: true, title: 'part of the shown samples; 1 % is what noise alone gives' },
     { head: 'worst 5 s (RMSE)' }],
-  all.map((b, i) => [h('a', { href: `#balance-${i}` }, b.title || b.name), `${num(b.rmse)}${unit(b.unit)}`, num(b.nrmse), `${num(b.bias)}${unit(b.unit)}`,
-    num(b.r2), percent(views[i].outside), worst(b)]));
+  all.map((b, i) => [h('a', { href: `#balance-${i}` }, b.title || b.name), `${num(b.rmse)}${unit(b.unit)}`, even(b.nrmse, 2), `${num(b.bias)}${unit(b.unit)}`,
+    even(b.r2, 3), percent(views[i].outside), worst(b)]));
   const bodies = all.map((b, i) => h('article', { id: `balance-${i}`, class: 'balance' },
     h('h3', {}, b.title || b.name, b.title && b.title !== b.name ? h('small', {}, ` ${b.name}`) : null), views[i].host));
   const node = section('balances', 'Balances', 'Measured and model', summary, bar, bodies);
@@ -146,7 +147,7 @@ function regimes(result) {
       const cell = (v, n) => {
         if (!isNumber(v)) return h('td', {}, '');
         const part = Math.round(100 * Math.min(1, Math.max(0, (v - 1) / Math.max(most - 1, 1e-9))));
-        return h('td', { class: part > 55 ? 'heat dark' : 'heat', style: `--part:${part}%`, title: isNumber(n) ? `${n} samples` : null }, num(v, 2));
+        return h('td', { class: part > 55 ? 'heat dark' : 'heat', style: `--part:${part}%`, title: isNumber(n) ? `${n} samples` : null }, even(v, 1));
       };
       const columns = edges.slice(1).map((e, i) => h('th', { scope: 'col' }, `${num(edges[i], 2)} to ${num(e, 2)}`));
       return h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': r.title }, h('table', { class: 'heatmap' },
@@ -174,7 +175,7 @@ function lineage(result) {
   const text = (x) => (x == null ? '–' : isNumber(x) ? num(x, 4) : typeof x === 'object' ? JSON.stringify(x) : String(x));
   return section('lineage', 'Model', 'The model and where it comes from',
     effects.length ? table(`Effects in ${result.model.name || result.model.file || 'the model'}`, [{ head: 'effect' }, { head: 'size [95 %]' }],
-      effects.map((e) => [effectName({ ...e, effect: e.name ?? e.effect }), Object.entries(e.parameters ?? {}).map(([n, p]) => h('div', {}, `${n} = ${sized(p)}`))])) : null,
+      effects.map((e) => [effectName(e), Object.entries(e.parameters ?? {}).map(([n, p]) => h('div', {}, `${n} = ${sized(p)}`))])) : null,
     history.length ? table('Lineage, oldest first', keys.map((k) => ({ head: k.replaceAll('_', ' ') })), history.map((entry) => keys.map((k) => text(entry?.[k])))) : null);
 }
 

@@ -1,6 +1,6 @@
 // main.js - the page: reads the result that stands in the document and shows it by its schema.
-import './page.css';
 import 'uplot/dist/uPlot.min.css';
+import './page.css'; // after uPlot's own, which it mends
 import { h } from './dom.js';
 import { figures } from './figures.js';
 import { lab } from './lab.js';

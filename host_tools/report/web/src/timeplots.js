@@ -1,7 +1,7 @@
 // timeplots.js - measured against model and the residual of every balance over time; zoom and cursor are shared by all plots.
 import uPlot from 'uplot';
 import { h } from './dom.js';
-import { isNumber, list, num, seconds } from './words.js';
+import { isNumber, list, num, seconds, unitText } from './words.js';
 
 const SIGMAS = 2.58; // a normal residual stays inside this many sigma 99 % of the time
 const plots = [];
@@ -41,8 +41,8 @@ function keys(event) {
   zoom(...moves[event.key]);
 }
 
-const axis = (label, size) => ({
-  label, size, labelSize: 22, font: '12px sans-serif', labelFont: '12px sans-serif',
+const axis = (label, size, space) => ({
+  label, size, space, labelSize: 22, font: '12px sans-serif', labelFont: '12px sans-serif',
   stroke: () => css('--ink'), grid: { stroke: () => css('--grid'), width: 1 }, ticks: { stroke: () => css('--grid'), width: 1 },
 });
 
@@ -51,11 +51,11 @@ const value = (_, v) => (v == null ? '–' : num(v, 4));
 function options(host, height, label, series, extra = {}) {
   return {
     width: Math.max(260, host.clientWidth), height, pxAlign: 0,
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, ...extra.scales },
     cursor: { sync: { key: 'traction' }, drag: { x: true, y: false }, points: { size: 7 },
       bind: { dblclick: () => () => { zoomOut(); return null; } } },
-    legend: { markers: { width: 2 } },
-    axes: [axis(extra.last ? 'time [s]' : undefined, 26), axis(label, 62)],
+    legend: { markers: { width: 2, dash: (u, i) => (u.series[i].dash ? 'dashed' : 'solid') } },
+    axes: [axis(extra.last ? 'time [s]' : undefined, 26, 50), axis(label, 62, 26)],
     series: [{ label: 'time [s]', value }, ...series],
     hooks: {
       setScale: [(u, key) => {
@@ -104,6 +104,15 @@ function edges(limit) {
   };
 }
 
+// the residual's axis always holds the noise band, so that plots can be compared by eye
+function roomFor(limit) {
+  return (_, low, high) => {
+    const least = Number.isFinite(limit) ? 1.3 * limit : 0;
+    const from = Math.min(low ?? 0, -least), to = Math.max(high ?? 0, least);
+    return from < to ? uPlot.rangeNum(from, to, 0.05, true) : [from - 1, to + 1];
+  };
+}
+
 // The two plots of one balance: { title, unit, sigma, t_s, measured, model }.
 export function balancePlots(balance) {
   const clean = (values) => list(values).map((v) => (isNumber(v) ? v : null));
@@ -113,7 +122,7 @@ export function balancePlots(balance) {
   const residual = t.map((_, i) => (measured[i] == null || model[i] == null ? null : measured[i] - model[i]));
   const limit = isNumber(balance.sigma) ? SIGMAS * balance.sigma : Infinity;
   const outside = residual.filter((r) => r != null && Math.abs(r) > limit).length;
-  const unit = balance.unit || '1';
+  const unit = unitText(balance.unit || '1');
   const description = `${balance.title || balance.name}: measured and model over time, and the residual, which is outside the noise band in `
     + `${outside} of ${residual.length} samples. Keys: plus and minus zoom, arrows pan, Home shows all.`;
   const host = h('div', { class: 'plots', tabindex: 0, role: 'group', 'aria-label': description, onkeydown: keys });
@@ -126,9 +135,9 @@ export function balancePlots(balance) {
       { label: 'measured', stroke: () => css('--ink'), width: 1, value, points: { show: t.length < 2 } },
       { label: 'model', stroke: () => css('--model'), width: 2, dash: [8, 4], value, points: { show: t.length < 2 } },
     ]), [t, measured, model], host);
-    const lower = new uPlot(options(host, 150, `residual [${unit}]`, [
+    const lower = new uPlot(options(host, 165, `residual [${unit}]`, [
       { label: `residual (band: ±${SIGMAS} σ = ±${num(limit)} ${unit})`, stroke: () => css('--residual'), width: 1, value, points: { show: t.length < 2 } },
-    ], { last: true, hooks: { drawAxes: [edges(limit)], draw: [shadeOutside(limit)] } }), [t, residual], host);
+    ], { last: true, scales: { y: { range: roomFor(limit) } }, hooks: { drawAxes: [edges(limit)], draw: [shadeOutside(limit)] } }), [t, residual], host);
     for (const plot of [upper, lower]) {
       plots.push(plot);
       plot.ready_ = true;

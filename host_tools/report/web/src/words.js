@@ -8,19 +8,32 @@ export function num(x, digits = 3) {
   if (x === 0) return '0';
   const size = Math.abs(x);
   if (size >= 1e6 || size < 1e-4) return x.toExponential(Math.max(0, digits - 1)).replace('-', '−').replace('e+', 'e');
-  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return x.toFixed(Math.min(decimals, 12)).replace('-', '−');
+  return fixed(x, digits - 1 - Math.floor(Math.log10(size)));
 }
 
-export const percent = (x) => (isNumber(x) ? `${num(100 * x)} %` : '–');
-export const unit = (u) => (u && u !== '1' ? ` ${u}` : '');
+// with so many decimals at most; 2.50 reads 2.5
+function fixed(x, decimals) {
+  const text = x.toFixed(Math.min(12, Math.max(0, decimals)));
+  const short = text.includes('.') ? text.replace(/\.?0+$/, '') : text;
+  return (short === '-0' ? '0' : short).replace('-', '−');
+}
+
+// for a column: the same decimals in every row
+export const even = (x, decimals) => (isNumber(x) && Math.abs(x) < 1e5 ? x.toFixed(decimals).replace('-', '−') : num(x));
+
+export const percent = (x) => (isNumber(x) ? `${num(100 * x, 2)}\u00a0%` : '–');
+export const unitText = (u) => String(u ?? '').replace(/\^2/g, '²').replace(/\^3/g, '³').replaceAll(' ', '\u00a0');
+export const unit = (u) => (u && u !== '1' ? `\u00a0${unitText(u)}` : '');
 export const seconds = (a, b) => `${num(a, 4)}–${num(b, 4)} s`;
 
 // 0.15 [0.13 to 0.17] N m
 export function sized(p) {
   if (!p) return '–';
-  const range = isNumber(p.low) && isNumber(p.high) ? ` [${num(p.low)} to ${num(p.high)}]` : '';
-  return `${num(p.value)}${range}${unit(p.unit)}`;
+  if (!isNumber(p.low) || !isNumber(p.high) || !(p.high > p.low)) return `${num(p.value)}${unit(p.unit)}`;
+  // two digits of the interval's half width are worth reading
+  const decimals = 1 - Math.floor(Math.log10((p.high - p.low) / 2));
+  const write = (x) => (decimals > 7 || !isNumber(x) || Math.abs(x) >= 1e6 ? num(x) : fixed(x, decimals));
+  return `${write(p.value)} [${write(p.low)} to ${write(p.high)}]${unit(p.unit)}`;
 }
 
 export const parameters = (ps) => Object.entries(ps ?? {}).map(([name, p]) => `${name} = ${sized(p)}`);
@@ -30,7 +43,7 @@ export function variant(v) {
 }
 
 export function effectName(c) {
-  return c.effect + (isNumber(c.wheel) && c.wheel >= 0 ? ` (wheel ${c.wheel})` : '');
+  return (c.effect ?? c.name ?? '') + (isNumber(c.wheel) && c.wheel >= 0 ? ` (wheel ${c.wheel})` : '');
 }
 
 // mark: readable without colour
