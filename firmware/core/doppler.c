@@ -68,7 +68,7 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int
 // exp(x) for |x| <= 0.05: error below 3e-7.
 static float exp_small(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
 
-static float likelihood_speed(const doppler_template_t *beam, const uint64_t *power)
+static float likelihood_speed(const doppler_template_t *beam, const uint64_t *power, bool *white)
 {
     int16_t reduced[BINS_MAX];
     const int32_t total = reduce(beam, power, reduced);
@@ -90,6 +90,7 @@ static float likelihood_speed(const doppler_template_t *beam, const uint64_t *po
         around[j] = i < 0 || i >= beam->speeds ? INT32_MAX : cost(beam, reduced, total, i);
         fine = around[j] < around[fine] ? j : fine;
     }
+    *white = around[fine] >= total * beam->flat;
     float offset = 0.0f;
     if (fine > 0 && fine < 2 * COARSE && around[fine - 1] != INT32_MAX && around[fine + 1] != INT32_MAX) {
         const float left = (float)around[fine - 1] - (float)around[fine];
@@ -101,10 +102,14 @@ static float likelihood_speed(const doppler_template_t *beam, const uint64_t *po
     return beam->speed_m_s[low + fine] * exp_small(offset * beam->log_step);
 }
 
-static float measure(const doppler_config_t *config, const uint64_t *power)
+static void measure(const doppler_config_t *config, const uint64_t *power, doppler_output_t *out)
 {
-    return config->scale *
-           (config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, power) : argmax_speed(config->beam, power));
+    bool white = false;
+    const float speed_m_s = config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, power, &white)
+                                                                 : argmax_speed(config->beam, power);
+    out->speed_m_s = config->scale * speed_m_s;
+    out->quiet = white || is_quiet(config, power);
+    out->fresh = true;
 }
 
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
@@ -119,9 +124,7 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         if (state->filled == FFT_LENGTH) {
             uint64_t power[FFT_BINS];
             fft_power(state->sample, power);
-            out.fresh = true;
-            out.quiet = is_quiet(config, power);
-            out.speed_m_s = measure(config, power);
+            measure(config, power, &out);
             out.late_samples = count - 1 - i;
             const int32_t hop = config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH;
             for (int32_t j = hop; j < FFT_LENGTH; j++) {

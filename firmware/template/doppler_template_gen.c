@@ -164,9 +164,10 @@ static int write_template(const radar_t *radar, FILE *out)
         fprintf(out, "%d, ", (int)floor(scale * ln + 0.5));
     }
     fprintf(out, "};\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n    .paper_m_s_per_Hz = %.8ef,\n"
-                 "    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n    .speed_m_s = speed_m_s,\n"
+                 "    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n    .flat = %d,\n    .speed_m_s = speed_m_s,\n"
                  "    .inverse = inverse,\n    .volume = volume,\n};\n",
-            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
+            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins,
+            (int)floor(scale * bins * (1 - log(bins)) + 0.5));
     return ferror(out) ? 4 : 0;
 }
 
