@@ -1,0 +1,32 @@
+#include "catalogue.h"
+
+#include "parts.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace traction::sim {
+
+std::span<const Effect> catalogue() {
+    static const std::vector<Effect> all = [] {
+        std::vector<Effect> list;
+        for (const auto part : {drive_effects, ground_effects, body_effects, sensor_effects})
+            for (Effect &effect : part()) list.push_back(std::move(effect));
+        return list;
+    }();
+    return all;
+}
+
+const Effect *find_effect(std::string_view name) {
+    for (const Effect &effect : catalogue())
+        if (effect.name == name) return &effect;
+    return nullptr;
+}
+
+double ActiveEffect::value(std::string_view parameter) const {
+    for (std::size_t i = 0; i < effect->parameters.size() && i < values.size(); ++i)
+        if (effect->parameters[i].name == parameter) return values[i];
+    throw std::out_of_range("effect " + std::string(effect->name) + " has no parameter " + std::string(parameter));
+}
+
+} // namespace traction::sim

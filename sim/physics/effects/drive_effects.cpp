@@ -1,0 +1,68 @@
+#include "parts.h"
+
+namespace traction::sim {
+
+std::vector<Effect> drive_effects() {
+    using enum ActsOn;
+    constexpr bool per_wheel = true;
+    return {
+        {"coulomb_friction", "More dry friction in the gear", wheel_torque, per_wheel, "Gr += torque*sgn(w)",
+         "dry friction, Coulomb 1785; constant term of (18) Lhomme-Desages",
+         "Current too high by the same amount at every speed, changing sign with the direction of turning.",
+         "Turn the wheel slowly both ways under little load. A current offset looks the same until the wheel reverses.",
+         {strength("torque_Nm", "N m", "added friction torque at the wheel", 0, 0.15, 0.04, 0.004)}},
+        {"viscous_friction", "More viscous friction in the gear", wheel_torque, per_wheel, "Gr += b*w",
+         "linear term of (18) Lhomme-Desages: churned lubricant",
+         "Current error proportional to wheel speed.",
+         "Hold several speeds, slow to full, with little load. Confused with rolling resistance if speed never varies.",
+         {strength("coefficient_Nms", "N m s", "added torque per wheel speed", 0, 0.02, 0.005, 4e-4)}},
+        {"stribeck_friction", "Friction that falls as the wheel begins to turn (Stribeck)", wheel_torque, per_wheel,
+         "Gr += ts*exp(-(w/ws)^2)*sgn(w)", "Stribeck 1902; form of Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+         "Current too high only below about twice the Stribeck speed; stick-slip when starting.",
+         "Creep, stop and reverse many times. Steady driving never shows it.",
+         {strength("torque_Nm", "N m", "extra torque at standstill", 0, 0.1, 0.03, 0.005),
+          shape("speed_rad_s", "rad/s", "wheel speed at which it has fallen to 1/e", 0.2, 10, 1, {0.5, 1, 2, 4})}},
+        {"mesh_loss", "Gear loss proportional to the load", wheel_torque, false, "Gr += eta*|R*Ft|*sgn(w)",
+         "tooth friction proportional to tooth force; derived here from a constant efficiency 1/(1+eta)",
+         "Current error proportional to traction, of the sign of the speed: pulling costs more, and being pushed gives less.",
+         "Load the wheel in traction and in braking at one speed. Slip-sinkage and the motor constant look alike in traction only.",
+         {strength("fraction", "1", "lost torque over transmitted torque", 0, 0.4, 0.1, 0.02)}},
+        {"backlash", "Play in the gear", wheel_torque, per_wheel, "motor and wheel coupled through a dead zone of +-play/2",
+         "derived here: two inertias, elastic teeth, dead zone",
+         "For a moment after each reversal of torque the motor runs free: a speed step with little current, then an impact.",
+         "Alternate traction and braking quickly. A steady load keeps the teeth in contact and hides it.",
+         {strength("play_rad", "rad", "play seen at the wheel", 0, 0.2, 0.06, 0.01)}},
+        {"torque_ripple", "Friction that varies with the wheel's angle", wheel_torque, per_wheel,
+         "Gr += c*cos(n*theta) + s*sin(n*theta)", "derived here: first harmonic of an eccentric gear (n = 1) or of cogging",
+         "Current error periodic in wheel angle: its frequency follows the speed.",
+         "Turn slowly at constant speed for several turns. At one speed only, a vibration of fixed frequency looks alike.",
+         {strength("cos_Nm", "N m", "cosine amplitude", -0.05, 0.05, 0.02, 0.004),
+          strength("sin_Nm", "N m", "sine amplitude", -0.05, 0.05, 0.02, 0.004),
+          shape("order", "1/turn", "periods per turn of the wheel", 1, 8, 1, {1, 2, 3, 4, 6, 8})}},
+        {"winding_heating", "Windings that warm up", motor_voltage, false,
+         "C*d(dT)/dt = I^2*Ra - dT/Rth, tau = Rth*C; Ra*(1 + 0.0039*dT), KG and ke*(1 - 0.002*dT)",
+         "copper: 0.39 %/K (IEC 60028); ferrite magnets: -0.2 %/K (makers' data sheets)",
+         "The voltage balance drifts after loaded phases and recovers in rest: the same duty gives less current.",
+         "A minute of hard pulling, then the manoeuvre of the start again. Voltage and torque balances drift together.",
+         {strength("resistance_K_W", "K/W", "thermal resistance of winding to air", 0, 60, 20, 3),
+          shape("time_constant_s", "s", "thermal time constant", 5, 600, 60, {20, 60, 180})}},
+        {"wiring_resistance", "Resistance in the motor's wiring", motor_voltage, per_wheel, "u -= R*I",
+         "Ohm's law in the leads, connectors and bridge switches",
+         "Voltage error proportional to current.",
+         "Vary the load at one speed. Alone in the voltage balance; a wrong current gain disturbs the torque balance as well.",
+         {strength("resistance_ohm", "ohm", "added series resistance", 0, 2, 0.4, 0.05)}},
+        {"bridge_dead_time", "Voltage lost to the bridge's dead time", motor_voltage, per_wheel,
+         "u -= V*sgn(I), no current while |u - ke*w| < V",
+         "dead time and diode drop of a half bridge: Mohan, Undeland, Robbins, Power Electronics, PWM inverters, blanking time",
+         "A constant loss of motor voltage that changes sign with the current.",
+         "Cross zero current often: alternate pulling and braking. Confused with wiring resistance if the load never varies.",
+         {strength("voltage_V", "V", "lost voltage", 0, 1.5, 0.4, 0.05)}},
+        {"torque_constant", "A motor stronger or weaker than its data", wheel_torque, per_wheel, "KG and ke times (1 + change)",
+         "spread of magnets between motors: makers give +-10 %",
+         "Current error proportional to torque and, at the same time, voltage error proportional to speed.",
+         "Load and speed both varied. Mesh loss has the torque part only; current gain has no part in back-EMF.",
+         {strength("change", "1", "relative change", -0.4, 0.4, 0.12, 0.02)}},
+    };
+}
+
+} // namespace traction::sim

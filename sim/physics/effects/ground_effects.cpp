@@ -1,0 +1,68 @@
+#include "parts.h"
+
+namespace traction::sim {
+
+std::vector<Effect> ground_effects() {
+    using enum ActsOn;
+    constexpr bool per_wheel = true;
+    return {
+        {"rolling_resistance", "More rolling resistance", wheel_force, per_wheel, "Rr += c*Fn",
+         "(3) Lhomme-Desages with each part proportional to load",
+         "The body is slower than its wheels' pull predicts, at every speed and slip, in both directions.",
+         "Drive both ways and coast. A grade changes sign with heading, this one does not.",
+         {strength("coefficient", "1", "added resistance over load", 0, 0.3, 0.06, 0.005)}},
+        {"slip_sinkage", "Wheels that dig in when they slip", wheel_force, false, "Rr += k*|s|*Fn",
+         "slip-sinkage: Reece, Proc. IMechE 180 (1965) 45; linear form derived here",
+         "Resistance that grows with slip: the net pull falls where traction should saturate.",
+         "Sweep the slip up to 0.6. Confused with mesh loss unless some wheels brake while others pull.",
+         {strength("coefficient", "1", "resistance over load at full slip", 0, 0.6, 0.2, 0.02)}},
+        {"speed_resistance", "Resistance that grows with speed", wheel_force, false, "Rr += k*|v|*Fn",
+         "rate-dependent part of soil and tyre losses, linear; derived here",
+         "The faster the rover, the more pull is missing.",
+         "Hold several speeds with moderate slip. Viscous friction shows in the current, not in the body's balance.",
+         {strength("coefficient_s_m", "s/m", "resistance over load per speed", 0, 0.3, 0.08, 0.01)}},
+        {"multi_pass", "Rear wheels on soil that the front wheels rolled", wheel_force, false,
+         "wheels that follow another in the same track: Fm*(1+g)",
+         "multi-pass effect: Holm, J. Terramechanics 6 (1969) 51",
+         "Trailing wheels pull more (compacted soil) or less (loosened) than leading ones.",
+         "Drive in reverse as well: then the other pair trails. Otherwise it looks like a shifted load (cos 0.998).",
+         {strength("gain", "1", "change of strength in the track", -0.5, 1, 0.25, 0.03)}},
+        {"soil_patch", "A patch of other soil", wheel_force, false, "Fm*(1+change) for start <= path + x_wheel < start + length",
+         "derived here", "The pull is wrong on one stretch of the path only, each wheel in turn.",
+         "Pass over the place twice: a patch repeats by place, a drift does not.",
+         {strength("change", "1", "relative change of strength", -0.7, 0.7, 0.35, 0.05),
+          shape("start_m", "m", "where it begins along the path", -100, 100, 1, {}),
+          shape("length_m", "m", "its length along the path", 0.05, 100, 0.8, {})}},
+        {"soil_gradient", "Soil that changes along the way", wheel_force, false, "Fm*(1 + g*x_path), at least 0.05",
+         "derived here", "The pull error grows steadily with the distance from the start.",
+         "Drive out and come back: a gradient returns to zero, a warming motor does not.",
+         {strength("change_per_m", "1/m", "relative change of strength per metre", -0.2, 0.2, 0.06, 0.01)}},
+        {"relaxation_length", "Slip force that lags", wheel_force, false, "sigma*ds/dt = (R*w - v) - max(|v|, |R*w|)*s",
+         "tyre relaxation: Pacejka, Tire and Vehicle Dynamics, single contact point model; |v| replaced by the maximum, derived here",
+         "After each step of slip the force arrives late, by a distance and not by a time.",
+         "Steps of wheel speed at low and high ground speed. A sensor delay is the same time at every speed.",
+         {strength("length_m", "m", "added relaxation length", 0, 0.3, 0.08, 0.02)}},
+        {"sliding_speed_loss", "Grip that falls with sliding speed", wheel_force, false, "Fm*exp(-k*|R*w - v|)",
+         "speed term of Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme (1993)",
+         "At the same slip the pull is less when everything moves faster.",
+         "Slip sweeps at two travelling speeds.",
+         {strength("coefficient_s_m", "s/m", "decay per sliding speed", 0, 2, 0.5, 0.05)}},
+        {"shear_stiffness", "Soil that needs more (or less) slip to grip", wheel_force, false, "sc*(1+change)",
+         "sc = K/l of (20) Lhomme-Desages",
+         "The pull is wrong at small slip and right at large slip.",
+         "Cover slip from 0 to 0.5. Without large slip it cannot be told from a change of strength.",
+         {strength("change", "1", "relative change of sc", -0.7, 2, 0.5, 0.1)}},
+        {"wheel_radius", "A wheel larger or smaller than its data", kinematics, per_wheel, "R*(1+change)",
+         "tyre pressure, wear or grousers; derived here (the axle's height stays)",
+         "Speed and slip wrong in proportion to wheel speed; if one side only, heading drifts.",
+         "Constant straight cruise with low slip. Radar and camera scale look alike unless both are present.",
+         {strength("change", "1", "relative change", -0.2, 0.2, 0.06, 0.005)}},
+        {"lateral_scrub", "Resistance to turning on the spot", wheel_force, false, "lateral force += mu_y*Fn against sideways sliding",
+         "skid steering: Wong and Chiang, Proc. IMechE D 215 (2001) 343; Coulomb form",
+         "Turning takes more current and yaws less; straight driving shows nothing.",
+         "Turn on the spot and in arcs of several radii.",
+         {strength("coefficient", "1", "lateral force over load", 0, 1.2, 0.4, 0.05)}},
+    };
+}
+
+} // namespace traction::sim

@@ -1,0 +1,78 @@
+// plant.h - the simulated rover: two ODE chassis halves on a revolute joint, four driven wheels on soil, stepped by 1 ms.
+//
+// Semi-implicit Euler of first order: drive trains and slip states first, then forces on the halves, then dWorldStep. Wheel
+// spin is integrated outside ODE (the reflected inertia would otherwise add false gyroscopic loads). Deterministic: the same
+// configuration and the same calls give the same bytes.
+#pragma once
+
+#include "drive.h"
+#include "truth.h"
+
+#include "sim/physics/effects/catalogue.h"
+#include "sim/physics/soil.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace traction::sim {
+
+// SPEC section 3 (table I Lhomme-Desages) unless said otherwise.
+struct RoverParameters {
+    double mass_kg = 2.88, length_m = 0.30, width_m = 0.27, height_m = 0.185;
+    double half_wheelbase_m = 0.083, half_track_m = 0.12;
+    double wheel_radius_m = 0.057;
+    double wheel_mass_kg = 0.150;         // for the reaction of the wheel's own inertia on the chassis
+    double centre_height_m = 0;           // of the centre of mass over the ground; 0 as in the paper, which keeps Fn constant:
+                                          // the effect load_transfer raises it
+    double contact_stiffness_N_m = 6000;  // vertical, per wheel: 1.2 mm under 7 N, assumed for a foam-filled tyre
+    double contact_damping_Ns_m = 60;     // vertical, per wheel, assumed: a third of critical
+    double relaxation_length_m = 0.005;   // of the slip state, assumed: an eighth of the contact length
+    DriveParameters drive;
+    double battery_voltage_V = 7.2;       // open circuit, assumed
+    double battery_resistance_ohm = 0.06; // assumed
+    double gravity_m_s2 = 9.81;
+};
+
+struct PlantConfig {
+    RoverParameters rover;
+    Ground ground;
+    std::vector<ActiveEffect> effects; // those that act in a sensor are ignored here
+    double x_m = 0, y_m = 0, yaw_rad = 0;
+    double speed_m_s = 0; // initial, along the heading, wheels rolling without slip
+    double dt_s = 0.001;
+};
+
+// Energy since the start [J]; the balance is supplied = kinetic + potential + the losses. For audits.
+struct Energy {
+    double motor = 0;     // KG*I*w into the drive trains
+    double friction = 0;  // lost in gears and bearings
+    double slip = 0;      // lost (and elastically stored) in the contact patches
+    double rolling = 0;   // lost in rolling resistance
+    double body = 0;      // taken by body forces (drag, tether), lateral scrub and the vertical contact
+    double kinetic = 0;   // now: bodies and wheels
+    double potential = 0; // now, against the start
+};
+
+class Plant {
+  public:
+    explicit Plant(const PlantConfig &config); // throws std::runtime_error when ODE is not the double-precision build
+    ~Plant();
+    Plant(const Plant &) = delete;
+    Plant &operator=(const Plant &) = delete;
+
+    void set_duty(int wheel, double duty); // clamped to -1..1; NaN counts as 0
+    void set_enabled(bool enabled);        // false releases all bridges: no current
+    void block_wheel(int wheel, bool blocked);
+    void step();                           // advances by dt_s
+
+    const Truth &truth() const;
+    const Energy &energy() const;
+    std::uint64_t state_hash() const; // of every state variable's bits
+
+  private:
+    struct World;
+    std::unique_ptr<World> world_;
+};
+
+} // namespace traction::sim
