@@ -1,0 +1,59 @@
+#include "check.h"
+#include "series.h"
+
+#include <algorithm>
+
+namespace traction::check {
+
+bool Report::passed() const {
+    return std::none_of(findings.begin(), findings.end(), [](const Finding &finding) { return finding.severity == Severity::error; });
+}
+
+const Finding *Report::find(const std::string &id, const std::string &signal) const {
+    for (const Finding &finding : findings) {
+        if (finding.id == id && (signal.empty() || finding.signal == signal)) return &finding;
+    }
+    return nullptr;
+}
+
+const char *severity_name(Severity severity) {
+    switch (severity) {
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: return "error";
+    }
+    return "";
+}
+
+Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const Machine &machine) {
+    Report report;
+    const Grid grid = make_grid(log, machine);
+    check_quality(log, repairs, grid, report.findings, report.rates);
+    if (grid.count >= 100) { // 5 s
+        check_drives(grid, machine, report.findings);
+        check_motion(log, grid, machine, report.findings);
+        report.excitation = measure_excitation(grid);
+        judge_excitation(report.excitation, grid, report.findings);
+    }
+    std::stable_sort(report.findings.begin(), report.findings.end(), [](const Finding &a, const Finding &b) { return a.severity > b.severity; });
+    return report;
+}
+
+Report check_file(const std::string &path, const std::string &map_path, const Machine &machine) {
+    std::vector<log::Repair> repairs;
+    try {
+        const log::Log log = log::read_csv(path, map_path, repairs);
+        return check(log, repairs, machine);
+    } catch (const log::ClockJump &jump) {
+        Report report;
+        report.findings.push_back({.id = "clock_jump",
+                                   .severity = Severity::error,
+                                   .signal = "",
+                                   .text = jump.what(),
+                                   .mend = "correct the times from that line on, or cut the file there",
+                                   .value = static_cast<double>(jump.line)});
+        return report;
+    }
+}
+
+} // namespace traction::check

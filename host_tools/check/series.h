@@ -1,0 +1,77 @@
+// series.h - the tools of the check: quantiles, straight-line fits, and signals brought to one grid of times.
+#pragma once
+
+#include "check.h"
+
+#include <string>
+#include <vector>
+
+namespace traction::check {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double step_s = 0.05; // [s] of the common grid: the mean of five samples at 100 Hz
+
+// q in 0..1. Not-numbers are left out. NaN for nothing.
+double quantile(std::vector<double> values, double q);
+
+// y = a*x1 + b*x2 by least squares through the origin; b stays 0 when x2 is empty. Rows with a not-number are left out.
+struct Fit {
+    double a = 0, b = 0;
+    double error_a = 0, error_b = 0; // standard errors, widened by `design_effect` for rows that are not independent
+    double rms = 0, y_rms = 0;       // of what is left over, of y
+    std::size_t rows = 0;
+    bool good = false;               // enough rows, and x1 and x2 tell apart
+};
+constexpr double design_effect = 25; // [1] variance ratio, assumed: soil noise makes neighbouring rows alike (LAB.md: 20-100)
+Fit fit(const std::vector<double> &y, const std::vector<double> &x1, const std::vector<double> &x2 = {});
+
+double correlation(const std::vector<double> &a, const std::vector<double> &b);
+
+// The signals of one log on one grid. NaN where a signal has no sample near.
+struct Wheel {
+    int index = 0;
+    std::vector<double> speed, set_speed, current, duty, voltage, count_rate, angle_rate; // empty when absent; voltage = duty * battery
+    bool unsigned_current = false;
+    bool in_volts = true; // false: no battery voltage in the log, `voltage` is the duty
+};
+struct Grid {
+    double start_s = 0;
+    std::size_t count = 0;
+    std::vector<Wheel> wheel;
+    std::vector<double> battery, accel, gyro, radar, carriage;
+    std::vector<double> camera_x, camera_y, camera_yaw;
+    std::vector<double> camera_forward, camera_speed, camera_yaw_rate; // over +-0.25 s; forward is along the heading
+    std::vector<double> mean_speed;   // of the wheels
+    std::vector<double> ground_speed; // camera, else radar with the wheels' sign, else carriage; empty: unknown
+    std::string ground_source;        // the column it comes from
+    double effective_radius_m = not_known; // ground speed over wheel speed where slip is least
+    std::vector<char> active;         // 1 where a wheel turns or is driven
+    double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
+};
+Grid make_grid(const log::Log &log, const Machine &machine);
+
+// The change of x over +-half_span samples, per second.
+std::vector<double> slope(const std::vector<double> &x, std::size_t half_span);
+
+// The same, averaged over +-half_span samples.
+std::vector<double> smooth(const std::vector<double> &x, std::size_t half_span);
+
+// A unit that people mistake for the SI one: the logged number is `factor` times the right one.
+struct UnitSlip {
+    double factor;
+    const char *written; // "rpm"
+};
+// The slip whose factor is within +-35 % of `factor`, nullptr when there is none. kind: 'w' angular speed, 'I', 'v' speed or length, 'a'.
+const UnitSlip *unit_slip(char kind, double factor);
+
+// printf into a string.
+std::string say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+using Findings = std::vector<Finding>;
+void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings, std::vector<Rate> &rates);
+void check_drives(const Grid &grid, const Machine &machine, Findings &findings);  // duty, speed, current: units, signs, swaps
+void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // encoder, camera, radar, imu
+Excitation measure_excitation(const Grid &grid);
+void judge_excitation(const Excitation &excitation, const Grid &grid, Findings &findings);
+
+} // namespace traction::check

@@ -1,0 +1,297 @@
+// The check names each way a log can be spoilt, and nothing on a log that is sound.
+#include "files.h"
+#include "synthetic.h"
+
+#include "host_tools/check/check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+using namespace traction;
+using namespace traction::test;
+using check::Severity;
+
+namespace {
+
+std::string listed(const check::Report &report, Severity from) {
+    std::string out;
+    for (const check::Finding &finding : report.findings) {
+        if (finding.severity < from) continue;
+        out.append(check::severity_name(finding.severity)).append(" ").append(finding.id).append(" [").append(finding.signal).append("] ").append(finding.text).append("\n");
+    }
+    return out;
+}
+
+check::Machine spec_rover() { return {.wheel_radius_m = 0.057, .back_emf_Vs = 0.265, .resistance_ohm = 3.24, .wheels_point_forward = true}; }
+
+// Exactly this finding at warning level or above, with and without knowledge of the machine.
+void expect_only(const log::Log &log, const std::string &id, const std::string &signal, Severity severity, const std::vector<log::Repair> &repairs = {}, std::size_t how_many = 1) {
+    for (const bool known : {false, true}) {
+        const check::Report report = check::check(log, repairs, known ? spec_rover() : check::Machine{});
+        const check::Finding *finding = report.find(id, signal);
+        ASSERT_NE(finding, nullptr) << (known ? "machine known\n" : "machine unknown\n") << listed(report, Severity::note);
+        EXPECT_EQ(finding->severity, severity);
+        EXPECT_FALSE(finding->mend.empty());
+        EXPECT_EQ(report.passed(), severity != Severity::error);
+        std::size_t others = 0;
+        for (const check::Finding &other : report.findings) others += other.severity >= Severity::warning;
+        EXPECT_EQ(others, how_many) << (known ? "machine known\n" : "machine unknown\n") << listed(report, Severity::warning);
+    }
+}
+
+log::Log good() { return drive({}); }
+
+// Drops samples of all signals (or one) for which `drop` holds.
+void thin(log::Log &log, const std::string &only, const std::function<bool(double)> &drop) {
+    for (log::Signal &signal : log.signals) {
+        if (!only.empty() && signal.name != only) continue;
+        log::Signal kept{signal.name, {}, {}};
+        for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
+            if (drop(signal.t_s[i])) continue;
+            kept.t_s.push_back(signal.t_s[i]);
+            kept.value.push_back(signal.value[i]);
+        }
+        signal = std::move(kept);
+    }
+}
+
+} // namespace
+
+TEST(Check, finds_nothing_at_all_on_a_sound_and_rich_log) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        for (const check::Machine &machine : {check::Machine{}, spec_rover()}) EXPECT_EQ(listed(check::check(drive({.seed = seed}), {}, machine), Severity::note), "") << "seed " << seed;
+    }
+}
+
+TEST(Check, raises_no_alarm_on_noisy_slippery_or_dull_logs) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        for (const check::Machine &machine : {check::Machine{}, spec_rover()}) {
+            EXPECT_EQ(listed(check::check(drive({.seed = seed, .noise = 3}), {}, machine), Severity::warning), "") << "noisy, seed " << seed;
+            EXPECT_EQ(listed(check::check(drive({.seed = seed, .soil_noise_N = 0.5, .grip_N = 2.5}), {}, machine), Severity::warning), "") << "slippery, seed " << seed;
+            EXPECT_TRUE(check::check(drive({.seed = seed, .rich = false}), {}, machine).passed()) << "dull, seed " << seed;
+        }
+    }
+}
+
+TEST(Check, names_a_wrong_sign) {
+    for (const char *name : {"wheel2.speed_rad_s", "wheel1.current_A", "wheel3.duty", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "camera.y_m", "battery.voltage_V"}) {
+        SCOPED_TRACE(name);
+        log::Log log = good();
+        scale(log, name, -1);
+        if (std::string(name) == "battery.voltage_V") {
+            EXPECT_NE(check::check(log, {}).find("sign", name), nullptr);
+        } else {
+            expect_only(log, "sign", name, Severity::error);
+        }
+    }
+}
+
+TEST(Check, names_a_radar_that_is_negative_forwards) {
+    log::Log log = good();
+    log::Signal &radar = at(log, "radar.speed_m_s");
+    const log::Signal &wheel = at(log, "wheel0.speed_rad_s");
+    for (std::size_t i = 0; i < radar.value.size(); ++i) {
+        if (wheel.value[50 * i] > 0) radar.value[i] *= -1; // a radar that knows the direction, mounted the wrong way round
+    }
+    expect_only(log, "sign", "radar.speed_m_s", Severity::error);
+}
+
+TEST(Check, names_a_heading_that_is_turned_and_one_by_half_a_turn) {
+    log::Log log = good();
+    for (double &yaw : at(log, "camera.yaw_rad").value) yaw += 1.0;
+    expect_only(log, "heading", "camera.yaw_rad", Severity::error);
+    EXPECT_NEAR(check::check(log, {}).find("heading")->value, 1.0, 0.05); // yaw noise 5 mrad, side drift of the camera's slope 0.02
+    log = good();
+    for (double &yaw : at(log, "camera.yaw_rad").value) yaw += 3.14159265;
+    expect_only(log, "sign", "camera.yaw_rad", Severity::error);
+}
+
+TEST(Check, names_a_wrong_unit) {
+    const struct {
+        const char *signal;
+        double factor;
+        const char *word;
+    } cases[] = {{"wheel1.speed_rad_s", 9.5493, "rpm"}, {"wheel1.speed_rad_s", 57.2958, "deg/s"}, {"wheel3.current_A", 1000, "mA"}, {"imu.gyro_z_rad_s", 57.2958, "deg/s"}, {"imu.accel_x_m_s2", 1 / 9.80665, "g"},
+                 {"camera.yaw_rad", 57.2958, "degrees"}, {"radar.speed_m_s", 1000, "mm"}, {"wheel0.duty", 100, "duty"}, {"battery.voltage_V", 1000, "mV"}};
+    for (const auto &one : cases) {
+        SCOPED_TRACE(std::string(one.signal) + " in " + one.word);
+        log::Log log = good();
+        scale(log, one.signal, one.factor);
+        const check::Finding *finding = check::check(log, {}).find("unit", one.signal);
+        ASSERT_NE(finding, nullptr) << listed(check::check(log, {}), Severity::note);
+        const check::Report report = check::check(log, {}, spec_rover());
+        ASSERT_NE(report.find("unit", one.signal), nullptr) << listed(report, Severity::note);
+        EXPECT_NE(report.find("unit", one.signal)->text.find(one.word), std::string::npos) << report.find("unit", one.signal)->text;
+        if (std::string(one.signal) != "battery.voltage_V") expect_only(log, "unit", one.signal, Severity::error);
+    }
+}
+
+TEST(Check, names_a_unit_that_is_wrong_on_every_wheel) {
+    for (const double factor : {9.5493, 57.2958}) {
+        log::Log log = good();
+        for (int i = 0; i < 4; ++i) scale(log, "wheel" + std::to_string(i) + ".speed_rad_s", factor);
+        const check::Report unknown = check::check(log, {}), known = check::check(log, {}, spec_rover());
+        ASSERT_NE(unknown.find("unit", "wheel.speed_rad_s"), nullptr) << listed(unknown, Severity::note);
+        EXPECT_NE(unknown.find("unit", "wheel.speed_rad_s")->text.find(factor < 20 ? "rpm" : "deg/s"), std::string::npos) << unknown.find("unit")->text;
+        for (int i = 0; i < 4; ++i) EXPECT_NE(known.find("unit", "wheel" + std::to_string(i) + ".speed_rad_s"), nullptr) << listed(known, Severity::note);
+    }
+    log::Log log = good();
+    for (int i = 0; i < 4; ++i) scale(log, "wheel" + std::to_string(i) + ".current_A", 1000);
+    for (int i = 0; i < 4; ++i) EXPECT_NE(check::check(log, {}).find("unit", "wheel" + std::to_string(i) + ".current_A"), nullptr);
+    log = good();
+    for (const char *name : {"camera.x_m", "camera.y_m"}) scale(log, name, 1000);
+    expect_only(log, "unit", "camera.x_m", Severity::error);
+}
+
+TEST(Check, names_swapped_wheels) {
+    for (const char *quantity : {"current_A", "speed_rad_s", "duty"}) {
+        SCOPED_TRACE(quantity);
+        log::Log log = good();
+        exchange(log, std::string("wheel0.") + quantity, std::string("wheel3.") + quantity);
+        if (std::string(quantity) == "speed_rad_s") exchange(log, "wheel0.encoder_count", "wheel3.encoder_count");
+        expect_only(log, "swapped_wheels", std::string("wheel0.") + quantity, Severity::error);
+    }
+}
+
+TEST(Check, names_left_and_right_exchanged) {
+    log::Log log = good();
+    for (const char *quantity : {"current_A", "speed_rad_s", "duty", "encoder_count"}) {
+        exchange(log, std::string("wheel0.") + quantity, std::string("wheel1.") + quantity);
+        exchange(log, std::string("wheel2.") + quantity, std::string("wheel3.") + quantity);
+    }
+    expect_only(log, "swapped_wheels", "wheel.speed_rad_s", Severity::error);
+}
+
+TEST(Check, names_samples_that_are_missing) {
+    log::Log log = good();
+    Random random(3);
+    thin(log, "wheel1.current_A", [&](double) { return random.uniform() < 0.3; });
+    expect_only(log, "samples_missing", "wheel1.current_A", Severity::error);
+    EXPECT_NEAR(check::check(log, {}).find("samples_missing")->value, 0.3, 0.03); // 8000 trials at 0.3: 3 sigma is 0.015
+    log = good();
+    thin(log, "", [&](double t) { return std::fmod(t * 7919.0, 1.0) < 0.3; });
+    EXPECT_NE(check::check(log, {}).find("samples_missing", "wheel0.speed_rad_s"), nullptr);
+}
+
+TEST(Check, names_a_gap_and_a_clock_that_jumps) {
+    log::Log log = good();
+    thin(log, "", [](double t) { return t > 7 && t < 9; });
+    expect_only(log, "gap", "", Severity::warning);
+    EXPECT_NEAR(check::check(log, {}).find("gap")->value, 2, 0.05); // to the next sample at 100 Hz
+    log = good();
+    for (log::Signal &signal : log.signals) {
+        for (double &t : signal.t_s) t += t > 7 ? 5 : 0;
+    }
+    expect_only(log, "clock_jump", "", Severity::error);
+    EXPECT_NEAR(check::check(log, {}).find("clock_jump")->value, 5, 0.05);
+}
+
+TEST(Check, names_a_clock_set_back_that_the_reader_refuses) {
+    std::string text = "# format: traction-log 1\nt_s,wheel0.speed_rad_s\n";
+    for (int i = 0; i < 1000; ++i) text += std::to_string(i < 600 ? 0.01 * i : 0.01 * i - 2) + ",1\n";
+    const File file("back.csv", text);
+    const check::Report report = check::check_file(file.path());
+    ASSERT_NE(report.find("clock_jump"), nullptr);
+    EXPECT_FALSE(report.passed());
+}
+
+TEST(Check, names_a_dead_and_a_stuck_sensor_and_not_a_blocked_wheel) {
+    for (const char *name : {"wheel1.speed_rad_s", "wheel2.current_A", "imu.gyro_z_rad_s", "imu.accel_x_m_s2"}) {
+        SCOPED_TRACE(name);
+        log::Log dead = good(), stuck = good();
+        for (double &v : at(dead, name).value) v = 0;
+        EXPECT_NE(check::check(dead, {}).find("dead_sensor", name), nullptr) << listed(check::check(dead, {}), Severity::note);
+        log::Signal &signal = at(stuck, name);
+        for (std::size_t i = 500; i < 900; ++i) signal.value[i] = signal.value[500];
+        EXPECT_NE(check::check(stuck, {}).find("stuck_sensor", name), nullptr) << listed(check::check(stuck, {}), Severity::note);
+    }
+    log::Log log = good();
+    for (const char *name : {"camera.x_m", "camera.y_m", "camera.yaw_rad"}) {
+        log::Signal &signal = at(log, name);
+        for (std::size_t i = 30; i < 65; ++i) signal.value[i] = signal.value[30];
+    }
+    EXPECT_NE(check::check(log, {}).find("stuck_sensor", "camera.x_m"), nullptr);
+    log = good(); // wheel 0 is held fast for 4 s: its winding takes the whole voltage
+    log::Signal &speed = at(log, "wheel0.speed_rad_s"), &current = at(log, "wheel0.current_A"), &count = at(log, "wheel0.encoder_count");
+    const log::Signal &duty = at(log, "wheel0.duty"), &battery = at(log, "battery.voltage_V");
+    const double turned = count.value[900] - count.value[500];
+    for (std::size_t i = 500; i < speed.value.size(); ++i) {
+        if (i < 900) speed.value[i] = 0, current.value[i] = duty.value[i] * battery.value[i] / 3.24, count.value[i] = count.value[500];
+        else count.value[i] -= turned;
+    }
+    EXPECT_EQ(listed(check::check(log, {}), Severity::warning), "");
+}
+
+TEST(Check, names_clipping_outliers_and_coarse_steps) {
+    log::Log log = good();
+    for (double &v : at(log, "wheel0.current_A").value) v = std::clamp(v, -0.35, 0.35);
+    EXPECT_NE(check::check(log, {}).find("clipped", "wheel0.current_A"), nullptr) << listed(check::check(log, {}), Severity::note);
+    log = good();
+    for (double &v : at(log, "imu.accel_x_m_s2").value) v = std::clamp(v, -0.5, 0.5);
+    expect_only(log, "clipped", "imu.accel_x_m_s2", Severity::error, {}, 2); // at both ends
+    log = good();
+    at(log, "imu.gyro_z_rad_s").value[1234] = 327.67;
+    expect_only(log, "outlier", "imu.gyro_z_rad_s", Severity::warning);
+    log = good();
+    for (double &v : at(log, "wheel0.speed_rad_s").value) v = std::round(v);
+    const check::Report report = check::check(log, {});
+    ASSERT_NE(report.find("coarse", "wheel0.speed_rad_s"), nullptr);
+    EXPECT_DOUBLE_EQ(report.find("coarse")->value, 1.0);
+}
+
+TEST(Check, passes_on_what_the_reader_mended) {
+    log::Log log = good();
+    std::string text = "# format: traction-log 1\nt_s,imu.gyro_z_rad_s\n";
+    for (int i = 0; i < 1000; ++i) text += std::to_string(0.01 * i) + (i % 10 < 3 ? ",nan\n" : "," + std::to_string(std::sin(0.1 * i)) + "\n");
+    const File file("nan.csv", text);
+    const check::Report report = check::check_file(file.path());
+    ASSERT_NE(report.find("not_finite", "imu.gyro_z_rad_s"), nullptr);
+    EXPECT_EQ(report.find("not_finite")->severity, Severity::error);
+    EXPECT_NEAR(report.find("not_finite")->value, 0.3, 1e-12); // 300 of 1000
+}
+
+TEST(Check, names_times_in_milliseconds_and_a_log_without_anything_known) {
+    log::Log log = good();
+    for (log::Signal &signal : log.signals) {
+        for (double &t : signal.t_s) t *= 1000;
+    }
+    EXPECT_NE(check::check(log, {}).find("time_unit"), nullptr);
+    EXPECT_NE(check::check(log::Log{{}, {{"a", {0, 1}, {1, 2}}}, {}, ""}, {}).find("nothing_to_use"), nullptr);
+    EXPECT_FALSE(check::check(log::Log{}, {}).passed());
+}
+
+TEST(Excitation, tells_what_a_dull_drive_cannot_show_and_measures_a_rich_one) {
+    const check::Report dull = check::check(drive({.rich = false}), {});
+    for (const char *id : {"no_reverse", "no_standstill", "few_starts", "no_turns", "no_place_twice", "constant_input"}) EXPECT_NE(dull.find(id), nullptr) << id << "\n" << listed(dull, Severity::note);
+    const check::Excitation rich = check::check(good(), {}).excitation;
+    EXPECT_NEAR(rich.duration_s, 80, 0.2);
+    EXPECT_NEAR(rich.speed_max_m_s, 0.5, 0.03);  // the last leg; the camera's slope has 3 mm/s of noise
+    EXPECT_NEAR(rich.speed_min_m_s, -0.4, 0.03);
+    EXPECT_NEAR(rich.standstill_s, 3, 0.4);
+    EXPECT_NEAR(rich.yaw_rate_max_rad_s, 0.6, 0.05);
+    EXPECT_GT(rich.reverse_s, 18);               // legs of 17 s and 7 s in reverse, less their ramps
+    EXPECT_LT(rich.reverse_s, 26);
+    EXPECT_EQ(rich.starts, 5);
+    EXPECT_GT(rich.revisited, 0.3);
+    EXPECT_GT(rich.slip_high, 0.25);             // the sweep imposes 0.35
+    EXPECT_LT(rich.slip_low, -0.25);
+    ASSERT_EQ(rich.wheel.size(), 4u);
+}
+
+TEST(MeasuredData, robotino_and_cmu_logs_pass_the_check) {
+    const std::filesystem::path data = "../shared/data";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "the measured data (" << data << ") is not here";
+    for (const auto &entry : std::filesystem::directory_iterator(data / "robotino")) {
+        const std::string name = entry.path().filename().string();
+        if (name.rfind("wheel_", 0) == 0) continue;
+        const bool floor = name.find("_dir") != std::string::npos;
+        const check::Report report = check::check_file(entry.path().string(), floor ? "models/maps/robotino.toml" : "models/maps/robotino_unloaded.toml");
+        EXPECT_TRUE(report.passed()) << name << "\n" << listed(report, Severity::warning);
+    }
+    for (const auto &[file, map] : {std::pair{"cmu_wheel_smooth_steady_state.csv", "cmu_steady_state.toml"}, std::pair{"motion_smooth_rim100_trial1_12-3-20.csv", "cmu_motion.toml"}, std::pair{"plate_100mm_4.csv", "cmu_plate.toml"}}) {
+        const check::Report report = check::check_file((data / "cmu_single_wheel" / file).string(), std::string("models/maps/") + map);
+        EXPECT_TRUE(report.passed()) << file << "\n" << listed(report, Severity::warning);
+    }
+}
