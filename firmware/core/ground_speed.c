@@ -66,35 +66,72 @@ static void correct(ground_speed_state_t *state, float innovation, float tau, fl
     state->p_bb -= kb * hb;
 }
 
-static void update_ours(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
+static void update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s)
 {
-    const float change = window_change_m_s(state) + accel * input->doppler_late_s;
-    const float tau = 0.25f + input->doppler_late_s;
-    const float middle = state->speed_m_s + tau * state->bias_m_s2 - change; // speed in the window's middle, predicted
-    float sign = middle < 0.0f ? -1.0f : 1.0f;
-    if (fabsf(middle) < config->sign_hysteresis_m_s && input->wheel_m_s != 0.0f) {
+    const float sign = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
+    const float gain = state->p_vv / (state->p_vv + config->doppler_noise_m2_s2); // (1)
+    state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, 10.0f) - state->speed_m_s);
+    state->p_vv -= gain * state->p_vv;
+    state->p_vb = 0.0f;
+    state->p_bb = 0.0f;
+}
+
+// What is left of the window's speed when (3) is moved to the present: innovation = measured - middle.
+typedef struct {
+    float middle_m_s; // speed in the window's middle, as predicted
+    float tau_s;
+    float accel_m_s2; // mean acceleration over the window
+} window_t;
+
+static window_t look_back(const ground_speed_state_t *state, float accel, float late_s)
+{
+    const int32_t oldest = (state->head - (WINDOW_TICKS - 1) + GROUND_SPEED_HISTORY) % GROUND_SPEED_HISTORY;
+    const float span = (float)fixed_wrap_difference(state->integral_q20[state->head], state->integral_q20[oldest]) * (1.0f / 1048576.0f);
+    const float tau = 0.25f + late_s;
+    const window_t out = {
+        .tau_s = tau,
+        .middle_m_s = state->speed_m_s + tau * state->bias_m_s2 - window_change_m_s(state) - accel * late_s, // (3)
+        .accel_m_s2 = span * 2.0f - state->bias_m_s2,                                                       // over 0.5 s
+    };
+    return out;
+}
+
+static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
+{
+    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), 0.0f, 1.0f));
+    const float measured = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
+    float sign = window.middle_m_s < 0.0f ? -1.0f : 1.0f;
+    if (fabsf(window.middle_m_s) < config->sign_hysteresis_m_s && state->still_ticks == 0) {
         sign = input->wheel_m_s < 0.0f ? -1.0f : 1.0f;
     }
-    const float noise = config->doppler_noise_m2_s2 + config->doppler_noise_m_s * input->doppler_m_s + config->doppler_accel_s2 * accel * accel;
-    const float innovation = sign * input->doppler_m_s - middle;
-    const float spread = state->p_vv + tau * (2.0f * state->p_vb + tau * state->p_bb) + noise;
-    const float gate = config->gate_sigma * config->gate_sigma * spread;
-    if (innovation * innovation > gate && state->refused < config->gate_patience) {
-        state->refused++;
-        return;
-    }
-    if (state->refused >= config->gate_patience) {
-        state->p_vv = 1.0f;
+    const float noise = config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured +
+                        config->doppler_accel_s2 * window.accel_m_s2 * window.accel_m_s2;
+    const float innovation = sign * measured - window.middle_m_s;
+    const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + noise;
+    if (innovation * innovation > config->gate_sigma * config->gate_sigma * spread) {
+        if (state->refused < config->gate_patience) {
+            state->refused++;
+            return;
+        }
+        state->p_vv = 1.0f; // [m^2/s^2] nothing is known any more
         state->p_vb = 0.0f;
     }
     state->refused = 0;
-    correct(state, innovation, tau, noise);
+    correct(state, innovation, window.tau_s, noise);
 }
 
-static void stand_still(ground_speed_state_t *state)
+// A quiet echo says that the window's mean speed was too low to be heard.
+static void update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
-    state->bias_m_s2 += 0.0f;
-    correct(state, -state->speed_m_s, 0.0f, 1e-6f); // (1 mm/s)^2
+    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), 0.0f, 1.0f));
+    correct(state, -window.middle_m_s, window.tau_s, config->quiet_noise_m2_s2);
+}
+
+// Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once.
+static bool is_standing(const ground_speed_config_t *config, const ground_speed_state_t *state)
+{
+    const bool wheels_rest = state->still_ticks >= config->still_needed;
+    return wheels_rest && (state->quiet >= config->quiet_needed || fabsf(state->speed_m_s) < config->sign_hysteresis_m_s);
 }
 
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
@@ -106,18 +143,19 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     if (fresh) {
         state->quiet = input->doppler_quiet ? state->quiet + (state->quiet < 1000 ? 1 : 0) : 0;
     }
-    state->standstill = state->quiet >= config->quiet_needed;
-    if (fresh && config->method == GROUND_SPEED_PAPER) {
-        const float sign = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
-        const float gain = state->p_vv / (state->p_vv + config->doppler_noise_m2_s2); // (1)
-        state->speed_m_s += gain * (sign * input->doppler_m_s - state->speed_m_s);
-        state->p_vv -= gain * state->p_vv;
-        state->p_vb = 0.0f;
-        state->p_bb = 0.0f;
-    } else if (fresh && state->standstill) {
-        stand_still(state);
+    const bool rest = fabsf(fixed_finite(input->wheel_m_s)) < config->still_m_s;
+    state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
+    state->standstill = is_standing(config, state);
+    if (config->method == GROUND_SPEED_PAPER) {
+        if (fresh) {
+            update_paper(config, state, input->doppler_m_s);
+        }
+    } else if (state->standstill) {
+        correct(state, -state->speed_m_s, 0.0f, config->standing_noise_m2_s2);
+    } else if (fresh && state->quiet >= config->quiet_needed) {
+        update_quiet(config, state, input, accel);
     } else if (fresh && !input->doppler_quiet) {
-        update_ours(config, state, input, accel);
+        update_doppler(config, state, input, accel);
     }
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     const ground_speed_output_t out = {

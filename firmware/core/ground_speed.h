@@ -32,8 +32,12 @@ typedef struct {
     float doppler_accel_s2;        // R per a^2
     float gate_sigma;              // values further than this from the prediction are refused
     int32_t gate_patience;         // refusals in a row after which the next value is taken as the truth
-    int32_t quiet_needed;          // quiet Doppler values in a row that mean standstill
-    float sign_hysteresis_m_s;     // |v| above which the sign may not flip without the wheels
+    int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
+    float quiet_noise_m2_s2;       // R of that speed, taken as 0
+    float still_m_s;               // rim speed below which the wheels are at rest
+    int32_t still_needed;          // ticks of rest before the rover can be standing
+    float standing_noise_m2_s2;    // R of speed 0 in each standing tick
+    float sign_hysteresis_m_s;     // |v| below which the wheels decide the sign, and standing needs no quiet echo
 } ground_speed_config_t;
 
 typedef struct {
@@ -45,8 +49,8 @@ typedef struct {
     float integral_rest_m_s;       // part of V below one unit
     int32_t refused;
     int32_t quiet;
+    int32_t still_ticks;
     bool standstill;
-    bool started;                  // false until the first Doppler value or standstill
 } ground_speed_state_t;
 
 typedef struct {

@@ -56,12 +56,16 @@ static ground_speed_config_t ground_speed_default(void)
         .bias_noise_m2_s4 = 1e-6f,  // [m^2/s^4] per tick: 1e-4 per second
         .bias_start_m_s2 = 0.1f,
         .bias_max_m_s2 = 1.0f,
-        .doppler_noise_m2_s2 = 1e-5f,
+        .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
         .doppler_accel_s2 = 0.0125f,
         .gate_sigma = 3.5f,
         .gate_patience = 8,
         .quiet_needed = 3,
+        .quiet_noise_m2_s2 = 9e-4f,    // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
+        .still_m_s = 0.006f,           // one encoder pulse a tick
+        .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
+        .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
         .sign_hysteresis_m_s = 0.12f,
     };
     return ground_speed;
