@@ -9,7 +9,7 @@
 #include "truth.h"
 
 #include "sim/physics/effects/catalogue.h"
-#include "sim/physics/soil.h"
+#include "sim/physics/ground.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,0 +1,51 @@
+#include "ground.h"
+
+#include "math.h"
+
+#include <cmath>
+
+namespace traction::sim {
+
+namespace {
+
+// A number of -1..1 that belongs to a lattice point.
+double lattice(std::int64_t i, std::int64_t j, std::uint64_t seed) {
+    std::uint64_t h = seed ^ (static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15ull) ^
+                      (static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Full);
+    h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9ull; // splitmix64's finaliser
+    h = (h ^ (h >> 27)) * 0x94D049BB133111EBull;
+    h ^= h >> 31;
+    return static_cast<double>(h >> 11) * (2.0 / 9007199254740992.0) - 1.0;
+}
+
+double smooth(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
+
+} // namespace
+
+double traction_share(TractionLaw law, double s_abs, double shear_slip) {
+    const double q = s_abs / shear_slip;
+    if (law == TractionLaw::burckhardt) return 1 - math::exp(-q);
+    if (q < 1e-3) return q * (0.5 - q / 6); // series of 1 - (1 - exp(-q))/q; the next term is below 4e-11
+    return 1 - (1 - math::exp(-q)) / q;
+}
+
+const Soil &Ground::at(double x_m, double y_m) const {
+    for (auto patch = patches.rbegin(); patch != patches.rend(); ++patch)
+        if (x_m >= patch->x_min_m && x_m < patch->x_max_m && y_m >= patch->y_min_m && y_m < patch->y_max_m) return patch->soil;
+    return soil;
+}
+
+double Ground::grip_change(double x_m, double y_m) const {
+    if (grip_noise <= 0) return 0;
+    const double u = x_m / grip_length_m, v = y_m / grip_length_m;
+    const double iu = std::floor(u), iv = std::floor(v);
+    const auto i = static_cast<std::int64_t>(iu), j = static_cast<std::int64_t>(iv);
+    const double a = smooth(u - iu), b = smooth(v - iv);
+    const double low = lattice(i, j, seed) * (1 - a) + lattice(i + 1, j, seed) * a;
+    const double high = lattice(i, j + 1, seed) * (1 - a) + lattice(i + 1, j + 1, seed) * a;
+    // Uniform -1..1 has variance 1/3; the quintic weights keep 0.78355 of it per dimension (the mean of (1-a)^2 + a^2).
+    constexpr double scale = 1.7320508075688772 / 0.78355; // makes the rms 1
+    return grip_noise * scale * (low * (1 - b) + high * b);
+}
+
+} // namespace traction::sim

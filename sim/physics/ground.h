@@ -1,0 +1,37 @@
+// ground.h - which soil lies where, how it slopes, how its grip varies; and the aggregated traction laws.
+//
+//   Janosi, aggregated:  Ft(s)/Fm = 1 - sc/s * (1 - exp(-s/sc))     (20) Lhomme-Desages, odd in s
+//   Burckhardt:          Ft(s)/Fm = 1 - exp(-s/sc)                  (21) Lhomme-Desages, odd in s
+#pragma once
+
+#include "soil.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace traction::sim {
+
+// Ft/Fm for s_abs = |s| >= 0 and shear_slip > 0, within 0..1.
+double traction_share(TractionLaw law, double s_abs, double shear_slip);
+
+// A region of other soil, in world coordinates.
+struct SoilPatch {
+    double x_min_m = 0, x_max_m = 0, y_min_m = -1e9, y_max_m = 1e9;
+    Soil soil;
+};
+
+struct Ground {
+    Soil soil;                      // where no patch lies
+    std::vector<SoilPatch> patches; // the last that covers a place wins
+    double slope_rad = 0;           // the ground rises ...
+    double slope_direction_rad = 0; // ... towards this world heading
+    double grip_noise = 0;          // relative rms of the grip over the ground [1]; 0.06 on soil, 0.02 on concrete (assumed)
+    double grip_length_m = 0.2;     // its correlation length: lattice step of the noise
+    std::uint64_t seed = 1;         // of the grip noise
+
+    const Soil &at(double x_m, double y_m) const;
+    // Relative change of the grip at a place: value noise, deterministic, rms grip_noise.
+    double grip_change(double x_m, double y_m) const;
+};
+
+} // namespace traction::sim
