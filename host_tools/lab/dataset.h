@@ -1,6 +1,6 @@
 // dataset.h - a log as the forward model wants it: inputs on one uniform grid, and the measured rows of every balance.
 //
-// Inputs (encoder angle, speed and acceleration by zero-phase local polynomials, duty, battery voltage, yaw rate) are resampled.
+// Inputs (encoder angle, speed and acceleration by zero-phase local polynomials, motor voltage, yaw rate) are resampled.
 // Measurements keep their own times: a row is the mean of a balance over [t0, t1], its prediction the mean over the same window.
 // A signal that the log lacks removes its balance and leaves a message.
 #pragma once
@@ -23,7 +23,7 @@ enum class BalanceKind {
     camera_x,        // camera displacement per interval, along the body's x
     camera_y,        // the same along body y (planar machines)
     camera_yaw,      // camera heading change per interval (planar machines)
-    yaw_moment,      // yaw acceleration
+    yaw_rate,        // by the gyro
     force,           // drawbar pull of one wheel on a bench
     torque,          // measured wheel torque on a bench
 };
@@ -37,11 +37,12 @@ struct Balance {
     double noise = 0;  // standard deviation of one row, measurement noise alone
     std::string noise_source;
     std::vector<double> t0_s, t1_s, measured; // one entry per row
+    std::vector<double> noise_factor;         // of a row's noise, relative to `noise`; empty: all 1
 };
 
 struct WheelInput {
     std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
-    std::vector<double> duty;                                 // empty when unknown
+    std::vector<double> voltage_V;                            // at the motor; empty when unknown
 };
 
 struct Dataset {
@@ -49,13 +50,15 @@ struct Dataset {
     std::size_t count = 0;
     bool independent_rows = false;      // a table of steady states, not a time series
     std::vector<WheelInput> wheel;
-    std::vector<double> battery_V;      // empty when unknown
     std::vector<double> yaw_rate_rad_s; // empty when unknown
     std::vector<double> yaw_rad;        // empty when unknown: integral of the rate, or the camera's
     std::vector<double> body_speed_m_s; // imposed speed; empty otherwise
-    std::vector<std::vector<double>> load_N; // measured wheel loads; empty when not logged
+    std::vector<std::vector<double>> load_N; // measured load per wheel; empty when not logged
+    bool yaw_free = false;              // the log measures yaw, so the yaw rate follows from the model's forces
+    std::vector<char> gap;              // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
     std::vector<std::string> messages;  // what is missing and what that removes
+    double accel_bias_prior_m_s2 = 0;   // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
     std::string log_file, scenario, date;
     double duration_s = 0;
 

@@ -1,6 +1,6 @@
 // forward.h - what the model says the sensors should have read: semi-inverse output error.
 //
-// The encoder speeds (and duty, battery voltage, yaw rate) are given; the body's speed is integrated from the model's forces:
+// The encoder speeds (and motor voltage, yaw rate) are given; the body's speed is integrated from the model's forces:
 //   M dv/dt = sum_i (Ft_i - Rr_i) + F_body, implicit Euler, root bracketed (stiff: dF/dv * dt / M is 20 on concrete)     (1)
 //   torque balance:  KG*I = Gr(w) + J*dw/dt + R*Ft                                               (17) Lhomme-Desages
 //   voltage balance: I = (duty*V - ke*w)/Ra, from clean voltage and speed, never from the noisy current              (2)
@@ -20,10 +20,9 @@ namespace traction::lab {
 struct Motion {
     std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, accel_m_s2, path_m, body_force_N; // accel: specific force along x
     struct Wheel {
-        std::vector<double> traction_N, slip, load_N, ground_speed_m_s;
+        std::vector<double> traction_N, rolling_N, slip, load_N, ground_speed_m_s;
     };
     std::vector<Wheel> wheel;
-    std::vector<double> yaw_moment_rad_s2;
 };
 
 class Forward {
@@ -34,7 +33,7 @@ class Forward {
     Eigen::VectorXd predict(const Physics &physics);
 
     // The same when only the stages in `touched` (see Stage) differ from `base`, the prediction of the last set_base().
-    Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel);
+    Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
     void set_base(const Physics &physics);
     const Eigen::VectorXd &base() const { return base_prediction_; }
     const Motion &motion() const { return base_motion_; }
@@ -44,15 +43,16 @@ class Forward {
     std::size_t first_row(std::size_t balance) const { return first_row_[balance]; }
 
   private:
-    void integrate(const Physics &physics, Motion &motion, const Motion *guess) const;
-    void electrical(const Physics &physics, const Motion &motion, int wheel, std::vector<double> &current,
-                    Eigen::VectorXd &out, bool torque, bool voltage) const;
+    void electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
+                    Eigen::VectorXd &out) const;
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
+    void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, Eigen::VectorXd &out) const;
 
     const Dataset *data_;
     std::size_t row_count_ = 0;
     std::vector<std::size_t> first_row_;
     Motion base_motion_, scratch_;
+    mutable std::vector<double> series_, sum_, current_;
     std::vector<std::vector<double>> base_current_;
     Eigen::VectorXd base_prediction_;
     bool have_base_ = false;

@@ -1,0 +1,401 @@
+#include "diagnose.h"
+
+#include "screen.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr double classes_tried = 20; // catalogue effects that are not near copies of one another: about half of the catalogue
+
+std::string one_decimal(double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.1f", value);
+    return buffer;
+}
+
+// Structured columns of all candidates at a baseline: a wheel's column is computed once, "all wheels" is the sum.
+class Columns {
+  public:
+    explicit Columns(Problem &problem) : problem_(problem), physics_(problem.physics()) {}
+
+    Eigen::MatrixXd of(const Candidate &c) {
+        Eigen::MatrixXd out(problem_.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
+        for (std::size_t j = 0; j < c.strengths.size(); ++j) out.col(static_cast<Eigen::Index>(j)) = column(c, j);
+        return out;
+    }
+
+  private:
+    Eigen::VectorXd column(const Candidate &c, std::size_t j) {
+        const FreeParameter &p = c.strengths[j];
+        if (c.free_shape || p.slots.size() < 2) return single(c, j, p);
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(problem_.row_scale.size());
+        for (const Slot &slot : p.slots) {
+            FreeParameter one = p;
+            one.slots = {slot};
+            one.wheel = slot.wheel;
+            sum += single(c, j, one);
+        }
+        return sum;
+    }
+
+    const Eigen::VectorXd &single(const Candidate &c, std::size_t j, const FreeParameter &p) {
+        std::string key = c.effect + "/" + p.key + "/" + std::to_string(p.slots.size() == 1 ? p.slots[0].wheel : -1);
+        for (const auto &[name, value] : c.variant) key += "/" + name + std::to_string(value);
+        const auto found = cache_.find(key);
+        if (found != cache_.end()) return found->second;
+        Physics at = physics_;
+        Candidate one = c;
+        one.wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : c.wheel;
+        one.prepare(at);
+        return cache_[key] = problem_.column(at, p, c.step[j]);
+    }
+
+    Problem &problem_;
+    Physics physics_;
+    std::map<std::string, Eigen::VectorXd> cache_;
+};
+
+struct Scored {
+    Candidate candidate;
+    Assessment assessment;
+    double gain = 0;      // squares
+    double gain_error = 0;
+    double p_value = 1;   // corrected
+    Eigen::VectorXd block_gain;
+    std::vector<double> value, error;
+    std::string verdict;
+    bool refitted = false;
+    double best_balance_gain = 0; // largest relative fall in one balance
+    double cosine_with_winner = 0;
+    double difference = 0, difference_error = 0; // to the winner
+};
+
+bool large_enough(const Candidate &c, const std::vector<double> &value) {
+    double size = 0, least = 0;
+    for (std::size_t j = 0; j < value.size(); ++j) size += value[j] * value[j], least = std::max(least, j < c.of_interest.size() ? c.of_interest[j] : 0.0);
+    return std::sqrt(size) >= least;
+}
+
+bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
+    for (std::size_t j = 0; j < value.size(); ++j)
+        if (j < c.minimum.size() && c.minimum[j] >= 0 && value[j] < 0) return false;
+    return true;
+}
+
+Scored score(const Candidate &c, const Screen &screen, Columns &columns, bool full) {
+    Scored s;
+    s.candidate = c;
+    const Eigen::MatrixXd C = columns.of(c);
+    s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), full);
+    s.gain = s.assessment.gain;
+    s.gain_error = s.assessment.gain_error;
+    s.block_gain = s.assessment.block_gain;
+    s.p_value = std::min(1.0, s.assessment.p_value * c.variants * classes_tried);
+    for (Eigen::Index j = 0; j < C.cols(); ++j) {
+        s.value.push_back(s.assessment.strength[j]);
+        s.error.push_back(s.assessment.standard_error[j]);
+    }
+    return s;
+}
+
+// Fits baseline plus candidate in full, from the linear estimate.
+void refit(Scored &s, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data) {
+    Physics physics = make_physics(model);
+    s.candidate.prepare(physics);
+    std::vector<FreeParameter> parameters = base.parameters;
+    const auto n = static_cast<Eigen::Index>(parameters.size()), k = static_cast<Eigen::Index>(s.candidate.strengths.size());
+    for (const FreeParameter &p : s.candidate.strengths) parameters.push_back(p);
+    Problem problem(data, physics, parameters);
+    problem.keep_scales(base);
+    problem.theta.head(n) = base.theta;
+    for (Eigen::Index j = 0; j < k; ++j) {
+        const FreeParameter &p = parameters[static_cast<std::size_t>(n + j)];
+        const double span = p.maximum - p.minimum;
+        const bool limited = !s.candidate.maximum.empty();
+        double start = s.value[static_cast<std::size_t>(j)];
+        if (limited) start = std::clamp(start, std::max(p.minimum, s.candidate.minimum[static_cast<std::size_t>(j)]), s.candidate.maximum[static_cast<std::size_t>(j)]);
+        if (limited && std::fabs(start) < 1e-3 * span) start = s.candidate.of_interest[static_cast<std::size_t>(j)];
+        problem.theta[n + j] = start;
+    }
+    problem.fit({.iterations = 5, .reweight = false});
+    const Screen screen(problem, n);
+    const Eigen::VectorXd present = problem.theta.tail(k);
+    s.assessment = screen.assess(problem.jacobian.rightCols(k), present, true);
+    s.refitted = true;
+    s.value.clear(), s.error.clear();
+    for (Eigen::Index j = 0; j < k; ++j) {
+        s.value.push_back(problem.theta[n + j]);
+        s.error.push_back(s.assessment.standard_error[j]);
+    }
+    s.p_value = std::min(1.0, s.assessment.p_value * s.candidate.variants * classes_tried);
+    s.gain = base_screen.heldout_error() - (screen.heldout_error() - s.assessment.gain);
+    s.block_gain = base_screen.block_error() - (screen.block_error() - s.assessment.block_gain);
+    const double blocks = static_cast<double>(s.block_gain.size()), mean = s.block_gain.mean();
+    s.gain_error = std::sqrt((s.block_gain.array() - mean).square().sum() * blocks / std::max(1.0, blocks - 1));
+    const Screen with(problem);
+    const std::vector<double> before = base_screen.heldout_by_balance(), after = with.heldout_by_balance();
+    for (std::size_t b = 0; b < before.size(); ++b)
+        if (before[b] > 0) s.best_balance_gain = std::max(s.best_balance_gain, 1 - after[b] / before[b]);
+}
+
+void judge(Scored &s, double base_error, const DiagnoseOptions &options) {
+    const double relative = base_error > 0 ? s.gain / base_error : 0;
+    const bool gains = s.gain > 0 && (relative > options.least_gain || s.best_balance_gain > options.least_gain_one || s.assessment.relief > options.least_relief);
+    if (!(s.p_value < options.p_limit) || !gains) s.verdict = "not_significant";
+    else if (!plausible_sign(s.candidate, s.value)) s.verdict = "wrong_sign";
+    else if (!large_enough(s.candidate, s.value)) s.verdict = "too_small";
+    else s.verdict = "passes";
+}
+
+std::string sentence(const Scored &s) {
+    const sim::Effect *effect = sim::find_effect(s.candidate.effect);
+    return effect == nullptr ? std::string() : std::string(effect->signature);
+}
+
+CandidateResult result_of(const Scored &s, double base_error, const Screen &screen) {
+    CandidateResult r;
+    r.candidate = s.candidate;
+    r.value = s.value;
+    for (std::size_t j = 0; j < s.value.size(); ++j) {
+        r.low.push_back(s.value[j] - 1.96 * s.error[j]);
+        r.high.push_back(s.value[j] + 1.96 * s.error[j]);
+    }
+    const double unit = base_error > 0 ? 1 / base_error : 0;
+    r.gain_squares = s.gain;
+    r.heldout_gain = s.gain * unit;
+    r.gain_low = (s.gain - 1.96 * s.gain_error) * unit;
+    r.gain_high = (s.gain + 1.96 * s.gain_error) * unit;
+    r.p_value = s.p_value;
+    double d = 0;
+    for (std::size_t j = 0; j < s.value.size(); ++j)
+        if (s.error[j] > 0 && std::isfinite(s.error[j])) d = std::max(d, std::fabs(s.value[j]) / s.error[j]);
+    r.detectability = d;
+    r.verdict = s.verdict;
+    r.explains = sentence(s);
+    double positive = 0;
+    for (Eigen::Index b = 0; b < s.block_gain.size(); ++b) positive += std::max(0.0, s.block_gain[b]);
+    std::vector<std::pair<double, std::size_t>> order;
+    for (Eigen::Index b = 0; b < s.block_gain.size(); ++b) order.emplace_back(s.block_gain[b], static_cast<std::size_t>(b));
+    std::stable_sort(order.begin(), order.end(), [](const auto &a, const auto &b) { return a.first > b.first; });
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()) && positive > 0; ++i)
+        if (order[i].first > 0) r.evidence.push_back({screen.blocks()[order[i].second], order[i].first / positive});
+    return r;
+}
+
+struct Round {
+    std::vector<Scored> scored; // best variant of each effect and wheel, sorted by gain
+    double base_error = 0;
+};
+
+bool nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
+
+Round run_round(Problem &problem, const Screen &screen, const Model &model, const Dataset &data, const DiagnoseOptions &options,
+                const std::function<void()> &tick) {
+    Round round;
+    round.base_error = screen.heldout_error();
+    Columns columns(problem);
+    std::map<std::string, Scored> best;
+    std::vector<std::string> order;
+    for (const Candidate &c : catalogue_candidates(model, data, problem.forward().motion())) {
+        Scored s = score(c, screen, columns, true);
+        const std::string key = c.label();
+        const auto found = best.find(key);
+        if (found == best.end()) {
+            order.push_back(key);
+            best.emplace(key, std::move(s));
+        } else if (s.gain > found->second.gain) {
+            found->second = std::move(s);
+        }
+        tick();
+    }
+    for (const std::string &key : order) round.scored.push_back(std::move(best.at(key)));
+    std::stable_sort(round.scored.begin(), round.scored.end(), [](const Scored &a, const Scored &b) { return a.gain > b.gain; });
+    // full refits: the best distinct effects that stand a chance, and the strongly nonlinear ones
+    int done = 0;
+    for (Scored &s : round.scored) {
+        judge(s, round.base_error, options);
+        const bool chance = s.gain > 0.002 * round.base_error && s.p_value < 0.2;
+        const bool special = nonlinear(s.candidate.effect) && s.gain > 0.002 * round.base_error && done < options.refits + 3;
+        if (!((chance && done < options.refits) || special)) continue;
+        refit(s, problem, screen, model, data);
+        judge(s, round.base_error, options);
+        ++done;
+        tick();
+    }
+    for (Scored &s : round.scored)
+        if (!s.refitted && s.verdict == "passes") s.verdict = "not_significant"; // behind five that explain more
+    std::stable_sort(round.scored.begin(), round.scored.end(), [](const Scored &a, const Scored &b) {
+        if (a.refitted != b.refitted) return a.refitted;
+        return a.gain > b.gain;
+    });
+    return round;
+}
+
+// Which passers the data cannot tell from the winner.
+std::vector<std::size_t> confounded_with(Round &round, std::size_t winner, const DiagnoseOptions &options) {
+    std::vector<std::size_t> members;
+    Scored &w = round.scored[winner];
+    for (std::size_t i = 0; i < round.scored.size(); ++i) {
+        Scored &s = round.scored[i];
+        if (i == winner || s.verdict != "passes" || s.candidate.effect == w.candidate.effect) continue;
+        const Eigen::VectorXd difference = w.block_gain - s.block_gain;
+        const double n = static_cast<double>(difference.size()), mean = difference.mean();
+        s.difference = w.gain - s.gain;
+        s.difference_error = std::sqrt((difference.array() - mean).square().sum() * n / std::max(1.0, n - 1));
+        const double norm = w.assessment.projected.norm() * s.assessment.projected.norm();
+        s.cosine_with_winner = norm > 0 ? w.assessment.projected.dot(s.assessment.projected) / norm : 0;
+        const bool close = s.difference < 2 * s.difference_error && s.difference < 0.1 * w.gain;
+        if (close || (std::fabs(s.cosine_with_winner) > options.same_cosine && s.difference < 0.1 * w.gain)) members.push_back(i);
+    }
+    return members;
+}
+
+} // namespace
+
+double overall_error(const Problem &problem) {
+    double sum = 0;
+    const std::size_t n = problem.data().balance.size();
+    for (std::size_t b = 0; b < n; ++b) sum += std::pow(problem.balance_rms(b, true), 2);
+    return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0;
+}
+
+double overall_heldout(const Problem &problem) {
+    const Screen screen(problem);
+    const std::vector<double> squares = screen.heldout_by_balance();
+    double sum = 0;
+    const std::size_t n = problem.data().balance.size();
+    for (std::size_t b = 0; b < n; ++b) {
+        const Balance &balance = problem.data().balance[b];
+        const double in_noise = problem.sigma[b] / balance.noise;
+        sum += squares[b] / static_cast<double>(balance.measured.size()) * in_noise * in_noise;
+    }
+    return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0;
+}
+
+Rung fit_model(Model &model, const Dataset &data, const std::string &label) {
+    const Physics physics = make_physics(model);
+    Problem problem(data, physics, free_parameters(model, physics));
+    problem.fit({.iterations = 10, .reweight = true});
+    Rung rung{label, overall_error(problem), overall_heldout(problem), 1};
+    const Screen screen(problem);
+    const Eigen::VectorXd errors = screen.parameter_errors();
+    for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+        store(model, problem.parameters[i], problem.theta[static_cast<Eigen::Index>(i)], errors[static_cast<Eigen::Index>(i)]);
+    return rung;
+}
+
+// In diagnose_shapes.cpp: what no effect of the catalogue explains.
+std::optional<UnknownShape> find_unknown(const Model &baseline, const Model &improved, const Dataset &data, const DiagnoseOptions &options);
+
+Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOptions &options) {
+    Diagnosis d;
+    d.model = original;
+    d.messages = data.messages;
+    if (data.balance.empty() || data.count < 3) {
+        d.kind = "nothing";
+        d.text = "The log has nothing that this model predicts: nothing can be said.";
+        return d;
+    }
+    int done = 0;
+    const auto tick = [&] {
+        ++done;
+        if (options.progress) options.progress(done, 400);
+    };
+    Eigen::VectorXd warm;
+    for (int round_index = 0; round_index <= options.most_effects; ++round_index) {
+        const Physics physics = make_physics(d.model);
+        Problem problem(data, physics, free_parameters(d.model, physics));
+        for (Eigen::Index i = 0; i < std::min(warm.size(), problem.theta.size()); ++i) problem.theta[i] = warm[i];
+        problem.fit({.iterations = 6, .reweight = true});
+        warm = problem.theta;
+        const auto original_count = problem.parameters.size();
+        (void)original_count;
+        const std::string label = d.accepted.empty() ? "baseline" : "+ " + d.accepted.back().candidate.label();
+        d.ladder.push_back({label, overall_error(problem), overall_heldout(problem), 1});
+        const Screen screen(problem);
+        // values of what was accepted, refreshed by the joint fit
+        const Eigen::VectorXd errors = screen.parameter_errors();
+        for (CandidateResult &a : d.accepted)
+            for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+                for (std::size_t j = 0; j < a.candidate.strengths.size(); ++j)
+                    if (problem.parameters[i].owner == a.candidate.effect && problem.parameters[i].wheel == a.candidate.wheel && problem.parameters[i].key == a.candidate.strengths[j].key) {
+                        const auto row = static_cast<Eigen::Index>(i);
+                        a.value[j] = problem.parameters[i].base + problem.theta[row];
+                        a.low[j] = a.value[j] - 1.96 * errors[row];
+                        a.high[j] = a.value[j] + 1.96 * errors[row];
+                    }
+        if (round_index == options.most_effects) break;
+        Round round = run_round(problem, screen, d.model, data, options, tick);
+        std::size_t winner = round.scored.size();
+        for (std::size_t i = 0; i < round.scored.size() && winner == round.scored.size(); ++i)
+            if (round.scored[i].verdict == "passes") winner = i;
+        std::vector<std::size_t> members;
+        if (winner < round.scored.size()) members = confounded_with(round, winner, options);
+        if (round_index == 0)
+            for (const Scored &s : round.scored) {
+                if (s.candidate.wheel >= 0) continue;
+                bool seen = false; // three sizes of interest, twice their own uncertainty
+                for (std::size_t j = 0; j < s.error.size(); ++j) seen = seen || 3 * s.candidate.of_interest[j] > 2 * s.error[j];
+                if (!seen) d.not_excited.emplace_back(s.candidate.effect, "a size three times that of interest would be " + one_decimal(s.error.empty() || !std::isfinite(s.error[0]) ? 0.0 : 3 * s.candidate.of_interest[0] / s.error[0]) + " standard errors");
+            }
+        for (std::size_t i = 0; i < round.scored.size(); ++i) {
+            CandidateResult r = result_of(round.scored[i], round.base_error, screen);
+            const bool member = std::find(members.begin(), members.end(), i) != members.end();
+            if (i == winner) r.verdict = members.empty() ? "named" : "class";
+            else if (member) r.verdict = "class";
+            else if (r.verdict == "passes") r.verdict = "not_significant";
+            if ((i == winner || member) && !members.empty()) r.class_index = static_cast<int>(d.classes.size());
+            for (const auto &[effect, why] : d.not_excited)
+                if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
+            if (round_index == 0) d.ranking.push_back(r);
+            if (i == winner) d.accepted.push_back(r);
+        }
+        if (winner == round.scored.size()) break;
+        const Scored &w = round.scored[winner];
+        if (!members.empty()) {
+            ConfoundedClass c;
+            c.members.push_back(w.candidate.label());
+            for (const std::size_t i : members) c.members.push_back(round.scored[i].candidate.label());
+            if (const sim::Effect *effect = sim::find_effect(w.candidate.effect)) c.separate_by = effect->reveals;
+            d.classes.push_back(std::move(c));
+        }
+        d.model.effects.push_back(effect_of(w.candidate, w.value));
+    }
+    // backward: drop what no longer matters beside the others
+    for (std::size_t i = d.accepted.size(); i-- > 0 && d.accepted.size() > 1;) {
+        Model without = d.model;
+        const Candidate &c = d.accepted[i].candidate;
+        std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == c.effect && use.wheel == c.wheel; });
+        const Physics physics = make_physics(without);
+        Problem problem(data, physics, free_parameters(without, physics));
+        for (Eigen::Index j = 0; j < std::min(warm.size(), problem.theta.size()); ++j)
+            if (problem.parameters[static_cast<std::size_t>(j)].prior > 0) problem.theta[j] = warm[j];
+        problem.fit({.iterations = 6, .reweight = true});
+        const Screen screen(problem);
+        Scored s;
+        s.candidate = c;
+        s.value = d.accepted[i].value;
+        refit(s, problem, screen, without, data);
+        judge(s, screen.heldout_error(), options);
+        if (s.verdict == "passes") continue;
+        d.messages.push_back(c.label() + " was found first, and is not needed beside the others: dropped");
+        d.model = without;
+        d.accepted.erase(d.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    if (options.shapes) d.unknown = find_unknown(original, d.model, data, options);
+    for (const CandidateResult &a : d.accepted) d.effects.push_back(a.candidate.label());
+    const bool any_class = !d.classes.empty();
+    if (d.accepted.empty()) d.kind = d.unknown ? "unknown" : "nothing";
+    else d.kind = d.unknown ? "partial" : any_class ? "class" : "named";
+    return d;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,108 @@
+// What no effect of the catalogue explains: structure-free shapes f(X), tested like any candidate.
+#include "diagnose.h"
+#include "screen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr double shapes_tried = 30;
+
+struct ShapeScore {
+    Candidate candidate;
+    Assessment assessment;
+    double p_value = 1;
+};
+
+Problem fitted(const Model &model, const Dataset &data) {
+    const Physics physics = make_physics(model);
+    Problem problem(data, physics, free_parameters(model, physics));
+    problem.fit({.iterations = 6, .reweight = true});
+    return problem;
+}
+
+ShapeScore assess_shape(const Candidate &c, Problem &problem, const Screen &screen, const Physics &physics) {
+    ShapeScore s;
+    s.candidate = c;
+    Physics at = physics;
+    c.prepare(at);
+    Eigen::MatrixXd columns(problem.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
+    for (std::size_t j = 0; j < c.strengths.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = problem.column(at, c.strengths[j], c.step[j]);
+    // knots that no sample is near carry nothing: they follow their neighbour
+    s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
+    s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
+    return s;
+}
+
+std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {
+    std::vector<ShapeScore> list;
+    const Physics physics = problem.physics();
+    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.forward().winding_current_A()))
+        list.push_back(assess_shape(c, problem, screen, physics));
+    std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
+    return list;
+}
+
+UnknownShape describe(const ShapeScore &s, double base_error) {
+    UnknownShape u;
+    static const char *units[] = {"N m", "N", "N", "N", "V", "1", "1", "1", "1", "m/s^2", "1", "1", "1"};
+    u.variable = std::string(axis_name(s.candidate.axis));
+    u.target = std::string(target_name(s.candidate.target));
+    u.balance = s.candidate.effect;
+    u.unit_x = std::string(axis_unit(s.candidate.axis));
+    u.unit_y = units[static_cast<int>(s.candidate.target)];
+    u.gain = base_error > 0 ? s.assessment.gain / base_error : 0;
+    std::vector<double> y;
+    for (Eigen::Index j = 0; j < s.assessment.strength.size(); ++j) y.push_back(s.assessment.strength[j]);
+    u.expression = shape_expression(s.candidate, y);
+    if (s.candidate.order > 0) {
+        for (int i = 0; i <= 36; ++i) {
+            const double theta = 2 * 3.14159265358979 * i / 36, f = y[0] * std::cos(s.candidate.order * theta) + y[1] * std::sin(s.candidate.order * theta);
+            const double band = 1.96 * s.assessment.standard_error.maxCoeff();
+            u.x.push_back(theta), u.y.push_back(f), u.low.push_back(f - band), u.high.push_back(f + band);
+        }
+        return u;
+    }
+    for (std::size_t j = 0; j < s.candidate.knots.size(); ++j) {
+        const double error = s.assessment.standard_error[static_cast<Eigen::Index>(j)];
+        u.x.push_back(s.candidate.knots[j]);
+        u.y.push_back(y[j]);
+        u.low.push_back(y[j] - 1.96 * error);
+        u.high.push_back(y[j] + 1.96 * error);
+    }
+    return u;
+}
+
+} // namespace
+
+std::optional<UnknownShape> find_unknown(const Model &baseline, const Model &improved, const Dataset &data, const DiagnoseOptions &options) {
+    Problem last = fitted(improved, data);
+    const Screen last_screen(last);
+    const std::vector<ShapeScore> after = all_shapes(last, last_screen);
+    for (const ShapeScore &s : after) {
+        const double relative = last_screen.heldout_error() > 0 ? s.assessment.gain / last_screen.heldout_error() : 0;
+        if (s.p_value < options.p_limit && relative > 2 * options.least_gain && s.assessment.gain > 2 * s.assessment.gain_error) return describe(s, last_screen.heldout_error());
+    }
+    if (improved.effects.size() <= baseline.effects.size()) return std::nullopt;
+    // does one shape alone do better than all that was named?
+    Problem first = fitted(baseline, data);
+    const Screen first_screen(first);
+    Problem same_scale = fitted(improved, data);
+    same_scale.keep_scales(first);
+    same_scale.fit({.iterations = 4, .reweight = false});
+    const Screen same_screen(same_scale);
+    const double named_gain = first_screen.heldout_error() - same_screen.heldout_error();
+    for (const ShapeScore &s : all_shapes(first, first_screen)) {
+        if (!(s.p_value < options.p_limit) || !(s.assessment.gain > options.shape_margin * named_gain)) continue;
+        const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - same_screen.block_error());
+        const double n = static_cast<double>(difference.size());
+        const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
+        if (s.assessment.gain - named_gain > 2 * error) return describe(s, first_screen.heldout_error());
+    }
+    return std::nullopt;
+}
+
+} // namespace traction::lab

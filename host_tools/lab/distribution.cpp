@@ -1,0 +1,46 @@
+#include "distribution.h"
+
+#include <cmath>
+#include <initializer_list>
+
+namespace traction::lab {
+
+namespace {
+
+double beta_fraction(double a, double b, double x) {
+    constexpr double tiny = 1e-300;
+    double c = 1, d = 1 - (a + b) * x / (a + 1);
+    d = 1 / (std::fabs(d) < tiny ? tiny : d);
+    double h = d;
+    for (int m = 1; m < 500; ++m) {
+        const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+        const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+        double change = 1;
+        for (const double term : {even, odd}) {
+            d = 1 + term * d;
+            d = 1 / (std::fabs(d) < tiny ? tiny : d);
+            c = 1 + term / c;
+            if (std::fabs(c) < tiny) c = tiny;
+            change = c * d;
+            h *= change;
+        }
+        if (std::fabs(change - 1) < 1e-14) break;
+    }
+    return h;
+}
+
+double incomplete_beta(double a, double b, double x) {
+    if (x <= 0) return 0;
+    if (x >= 1) return 1;
+    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+    return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a : 1 - front * beta_fraction(b, a, 1 - x) / b;
+}
+
+} // namespace
+
+double f_tail(double f, double d1, double d2) {
+    if (!(f > 0) || !(d2 > 0)) return 1;
+    return incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f));
+}
+
+} // namespace traction::lab

@@ -1,0 +1,210 @@
+#include "forward.h"
+
+#include "motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr double friction_speed_rad_s = 0.05; // friction reverses over this speed: assumed, rows near standstill are left out
+constexpr double bridge_current_A = 0.01;     // the bridge's dead time reverses over this current: assumed
+constexpr double copper_per_K = 0.0039;       // resistance of copper
+constexpr double magnet_per_K = -0.002;       // flux of ferrite magnets
+constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue's
+
+} // namespace
+
+Forward::Forward(const Dataset &data) : data_(&data) {
+    for (const Balance &balance : data.balance) {
+        first_row_.push_back(row_count_);
+        row_count_ += balance.measured.size();
+    }
+    base_current_.resize(data.wheel.size());
+}
+
+// Mean of a grid series over each row's window, through its running integral; a window of no width gives the value there.
+void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, Eigen::VectorXd &out) const {
+    const Dataset &d = *data_;
+    const Balance &b = d.balance[balance];
+    const double last = static_cast<double>(d.count - 1);
+    sum_.resize(d.count);
+    sum_[0] = 0;
+    for (std::size_t k = 1; k < d.count; ++k) sum_[k] = sum_[k - 1] + 0.5 * (series[k - 1] + series[k]);
+    const auto value_at = [&](double x) {
+        const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
+        const double f = x - static_cast<double>(i);
+        return series[i] + f * (series[i + 1] - series[i]);
+    };
+    const auto integral_to = [&](double x) {
+        const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
+        const double f = x - static_cast<double>(i);
+        return sum_[i] + f * (series[i] + 0.5 * f * (series[i + 1] - series[i]));
+    };
+    for (std::size_t r = 0; r < b.measured.size(); ++r) {
+        const double x0 = std::clamp((b.t0_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
+        const double x1 = std::clamp((b.t1_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
+        out[static_cast<Eigen::Index>(first_row_[balance] + r)] = x1 - x0 < 1e-6 ? value_at(x0) : (integral_to(x1) - integral_to(x0)) / (x1 - x0);
+    }
+}
+
+void Forward::electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
+                         Eigen::VectorXd &out) const {
+    const Dataset &d = *data_;
+    const WheelPhysics &p = physics.wheel[wheel];
+    const BodyPhysics &body = physics.body;
+    const WheelInput &in = d.wheel[wheel];
+    const Motion::Wheel &m = motion.wheel[wheel];
+    std::size_t torque_balance = d.balance.size(), voltage_balance = torque_balance, bench_balance = torque_balance;
+    for (std::size_t b = 0; b < d.balance.size(); ++b) {
+        if (d.balance[b].wheel != static_cast<int>(wheel)) continue;
+        if (d.balance[b].kind == BalanceKind::current_torque) torque_balance = b;
+        if (d.balance[b].kind == BalanceKind::current_voltage) voltage_balance = b;
+        if (d.balance[b].kind == BalanceKind::torque) bench_balance = b;
+    }
+    const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(), with_bench = bench_balance < d.balance.size();
+    if (!with_torque && !with_voltage && !with_bench) return;
+    const double gain = 1 / (1 - std::min(0.9, p.encoder_missed)), radius = p.radius * (1 + p.radius_change);
+    bool terms = false;
+    for (const ExtraTerm &term : physics.terms)
+        terms = terms || ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel)));
+    current.resize(d.count);
+    series_.resize(d.count);
+    std::vector<double> torque_series(with_bench ? d.count : 0), reading(d.count);
+    const bool magnitude = physics.unsigned_current;
+    const double delay_steps = (body.voltage_delay0 + body.actuation_delay) / d.step_s;
+    double heat_K = 0;
+    for (std::size_t k = 0; k < d.count; ++k) {
+        const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
+        const double constant = (1 + p.constant_change) * (1 + magnet_per_K * heat_K);
+        double KG = p.KG * constant, ke = p.ke * constant, Ra = p.Ra * (1 + copper_per_K * heat_K), u_lost = 0;
+        double friction = (p.b + p.viscous) * std::fabs(w) + p.t0 + p.coulomb;
+        if (p.stribeck != 0) friction += p.stribeck * std::exp(-(w / p.stribeck_speed) * (w / p.stribeck_speed));
+        if (p.mesh != 0) friction += p.mesh * std::fabs(radius * m.traction_N[k]);
+        double gear = friction * soft_sign(w, friction_speed_rad_s), current_factor = 1 + p.current_gain;
+        if (p.ripple_cos != 0 || p.ripple_sin != 0) {
+            const double angle = p.ripple_order * gain * in.angle_rad[k];
+            gear += p.ripple_cos * std::cos(angle) + p.ripple_sin * std::sin(angle);
+        }
+        double u = 0;
+        if (with_voltage) {
+            const double x = std::clamp(static_cast<double>(k) - delay_steps, 0.0, static_cast<double>(d.count - 1));
+            const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
+            u = (in.voltage_V[i] + (x - static_cast<double>(i)) * (in.voltage_V[i + 1] - in.voltage_V[i])) / (1 + body.voltage_gain);
+        }
+        if (terms) {
+            Signals s;
+            s.t = d.time(k), s.w = w, s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
+            s.x = motion.path_m[k] + p.x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k], s.u = u;
+            s.I = KG > 0 ? (gear + p.J * dw + radius * m.traction_N[k]) / KG : 0;
+            for (const ExtraTerm &term : physics.terms) {
+                if (term.wheel >= 0 && term.wheel != static_cast<int>(wheel)) continue;
+                if ((target_stages(term.target) & (stage_torque | stage_voltage)) == 0) continue;
+                const double f = term.term->value(s, term.coefficients.data());
+                if (term.target == TermTarget::wheel_torque) gear += f;
+                else if (term.target == TermTarget::voltage) u_lost += f;
+                else if (term.target == TermTarget::motor_constant) KG *= 1 + f, ke *= 1 + f;
+                else if (term.target == TermTarget::resistance) Ra *= std::max(0.05, 1 + f);
+                else if (term.target == TermTarget::current) current_factor *= 1 + f;
+            }
+        }
+        const double shaft = gear + p.J * dw + radius * m.traction_N[k];
+        const double I = KG > 0 ? shaft / KG : 0;
+        current[k] = I;
+        if (with_bench) torque_series[k] = radius * m.traction_N[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
+        const double I_read = current_factor * I + p.current_offset + p.current_extra;
+        reading[k] = magnitude ? std::fabs(I_read) : I_read;
+        if (with_voltage) {
+            if (p.dead_voltage != 0) u_lost += p.dead_voltage * soft_sign(I, bridge_current_A);
+            const double I_voltage = Ra + p.wiring > 0 ? (u - u_lost - ke * w) / (Ra + p.wiring) : 0;
+            const double read = current_factor * I_voltage + p.current_offset + p.current_extra;
+            series_[k] = magnitude ? std::fabs(read) : read;
+        }
+        if (p.heating != 0) heat_K += d.step_s / p.heating_time * (p.heating * I * I * p.Ra - heat_K);
+    }
+    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, 0, out);
+    if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) rows_of(voltage_balance, series_, 0, out);
+    if (with_bench) rows_of(bench_balance, torque_series, 0, out);
+}
+
+void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const {
+    const Dataset &d = *data_;
+    const BodyPhysics &b = physics.body;
+    std::vector<double> &x = series_;
+    x.resize(d.count);
+    Signals s;
+    const auto factor = [&](TermTarget target, std::size_t k) {
+        double f = 1;
+        for (const ExtraTerm &term : physics.terms) {
+            if (term.target != target) continue;
+            s.t = d.time(k), s.v = s.V = motion.v_m_s[k], s.x = motion.path_m[k], s.a = motion.accel_m_s2[k], s.r = motion.yaw_rate_rad_s[k];
+            f += term.term->value(s, term.coefficients.data());
+        }
+        return f;
+    };
+    for (std::size_t i = 0; i < d.balance.size(); ++i) {
+        const BalanceKind kind = d.balance[i].kind;
+        double delay = 0;
+        if (kind == BalanceKind::accel) {
+            double lagged = 0;
+            for (std::size_t k = 0; k < d.count; ++k) {
+                const double a = motion.accel_m_s2[k];
+                lagged += d.step_s / (tilt_lag_s + d.step_s) * (a - lagged);
+                x[k] = (a + b.gravity * b.accel_tilt * lagged) * (1 + b.accel_scale) + b.accel_bias0 + b.accel_bias + b.accel_drift * d.time(k) + factor(TermTarget::accel, k) - 1;
+            }
+        } else if (kind == BalanceKind::radar) {
+            delay = b.radar_delay;
+            for (std::size_t k = 0; k < d.count; ++k)
+                x[k] = std::fabs(motion.v_m_s[k]) * (1 + b.radar_scale0 + b.radar_scale) * (1 + b.radar_pitch * motion.accel_m_s2[k]) * factor(TermTarget::radar, k);
+        } else if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw) {
+            delay = b.camera_delay0 + b.camera_delay;
+            const auto &source = kind == BalanceKind::camera_x ? motion.v_m_s : kind == BalanceKind::camera_y ? motion.vy_m_s : motion.yaw_rate_rad_s;
+            const double scale = kind == BalanceKind::camera_yaw ? 1 : 1 + b.camera_scale0 + b.camera_scale;
+            for (std::size_t k = 0; k < d.count; ++k) x[k] = source[k] * scale * factor(TermTarget::camera, k);
+        } else if (kind == BalanceKind::yaw_rate) {
+            for (std::size_t k = 0; k < d.count; ++k) x[k] = motion.yaw_rate_rad_s[k] + b.gyro_bias;
+        } else if (kind == BalanceKind::force) {
+            const Motion::Wheel &w = motion.wheel[static_cast<std::size_t>(d.balance[i].wheel)];
+            for (std::size_t k = 0; k < d.count; ++k) x[k] = w.traction_N[k] - w.rolling_N[k];
+        } else {
+            continue;
+        }
+        rows_of(i, x, delay, out);
+        if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw)
+            for (std::size_t r = 0; r < d.balance[i].measured.size(); ++r)
+                out[static_cast<Eigen::Index>(first_row_[i] + r)] *= d.balance[i].t1_s[r] - d.balance[i].t0_s[r]; // a displacement, not a speed
+    }
+}
+
+Eigen::VectorXd Forward::predict(const Physics &physics) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
+    if (data_->count < 3) return out;
+    integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, scratch_, i, stage_torque | stage_voltage, current_, out);
+    sensors(physics, scratch_, out);
+    return out;
+}
+
+void Forward::set_base(const Physics &physics) {
+    base_prediction_ = predict(physics);
+    if (data_->count < 3) return;
+    std::swap(base_motion_, scratch_);
+    have_base_ = true;
+    Eigen::VectorXd ignored = base_prediction_;
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, base_motion_, i, stage_torque, base_current_[i], ignored);
+}
+
+Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {
+    if (data_->count < 3) return base_prediction_;
+    if ((touched & stage_motion) != 0) return predict(physics);
+    Eigen::VectorXd out = base_prediction_;
+    if ((touched & (stage_torque | stage_voltage)) != 0)
+        for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+            if (wheel < 0 || static_cast<std::size_t>(wheel) == i) electrical(physics, base_motion_, i, touched, current_, out);
+    if ((touched & stage_sensors) != 0) sensors(physics, base_motion_, out);
+    return out;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,66 @@
+#include "model_keys.h"
+
+namespace traction::lab {
+
+namespace {
+
+// Priors are assumed: a brushed gear motor's data sheet holds within 3 % for its constant and winding, 15 % for friction; a soil is
+// known to 20 %; a tyre's radius under load to 0.5 %.
+constexpr ModelKey rover[] = {
+    {"mass_kg", "kg", 0, 0, 1e5, 0, 0},
+    {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},
+    {"centre_height_m", "m", 0, 0, 10, 0, 0},
+    {"gravity_m_s2", "m/s^2", 9.81, 0, 30, 0, 0},
+    {"battery_voltage_V", "V", 0, 0, 1e3, 0, 0},
+};
+constexpr ModelKey wheel[] = {
+    {"x_m", "m", 0, -50, 50, 0, 0},          {"y_m", "m", 0, -50, 50, 0, 0},
+    {"heading_rad", "rad", 0, -7, 7, 0, 0},  {"radius_m", "m", 0, 1e-4, 5, 0.005, 0},
+    {"width_m", "m", 0, 0, 5, 0, 0},         {"load_N", "N", 0, 0, 1e6, 0, 0},
+};
+constexpr ModelKey motor[] = {
+    {"torque_constant_Nm_A", "N m/A", 0, 0, 1e4, 0.02, 0}, {"back_emf_Vs_rad", "V s/rad", 0, 0, 1e4, 0.02, 0},
+    {"resistance_ohm", "ohm", 0, 0, 1e4, 0.03, 0},         {"inertia_kg_m2", "kg m^2", 0, 0, 1e4, 0.05, 0},
+    {"viscous_Nms", "N m s", 0, 0, 1e4, 0.1, 0},           {"coulomb_Nm", "N m", 0, 0, 1e4, 0.1, 0},
+    {"current_offset_A", "A", 0, -10, 10, 0, 0},
+};
+constexpr ModelKey soil[] = {
+    {"mu", "1", 0, 0, 5, 0.2, 0},
+    {"adhesion_N", "N", 0, 0, 1e5, 0, 0},
+    {"shear_slip", "1", 0.1, 1e-4, 10, 0.15, 0},
+    {"rolling_coefficient", "1", 0, -0.2, 2, 0, 0.005},
+    {"lateral_coefficient", "1", 0, 0, 3, 0.3, 0},
+    {"relaxation_length_m", "m", 0, 0, 2, 0, 0},
+};
+constexpr ModelKey sensors[] = {
+    {"encoder.counts_per_turn", "1", 6000, 1, 1e9, 0, 0},
+    {"duty.delay_s", "s", 0, -5, 5, 0, 0.004},
+    {"current.noise_A", "A", 0, 0, 1e3, 0, 0},
+    {"accel.noise_m_s2", "m/s^2", 0, 0, 1e3, 0, 0},
+    {"accel.bias_m_s2", "m/s^2", 0, -5, 5, 0, 0.05},
+    {"gyro.noise_rad_s", "rad/s", 0, 0, 1e2, 0, 0},
+    {"gyro.bias_rad_s", "rad/s", 0, -1, 1, 0, 0.003},
+    {"radar.noise_m_s", "m/s", 0, 0, 1e2, 0, 0},
+    {"radar.window_s", "s", 0.5, 0, 10, 0, 0},
+    {"radar.delay_s", "s", 0, -5, 5, 0, 0.02},
+    {"radar.scale", "1", 0, -0.9, 5, 0, 0.004},
+    {"radar.minimum_m_s", "m/s", 0.1, 0, 10, 0, 0},
+    {"camera.noise_m", "m", 0, 0, 10, 0, 0},
+    {"camera.delay_s", "s", 0, -5, 5, 0, 0.004},
+    {"camera.scale", "1", 0, -0.9, 5, 0, 0.002},
+    {"camera.x_m", "m", 0, -10, 10, 0, 0},
+    {"camera.y_m", "m", 0, -10, 10, 0, 0},
+    {"camera.yaw_rad", "rad", 0, -7, 7, 0, 0},
+    {"force.noise_N", "N", 0, 0, 1e4, 0, 0},
+    {"torque.noise_Nm", "N m", 0, 0, 1e4, 0, 0},
+};
+
+} // namespace
+
+std::span<const ModelKey> rover_keys() { return rover; }
+std::span<const ModelKey> wheel_keys() { return wheel; }
+std::span<const ModelKey> motor_keys() { return motor; }
+std::span<const ModelKey> soil_keys() { return soil; }
+std::span<const ModelKey> sensor_keys() { return sensors; }
+
+} // namespace traction::lab

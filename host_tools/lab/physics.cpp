@@ -1,0 +1,357 @@
+#include "physics.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traction::lab {
+
+namespace {
+
+using W = WheelPhysics;
+using B = BodyPhysics;
+
+// Parameter keys that become slots, with the stages they touch. A key in several tables stands once per table.
+struct Key {
+    const char *table;
+    const char *key;
+    double W::*in_wheel;
+    double B::*in_body;
+    unsigned touched;
+};
+constexpr Key keys[] = {
+    {"wheel", "radius_m", &W::radius, nullptr, stage_motion},
+    {"motor", "torque_constant_Nm_A", &W::KG, nullptr, stage_torque | stage_voltage},
+    {"motor", "back_emf_Vs_rad", &W::ke, nullptr, stage_voltage},
+    {"motor", "resistance_ohm", &W::Ra, nullptr, stage_voltage},
+    {"motor", "inertia_kg_m2", &W::J, nullptr, stage_torque},
+    {"motor", "viscous_Nms", &W::b, nullptr, stage_torque},
+    {"motor", "coulomb_Nm", &W::t0, nullptr, stage_torque},
+    {"motor", "current_offset_A", &W::current_offset, nullptr, stage_torque | stage_voltage},
+    {"soil", "mu", &W::mu, nullptr, stage_motion},
+    {"soil", "adhesion_N", &W::adhesion, nullptr, stage_motion},
+    {"soil", "shear_slip", &W::sc, nullptr, stage_motion},
+    {"soil", "rolling_coefficient", &W::crr, nullptr, stage_motion},
+    {"soil", "lateral_coefficient", &W::lateral, nullptr, stage_motion},
+    {"soil", "relaxation_length_m", &W::relaxation, nullptr, stage_motion},
+    {"rover", "mass_kg", nullptr, &B::mass, stage_motion},
+    {"rover", "yaw_inertia_kg_m2", nullptr, &B::yaw_inertia, stage_motion},
+    {"rover", "centre_height_m", nullptr, &B::centre_height, stage_motion},
+    {"sensors", "duty.delay_s", nullptr, &B::voltage_delay0, stage_voltage},
+    {"sensors", "accel.bias_m_s2", nullptr, &B::accel_bias0, stage_sensors},
+    {"sensors", "gyro.bias_rad_s", nullptr, &B::gyro_bias, stage_sensors},
+    {"sensors", "radar.scale", nullptr, &B::radar_scale0, stage_sensors},
+    {"sensors", "radar.delay_s", nullptr, &B::radar_delay, stage_sensors},
+    {"sensors", "camera.scale", nullptr, &B::camera_scale0, stage_sensors},
+    {"sensors", "camera.delay_s", nullptr, &B::camera_delay0, stage_sensors},
+};
+
+const Parameters &table_of(const WheelSpec &wheel, const std::string &table) {
+    return table == "wheel" ? wheel.geometry : table == "motor" ? wheel.motor : wheel.soil;
+}
+
+double value_of(const Parameters &parameters, const std::string &key) {
+    const auto found = parameters.find(key);
+    return found == parameters.end() ? 0.0 : found->second.value;
+}
+
+Slot wheel_slot(double W::*member, int wheel) {
+    Slot slot;
+    slot.in_wheel = member;
+    slot.wheel = wheel;
+    return slot;
+}
+
+Slot body_slot(double B::*member) {
+    Slot slot;
+    slot.in_body = member;
+    return slot;
+}
+
+std::vector<EffectHandle> make_handles() {
+    constexpr unsigned electric = stage_torque | stage_voltage;
+    return {
+        {"coulomb_friction", {{"torque_Nm", &W::coulomb, nullptr}}, {}, stage_torque},
+        {"viscous_friction", {{"coefficient_Nms", &W::viscous, nullptr}}, {}, stage_torque},
+        {"stribeck_friction", {{"torque_Nm", &W::stribeck, nullptr}}, {{"speed_rad_s", &W::stribeck_speed, nullptr}}, stage_torque},
+        {"mesh_loss", {{"fraction", &W::mesh, nullptr}}, {}, stage_torque},
+        {"backlash", {{"play_rad", &W::backlash, nullptr}}, {}, stage_motion},
+        {"torque_ripple", {{"cos_Nm", &W::ripple_cos, nullptr}, {"sin_Nm", &W::ripple_sin, nullptr}},
+         {{"order", &W::ripple_order, nullptr}}, stage_torque},
+        {"winding_heating", {{"resistance_K_W", &W::heating, nullptr}}, {{"time_constant_s", &W::heating_time, nullptr}}, electric},
+        {"wiring_resistance", {{"resistance_ohm", &W::wiring, nullptr}}, {}, stage_voltage},
+        {"bridge_dead_time", {{"voltage_V", &W::dead_voltage, nullptr}}, {}, stage_voltage},
+        {"torque_constant", {{"change", &W::constant_change, nullptr}}, {}, electric},
+        {"rolling_resistance", {{"coefficient", &W::rolling, nullptr}}, {}, stage_motion},
+        {"slip_sinkage", {{"coefficient", nullptr, &B::slip_sinkage}}, {}, stage_motion},
+        {"speed_resistance", {{"coefficient_s_m", nullptr, &B::speed_resistance}}, {}, stage_motion},
+        {"multi_pass", {{"gain", nullptr, &B::multi_pass}}, {}, stage_motion},
+        {"load_transfer", {{"height_m", nullptr, &B::load_height}}, {}, stage_motion},
+        {"mass_offset_x", {{"offset_m", nullptr, &B::offset_x}}, {}, stage_motion},
+        {"mass_offset_y", {{"offset_m", nullptr, &B::offset_y}}, {}, stage_motion},
+        {"soil_patch", {{"change", nullptr, &B::patch_change}},
+         {{"start_m", nullptr, &B::patch_start}, {"length_m", nullptr, &B::patch_length}}, stage_motion},
+        {"soil_gradient", {{"change_per_m", nullptr, &B::soil_gradient}}, {}, stage_motion},
+        {"relaxation_length", {{"length_m", nullptr, &B::relaxation}}, {}, stage_motion},
+        {"sliding_speed_loss", {{"coefficient_s_m", nullptr, &B::sliding_loss}}, {}, stage_motion},
+        {"shear_stiffness", {{"change", nullptr, &B::shear_change}}, {}, stage_motion},
+        {"wheel_radius", {{"change", &W::radius_change, nullptr}}, {}, stage_motion},
+        {"lateral_scrub", {{"coefficient", nullptr, &B::scrub}}, {}, stage_motion},
+        {"grade", {{"slope_rad", nullptr, &B::grade}}, {{"direction_rad", nullptr, &B::grade_direction}}, stage_motion},
+        {"tether_drag", {{"stiffness_N_m", nullptr, &B::tether}}, {}, stage_motion},
+        {"body_drag", {{"force_N", nullptr, &B::drag}}, {}, stage_motion},
+        {"accel_bias", {{"bias_m_s2", nullptr, &B::accel_bias}}, {}, stage_sensors},
+        {"accel_drift", {{"rate_m_s3", nullptr, &B::accel_drift}}, {}, stage_sensors},
+        {"accel_scale", {{"change", nullptr, &B::accel_scale}}, {}, stage_sensors},
+        {"accel_tilt", {{"compliance_rad_s2_m", nullptr, &B::accel_tilt}}, {}, stage_sensors},
+        {"radar_scale", {{"change", nullptr, &B::radar_scale}}, {}, stage_sensors},
+        {"radar_pitch", {{"coefficient_s2_m", nullptr, &B::radar_pitch}}, {}, stage_sensors},
+        {"current_gain", {{"change", &W::current_gain, nullptr}}, {}, electric},
+        {"current_offset", {{"offset_A", &W::current_extra, nullptr}}, {}, electric},
+        {"voltage_gain", {{"change", nullptr, &B::voltage_gain}}, {}, stage_voltage},
+        {"encoder_missed", {{"fraction", &W::encoder_missed, nullptr}}, {}, stage_motion},
+        {"camera_delay", {{"delay_s", nullptr, &B::camera_delay}}, {}, stage_sensors},
+        {"camera_scale", {{"change", nullptr, &B::camera_scale}}, {}, stage_sensors},
+        {"actuation_delay", {{"delay_s", nullptr, &B::actuation_delay}}, {}, stage_voltage},
+    };
+}
+
+void set_effect(Physics &physics, const EffectHandle::Strength &place, int wheel, double value) {
+    if (place.in_body != nullptr) {
+        physics.body.*place.in_body = value;
+        return;
+    }
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+        if (wheel < 0 || static_cast<std::size_t>(wheel) == i) physics.wheel[i].*place.in_wheel = value;
+}
+
+void add_user_effect(Physics &physics, const Model &model, const EffectUse &use) {
+    ExtraTerm term;
+    term.name = use.name;
+    term.wheel = use.wheel;
+    if (!parse_target(use.acts_on, term.target))
+        throw ModelError(model.file, 0, "effect." + use.name + ".acts_on", "unknown place \"" + use.acts_on + "\"",
+                         "use wheel_torque, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, "
+                         "motor_constant, resistance, sensor.accel, sensor.radar, sensor.camera or sensor.current");
+    std::vector<std::string> names;
+    for (const auto &[key, parameter] : use.parameters) {
+        names.push_back(key);
+        term.coefficients.push_back(parameter.value);
+    }
+    try {
+        term.term = make_expression(use.expression, names);
+    } catch (const std::runtime_error &error) {
+        throw ModelError(model.file, 0, "effect." + use.name + ".expression", error.what(),
+                         "use t w v s Fn theta x a I u Ft V r, the effect's own parameters, and muparser's functions");
+    }
+    physics.terms.push_back(std::move(term));
+}
+
+} // namespace
+
+double &Slot::of(Physics &physics) const {
+    if (in_wheel != nullptr) return physics.wheel[static_cast<std::size_t>(wheel)].*in_wheel;
+    if (in_body != nullptr) return physics.body.*in_body;
+    const std::size_t place = term == -2 ? physics.terms.size() - 1 : static_cast<std::size_t>(term); // -2: the last term
+    return physics.terms[place].coefficients[static_cast<std::size_t>(coefficient)];
+}
+
+void FreeParameter::add(Physics &physics, double increment) const {
+    for (const Slot &slot : slots) slot.of(physics) += increment;
+}
+
+const std::vector<EffectHandle> &effect_handles() {
+    static const std::vector<EffectHandle> handles = make_handles();
+    return handles;
+}
+
+const EffectHandle *find_handle(const std::string &name) {
+    for (const EffectHandle &handle : effect_handles())
+        if (handle.name == name) return &handle;
+    return nullptr;
+}
+
+Physics make_physics(const Model &model) {
+    Physics physics;
+    physics.soil_law = model.soil_law;
+    physics.motion = model.motion;
+    physics.unsigned_current = model.unsigned_current;
+    for (const WheelSpec &spec : model.wheel) {
+        WheelPhysics wheel;
+        wheel.x = value_of(spec.geometry, "x_m");
+        wheel.y = value_of(spec.geometry, "y_m");
+        wheel.heading = value_of(spec.geometry, "heading_rad");
+        wheel.load = value_of(spec.geometry, "load_N");
+        for (const Key &key : keys)
+            if (key.in_wheel != nullptr) wheel.*key.in_wheel = value_of(table_of(spec, key.table), key.key);
+        if (!spec.motor.at("back_emf_Vs_rad").given) wheel.ke = wheel.KG;
+        physics.wheel.push_back(wheel);
+        physics.driven.push_back(spec.driven);
+        physics.grips_sideways.push_back(spec.grips_sideways);
+    }
+    for (const Key &key : keys)
+        if (key.in_body != nullptr)
+            physics.body.*key.in_body = value_of(std::string(key.table) == "rover" ? model.rover : model.sensors, key.key);
+    if (!(physics.body.yaw_inertia > 0)) { // a plate under the wheels
+        double reach = 0;
+        for (const WheelPhysics &w : physics.wheel) reach = std::max(reach, w.x * w.x + w.y * w.y);
+        physics.body.yaw_inertia = std::max(1e-6, physics.body.mass * reach * 2 / 3);
+    }
+    physics.body.gravity = value_of(model.rover, "gravity_m_s2");
+    physics.body.battery_V = value_of(model.rover, "battery_voltage_V");
+    for (const EffectUse &use : model.effects) {
+        if (!use.expression.empty()) {
+            add_user_effect(physics, model, use);
+            continue;
+        }
+        const EffectHandle *handle = find_handle(use.name);
+        if (handle == nullptr)
+            throw ModelError(model.file, 0, "effect.name", "unknown effect \"" + use.name + "\"",
+                             "`traction effects` lists the names; an effect of your own needs acts_on and expression");
+        for (const auto *list : {&handle->strengths, &handle->shapes})
+            for (const auto &place : *list)
+                if (use.parameters.count(place.key) != 0)
+                    set_effect(physics, place, use.wheel, use.parameters.at(place.key).value);
+    }
+    return physics;
+}
+
+namespace {
+
+double difference_step(double value, double prior) {
+    const double by_value = 1e-3 * std::fabs(value);
+    const double by_prior = 0.1 * prior;
+    return std::max({by_value, by_prior, 1e-7});
+}
+
+void append_shared(std::vector<FreeParameter> &list, const Model &model, const Physics &physics, const Key &key) {
+    // wheels whose numbers agree move together; an overridden wheel moves alone
+    std::vector<bool> done(model.wheel.size(), false);
+    for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+        const Parameters &table = table_of(model.wheel[i], key.table);
+        const auto found = table.find(key.key);
+        if (done[i] || found == table.end() || found->second.fixed || !(found->second.prior > 0)) continue;
+        const Parameter &p = found->second;
+        FreeParameter free;
+        free.owner = key.table;
+        free.key = key.key;
+        free.unit = p.unit;
+        free.base = p.value;
+        free.prior = p.prior;
+        free.minimum = p.minimum;
+        free.maximum = p.maximum;
+        free.touched = key.touched;
+        for (std::size_t j = i; j < model.wheel.size(); ++j) {
+            const Parameter &q = table_of(model.wheel[j], key.table).at(key.key);
+            if (q.value != p.value || q.prior != p.prior || q.fixed) continue;
+            done[j] = true;
+            free.slots.push_back(wheel_slot(key.in_wheel, static_cast<int>(j)));
+            if (free.key == "torque_constant_Nm_A" && !model.wheel[j].motor.at("back_emf_Vs_rad").given)
+                free.slots.push_back(wheel_slot(&W::ke, static_cast<int>(j)));
+        }
+        if (done.size() > 1 && std::count(done.begin(), done.end(), true) == 1) free.wheel = static_cast<int>(i);
+        const bool alone = static_cast<std::size_t>(std::count_if(free.slots.begin(), free.slots.end(),
+            [&](const Slot &s) { return s.in_wheel == key.in_wheel; })) < model.wheel.size();
+        free.wheel = alone ? static_cast<int>(i) : -1;
+        free.step = difference_step(p.value, p.prior);
+        list.push_back(std::move(free));
+    }
+    (void)physics;
+}
+
+void append_effects(std::vector<FreeParameter> &list, const Model &model) {
+    int term = 0;
+    for (const EffectUse &use : model.effects) {
+        const EffectHandle *handle = use.expression.empty() ? find_handle(use.name) : nullptr;
+        int coefficient = 0;
+        for (const auto &[key, p] : use.parameters) {
+            FreeParameter free;
+            free.owner = use.name;
+            free.key = key;
+            free.unit = p.unit;
+            free.wheel = use.wheel;
+            free.base = p.value;
+            free.minimum = p.minimum;
+            free.maximum = p.maximum;
+            if (handle == nullptr) {
+                Slot slot;
+                slot.term = term;
+                slot.coefficient = coefficient++;
+                free.slots = {slot};
+                TermTarget target = TermTarget::wheel_torque;
+                parse_target(use.acts_on, target);
+                free.touched = target_stages(target);
+            } else {
+                free.touched = handle->touched;
+                for (const auto &place : handle->strengths) {
+                    if (place.key != key) continue;
+                    if (place.in_body != nullptr) free.slots = {body_slot(place.in_body)};
+                    else
+                        for (std::size_t i = 0; i < model.wheel.size(); ++i)
+                            if (use.wheel < 0 || static_cast<std::size_t>(use.wheel) == i)
+                                free.slots.push_back(wheel_slot(place.in_wheel, static_cast<int>(i)));
+                }
+            }
+            const double span = std::isfinite(p.maximum - p.minimum) ? p.maximum - p.minimum : std::fabs(p.value) + 1.0;
+            free.step = std::max(1e-3 * span, 1e-7);
+            if (!p.fixed && !free.slots.empty()) list.push_back(std::move(free));
+        }
+        if (handle == nullptr) ++term;
+    }
+}
+
+} // namespace
+
+std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics) {
+    std::vector<FreeParameter> list;
+    for (const Key &key : keys) {
+        if (key.in_wheel != nullptr) {
+            append_shared(list, model, physics, key);
+            continue;
+        }
+        const Parameters &table = std::string(key.table) == "rover" ? model.rover : model.sensors;
+        const auto found = table.find(key.key);
+        if (found == table.end() || found->second.fixed || !(found->second.prior > 0)) continue;
+        const Parameter &p = found->second;
+        FreeParameter free;
+        free.owner = key.table;
+        free.key = key.key;
+        free.unit = p.unit;
+        free.slots = {body_slot(key.in_body)};
+        free.base = p.value;
+        free.prior = p.prior;
+        free.minimum = p.minimum;
+        free.maximum = p.maximum;
+        free.step = difference_step(p.value, p.prior);
+        free.touched = key.touched;
+        list.push_back(std::move(free));
+    }
+    append_effects(list, model);
+    return list;
+}
+
+void store(Model &model, const FreeParameter &parameter, double increment, double standard_error) {
+    const auto put = [&](Parameter &p) {
+        p.value += increment;
+        if (standard_error > 0) {
+            p.low = p.value - 1.96 * standard_error;
+            p.high = p.value + 1.96 * standard_error;
+        }
+    };
+    for (EffectUse &use : model.effects)
+        if (use.name == parameter.owner && use.wheel == parameter.wheel && use.parameters.count(parameter.key) != 0)
+            return put(use.parameters.at(parameter.key));
+    if (parameter.owner == "rover") return put(model.rover.at(parameter.key));
+    if (parameter.owner == "sensors") return put(model.sensors.at(parameter.key));
+    for (const Slot &slot : parameter.slots) {
+        if (slot.in_wheel == nullptr) continue;
+        if (slot.in_wheel == &W::ke && parameter.key != "back_emf_Vs_rad") continue;
+        WheelSpec &wheel = model.wheel[static_cast<std::size_t>(slot.wheel)];
+        Parameters &table = parameter.owner == "wheel" ? wheel.geometry : parameter.owner == "motor" ? wheel.motor : wheel.soil;
+        put(table.at(parameter.key));
+    }
+}
+
+} // namespace traction::lab

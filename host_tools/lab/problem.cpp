@@ -1,0 +1,199 @@
+#include "problem.h"
+
+#include "smooth.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::lab {
+
+namespace {
+constexpr double huber = 3.0; // in units of the balance's scale
+}
+
+Problem::Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> free)
+    : parameters(std::move(free)), data_(&data), base_(physics), forward_(data) {
+    theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
+    measured_.resize(static_cast<Eigen::Index>(forward_.rows()));
+    for (std::size_t b = 0; b < data.balance.size(); ++b)
+        for (std::size_t r = 0; r < data.balance[b].measured.size(); ++r)
+            measured_[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data.balance[b].measured[r];
+    for (FreeParameter &p : parameters)
+        if (p.owner == "sensors" && p.key == "accel.bias_m_s2" && data.accel_bias_prior_m_s2 > 0) p.prior = data.accel_bias_prior_m_s2;
+    for (const Balance &balance : data.balance) sigma.push_back(balance.noise);
+    row_scale = noise_rows().cwiseInverse();
+}
+
+Eigen::VectorXd Problem::noise_rows() const {
+    Eigen::VectorXd rows(measured_.size());
+    for (std::size_t b = 0; b < data_->balance.size(); ++b) {
+        const Balance &balance = data_->balance[b];
+        for (std::size_t r = 0; r < balance.measured.size(); ++r)
+            rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = balance.noise * (balance.noise_factor.empty() ? 1.0 : balance.noise_factor[r]);
+    }
+    return rows;
+}
+
+Physics Problem::physics_at(const Eigen::VectorXd &increments) const {
+    Physics physics = base_;
+    for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i].add(physics, increments[static_cast<Eigen::Index>(i)]);
+    return physics;
+}
+
+Eigen::VectorXd Problem::prior_precision() const {
+    Eigen::VectorXd precision(static_cast<Eigen::Index>(parameters.size()));
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+        precision[static_cast<Eigen::Index>(i)] = parameters[i].prior > 0 ? 1 / (parameters[i].prior * parameters[i].prior) : 0;
+    return precision;
+}
+
+Eigen::VectorXd Problem::column(const Physics &at, const FreeParameter &parameter, double step) {
+    Physics moved = at;
+    parameter.add(moved, step);
+    int wheel = -1;
+    if (parameter.slots.size() == 1 && parameter.slots[0].in_wheel != nullptr) wheel = parameter.slots[0].wheel;
+    return (forward_.predict_from_base(moved, parameter.touched, wheel) - forward_.base()).cwiseProduct(row_scale) / step;
+}
+
+void Problem::bounds(std::size_t i, double &low, double &high) const {
+    const FreeParameter &p = parameters[i];
+    low = p.minimum - p.base;
+    high = p.maximum - p.base;
+    if (p.prior > 0) low = std::max(low, -6 * p.prior), high = std::min(high, 6 * p.prior);
+}
+
+void Problem::linearise() {
+    const Physics at = physics();
+    forward_.set_base(at);
+    residual = measured_ - forward_.base();
+    jacobian.resize(measured_.size(), theta.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        double low = 0, high = 0;
+        bounds(i, low, high);
+        const double step = theta[static_cast<Eigen::Index>(i)] + parameters[i].step > high ? -parameters[i].step : parameters[i].step;
+        jacobian.col(static_cast<Eigen::Index>(i)) = column(at, parameters[i], step);
+    }
+}
+
+// All rows as one residual block, the priors as further residuals.
+class RowsCost : public ceres::CostFunction {
+  public:
+    explicit RowsCost(Problem *problem) : problem_(problem) {
+        const auto n = static_cast<int>(problem->parameters.size());
+        set_num_residuals(static_cast<int>(problem->measured_.size()) + n);
+        mutable_parameter_block_sizes()->push_back(n);
+    }
+
+    bool Evaluate(double const *const *values, double *residuals, double **jacobians) const override {
+        Problem &p = *problem_;
+        const auto n = static_cast<Eigen::Index>(p.parameters.size()), rows = p.measured_.size();
+        p.theta = Eigen::Map<const Eigen::VectorXd>(values[0], n);
+        const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
+        Eigen::VectorXd predicted;
+        if (derivatives) {
+            p.linearise();
+            predicted = p.forward_.base();
+        } else {
+            predicted = p.forward_.predict(p.physics());
+        }
+        if (!predicted.allFinite()) return false;
+        Eigen::Map<Eigen::VectorXd> out(residuals, rows + n);
+        out.head(rows) = (predicted - p.measured_).cwiseProduct(p.row_scale);
+        const Eigen::VectorXd weight = p.prior_precision().cwiseSqrt();
+        out.tail(n) = p.theta.cwiseProduct(weight);
+        if (!derivatives) return true;
+        Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], rows + n, n);
+        J.topRows(rows) = p.jacobian;
+        J.bottomRows(n) = weight.asDiagonal().toDenseMatrix();
+        return J.allFinite();
+    }
+
+  private:
+    Problem *problem_;
+};
+
+void Problem::solve(int iterations) {
+    if (parameters.empty() || measured_.size() == 0) {
+        linearise();
+        return;
+    }
+    std::vector<double> x(theta.data(), theta.data() + theta.size());
+    ceres::Problem problem;
+    problem.AddResidualBlock(new RowsCost(this), nullptr, x.data());
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        double low = 0, high = 0;
+        bounds(i, low, high);
+        x[i] = std::clamp(x[i], low, high);
+        if (std::isfinite(low)) problem.SetParameterLowerBound(x.data(), static_cast<int>(i), low);
+        if (std::isfinite(high)) problem.SetParameterUpperBound(x.data(), static_cast<int>(i), high);
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = iterations;
+    options.function_tolerance = 1e-4;
+    options.parameter_tolerance = 1e-6;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    options.max_num_consecutive_invalid_steps = 10;
+    options.initial_trust_region_radius = 1e6;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    theta = Eigen::Map<const Eigen::VectorXd>(x.data(), theta.size());
+    linearise();
+}
+
+void Problem::set_scales() {
+    const Eigen::VectorXd noise = noise_rows();
+    for (std::size_t b = 0; b < data_->balance.size(); ++b) {
+        const std::size_t first = forward_.first_row(b), n = data_->balance[b].measured.size();
+        std::vector<double> size;
+        for (std::size_t r = 0; r < n; ++r) {
+            const auto row = static_cast<Eigen::Index>(first + r);
+            size.push_back(std::fabs(residual[row]) / noise[row]);
+        }
+        // rms of the residual with its largest values cut at three robust deviations
+        const double cut = 3 * std::max(1.0, 1.4826 * median(size));
+        double sum = 0;
+        for (const double s : size) sum += std::min(s, cut) * std::min(s, cut);
+        const double scale = std::max(1.0, std::sqrt(sum / static_cast<double>(n)));
+        sigma[b] = scale * data_->balance[b].noise;
+        for (std::size_t r = 0; r < n; ++r) {
+            const auto row = static_cast<Eigen::Index>(first + r);
+            const double weight = size[r] > huber * scale ? huber * scale / size[r] : 1.0;
+            row_scale[row] = std::sqrt(weight) / (scale * noise[row]);
+        }
+    }
+}
+
+void Problem::keep_scales(const Problem &other) {
+    row_scale = other.row_scale;
+    sigma = other.sigma;
+}
+
+void Problem::fit(const FitOptions &options) {
+    if (data_->count < 3 || measured_.size() == 0) return;
+    if (options.reweight) {
+        forward_.set_base(physics());
+        residual = measured_ - forward_.base();
+        set_scales();
+        solve(std::max(1, options.iterations / 2));
+        set_scales();
+    }
+    solve(options.iterations);
+}
+
+double Problem::balance_rms(std::size_t b, bool in_noise) const {
+    const std::size_t first = forward_.first_row(b), n = data_->balance[b].measured.size();
+    const Eigen::VectorXd noise = noise_rows();
+    double sum = 0;
+    for (std::size_t r = 0; r < n; ++r) {
+        const auto row = static_cast<Eigen::Index>(first + r);
+        const double e = residual[row] / (in_noise ? noise[row] : 1.0);
+        sum += e * e;
+    }
+    return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,63 @@
+// problem.h - a model fitted to a data set: residuals, sensitivities, weights, and the fit itself (Ceres).
+//
+// Sensitivities are structured finite differences: one pass per parameter, of the stages it touches only (forward.h). Chosen over
+// dual numbers because user expressions, sub-models with memory (backlash, relaxation) and the bracketed root stay ordinary code,
+// and because two thirds of the parameters leave the motion alone, so that a pass costs a tenth.
+// Every balance is scaled by max(its noise, its own residual): what the model cannot explain in a channel must not drown the others.
+#pragma once
+
+#include "forward.h"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace traction::lab {
+
+struct FitOptions {
+    int iterations = 6;
+    bool reweight = true; // set the scale of each balance from its residual and Huber weights, then fit again
+};
+
+class Problem {
+  public:
+    Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> parameters);
+
+    void fit(const FitOptions &options);
+    void linearise(); // prediction, residual and Jacobian at the present increments
+
+    const Dataset &data() const { return *data_; }
+    Forward &forward() { return forward_; }
+    Physics physics_at(const Eigen::VectorXd &increments) const;
+    Physics physics() const { return physics_at(theta); }
+
+    // Column of the Jacobian of `parameter` at the present state, scaled by the rows' weights. Needs linearise() before.
+    Eigen::VectorXd column(const Physics &at, const FreeParameter &parameter, double step);
+
+    std::vector<FreeParameter> parameters;
+    Eigen::VectorXd theta;     // increments
+    Eigen::VectorXd residual;  // measured - predicted, unscaled
+    Eigen::MatrixXd jacobian;  // scaled: d predicted / d theta * row_scale
+    Eigen::VectorXd row_scale; // sqrt(Huber weight) / sigma of the row
+    std::vector<double> sigma; // per balance: scale in use
+    Eigen::VectorXd prior_precision() const;
+
+    Eigen::VectorXd noise_rows() const; // measurement noise of each row
+    double balance_rms(std::size_t balance, bool in_noise) const;
+
+    // Keeps the scales of another problem on the same data, so that their errors compare.
+    void keep_scales(const Problem &other);
+
+  private:
+    friend class RowsCost;
+    void set_scales();
+    void solve(int iterations);
+    void bounds(std::size_t i, double &low, double &high) const;
+
+    const Dataset *data_;
+    Physics base_;
+    Forward forward_;
+    Eigen::VectorXd measured_;
+};
+
+} // namespace traction::lab

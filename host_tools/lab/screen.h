@@ -1,0 +1,74 @@
+// screen.h - the statistics of one candidate against one baseline fit, from Gram matrices kept per time block.
+//
+// One linear step from the baseline: columns of the candidate, projected off what the baseline can absorb (its parameters with
+// their priors). Held-out error by leaving out 5 s blocks; the test by leaving out 2.5 s blocks (jackknife, i.e. cluster-robust
+// with leverage correction), the priors' own uncertainty added; degrees of freedom from how many blocks inform it.
+#pragma once
+
+#include "problem.h"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace traction::lab {
+
+struct Assessment {
+    Eigen::VectorXd strength;       // estimate, what is present included
+    Eigen::VectorXd standard_error;
+    Eigen::VectorXd change;         // of the baseline's parameters, with the candidate in
+    double gain = 0;          // fall of the held-out error incl. priors, in squared units of scale
+    double gain_error = 0;    // its standard error over blocks
+    double relief = 0;        // part of the gain that is relief of priors
+    double p_value = 1;       // of the robust F test, not corrected
+    double freedom = 1;       // degrees of freedom of the test's denominator
+    double information = 0;   // share of the candidate's column that the baseline cannot absorb
+    Eigen::VectorXd block_gain;  // held-out fall per 5 s block
+    Eigen::VectorXd projected;   // column (first strength) after projection, for cosines
+};
+
+class Screen {
+  public:
+    // The problem must be linearised at its optimum. Its first `leading` parameters are the baseline (-1: all); the others stay
+    // at their values.
+    explicit Screen(const Problem &problem, Eigen::Index leading = -1);
+
+    // `columns`: scaled sensitivities of the candidate, one per strength, of which `present` is in the residual already.
+    // full: also fills `projected`.
+    Assessment assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd &present, bool full) const;
+
+    double heldout_error() const { return base_error_; }            // sum of squares over held-out blocks, priors included
+    const Eigen::VectorXd &block_error() const { return block_error_; }
+    const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
+    // Held-out sum of squares per balance (rows of that balance only).
+    std::vector<double> heldout_by_balance() const;
+    // Robust standard errors of the problem's own parameters.
+    Eigen::VectorXd parameter_errors() const;
+    std::vector<Eigen::VectorXd> heldout_changes() const; // parameters without block b, relative to the optimum
+
+  private:
+    struct Blocks {
+        std::vector<Eigen::Index> first; // rows, sorted by time; size count + 1
+        std::vector<Eigen::MatrixXd> gram;
+        std::vector<Eigen::VectorXd> moment; // N' r
+        std::vector<Eigen::LLT<Eigen::MatrixXd>> without;
+        Eigen::Index count() const { return static_cast<Eigen::Index>(gram.size()); }
+    };
+    void cut(double length_s, Blocks &blocks, std::vector<std::pair<double, double>> *times) const;
+
+    const Problem &problem_;
+    std::vector<Eigen::Index> order_; // rows by time
+    std::vector<double> row_time_;
+    Eigen::MatrixXd nuisance_;  // sorted
+    Eigen::VectorXd residual_;  // sorted, scaled
+    Eigen::VectorXd precision_; // of the priors
+    Eigen::VectorXd pull_;      // -precision * theta
+    Eigen::MatrixXd total_;
+    Eigen::LLT<Eigen::MatrixXd> total_factor_;
+    Blocks fine_, coarse_;
+    std::vector<std::pair<double, double>> block_times_;
+    Eigen::VectorXd block_error_;
+    double base_error_ = 0, base_penalty_ = 0;
+};
+
+} // namespace traction::lab

@@ -1,0 +1,31 @@
+// smooth.h - zero-phase local polynomials: value and slope of unevenly sampled data at chosen times.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace traction::lab {
+
+struct Smooth {
+    std::vector<double> value, slope;
+    std::vector<double> distance_s; // from each time to the nearest sample: large in a gap
+};
+
+// At each time, a parabola (line when degree is 1) fitted with tricube weights to the samples within half_width_s, widened to
+// the nearest degree + 3 samples where there are fewer. t_s increasing. Linear in the data, so that measured and predicted quantities
+// filtered alike stay comparable.
+Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s, std::size_t count,
+                 double half_width_s, int degree);
+
+// Linear interpolation, constant outside.
+double interpolate(const std::vector<double> &t_s, const std::vector<double> &value, double at_s);
+
+// Last value at or before the time.
+double hold(const std::vector<double> &t_s, const std::vector<double> &value, double at_s);
+
+double median(std::vector<double> values); // 0 when empty
+
+// Standard deviation of white noise in a series from its second differences, robust: 1.4826 * MAD / sqrt(6).
+double noise_from_differences(const std::vector<double> &value);
+
+} // namespace traction::lab

@@ -1,0 +1,65 @@
+// terms.h - extra terms of the model: a user's expression, or a structure-free shape f(X) with one coefficient per knot.
+//
+// Signals a term may name (SI): t time, w wheel speed, v ground speed at the wheel, s slip, Fn wheel load, theta wheel angle,
+// x path travelled, a body acceleration, I winding current (the model's, never the measured one), u motor voltage, Ft traction,
+// V body speed, r yaw rate.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace traction::lab {
+
+// Where a term acts. Multipliers act as times (1 + f).
+enum class TermTarget {
+    wheel_torque,   // adds to Gr [N m], opposing the motor; the term carries its own sign
+    wheel_force,    // adds to the force of the wheel on the body, along its heading [N]
+    rolling,        // adds to the rolling resistance Rr [N], opposes motion
+    body_force,     // adds to the force on the body along x [N]
+    voltage,        // lost of the motor's voltage [V]
+    soil_strength,  // Fm times (1 + f)
+    shear_slip,     // sc times (1 + f)
+    motor_constant, // KG and ke times (1 + f)
+    resistance,     // Ra times (1 + f)
+    accel,          // adds to the accelerometer [m/s^2]
+    radar,          // radar speed times (1 + f)
+    camera,         // camera displacement times (1 + f)
+    current,        // measured current times (1 + f)
+    count
+};
+
+std::string_view target_name(TermTarget target);
+bool parse_target(std::string_view name, TermTarget &target);
+unsigned target_stages(TermTarget target); // Stage bits of physics.h
+
+struct Signals {
+    double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0;
+};
+
+// A function of the signals, linear or not in its coefficients. Evaluation does not change the object's meaning (a parser inside
+// is reused), so one Term serves one thread.
+class Term {
+  public:
+    virtual ~Term() = default;
+    virtual double value(const Signals &signals, const double *coefficients) const = 0;
+};
+
+enum class Axis { time, wheel_speed, speed, slip, load, angle, path, accel, current, direction, abs_speed, count };
+std::string_view axis_name(Axis axis);
+std::string_view axis_unit(Axis axis);
+double axis_value(Axis axis, const Signals &signals);
+
+// sum_k c_k * hat_k(X): piecewise linear through the knots, constant outside them.
+std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots);
+
+// c_0 cos(n theta) + c_1 sin(n theta).
+std::shared_ptr<Term> make_periodic(double order);
+
+// A muparser expression in the signals and the named parameters (the coefficients, in that order). Throws std::runtime_error
+// with muparser's message and position.
+std::shared_ptr<Term> make_expression(const std::string &expression, const std::vector<std::string> &parameters);
+
+} // namespace traction::lab
