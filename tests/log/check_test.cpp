@@ -244,7 +244,7 @@ TEST(Check, names_clipping_outliers_and_coarse_steps) {
 TEST(Check, passes_on_what_the_reader_mended) {
     log::Log log = good();
     std::string text = "# format: traction-log 1\nt_s,imu.gyro_z_rad_s\n";
-    for (int i = 0; i < 1000; ++i) text += std::to_string(0.01 * i) + (i % 10 < 3 ? ",nan\n" : "," + std::to_string(std::sin(0.1 * i)) + "\n");
+    for (int i = 0; i < 1000; ++i) text.append(std::to_string(0.01 * i)).append(",").append(i % 10 < 3 ? "nan" : std::to_string(std::sin(0.1 * i))).append("\n");
     const File file("nan.csv", text);
     const check::Report report = check::check_file(file.path());
     ASSERT_NE(report.find("not_finite", "imu.gyro_z_rad_s"), nullptr);

@@ -1,0 +1,130 @@
+// traction effects [NAME]: the catalogue of physical effects: what each is, its law, its source, and what reveals it.
+#include "verbs.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+namespace traction::cli {
+
+namespace {
+
+// An effect name that is not in the catalogue.
+struct UnknownEffect : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+const char *place_of(sim::ActsOn where) {
+    switch (where) {
+    case sim::ActsOn::wheel_torque: return "wheel torque";
+    case sim::ActsOn::wheel_force: return "wheel force";
+    case sim::ActsOn::body_force: return "body force";
+    case sim::ActsOn::motor_voltage: return "motor voltage";
+    case sim::ActsOn::kinematics: return "kinematics";
+    case sim::ActsOn::load: return "load";
+    case sim::ActsOn::sensor: return "sensor";
+    }
+    return "";
+}
+
+std::size_t distance(std::string_view a, std::string_view b) { // Levenshtein
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t corner = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t changed = corner + (a[i - 1] != b[j - 1]);
+            corner = row[j];
+            row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+const sim::Effect &effect_or_mend(const std::string &name) {
+    if (const sim::Effect *effect = sim::find_effect(name)) return *effect;
+    const auto all = sim::catalogue();
+    const auto nearest = std::min_element(all.begin(), all.end(), [&](const sim::Effect &a, const sim::Effect &b) { return distance(name, a.name) < distance(name, b.name); });
+    throw UnknownEffect("there is no effect '" + name + "'; did you mean '" + std::string(nearest->name) + "'? `traction effects` lists all");
+}
+
+nlohmann::json effect_json(const sim::Effect &effect) {
+    nlohmann::json parameters = nlohmann::json::array();
+    for (const sim::EffectParameter &p : effect.parameters) {
+        parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"meaning", p.meaning}, {"strength", p.strength}, {"minimum", p.minimum}, {"maximum", p.maximum}, {"typical", p.typical}, {"of_interest", p.of_interest}, {"variants", p.variants}});
+    }
+    return {{"name", effect.name}, {"title", effect.title}, {"acts_on", place_of(effect.acts_on)}, {"per_wheel", effect.per_wheel}, {"equation", effect.equation}, {"source", effect.source},
+            {"signature", effect.signature}, {"reveals", effect.reveals}, {"parameters", parameters}};
+}
+
+void wrap(const char *label, std::string_view text) {
+    constexpr std::size_t width = 84;
+    std::string line;
+    std::printf("  %-9s ", label);
+    bool first = true;
+    while (!text.empty()) {
+        const std::size_t space = std::min(text.find(' '), text.size());
+        const std::string_view word = text.substr(0, space);
+        text.remove_prefix(std::min(space + 1, text.size()));
+        if (!line.empty() && line.size() + 1 + word.size() > width) {
+            std::printf("%s%s\n", first ? "" : "            ", line.c_str());
+            first = false;
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + std::string(word);
+    }
+    std::printf("%s%s\n", first ? "" : "            ", line.c_str());
+}
+
+void explain(const sim::Effect &effect) {
+    std::printf("%s: %s\n\n", std::string(effect.name).c_str(), std::string(effect.title).c_str());
+    wrap("law", effect.equation);
+    wrap("acts on", place_of(effect.acts_on) + std::string(effect.per_wheel ? ", of all wheels or of one (wheel = i)" : ""));
+    wrap("source", effect.source);
+    wrap("looks like", effect.signature);
+    wrap("shown by", effect.reveals);
+    std::printf("\n");
+    for (const sim::EffectParameter &p : effect.parameters) {
+        std::printf("  %s [%s]: %s\n", std::string(p.name).c_str(), std::string(p.unit).c_str(), std::string(p.meaning).c_str());
+        if (p.strength) {
+            std::printf("      fitted, 0 = absent; %g to %g, worth knowing from %g, the simulator's usual %g\n", p.minimum, p.maximum, p.of_interest, p.typical);
+        } else {
+            std::string variants;
+            for (const double value : p.variants) variants += (variants.empty() ? "" : ", ") + nlohmann::json(value).dump();
+            std::printf("      shape; the lab tries %s; the simulator's usual %g\n", variants.empty() ? "values that the log suggests" : variants.c_str(), p.typical);
+        }
+    }
+    std::string strength = "value";
+    for (const sim::EffectParameter &p : effect.parameters) {
+        if (p.strength) strength = std::string(p.name) + " = " + nlohmann::json(p.typical).dump();
+    }
+    std::printf("\n  in a scenario or a model:   [[effect]]\n                              name = \"%s\"\n                              %s\n", std::string(effect.name).c_str(), strength.c_str());
+}
+
+} // namespace
+
+void add_effects(CLI::App &app, Outcome &outcome) {
+    const auto name = std::make_shared<std::string>();
+    CLI::App *verb = app.add_subcommand("effects", "list the physical effects that can be simulated and found, or explain one");
+    verb->add_option("name", *name, "the effect to explain")->type_name("NAME");
+    add_json_option(verb, outcome);
+    verb->callback([name, &outcome] {
+        nlohmann::json effects = nlohmann::json::array();
+        if (!name->empty()) {
+            const sim::Effect &effect = effect_or_mend(*name);
+            explain(effect);
+            effects.push_back(effect_json(effect));
+        } else {
+            for (const sim::Effect &effect : sim::catalogue()) {
+                std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), place_of(effect.acts_on), std::string(effect.title).c_str());
+                effects.push_back(effect_json(effect));
+            }
+            std::printf("\n%zu effects. `traction effects NAME` explains one.\n", sim::catalogue().size());
+        }
+        outcome.json = {{"schema", "traction.effects/1"}, {"effects", effects}};
+    });
+}
+
+} // namespace traction::cli
