@@ -90,7 +90,7 @@ static float likelihood_speed(const doppler_template_t *beam, const uint64_t *po
         around[j] = i < 0 || i >= beam->speeds ? INT32_MAX : cost(beam, reduced, total, i);
         fine = around[j] < around[fine] ? j : fine;
     }
-    *white = around[fine] >= total * beam->flat;
+    *white = around[fine] >= total * beam->quiet[low + fine];
     float offset = 0.0f;
     if (fine > 0 && fine < 2 * COARSE && around[fine - 1] != INT32_MAX && around[fine + 1] != INT32_MAX) {
         const float left = (float)around[fine - 1] - (float)around[fine];

@@ -6,8 +6,8 @@
 // Source: (11) Lhomme-Desages. (2), derived here: powers of a noise-like echo are exponentially distributed around a S_v[k] with
 // sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
 // geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
-// ln v. An echo is quiet when white noise explains it better than any speed: J(v) > a K (1 - ln K) over K bins, or when its power
-// is below a stated one. Powers are reduced to 15 bits of their sum: J is exact in 32 bits.
+// ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
+// below a stated one. Powers are reduced to 15 bits of their sum: J is exact in 32 bits.
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -30,10 +30,10 @@ typedef struct {
     int32_t speeds;           // grid size
     int32_t first_bin;        // spectral bins used: first_bin .. first_bin + bins - 1
     int32_t bins;
-    int32_t flat;             // q * bins * (1 - ln bins): J/a of white noise
     const float *speed_m_s;   // [speeds] the grid, rising
     const int16_t *inverse;   // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
     const int32_t *volume;    // [speeds] q * sum_k ln S_v[k]
+    const int32_t *quiet;     // [speeds] q * expected J/a of an echo of which half is white noise
 } doppler_template_t;
 
 typedef struct {

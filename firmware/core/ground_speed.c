@@ -101,7 +101,8 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), 0.0f, 1.0f));
     const float measured = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
     float sign = window.middle_m_s < 0.0f ? -1.0f : 1.0f;
-    if (fabsf(window.middle_m_s) < config->sign_hysteresis_m_s && state->still_ticks == 0) {
+    const bool lost = state->refused >= config->gate_patience;
+    if ((lost || fabsf(window.middle_m_s) < config->sign_hysteresis_m_s) && state->still_ticks == 0) {
         sign = input->wheel_m_s < 0.0f ? -1.0f : 1.0f;
     }
     const float noise = config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured +
@@ -109,7 +110,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     const float innovation = sign * measured - window.middle_m_s;
     const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + noise;
     if (innovation * innovation > config->gate_sigma * config->gate_sigma * spread) {
-        if (state->refused < config->gate_patience) {
+        if (!lost) {
             state->refused++;
             return;
         }
@@ -124,7 +125,10 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
 static void update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
     const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), 0.0f, 1.0f));
-    correct(state, -window.middle_m_s, window.tau_s, config->quiet_noise_m2_s2);
+    const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + config->quiet_noise_m2_s2;
+    if (window.middle_m_s * window.middle_m_s <= config->gate_sigma * config->gate_sigma * spread) { // else a fade of the echo
+        correct(state, -window.middle_m_s, window.tau_s, config->quiet_noise_m2_s2);
+    }
 }
 
 // Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once.

@@ -163,11 +163,20 @@ static int write_template(const radar_t *radar, FILE *out)
         }
         fprintf(out, "%d, ", (int)floor(scale * ln + 0.5));
     }
+    // E[J]/a where half of the power is white: sum_k ((S_v - e/bins) / (1 - e) + 1/bins) / 2 / S_v[k] + ln S_v[k]
+    fprintf(out, "};\n\nstatic const int32_t quiet[%d] = {", SPEEDS);
+    for (int i = 0; i < SPEEDS; i++) {
+        double mean = 0;
+        for (int k = 0; k < bins; k++) {
+            const double echo = (S[i][k] - noise_share / bins) / (1 - noise_share);
+            mean += 0.5 * (echo + 1.0 / bins) / S[i][k] + log(S[i][k]);
+        }
+        fprintf(out, "%d, ", (int)floor(scale * mean + 0.5));
+    }
     fprintf(out, "};\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n    .paper_m_s_per_Hz = %.8ef,\n"
-                 "    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n    .flat = %d,\n    .speed_m_s = speed_m_s,\n"
+                 "    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n    .speed_m_s = speed_m_s,\n    .quiet = quiet,\n"
                  "    .inverse = inverse,\n    .volume = volume,\n};\n",
-            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins,
-            (int)floor(scale * bins * (1 - log(bins)) + 0.5));
+            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
     return ferror(out) ? 4 : 0;
 }
 
