@@ -21,11 +21,10 @@ void add_json_option(CLI::App *verb, Outcome &outcome) {
 }
 
 CLI::App *bench_group(CLI::App &app) {
-    CLI::App *group = app.get_subcommand_no_throw("bench");
-    if (group == nullptr) {
-        group = app.add_subcommand("bench", "measure this build beside its peers");
-        group->require_subcommand(1);
-    }
+    const auto made = app.get_subcommands([](const CLI::App *verb) { return verb->get_name() == "bench"; });
+    if (!made.empty()) return made.front();
+    CLI::App *group = app.add_subcommand("bench", "measure this build beside its peers");
+    group->require_subcommand(1);
     return group;
 }
 
