@@ -1,0 +1,29 @@
+// counts.h - physical quantities to the raw counts of the rover's converters, rounded and held at their rails.
+//
+// The scales are the devices'. The firmware states them again in rover_config.c; tests/hal holds the two together.
+#pragma once
+
+#include "firmware/core/signals.h"
+#include "sim/sensors/sensors.h"
+
+#include <cstdint>
+
+namespace traction::hal {
+
+struct CountScale {
+    double current_A = 0.002;      // [A/count] 12 bit over +-4.1 A, assumed
+    double battery_V = 0.004;      // [V/count] 12 bit over 16.4 V, assumed
+    double accel_m_s2 = 0.004;     // [m/s^2/count] assumed, about 0.4 mg
+    double gyro_rad_s = 0.0005;    // [rad/s/count] assumed
+    int current_offset = 2048;     // offset binary
+    int converter_max = 4095;      // 12 bit
+};
+
+// Fills every field of the frame but tick and emergency_stop; all of it present. Radar samples beyond the frame's 8 are lost
+// (512 Hz makes 5 or 6 a tick).
+void to_counts(const CountScale &scale, const sim::Measurements &measured, sensor_frame_t *frame);
+
+// Nearest count, held in low..high.
+int round_count(double value, int low, int high);
+
+} // namespace traction::hal

@@ -1,0 +1,153 @@
+#include "fault_hal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace traction::hal {
+
+namespace {
+
+constexpr double tick_s = 0.01;
+static_assert(TICK_US == 10000);
+
+constexpr std::uint32_t encoder_bit(unsigned wheel) { return std::uint32_t{FRAME_ENCODER_0} << wheel; }
+constexpr std::uint32_t current_bit(unsigned wheel) { return std::uint32_t{FRAME_CURRENT_0} << wheel; }
+
+// FRAME_* bits that a fault touches.
+std::uint32_t bits_of(const sim::SensorFault &fault) {
+    const auto per_wheel = [&](std::uint32_t first) {
+        return fault.wheel < 0 ? first * 0xfu : first << static_cast<unsigned>(fault.wheel);
+    };
+    switch (fault.sensor) {
+    case sim::FaultySensor::encoder: return per_wheel(FRAME_ENCODER_0);
+    case sim::FaultySensor::current: return per_wheel(FRAME_CURRENT_0);
+    case sim::FaultySensor::battery: return FRAME_BATTERY;
+    case sim::FaultySensor::accel: return FRAME_ACCEL;
+    case sim::FaultySensor::gyro: return FRAME_GYRO;
+    case sim::FaultySensor::radar: return FRAME_RADAR;
+    case sim::FaultySensor::camera: return 0;
+    }
+    return 0;
+}
+
+// Copies the fields of `bit` (one FRAME_* bit, radar excluded) from one frame to another, its presence too.
+void copy_field(std::uint32_t bit, const sensor_frame_t &from, sensor_frame_t *to) {
+    for (unsigned i = 0; i < WHEEL_COUNT; i++) {
+        if (bit == encoder_bit(i)) to->encoder_count[i] = from.encoder_count[i];
+        if (bit == current_bit(i)) to->current_count[i] = from.current_count[i];
+    }
+    if (bit == FRAME_BATTERY) to->battery_count = from.battery_count;
+    if (bit == FRAME_ACCEL) to->accel_x_count = from.accel_x_count;
+    if (bit == FRAME_GYRO) to->gyro_z_count = from.gyro_z_count;
+    to->present = (to->present & ~bit) | (from.present & bit);
+}
+
+hal_result_t wait_inner(hal_t *inner) { return inner->wait_tick(inner->context); }
+
+} // namespace
+
+FaultHal::FaultHal(const hal_t &inner, FaultScript script, const CountScale &scale, std::uint64_t seed)
+    : inner_(inner), script_(std::move(script)), scale_(scale), random_(seed, "faults"),
+      holding_(script_.sensors.size()), held_(script_.sensors.size()) {}
+
+void FaultHal::add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame) {
+    const auto noisy = [&](double count, double unit, int low, int high) {
+        return round_count(count + amount / unit * random_.normal(), low, high);
+    };
+    for (unsigned i = 0; i < WHEEL_COUNT; i++) {
+        if (bit == encoder_bit(i)) frame->encoder_count[i] = noisy(frame->encoder_count[i], 1, INT32_MIN, INT32_MAX);
+        if (bit == current_bit(i))
+            frame->current_count[i] =
+                static_cast<std::uint16_t>(noisy(frame->current_count[i], scale_.current_A, 0, scale_.converter_max));
+    }
+    if (bit == FRAME_BATTERY)
+        frame->battery_count =
+            static_cast<std::uint16_t>(noisy(frame->battery_count, scale_.battery_V, 0, scale_.converter_max));
+    if (bit == FRAME_ACCEL)
+        frame->accel_x_count =
+            static_cast<std::int16_t>(noisy(frame->accel_x_count, scale_.accel_m_s2, INT16_MIN, INT16_MAX));
+    if (bit == FRAME_GYRO)
+        frame->gyro_z_count =
+            static_cast<std::int16_t>(noisy(frame->gyro_z_count, scale_.gyro_rad_s, INT16_MIN, INT16_MAX));
+}
+
+void FaultHal::apply_radar(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame) {
+    sensor_frame_t &held = held_[index];
+    if (fault.kind == sim::FaultKind::dropped) {
+        frame->present &= ~static_cast<std::uint32_t>(FRAME_RADAR);
+        frame->radar_samples = 0;
+    } else if (fault.kind == sim::FaultKind::stuck) {
+        if (!holding_[index]) held = *frame;
+        holding_[index] = true;
+        std::fill_n(frame->radar_count, frame->radar_samples, held.radar_count[0]);
+    } else if (fault.kind == sim::FaultKind::noisy) {
+        for (int i = 0; i < frame->radar_samples; i++) {
+            const double count = frame->radar_count[i] + fault.amount * random_.normal();
+            frame->radar_count[i] = static_cast<std::uint16_t>(round_count(count, 0, sim::Radar::count_max));
+        }
+    } else {
+        // the stream as a whole comes late, so a frame keeps its number of samples
+        const auto late = static_cast<std::size_t>(fault.amount * sim::Radar::rate_Hz + 0.5);
+        const std::size_t samples = frame->radar_samples;
+        for (std::size_t i = 0; i < samples; i++) {
+            const std::size_t back = late + samples - i; // from the end of past_radar_
+            frame->radar_count[i] = past_radar_[past_radar_.size() > back ? past_radar_.size() - back : 0];
+        }
+    }
+}
+
+void FaultHal::apply(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame) {
+    const std::uint32_t bits = bits_of(fault);
+    if ((bits & FRAME_RADAR) != 0u) {
+        apply_radar(index, fault, frame);
+        return;
+    }
+    if (fault.kind == sim::FaultKind::stuck && !holding_[index]) {
+        held_[index] = *frame;
+        holding_[index] = true;
+    }
+    const auto late = static_cast<std::size_t>(fault.amount / tick_s + 0.5);
+    for (std::uint32_t bit = 1; bit <= bits; bit <<= 1u) {
+        if ((bits & bit) == 0u) continue;
+        if (fault.kind == sim::FaultKind::dropped) frame->present &= ~bit;
+        if (fault.kind == sim::FaultKind::stuck) copy_field(bit, held_[index], frame);
+        if (fault.kind == sim::FaultKind::noisy) add_noise(bit, fault.amount, frame);
+        if (fault.kind == sim::FaultKind::delayed)
+            copy_field(bit, past_[past_.size() > late ? past_.size() - 1 - late : 0], frame);
+    }
+}
+
+hal_t FaultHal::hal() {
+    hal_t wrapped{};
+    wrapped.context = this;
+    wrapped.wait_tick = [](void *context) { return wait_inner(&static_cast<FaultHal *>(context)->inner_); };
+    wrapped.read = [](void *context, sensor_frame_t *frame) {
+        auto *self = static_cast<FaultHal *>(context);
+        const hal_result_t result = self->inner_.read(self->inner_.context, frame);
+        if (result < 0) return result;
+        self->past_.push_back(*frame);
+        if (self->past_.size() > memory_ticks) self->past_.pop_front();
+        for (int i = 0; i < frame->radar_samples; i++) self->past_radar_.push_back(frame->radar_count[i]);
+        while (self->past_radar_.size() > memory_ticks * RADAR_SAMPLES_PER_TICK_MAX) self->past_radar_.pop_front();
+        const double t_s = (frame->tick + 1.0) * tick_s;
+        for (std::size_t i = 0; i < self->script_.sensors.size(); i++) {
+            const sim::SensorFault &fault = self->script_.sensors[i];
+            if (t_s >= fault.from_s && t_s < fault.to_s) self->apply(i, fault, frame);
+        }
+        for (const auto &[from_s, to_s] : self->script_.emergency_stop_s)
+            if (t_s >= from_s && t_s < to_s) frame->emergency_stop = true;
+        return result;
+    };
+    wrapped.write = [](void *context, const actuator_frame_t *actuator) {
+        auto *self = static_cast<FaultHal *>(context);
+        return self->inner_.write(self->inner_.context, actuator);
+    };
+    wrapped.safe_stop = [](void *context) {
+        auto *self = static_cast<FaultHal *>(context);
+        self->inner_.safe_stop(self->inner_.context);
+    };
+    return wrapped;
+}
+
+} // namespace traction::hal

@@ -1,0 +1,68 @@
+#include "sim_hal.h"
+
+namespace traction::hal {
+
+namespace {
+constexpr int steps_per_tick = TICK_US / 1000; // the plant's step is 1 ms
+} // namespace
+
+SimHal::SimHal(const SimHalConfig &config)
+    : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()) {}
+
+// One tick of the world under the orders that have come into effect.
+void SimHal::advance() {
+    for (int i = 0; i < steps_per_tick; i++) {
+        while (!orders_.empty() && orders_.front().due_ms <= now_ms_) {
+            for (int wheel = 0; wheel < sim::wheel_count; wheel++)
+                plant_.set_duty(wheel, orders_.front().duty[static_cast<std::size_t>(wheel)]);
+            plant_.set_enabled(orders_.front().enable);
+            orders_.pop_front();
+        }
+        const double t_s = static_cast<double>(now_ms_) * 1e-3;
+        for (const WheelBlock &block : config_.wheel_blocks) {
+            if (t_s >= block.to_s && t_s < block.to_s + 1.5e-3) plant_.block_wheel(block.wheel, false);
+            if (t_s >= block.from_s && t_s < block.to_s) plant_.block_wheel(block.wheel, true);
+        }
+        plant_.step();
+        now_ms_++;
+        sensors_.step(plant_.truth());
+    }
+    sensors_.measure(measured_);
+}
+
+hal_t SimHal::hal() {
+    hal_t hal{};
+    hal.context = this;
+    hal.wait_tick = [](void *context) {
+        auto *self = static_cast<SimHal *>(context);
+        if (self->done_ticks_ >= self->config_.ticks) return HAL_END;
+        self->advance();
+        self->done_ticks_++;
+        return HAL_OK;
+    };
+    hal.read = [](void *context, sensor_frame_t *frame) {
+        auto *self = static_cast<SimHal *>(context);
+        if (self->done_ticks_ == 0) return HAL_ERR_TIMEOUT; // nothing was measured yet
+        *frame = {};
+        frame->tick = self->done_ticks_ - 1;
+        to_counts(self->config_.scale, self->measured_, frame);
+        return HAL_OK;
+    };
+    hal.write = [](void *context, const actuator_frame_t *actuator) {
+        auto *self = static_cast<SimHal *>(context);
+        Order order{.due_ms = self->now_ms_ + static_cast<std::int64_t>(self->config_.actuation_delay_s * 1000 + 0.5),
+                    .duty = {},
+                    .enable = actuator->motor_enable};
+        for (std::size_t i = 0; i < sim::wheel_count; i++) order.duty[i] = actuator->duty_q15[i] / 32767.0;
+        self->orders_.push_back(order);
+        return HAL_OK;
+    };
+    hal.safe_stop = [](void *context) {
+        auto *self = static_cast<SimHal *>(context);
+        self->orders_.clear();
+        self->plant_.set_enabled(false);
+    };
+    return hal;
+}
+
+} // namespace traction::hal

@@ -1,0 +1,65 @@
+// sim_hal.h - the HAL of a simulated rover: the plant and its sensors behind hal_t, in lockstep.
+//
+// wait_tick advances the plant by one tick (10 steps of 1 ms); simulated time is the only time. Nothing here waits for a device,
+// so a dead sensor never stalls the loop. The first wait_tick ends at t = 10 ms and gives tick 0.
+#pragma once
+
+#include "counts.h"
+
+#include "hal/hal.h"
+#include "sim/plant/plant.h"
+#include "sim/sensors/sensors.h"
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace traction::hal {
+
+struct WheelBlock {
+    int wheel = 0;
+    double from_s = 0, to_s = 0; // the wheel is held in between
+};
+
+struct SimHalConfig {
+    sim::PlantConfig plant;
+    sim::SensorConfig sensors;
+    CountScale scale;
+    std::vector<WheelBlock> wheel_blocks;
+    double actuation_delay_s = 0; // effect actuation_delay
+    std::uint32_t ticks = 0;      // HAL_END after so many
+    std::uint64_t seed = 1;
+};
+
+class SimHal {
+  public:
+    explicit SimHal(const SimHalConfig &config);
+    SimHal(const SimHal &) = delete;
+    SimHal &operator=(const SimHal &) = delete;
+
+    hal_t hal();
+
+    // What no device of the rover tells: for the record and for tests.
+    const sim::Truth &truth() const { return plant_.truth(); }
+    std::span<const sim::Pose> camera() const { return measured_.camera; } // poses taken in the last tick
+
+  private:
+    void advance();
+    SimHalConfig config_;
+    sim::Plant plant_;
+    sim::Sensors sensors_;
+    sim::Measurements measured_;
+    std::uint32_t done_ticks_ = 0;
+    std::int64_t now_ms_ = 0;
+    struct Order {
+        std::int64_t due_ms;
+        std::array<double, sim::wheel_count> duty;
+        bool enable;
+    };
+    std::deque<Order> orders_; // written, not yet in effect
+};
+
+} // namespace traction::hal

@@ -1,0 +1,123 @@
+// verb_simulate.cpp - traction simulate SCENARIO: drives the rover through a scenario and writes the log.
+#include "progress.h"
+#include "verbs.h"
+
+#include "host_tools/log/log.h"
+#include "host_tools/simulate/batch.h"
+#include "host_tools/simulate/simulate.h"
+#include "sim/scenario/scenario.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace traction::cli {
+
+namespace {
+
+struct Arguments {
+    std::string scenario, out, truth, frames, seal, seeds, firmware;
+    std::int64_t seed = -1, hide = -1;
+    int hide_count = 1, jobs = 1;
+    std::vector<std::string> effects;
+    bool realtime = false;
+};
+
+// Whole or not at all.
+void write_text(const std::string &path, const std::string &text) {
+    std::ofstream file;
+    file.exceptions(std::ios::failbit | std::ios::badbit);
+    file.open(path + ".part", std::ios::binary);
+    file << text;
+    file.close();
+    std::filesystem::rename(path + ".part", path);
+}
+
+// "log.csv" for seed 7 is "log.7.csv".
+std::string with_seed(const std::string &path, std::uint64_t seed) {
+    const std::filesystem::path p(path);
+    return (p.parent_path() / (p.stem().string() + '.' + std::to_string(seed) + p.extension().string())).string();
+}
+
+bool parse_range(const std::string &text, std::uint64_t &first, std::uint64_t &last) {
+    char rest = 0;
+    unsigned long long a = 0, b = 0;
+    if (std::sscanf(text.c_str(), "%llu..%llu%c", &a, &b, &rest) != 2 || b < a || b - a > 1000000) return false;
+    first = a;
+    last = b;
+    return true;
+}
+
+void keep(const Arguments &arguments, const sim::Scenario &scenario, const SimulationResult &result, bool batch, std::uint64_t seed) {
+    const auto name = [&](const std::string &path) { return batch ? with_seed(path, seed) : path; };
+    if (!arguments.out.empty()) log::write_csv(result.log, name(arguments.out));
+    if (!arguments.truth.empty()) log::write_csv(result.truth, name(arguments.truth));
+    if (!arguments.seal.empty()) write_text(name(arguments.seal), sim::seal_text(result.hidden, scenario.name, result.hide_seed));
+}
+
+nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
+    char hash[20];
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(result.trace_hash));
+    return {{"seed", seed}, {"ticks", result.ticks}, {"simulated_s", static_cast<double>(result.ticks) / 100}, {"faults", result.faults}, {"trace_hash", hash}};
+}
+
+void run(const Arguments &arguments, Outcome &outcome) {
+    const sim::Scenario scenario = sim::read_scenario(arguments.scenario);
+    SimulateOptions options;
+    options.truth = !arguments.truth.empty();
+    options.realtime = arguments.realtime;
+    options.frames_path = arguments.frames;
+    if (!arguments.firmware.empty()) options.firmware = arguments.firmware;
+    for (const std::string &text : arguments.effects) options.effects.push_back(sim::parse_effect(text));
+    if (arguments.hide >= 0) options.hide = sim::HiddenDraw{.seed = static_cast<std::uint64_t>(arguments.hide), .count = arguments.hide_count, .among = {}};
+
+    std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
+    const bool batch = !arguments.seeds.empty();
+    if (batch && !parse_range(arguments.seeds, first, last)) throw CLI::ValidationError("--seeds", "write FIRST..LAST, such as 0..99");
+    if (batch && !arguments.frames.empty()) throw CLI::ValidationError("--frames", "takes one run, not a batch");
+
+    const auto start = std::chrono::steady_clock::now();
+    outcome.json = {{"schema", "traction.simulate/1"}, {"scenario", scenario.name}, {"runs", nlohmann::json::array()}};
+    const auto count = static_cast<long>(last - first + 1);
+    Progress progress("simulate " + scenario.name, count * static_cast<long>(scenario.duration_s + 0.5));
+    options.after_second = [&progress] { progress.step(); };
+    double simulated_s = 0;
+    simulate_batch(scenario, options, first, last, arguments.jobs, [&](std::uint64_t seed, SimulationResult &&result) {
+        keep(arguments, scenario, result, batch, seed);
+        simulated_s += static_cast<double>(result.ticks) / 100;
+        outcome.json["runs"].push_back(summary(result, seed));
+    });
+    auto &runs = outcome.json["runs"];
+    std::sort(runs.begin(), runs.end(), [](const auto &a, const auto &b) { return a["seed"] < b["seed"]; });
+    const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::printf("%s: %ld run%s, %.1f s simulated in %.2f s (%.0f x real time)%s%s\n", scenario.name.c_str(), count, count == 1 ? "" : "s",
+                simulated_s, spent_s, simulated_s / spent_s, arguments.out.empty() ? "" : ", log in ", arguments.out.c_str());
+    outcome.json["spent_s"] = spent_s;
+}
+
+} // namespace
+
+void add_simulate(CLI::App &app, Outcome &outcome) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App *verb = app.add_subcommand("simulate", "drive the simulated rover through a scenario and write the log");
+    verb->add_option("SCENARIO", arguments->scenario, "scenario file (scenarios/*.toml)")->required();
+    verb->add_option("--out", arguments->out, "the log, CSV")->type_name("LOG");
+    verb->add_option("--truth", arguments->truth, "what really happened, in a file of its own")->type_name("FILE");
+    verb->add_option("--seed", arguments->seed, "instead of the scenario's seed")->check(CLI::NonNegativeNumber);
+    verb->add_option("--effect", arguments->effects, "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)")->type_name("EFFECT");
+    CLI::Option *hide = verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
+    verb->add_option("--hide-count", arguments->hide_count, "how many effects to hide")->check(CLI::Range(1, 5))->needs(hide);
+    verb->add_option("--seal", arguments->seal, "write what was hidden to this file")->type_name("FILE");
+    verb->add_option("--frames", arguments->frames, "frames, commands and traces as replayable text")->type_name("FILE");
+    verb->add_option("--firmware", arguments->firmware, "firmware configuration instead of the scenario's")->check(CLI::IsMember({"default", "paper"}));
+    verb->add_flag("--realtime", arguments->realtime, "keep pace with the wall clock");
+    verb->add_option("--seeds", arguments->seeds, "run seeds FIRST..LAST; file names get the seed")->type_name("A..B");
+    verb->add_option("--jobs", arguments->jobs, "runs side by side")->check(CLI::Range(1, 256));
+    add_json_option(verb, outcome);
+    verb->callback([arguments, &outcome] { run(*arguments, outcome); });
+}
+
+} // namespace traction::cli

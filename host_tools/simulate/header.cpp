@@ -1,0 +1,59 @@
+#include "header.h"
+
+#include "hal/sim/counts.h"
+
+#include <cstdio>
+#include <string>
+
+namespace traction {
+
+namespace {
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+// FNV-1a of the scenario's text: says whether two logs come from the same file, and nothing of its content.
+std::string text_hash(const std::string &text) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    char out[20];
+    std::snprintf(out, sizeof out, "%016llx", static_cast<unsigned long long>(hash));
+    return out;
+}
+
+} // namespace
+
+// The noise stated is the scenario's sensors', not the run's: an effect that is hidden in the run must not show here.
+void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world, std::uint64_t seed, log::Log &log) {
+    const sim::SensorConfig &sensors = scenario.sensors;
+    log.header["scenario"] = scenario.name;
+    log.header["seed"] = std::to_string(seed);
+    log.header["config_hash"] = text_hash(scenario.text);
+    log.header["firmware"] = scenario.firmware.config;
+    log.header["machine"] = "simulated rover";
+    for (std::size_t i = 0; i < sim::wheel_count; i++) {
+        const std::string wheel = "wheel" + std::to_string(i) + '.';
+        log.header["noise." + wheel + "current_A"] = number(sensors.current[i].noise);
+        log.header["quantum." + wheel + "current_A"] = number(world.scale.current_A);
+        log.header["quantum." + wheel + "encoder_count"] = "1";
+        // rounding of one pulse at both ends of a 10 ms difference: q/(T sqrt 6)
+        log.header["noise." + wheel + "speed_rad_s"] = number(sim::encoder_rad_per_count / 0.01 * 0.40824829046386302);
+        log.header["quantum." + wheel + "speed_rad_s"] = number(sim::encoder_rad_per_count / 0.01);
+    }
+    log.header["encoder.rad_per_count"] = number(sim::encoder_rad_per_count);
+    log.header["noise.battery.voltage_V"] = number(sensors.battery.noise);
+    log.header["quantum.battery.voltage_V"] = number(world.scale.battery_V);
+    log.header["noise.imu.accel_x_m_s2"] = number(sensors.accel.noise);
+    log.header["quantum.imu.accel_x_m_s2"] = number(world.scale.accel_m_s2);
+    log.header["noise.imu.gyro_z_rad_s"] = number(sensors.gyro.noise);
+    log.header["quantum.imu.gyro_z_rad_s"] = number(world.scale.gyro_rad_s);
+    log.header["noise.camera.x_m"] = log.header["noise.camera.y_m"] = number(sensors.camera.noise_m);
+    log.header["noise.camera.yaw_rad"] = number(sensors.camera.noise_rad);
+    log.header["radar.model"] = std::string(sensors.radar.model);
+    log.header["radar.sample_rate_Hz"] = "512";
+}
+
+} // namespace traction

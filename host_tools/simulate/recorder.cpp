@@ -1,0 +1,208 @@
+#include "recorder.h"
+
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace traction {
+
+namespace {
+double tidy(float value) { return std::nearbyint(static_cast<double>(value) * 1e6) / 1e6 + 0.0; }
+} // namespace
+
+std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
+    Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .absent_is_zero = absent_is_zero};
+    if (name.rfind("camera", 0) != 0) {
+        fresh.signal.t_s.reserve(expected_);
+        fresh.signal.value.reserve(expected_);
+    }
+    columns_.push_back(std::move(fresh));
+    return columns_.size() - 1;
+}
+
+Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        const std::string name = "wheel" + std::to_string(i) + '.';
+        wheel_[i] = {.speed = column(name + "speed_rad_s"),
+                     .encoder = column(name + "encoder_count"),
+                     .current = column(name + "current_A"),
+                     .current_count = column(name + "current_count"),
+                     .duty = column(name + "duty"),
+                     .set_speed = column(name + "set_speed_rad_s"),
+                     .slip = column(name + "slip"),
+                     .torque = column(name + "motor_torque_Nm"),
+                     .traction = column(name + "traction_N"),
+                     .slip_valid = column(name + "slip_valid"),
+                     .saturated = column(name + "saturated"),
+                     .command_speed = column(name + "command_speed_rad_s", true),
+                     .command_duty = column(name + "command_duty", true)};
+    }
+    at_ = {.battery = column("battery.voltage_V"),
+           .battery_count = column("battery.voltage_count"),
+           .radar_count = column("radar.adc_count"),
+           .radar_speed = column("radar.speed_m_s"),
+           .accel = column("imu.accel_x_m_s2"),
+           .accel_count = column("imu.accel_x_count"),
+           .gyro = column("imu.gyro_z_rad_s"),
+           .gyro_count = column("imu.gyro_z_count"),
+           .camera_x = column("camera.x_m"),
+           .camera_y = column("camera.y_m"),
+           .camera_yaw = column("camera.yaw_rad"),
+           .speed = column("estimate.speed_m_s"),
+           .speed_std = column("estimate.speed_std_m_s"),
+           .bias = column("estimate.accel_bias_m_s2"),
+           .standstill = column("estimate.standstill"),
+           .mode = column("control.mode"),
+           .faults = column("control.faults"),
+           .command_mode = column("command.mode"),
+           .command_speed = column("command.speed_m_s", true),
+           .command_yaw_rate = column("command.yaw_rate_rad_s", true),
+           .command_slip = column("command.slip", true),
+           .command_slip_wheels = column("command.slip_wheels", true),
+           .command_age = column("command.age_ticks", true),
+           .present = column("frame.present"),
+           .samples = column("frame.radar_samples"),
+           .emergency_stop = column("frame.emergency_stop", true)};
+}
+
+void Recorder::put(std::size_t column, double t_s, double value) {
+    log::Signal &signal = columns_[column].signal;
+    signal.t_s.push_back(t_s);
+    signal.value.push_back(value);
+}
+
+// A double whose shortest text reads back to this very float.
+double Recorder::exact(float value) {
+    if (value == last_float_) return last_exact_;
+    if (!std::isfinite(value)) return 0; // the firmware takes it as 0 too
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    double result = 0;
+    std::from_chars(text, end, result);
+    last_float_ = value;
+    last_exact_ = result;
+    return result;
+}
+
+void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command,
+                         const wheel_trace_t &trace) {
+    const Wheel &at = wheel_[wheel];
+    if ((frame.present & (FRAME_ENCODER_0 << static_cast<unsigned>(wheel))) != 0u) {
+        put(at.speed, t_s, tidy(trace.speed_rad_s));
+        put(at.encoder, t_s, frame.encoder_count[wheel]);
+    }
+    if ((frame.present & (FRAME_CURRENT_0 << static_cast<unsigned>(wheel))) != 0u) {
+        put(at.current, t_s, tidy(trace.current_A));
+        put(at.current_count, t_s, frame.current_count[wheel]);
+    }
+    put(at.duty, t_s, tidy(trace.duty));
+    put(at.set_speed, t_s, tidy(trace.set_speed_rad_s));
+    put(at.slip, t_s, tidy(trace.slip));
+    put(at.torque, t_s, tidy(trace.torque_Nm));
+    put(at.traction, t_s, tidy(trace.traction_N));
+    put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
+    put(at.saturated, t_s, trace.saturated ? 1 : 0);
+    put(at.command_speed, t_s, exact(command.wheel_speed_rad_s[wheel]));
+    put(at.command_duty, t_s, exact(command.duty[wheel]));
+}
+
+void Recorder::add_frame(double t_s, const sensor_frame_t &frame) {
+    if ((frame.present & FRAME_BATTERY) != 0u) put(at_.battery_count, t_s, frame.battery_count);
+    if ((frame.present & FRAME_ACCEL) != 0u) put(at_.accel_count, t_s, frame.accel_x_count);
+    if ((frame.present & FRAME_GYRO) != 0u) put(at_.gyro_count, t_s, frame.gyro_z_count);
+    put(at_.present, t_s, frame.present);
+    put(at_.samples, t_s, frame.radar_samples);
+    put(at_.emergency_stop, t_s, frame.emergency_stop ? 1 : 0);
+    // samples keep the converter's own clock, n/512 s; those of a silent tick are skipped
+    const auto due = static_cast<std::int64_t>(std::floor(t_s * 512 + 1e-6));
+    const std::int64_t first = due - frame.radar_samples + 1;
+    for (int i = 0; i < frame.radar_samples; i++)
+        if (first + i >= radar_samples_) put(at_.radar_count, static_cast<double>(first + i) / 512, frame.radar_count[i]);
+    radar_samples_ = due + 1;
+}
+
+void Recorder::add_command(double t_s, const command_t &command) {
+    put(at_.command_mode, t_s, command.mode);
+    put(at_.command_speed, t_s, exact(command.platform_speed_m_s));
+    put(at_.command_yaw_rate, t_s, exact(command.yaw_rate_rad_s));
+    put(at_.command_slip, t_s, exact(command.slip_ref));
+    put(at_.command_slip_wheels, t_s, command.slip_wheels);
+    put(at_.command_age, t_s, command.age_ticks);
+}
+
+void Recorder::add_estimates(double t_s, const trace_t &trace) {
+    if ((trace.present & FRAME_BATTERY) != 0u) put(at_.battery, t_s, tidy(trace.battery_voltage_V));
+    if ((trace.present & FRAME_ACCEL) != 0u) put(at_.accel, t_s, tidy(trace.accel_x_m_s2));
+    if ((trace.present & FRAME_GYRO) != 0u) put(at_.gyro, t_s, tidy(trace.gyro_z_rad_s));
+    if (trace.radar_fresh) put(at_.radar_speed, t_s, tidy(trace.radar_speed_m_s));
+    put(at_.speed, t_s, tidy(trace.speed_m_s));
+    put(at_.speed_std, t_s, tidy(trace.speed_std_m_s));
+    put(at_.bias, t_s, tidy(trace.accel_bias_m_s2));
+    put(at_.standstill, t_s, trace.standstill ? 1 : 0);
+    put(at_.mode, t_s, trace.mode);
+    put(at_.faults, t_s, trace.faults);
+}
+
+void Recorder::add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) {
+    const double t_s = (frame.tick + 1.0) / 100; // a tick ends its 10 ms
+    for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) add_wheel(wheel, t_s, frame, command, trace.wheel[wheel]);
+    add_frame(t_s, frame);
+    add_command(t_s, command);
+    add_estimates(t_s, trace);
+}
+
+void Recorder::add_camera(std::span<const sim::Pose> poses) {
+    for (const sim::Pose &pose : poses) {
+        put(at_.camera_x, pose.t_s, std::nearbyint(pose.x_m * 1e4) / 1e4 + 0.0);
+        put(at_.camera_y, pose.t_s, std::nearbyint(pose.y_m * 1e4) / 1e4 + 0.0);
+        put(at_.camera_yaw, pose.t_s, std::nearbyint(pose.yaw_rad * 1e5) / 1e5 + 0.0);
+    }
+}
+
+log::Log Recorder::take() {
+    log::Log result;
+    for (Column &column : columns_) {
+        bool all_zero = true;
+        for (const double value : column.signal.value) all_zero = all_zero && value == 0;
+        if (column.signal.value.empty() || (column.absent_is_zero && all_zero)) continue;
+        result.signals.push_back(std::move(column.signal));
+    }
+    return result;
+}
+
+TruthRecorder::TruthRecorder() {
+    for (const char *name : {"truth.x_m", "truth.y_m", "truth.yaw_rad", "truth.pitch_rad", "truth.speed_m_s", "truth.path_m",
+                             "truth.accel_x_m_s2", "truth.battery_voltage_V"})
+        log_.signals.push_back({.name = name, .t_s = {}, .value = {}});
+    for (int i = 0; i < sim::wheel_count; i++)
+        for (const char *name : {"speed_rad_s", "current_A", "duty", "slip", "traction_N", "rolling_N", "lateral_N", "normal_N",
+                                 "sinkage_m", "ground_speed_m_s", "temperature_degC"})
+            log_.signals.push_back({.name = "truth.wheel" + std::to_string(i) + '.' + name, .t_s = {}, .value = {}});
+}
+
+void TruthRecorder::add(const sim::Truth &truth) {
+    std::size_t next = 0;
+    const double t_s = std::nearbyint(truth.t_s * 1000) / 1000;
+    const auto put = [&](double value) {
+        log::Signal &signal = log_.signals[next++];
+        if (!std::isfinite(value)) return;
+        signal.t_s.push_back(t_s);
+        signal.value.push_back(std::nearbyint(value * 1e9) / 1e9 + 0.0);
+    };
+    put(truth.position_m[0]);
+    put(truth.position_m[1]);
+    put(truth.yaw_rad);
+    put(truth.pitch_rad);
+    put(truth.v_body_m_s[0]);
+    put(truth.path_m);
+    put(truth.specific_force_m_s2[0]);
+    put(truth.battery_voltage_V);
+    for (const sim::WheelTruth &wheel : truth.wheel)
+        for (const double value : {wheel.speed_rad_s, wheel.current_A, wheel.duty, wheel.slip, wheel.traction_N, wheel.rolling_N,
+                                   wheel.lateral_N, wheel.normal_N, wheel.sinkage_m, wheel.ground_speed_m_s,
+                                   wheel.winding_temperature_C})
+            put(value);
+}
+
+} // namespace traction

@@ -1,0 +1,67 @@
+// recorder.h - one run as a log: what the sensors said, what was asked, what the firmware made of it (docs/log_format.md).
+//
+// Every raw count of every frame and every command is kept, so control_step can be replayed bit for bit from the log. Counts and
+// commands are exact; everything that follows from them is rounded to 1e-6 SI.
+#pragma once
+
+#include "firmware/core/rover_config.h"
+#include "host_tools/log/log.h"
+#include "sim/plant/truth.h"
+#include "sim/sensors/camera.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace traction {
+
+class Recorder {
+  public:
+    explicit Recorder(std::uint64_t expected_ticks);
+
+    void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
+    void add_camera(std::span<const sim::Pose> poses);
+    log::Log take(); // columns that never held anything but 0 are left out where 0 is what absence means
+
+  private:
+    struct Column {
+        log::Signal signal;
+        bool absent_is_zero = false;
+    };
+    std::size_t column(const std::string &name, bool absent_is_zero = false);
+    void put(std::size_t column, double t_s, double value);
+    void add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
+    void add_frame(double t_s, const sensor_frame_t &frame);
+    void add_command(double t_s, const command_t &command);
+    void add_estimates(double t_s, const trace_t &trace);
+    double exact(float value);
+
+    std::uint64_t expected_;
+    std::vector<Column> columns_;
+    std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
+    float last_float_ = 0;
+    double last_exact_ = 0;
+
+    struct Wheel {
+        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated,
+            command_speed, command_duty;
+    } wheel_[WHEEL_COUNT]{};
+    struct {
+        std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y,
+            camera_yaw, speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate,
+            command_slip, command_slip_wheels, command_age, present, samples, emergency_stop;
+    } at_{};
+};
+
+// The truth of one run, in columns of its own, one row per tick. Only ever written to a separate file.
+class TruthRecorder {
+  public:
+    TruthRecorder();
+    void add(const sim::Truth &truth);
+    log::Log take() { return std::move(log_); }
+
+  private:
+    log::Log log_;
+};
+
+} // namespace traction

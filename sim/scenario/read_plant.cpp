@@ -1,0 +1,82 @@
+#include "scenario.h"
+
+#include "read_parts.h"
+
+#include <optional>
+
+namespace traction::sim {
+
+namespace {
+
+// The keys that a soil law has, over those of the library's soil.
+void read_soil(Keys &keys, Soil &soil) {
+    std::string names;
+    for (const Soil &known : soil_library()) names += (names.empty() ? "" : ", ") + known.name;
+    const std::string name = keys.text("soil", soil.name);
+    const Soil *found = find_soil(name);
+    if (found == nullptr) keys.fail("soil", "no such soil", "use one of: " + names);
+    soil = *found;
+    soil.adhesion_N = keys.number("adhesion_N", soil.adhesion_N, {0, 100});
+    soil.fm_per_fn = keys.number("fm_per_fn", soil.fm_per_fn, {0.01, 5});
+    soil.shear_slip = keys.number("shear_slip", soil.shear_slip, {0.001, 5});
+    soil.rolling_coefficient = keys.number("rolling_coefficient", soil.rolling_coefficient, {0, 1});
+    soil.lateral_coefficient = keys.number("lateral_coefficient", soil.lateral_coefficient, {0, 5});
+}
+
+SoilPatch read_patch(const toml::table &table, const std::string &file, const std::string &path, const Soil &around) {
+    Keys keys(table, file, path);
+    SoilPatch patch{.soil = around};
+    patch.x_min_m = keys.need_number("x_min_m", {-1000, 1000});
+    patch.x_max_m = keys.need_number("x_max_m", {patch.x_min_m, 1000});
+    patch.y_min_m = keys.number("y_min_m", patch.y_min_m, {-1e9, 1e9});
+    patch.y_max_m = keys.number("y_max_m", patch.y_max_m, {patch.y_min_m, 1e9});
+    read_soil(keys, patch.soil);
+    keys.finish();
+    return patch;
+}
+
+} // namespace
+
+void read_ground(const toml::table &table, const std::string &file, Scenario &scenario) {
+    Keys keys(table, file, "ground");
+    Ground &ground = scenario.plant.ground;
+    read_soil(keys, ground.soil);
+    ground.slope_rad = keys.number("slope_rad", 0, {-0.5, 0.5});
+    ground.slope_direction_rad = keys.number("slope_direction_rad", 0, {-10, 10});
+    ground.grip_noise = keys.number("grip_noise", ground.soil.law == TractionLaw::janosi ? 0.06 : 0.02, {0, 0.5});
+    ground.grip_length_m = keys.number("grip_length_m", ground.grip_length_m, {0.02, 10});
+    if (keys.has("seed")) scenario.ground_seed = static_cast<std::uint64_t>(keys.integer("seed", 1, 0, INT64_MAX));
+    if (const toml::array *list = keys.tables("patch"))
+        for (std::size_t i = 0; i < list->size(); i++)
+            ground.patches.push_back(read_patch(*(*list)[i].as_table(), file, "ground.patch[" + std::to_string(i) + "]", ground.soil));
+    keys.finish();
+    scenario.sensors.ground_slope_rad = ground.slope_rad;
+    scenario.sensors.ground_direction_rad = ground.slope_direction_rad;
+}
+
+void read_rover(const toml::table &table, const std::string &file, Scenario &scenario) {
+    Keys keys(table, file, "rover");
+    RoverParameters &rover = scenario.plant.rover;
+    const auto read = [&keys](std::string_view key, double &value, Range range) { value = keys.number(key, value, range); };
+    read("mass_kg", rover.mass_kg, {0.5, 100});
+    read("half_wheelbase_m", rover.half_wheelbase_m, {0.02, 1});
+    read("half_track_m", rover.half_track_m, {0.02, 1});
+    read("wheel_radius_m", rover.wheel_radius_m, {0.02, 0.3});
+    read("wheel_mass_kg", rover.wheel_mass_kg, {0.01, 10});
+    read("centre_height_m", rover.centre_height_m, {0, 0.5});
+    read("relaxation_length_m", rover.relaxation_length_m, {0.0005, 0.3});
+    read("torque_constant_Nm_A", rover.drive.torque_constant_Nm_A, {0.01, 10});
+    read("resistance_ohm", rover.drive.resistance_ohm, {0.05, 100});
+    read("inertia_kg_m2", rover.drive.inertia_kg_m2, {1e-5, 1});
+    read("viscous_Nms", rover.drive.viscous_Nms, {0, 1});
+    read("coulomb_Nm", rover.drive.coulomb_Nm, {0, 5});
+    read("battery_voltage_V", rover.battery_voltage_V, {1, 60});
+    read("battery_resistance_ohm", rover.battery_resistance_ohm, {0, 5});
+    read("x_m", scenario.plant.x_m, {-1000, 1000});
+    read("y_m", scenario.plant.y_m, {-1000, 1000});
+    read("yaw_rad", scenario.plant.yaw_rad, {-10, 10});
+    read("speed_m_s", scenario.plant.speed_m_s, {-2, 2});
+    keys.finish();
+}
+
+} // namespace traction::sim

@@ -1,0 +1,110 @@
+#include "scenario.h"
+
+#include "read_parts.h"
+
+#include <algorithm>
+
+namespace traction::sim {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> sensor_names{"encoder", "current", "battery", "accel", "gyro", "radar", "camera"};
+constexpr std::array<std::string_view, 4> kind_names{"stuck", "noisy", "dropped", "delayed"};
+
+// [sensors.accel] and its like: offset, drift, gain, noise in the sensor's unit.
+void read_analog(Keys &parent, std::string_view key, const std::string &unit, const std::string &drift_unit, double largest,
+                 std::span<AnalogConfig> configs) {
+    const toml::table *table = parent.table(key);
+    if (table == nullptr) return;
+    Keys keys(*table, parent.file(), parent.full_name(key));
+    const AnalogConfig &now = configs.front();
+    const double gain = keys.number("gain", now.gain, {0.1, 10});
+    const double offset = keys.number("offset_" + unit, now.offset, {-largest, largest});
+    const double drift = keys.number("drift_" + drift_unit, now.drift_s, {-largest, largest});
+    const double noise = keys.number("noise_" + unit, now.noise, {0, largest});
+    keys.finish();
+    for (AnalogConfig &config : configs) config = {.gain = gain, .offset = offset, .drift_s = drift, .noise = noise};
+}
+
+void read_camera(Keys &parent, CameraConfig &camera) {
+    const toml::table *table = parent.table("camera");
+    if (table == nullptr) return;
+    Keys keys(*table, parent.file(), parent.full_name("camera"));
+    camera.delay_s = keys.number("delay_s", camera.delay_s, {0, 2});
+    camera.noise_m = keys.number("noise_m", camera.noise_m, {0, 1});
+    camera.noise_rad = keys.number("noise_rad", camera.noise_rad, {0, 1});
+    keys.finish();
+}
+
+} // namespace
+
+void read_sensors(const toml::table &table, const std::string &file, SensorConfig &config) {
+    Keys keys(table, file, "sensors");
+    read_analog(keys, "current", "A", "A_s", 5, config.current);
+    read_analog(keys, "battery", "V", "V_s", 5, {&config.battery, 1});
+    read_analog(keys, "accel", "m_s2", "m_s3", 10, {&config.accel, 1});
+    read_analog(keys, "gyro", "rad_s", "rad_s2", 5, {&config.gyro, 1});
+    config.accel_vibration_1_s = keys.number("accel_vibration_1_s", config.accel_vibration_1_s, {0, 10});
+    read_camera(keys, config.camera);
+    keys.finish();
+}
+
+void read_radar(const toml::table &table, const std::string &file, RadarConfig &config) {
+    Keys keys(table, file, "radar");
+    static const auto models = radar_models();
+    std::array<std::string_view, models.size()> names;
+    std::transform(models.begin(), models.end(), names.begin(), [](const RadarModel &model) { return model.name; });
+    config.model = names[keys.word("model", config.model, names)];
+    config.mounting_error_deg = keys.number("mounting_error_deg", config.mounting_error_deg, {-10, 10});
+    config.height_m = keys.number("height_m", config.height_m, {0.1, 1});
+    config.ground_exponent = keys.number("ground_exponent", config.ground_exponent, {0, 2});
+    config.echo_count = keys.number("echo_count", config.echo_count, {0, 500});
+    config.noise_count = keys.number("noise_count", config.noise_count, {0, 200});
+    config.flicker_count = keys.number("flicker_count", config.flicker_count, {0, 200});
+    config.dropout_per_s = keys.number("dropout_per_s", config.dropout_per_s, {0, 10});
+    config.dropout_s = keys.number("dropout_s", config.dropout_s, {0.01, 10});
+    keys.finish();
+}
+
+namespace {
+
+SensorFault read_sensor_fault(Keys &keys) {
+    SensorFault fault;
+    fault.sensor = static_cast<FaultySensor>(keys.word("sensor", "", sensor_names));
+    fault.kind = static_cast<FaultKind>(keys.word("how", "", kind_names));
+    if (fault.sensor == FaultySensor::encoder || fault.sensor == FaultySensor::current)
+        fault.wheel = static_cast<int>(keys.integer("wheel", -1, 0, wheel_count - 1));
+    if (fault.kind == FaultKind::noisy) fault.amount = keys.need_number("noise", {0, 10000});
+    if (fault.kind == FaultKind::delayed) fault.amount = keys.need_number("delay_s", {0, 2});
+    return fault;
+}
+
+} // namespace
+
+void read_faults(const toml::array &list, const std::string &file, Scenario &scenario) {
+    constexpr std::array<std::string_view, 4> what{"wheel_blocked", "sensor", "emergency_stop", "command_lost"};
+    for (std::size_t i = 0; i < list.size(); i++) {
+        Keys keys(*list[i].as_table(), file, "fault[" + std::to_string(i) + "]");
+        const std::size_t kind = keys.word("what", "", what);
+        const double from_s = keys.number("from_s", 0, {0, 36000});
+        const double to_s = keys.number("to_s", scenario.duration_s, {0, 36000});
+        if (to_s < from_s) keys.fail("to_s", "ends before it begins", "give a time after from_s");
+        if (kind == 0) {
+            if (!keys.has("wheel")) keys.fail("wheel", "missing", "give 0, 1, 2 or 3");
+            const long wheel = keys.integer("wheel", 0, 0, wheel_count - 1);
+            scenario.wheel_blocks.push_back({static_cast<int>(wheel), from_s, to_s});
+        } else if (kind == 1) {
+            SensorFault fault = read_sensor_fault(keys);
+            fault.from_s = from_s;
+            fault.to_s = to_s;
+            scenario.sensor_faults.push_back(fault);
+        } else if (kind == 2) {
+            scenario.emergency_stops.emplace_back(from_s, to_s);
+        } else {
+            scenario.command_losses.emplace_back(from_s, to_s);
+        }
+        keys.finish();
+    }
+}
+
+} // namespace traction::sim

@@ -1,0 +1,101 @@
+#include "radar.h"
+
+#include "sim/physics/math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace traction::sim {
+
+std::array<RadarModel, 4> radar_models() {
+    return {{{"MDU1130", 9.9e9, 36, 72, 0.015},
+             {"DJ Radar II", 24.13e9, 15, 15, 2.0},
+             {"DJ Radar III", 24.13e9, 20, 16, 0.5}, // 20 vertical, 16 horizontal: order assumed
+             {"DRS1000", 35.5e9, 12, 12, 0.23}}};
+}
+
+namespace {
+
+RadarModel find_model(std::string_view name) {
+    for (const RadarModel &model : radar_models())
+        if (model.name == name) return model;
+    throw std::logic_error("no radar is called " + std::string(name));
+}
+
+RadarBeam beam_of(const RadarConfig &config) {
+    const RadarModel model = find_model(config.model);
+    return {.frequency_Hz = model.frequency_Hz,
+            .vertical_deg = model.vertical_deg,
+            .horizontal_deg = model.horizontal_deg,
+            .depression_deg = 20 + config.mounting_error_deg, // theta_d, SPEC section 4
+            .height_m = config.height_m,
+            .ground_exponent = config.ground_exponent};
+}
+
+BandPass filter_of(const RadarConfig &config) {
+    const double ratio = find_model(config.model).frequency_Hz / 9.9e9;
+    return {3 * ratio, std::min(80 * ratio, 240.0), Radar::rate_Hz};
+}
+
+} // namespace
+
+BandPass::BandPass(double low_Hz, double high_Hz, double rate_Hz) : high_pass_{}, low_pass_{} {
+    // bilinear transform of 1/(s^2 + sqrt2 s + 1) and s^2/(...), s = (1/k)(1 - z^-1)/(1 + z^-1), k = tan(pi f/rate)
+    const auto design = [rate_Hz](double cut_Hz, bool high) {
+        const double angle = math::pi * cut_Hz / rate_Hz, k = math::sin(angle) / math::cos(angle);
+        const double norm = 1 / (1 + 1.4142135623730951 * k + k * k);
+        const double gain = high ? norm : k * k * norm;
+        return Section{.b0 = gain, .b1 = high ? -2 * gain : 2 * gain, .b2 = gain, .a1 = 2 * (k * k - 1) * norm,
+                       .a2 = (1 - 1.4142135623730951 * k + k * k) * norm};
+    };
+    high_pass_ = design(low_Hz, true);
+    low_pass_ = design(high_Hz, false);
+}
+
+double BandPass::Section::step(double x) {
+    const double y = b0 * x + b1 * x1 + b2 * x2 - a1 * y1 - a2 * y2;
+    x2 = x1;
+    x1 = x;
+    y2 = y1;
+    y1 = y;
+    return y;
+}
+
+double BandPass::step(double x) { return low_pass_.step(high_pass_.step(x)); }
+
+void BandPass::settle(double x) {
+    high_pass_.x1 = high_pass_.x2 = x; // a constant does not pass, so every output is 0
+    high_pass_.y1 = high_pass_.y2 = low_pass_.x1 = low_pass_.x2 = low_pass_.y1 = low_pass_.y2 = 0;
+}
+
+Radar::Radar(const RadarConfig &config, std::uint64_t seed)
+    : config_(config), track_(beam_of(config), mix64(seed) ^ 0x7261646172u), filter_(filter_of(config)),
+      noise_(seed, "radar.noise"), fade_(seed, "radar.dropout") {}
+
+std::uint16_t Radar::sample(double path_m) {
+    // mean power of the complex echo is 1, so its real part has rms 1/sqrt 2
+    double echo = track_.echo(path_m).real() * 1.4142135623730951 * config_.echo_count;
+    if (config_.dropout_per_s > 0) {
+        if (faded_samples_ > 0)
+            faded_samples_--;
+        else if (fade_.uniform() < config_.dropout_per_s / rate_Hz)
+            faded_samples_ = static_cast<int>(config_.dropout_s * rate_Hz);
+        if (faded_samples_ > 0) echo = 0;
+    }
+    // 1/f between 0.5 and 50 Hz: three first-order noises of equal power, a decade apart
+    constexpr std::array<double, 3> corner_Hz{0.5, 5, 50};
+    double flicker = 0;
+    for (std::size_t i = 0; i < corner_Hz.size(); i++) {
+        const double keep = 1 - std::min(1.0, 2 * math::pi * corner_Hz[i] / rate_Hz);
+        flicker_[i] = keep * flicker_[i] + std::sqrt((1 - keep * keep) / 3) * noise_.normal();
+        flicker += flicker_[i];
+    }
+    if (!settled_) filter_.settle(echo);
+    settled_ = true;
+    const double volts = filter_.step(echo) + config_.noise_count * noise_.normal() + config_.flicker_count * flicker;
+    return static_cast<std::uint16_t>(std::clamp(std::floor(volts + config_.offset_count + 0.5), 0.0, double{count_max}));
+}
+
+} // namespace traction::sim

@@ -1,0 +1,76 @@
+// radar.h - a CW Doppler radar as its ADC sees it: echo along the track, band-pass, noise, offset, 10 bits at 512 Hz.
+//
+// One mixer channel: the real part of the echo, so its sign of speed is lost. The signal depends on the path travelled
+// (radar_track.h). Not modelled: turning on the spot changes the echo only by what the radar travels along x.
+// Noise: white and flicker, 1.0 and 0.5 counts rms at the ADC (assumed: 37 dB below the echo's 75 counts), plus rounding.
+#pragma once
+
+#include "radar_track.h"
+#include "random.h"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace traction::sim {
+
+struct RadarConfig {
+    std::string_view model = "MDU1130"; // of radar_models()
+    double mounting_error_deg = 0;      // added to the depression angle
+    double height_m = 0.3;              // DSP.md section 2
+    double ground_exponent = 1;         // n of sigma0 ~ sin^n
+    double echo_count = 75;             // [ADC count] rms of the echo before the band-pass, assumed: 4 sigma inside 10 bits
+    double noise_count = 1.0;           // [ADC count] rms white, assumed
+    double flicker_count = 0.5;         // [ADC count] rms 1/f, assumed
+    double offset_count = 512;          // [ADC count] mid-scale of 10 bits
+    double dropout_per_s = 0;           // [1/s] how often the echo fades out altogether
+    double dropout_s = 0.3;             // [s] for how long
+};
+
+// A row of table II, Lhomme-Desages.
+struct RadarModel {
+    std::string_view name;
+    double frequency_Hz;
+    double vertical_deg, horizontal_deg;
+    double mass_kg;
+};
+std::array<RadarModel, 4> radar_models();
+
+// 3..80 Hz at 9.9 GHz (section IV), moved in proportion for the other carriers and held below 240 Hz (assumed): a high-pass
+// and a low-pass of second order (Butterworth, order assumed), bilinear, prewarped.
+class BandPass {
+  public:
+    BandPass(double low_Hz, double high_Hz, double rate_Hz);
+    double step(double x);
+    void settle(double x); // as if x had been there for ever
+
+  private:
+    struct Section {
+        double b0, b1, b2, a1, a2, x1 = 0, x2 = 0, y1 = 0, y2 = 0;
+        double step(double x);
+    };
+    Section high_pass_, low_pass_;
+};
+
+class Radar {
+  public:
+    static constexpr double rate_Hz = 512;        // section IV: 256 points in about 0.5 s
+    static constexpr int count_max = 1023;        // 10 bits
+
+    Radar(const RadarConfig &config, std::uint64_t seed);
+
+    // The next ADC value; path_m is where the rover is at that sample's instant.
+    std::uint16_t sample(double path_m);
+    RadarTrack &track() { return track_; }
+
+  private:
+    RadarConfig config_;
+    RadarTrack track_;
+    BandPass filter_;
+    Random noise_, fade_;
+    std::array<double, 3> flicker_{};
+    int faded_samples_ = 0;
+    bool settled_ = false;
+};
+
+} // namespace traction::sim

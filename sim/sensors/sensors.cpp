@@ -1,0 +1,110 @@
+#include "sensors.h"
+
+#include "sim/physics/math.h"
+
+#include <cmath>
+
+namespace traction::sim {
+
+namespace {
+constexpr double gravity_m_s2 = 9.80665;
+constexpr double accel_smoothing_s = 0.01; // [s] assumed: what the beam and the springs of the body follow
+constexpr double lean_lag_s = 0.1;         // [s] of effect accel_tilt (catalogue)
+} // namespace
+
+SensorConfig default_sensors() {
+    SensorConfig config;
+    for (AnalogConfig &current : config.current) current.noise = current_noise_A;
+    config.battery.noise = battery_noise_V;
+    config.accel.noise = accel_noise_m_s2;
+    config.gyro.noise = gyro_noise_rad_s;
+    return config;
+}
+
+void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &config) {
+    for (const ActiveEffect &active : effects) {
+        const std::string_view name = active.effect->name;
+        const std::size_t first = active.wheel < 0 ? 0 : static_cast<std::size_t>(active.wheel);
+        const std::size_t end = active.wheel < 0 ? wheel_count : first + 1;
+        if (name == "accel_bias") config.accel.offset += active.value("bias_m_s2");
+        if (name == "accel_drift") config.accel.drift_s += active.value("rate_m_s3");
+        if (name == "accel_scale") config.accel.gain *= 1 + active.value("change");
+        if (name == "accel_tilt") config.accel_tilt_rad_s2_m += active.value("compliance_rad_s2_m");
+        if (name == "radar_scale") config.radar_scale += active.value("change");
+        if (name == "radar_pitch") config.radar_pitch_s2_m += active.value("coefficient_s2_m");
+        if (name == "voltage_gain") config.battery.gain *= 1 + active.value("change");
+        if (name == "camera_delay") config.camera.delay_s += active.value("delay_s");
+        if (name == "camera_scale") config.camera.scale *= 1 + active.value("change");
+        for (std::size_t wheel = first; wheel < end; wheel++) {
+            if (name == "current_gain") config.current[wheel].gain *= 1 + active.value("change");
+            if (name == "current_offset") config.current[wheel].offset += active.value("offset_A");
+            if (name == "encoder_missed") config.encoder_missed[wheel] += active.value("fraction");
+        }
+    }
+}
+
+Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &start)
+    : config_(config), radar_(config.radar, mix64(seed + 1)), camera_(config.camera, mix64(seed + 2)),
+      battery_(config.battery, seed, "battery"), accel_(config.accel, seed, "imu.accel"), gyro_(config.gyro, seed, "imu.gyro"),
+      last_(start) {
+    constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current",
+                                                             "wheel3.current"};
+    for (std::size_t i = 0; i < wheel_count; i++) current_.emplace_back(config.current[i], seed, name[i]);
+    if (const auto pose = camera_.step({start.t_s, start.position_m[0], start.position_m[1], start.yaw_rad}))
+        pending_.camera.push_back(*pose);
+}
+
+// The path that the beam sees: the body's, stretched by scale errors and by the pitch that tips the beam.
+void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
+    // nose down by p: cos(theta_d + p)/cos(theta_d) = cos p - tan(theta_d) sin p; up a rise the ground itself pitches the nose up
+    double stretch = (1 + config_.radar_scale) * (1 + config_.radar_pitch_s2_m * accel_m_s2);
+    if (config_.radar_mount_pitch != 0) {
+        double ground_rad = 0;
+        if (config_.ground_slope_rad != 0)
+            ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
+        const double pitch = config_.radar_mount_pitch * (truth.pitch_rad - ground_rad);
+        stretch *= 1 - 0.36397023426620234 * pitch - 0.5 * pitch * pitch; // tan 20 deg
+    }
+    const double step_m = (truth.path_m - last_.path_m) * stretch;
+    const double step_s = truth.t_s - last_.t_s;
+    for (;;) {
+        const double due_s = static_cast<double>(radar_samples_) / Radar::rate_Hz;
+        if (due_s > truth.t_s + 1e-9) break; // 1 ns: both clocks are sums
+        const double u = step_s > 0 ? (due_s - last_.t_s) / step_s : 1;
+        pending_.radar_count.push_back(radar_.sample(radar_path_m_ + u * step_m));
+        radar_samples_++;
+    }
+    radar_path_m_ += step_m;
+}
+
+void Sensors::step(const Truth &truth) {
+    const double step_s = truth.t_s - last_.t_s;
+    if (step_s > 0) {
+        const double rate = (truth.v_body_m_s[0] - last_.v_body_m_s[0]) / step_s;
+        accel_m_s2_ += (rate - accel_m_s2_) * std::fmin(1.0, step_s / accel_smoothing_s);
+        lean_rad_ += (config_.accel_tilt_rad_s2_m * accel_m_s2_ - lean_rad_) * std::fmin(1.0, step_s / lean_lag_s);
+    }
+    step_radar(truth, accel_m_s2_);
+    for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A);
+    battery_.add(truth.battery_voltage_V);
+    accel_.add(truth.specific_force_m_s2[0] + gravity_m_s2 * lean_rad_);
+    gyro_.add(truth.rate_body_rad_s[2]);
+    if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
+        pending_.camera.push_back(*pose);
+    last_ = truth;
+}
+
+void Sensors::measure(Measurements &out) {
+    out = pending_;
+    pending_.radar_count.clear();
+    pending_.camera.clear();
+    for (std::size_t i = 0; i < wheel_count; i++) {
+        out.encoder_count[i] = Encoder(config_.encoder_missed[i]).count(last_.wheel[i].motor_angle_rad);
+        out.current_A[i] = current_[i].measure(last_.t_s);
+    }
+    out.battery_V = battery_.measure(last_.t_s);
+    out.accel_x_m_s2 = accel_.measure(last_.t_s, config_.accel_vibration_1_s * std::fabs(last_.v_body_m_s[0]));
+    out.gyro_z_rad_s = gyro_.measure(last_.t_s);
+}
+
+} // namespace traction::sim

@@ -1,0 +1,77 @@
+// sensors.h - every sensor of the rover together: the truth of each plant step in, the measurements of a 10 ms tick out.
+//
+// SI units; raw counts are made in hal/sim. Effects of the catalogue that act on a sensor are configuration here.
+#pragma once
+
+#include "analog.h"
+#include "camera.h"
+#include "encoder.h"
+#include "radar.h"
+
+#include "sim/physics/effects/catalogue.h"
+#include "sim/plant/truth.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace traction::sim {
+
+struct SensorConfig {
+    RadarConfig radar;
+    std::array<AnalogConfig, wheel_count> current;
+    AnalogConfig battery;
+    AnalogConfig accel;
+    double accel_vibration_1_s = sim::accel_vibration_1_s;
+    double accel_tilt_rad_s2_m = 0; // effect accel_tilt
+    AnalogConfig gyro;
+    CameraConfig camera;
+    std::array<double, wheel_count> encoder_missed{};
+    double radar_scale = 0;         // effect radar_scale
+    double radar_pitch_s2_m = 0;    // effect radar_pitch
+    double radar_mount_pitch = 1;   // how much of the body's pitch turns the beam (1: rigid mount)
+    double ground_slope_rad = 0;    // pitch is counted from the ground: rise along ground_direction_rad
+    double ground_direction_rad = 0;
+};
+
+// The sensors as built, with the stated noise of each.
+SensorConfig default_sensors();
+
+// Adds what the sensor effects among `effects` do; effects that act elsewhere are left to the plant.
+void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &config);
+
+// All measurements of one tick.
+struct Measurements {
+    std::array<std::int32_t, wheel_count> encoder_count{};
+    std::array<double, wheel_count> current_A{};
+    double battery_V = 0, accel_x_m_s2 = 0, gyro_z_rad_s = 0;
+    std::vector<std::uint16_t> radar_count; // since the last tick, oldest first
+    std::vector<Pose> camera;               // since the last tick
+};
+
+class Sensors {
+  public:
+    // `start` is the truth before the first step.
+    Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &start);
+
+    void step(const Truth &truth);        // once per plant step
+    void measure(Measurements &out);      // ends the tick
+
+  private:
+    void step_radar(const Truth &truth, double accel_m_s2);
+    SensorConfig config_;
+    Radar radar_;
+    Camera camera_;
+    std::vector<AnalogSensor> current_;
+    AnalogSensor battery_, accel_, gyro_;
+    Measurements pending_;
+    Truth last_;
+    double radar_path_m_ = 0;
+    std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
+    double lean_rad_ = 0;            // accel_tilt, lagged
+    double accel_m_s2_ = 0;          // along x, smoothed over 10 ms
+};
+
+} // namespace traction::sim
