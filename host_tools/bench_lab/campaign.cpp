@@ -1,0 +1,128 @@
+#include "campaign.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+extern char **environ;
+
+namespace traction::bench_lab {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void run(const std::vector<std::string> &command) {
+    std::vector<char *> arguments;
+    std::string line;
+    for (const std::string &word : command) {
+        arguments.push_back(const_cast<char *>(word.c_str()));
+        line += word + " ";
+    }
+    arguments.push_back(nullptr);
+    pid_t child = 0;
+    if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0)
+        throw std::runtime_error("cannot start " + command[0] + "; to mend: build everything (./traction build)");
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error("this failed: " + line);
+}
+
+// Runs task(0..count-1) on several threads; the first exception is thrown again here.
+void in_parallel(std::size_t count, int jobs, const std::function<void(std::size_t)> &task) {
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr failure;
+    std::mutex mutex;
+    std::vector<std::thread> threads;
+    for (int j = 0; j < std::max(1, jobs); ++j)
+        threads.emplace_back([&] {
+            for (std::size_t i = next++; i < count; i = next++) {
+                try {
+                    task(i);
+                } catch (...) {
+                    const std::lock_guard lock(mutex);
+                    if (!failure) failure = std::current_exception();
+                    next = count;
+                }
+            }
+        });
+    for (std::thread &thread : threads) thread.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
+
+// The soil stands in the log's header: the operator knows the ground he drives on.
+std::string soil_of(const std::string &log_file) {
+    std::ifstream file(log_file);
+    std::string line;
+    while (std::getline(file, line) && !line.empty() && line[0] == '#')
+        if (line.rfind("# soil: ", 0) == 0) return line.substr(8);
+    return "sand";
+}
+
+} // namespace
+
+std::vector<SealedLog> make_logs(const CampaignOptions &options) {
+    fs::create_directories(options.folder + "/seals");
+    std::vector<SealedLog> logs(static_cast<std::size_t>(options.logs));
+    in_parallel(logs.size(), options.jobs, [&](std::size_t i) {
+        const std::string seed = std::to_string(options.seed + i);
+        SealedLog &one = logs[i];
+        one.log = options.folder + "/log_" + seed + ".csv";
+        one.seal = options.folder + "/seals/seal_" + seed + ".json";
+        std::vector<std::string> command = {options.lab_generate, "--blind", "--seed", seed, "--duration", number(options.duration_s), "--seal", one.seal};
+        if (options.generator == "plant") {
+            const std::string scenario = options.folder + "/seals/scenario_" + seed + ".toml";
+            command.insert(command.end(), {"--scenario", scenario});
+            run(command);
+            run({options.traction, "simulate", scenario, "--out", one.log});
+        } else {
+            command.insert(command.end(), {"--out", one.log});
+            run(command);
+        }
+        one.soil = soil_of(one.log);
+        if (options.step) options.step();
+    });
+    return logs;
+}
+
+void answer_all(std::vector<SealedLog> &logs, const CampaignOptions &options, const Lab &lab) {
+    in_parallel(logs.size(), options.jobs, [&](std::size_t i) {
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            logs[i].result = lab(logs[i]);
+        } catch (const std::exception &error) {
+            logs[i].result = {{"error", error.what()}};
+        }
+        logs[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        std::ofstream(logs[i].log + ".answer.json") << logs[i].result.dump(1) << '\n';
+        if (options.step) options.step();
+    });
+}
+
+std::vector<Judged> open_seals(const std::vector<SealedLog> &logs) {
+    std::vector<Judged> judged;
+    for (const SealedLog &one : logs) {
+        std::ifstream file;
+        file.exceptions(std::ios::failbit | std::ios::badbit);
+        file.open(one.seal);
+        judged.push_back({fs::path(one.log).filename().string(), nlohmann::json::parse(file), one.result, one.seconds});
+    }
+    return judged;
+}
+
+} // namespace traction::bench_lab

@@ -1,0 +1,165 @@
+#include "reading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace traction::bench_lab {
+
+namespace {
+
+using nlohmann::json;
+
+const json &list_of(const json &from, const char *key) {
+    static const json none = json::array();
+    const auto found = from.find(key);
+    return found != from.end() && found->is_array() ? *found : none;
+}
+
+double number(const json &from, const char *key, double otherwise = 0) {
+    const auto found = from.find(key);
+    return found != from.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+std::string text(const json &from, const char *key) {
+    const auto found = from.find(key);
+    return found != from.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+// "wiring_resistance on wheel 2" -> "wiring_resistance"
+std::string plain(const std::string &label) { return label.substr(0, label.find(' ')); }
+
+int wheel_of(const std::string &label) {
+    const std::size_t at = label.find(" on wheel ");
+    return at == std::string::npos ? -1 : std::atoi(label.c_str() + at + 10);
+}
+
+// Effects that the lab says cannot be told apart from `name` in this log, itself included.
+std::set<std::string> class_of(const std::string &name, const json &result) {
+    std::set<std::string> members = {name};
+    for (const json &one : list_of(result, "classes")) {
+        const json &names = list_of(one, "members");
+        const bool inside = std::any_of(names.begin(), names.end(), [&](const json &n) { return n.is_string() && plain(n.get<std::string>()) == name; });
+        if (!inside) continue;
+        for (const json &n : names)
+            if (n.is_string()) members.insert(plain(n.get<std::string>()));
+    }
+    return members;
+}
+
+void coverage(const json &effect, const json &result, Reading &reading) {
+    const std::string name = text(effect, "name");
+    for (const json &candidate : list_of(result, "candidates")) {
+        const std::string verdict = text(candidate, "verdict");
+        if (plain(text(candidate, "effect")) != name || (verdict != "named" && verdict != "class")) continue;
+        const auto parameters = candidate.find("parameters");
+        if (parameters == candidate.end() || !parameters->is_object()) continue;
+        for (const auto &[key, value] : effect.at("parameters").items()) {
+            const auto fitted = parameters->find(key);
+            if (fitted == parameters->end() || !fitted->is_object()) continue;
+            const double low = number(*fitted, "low", NAN), high = number(*fitted, "high", NAN), truth = value.get<double>();
+            if (std::isfinite(low) && std::isfinite(high)) reading.covered.push_back(truth >= low && truth <= high);
+        }
+        return;
+    }
+}
+
+// d' of the hidden size: the lab's d' of its own estimate, scaled by hidden size / estimate (so hidden size / standard error).
+double detectability(const json &effect, const json &result) {
+    double best = 0;
+    for (const json &candidate : list_of(result, "candidates")) {
+        if (plain(text(candidate, "effect")) != text(effect, "name")) continue;
+        if (static_cast<int>(number(candidate, "wheel", -1)) != effect.value("wheel", -1)) continue;
+        const auto parameters = candidate.find("parameters");
+        if (parameters == candidate.end() || !parameters->is_object()) continue;
+        for (const auto &[key, value] : effect.at("parameters").items()) {
+            const auto fitted = parameters->find(key);
+            if (fitted == parameters->end() || !fitted->is_object() || !fitted->contains("low")) continue; // a shape parameter
+            const double size = std::fabs(number(*fitted, "value"));
+            if (size > 0) best = std::max(best, number(candidate, "detectability") * std::fabs(value.get<double>()) / size);
+        }
+    }
+    return best;
+}
+
+bool variable_right(const std::string &accepted, const json &result) {
+    const auto unknown = result.find("unknown");
+    if (unknown == result.end() || !unknown->is_object()) return false;
+    const std::string said = text(*unknown, "variable") + " " + text(*unknown, "balance");
+    std::istringstream list(accepted);
+    std::string word;
+    while (std::getline(list, word, '|'))
+        if (said.find(word) != std::string::npos) return true;
+    return false;
+}
+
+} // namespace
+
+Reading read_case(const json &seal, const json &result) {
+    Reading r;
+    r.category = text(seal, "category");
+    const json &hidden = list_of(seal, "effects");
+    std::set<std::string> truths;
+    for (const json &effect : hidden) truths.insert(text(effect, "name"));
+    r.has_lag = truths.count("backlash") + truths.count("relaxation_length") > 0;
+    if (!hidden.empty()) r.truth = text(hidden[0], "name"), r.truth_wheel = hidden[0].value("wheel", -1);
+
+    const json verdict = result.value("verdict", json::object());
+    const std::string kind = text(verdict, "kind");
+    const auto unknown = result.find("unknown");
+    r.flagged_unknown = kind == "unknown" || kind == "partial" || (unknown != result.end() && unknown->is_object() && !unknown->empty());
+    std::set<std::string> found;
+    int wheel_said = -1;
+    for (const json &name : list_of(verdict, "effects")) {
+        const std::string label = name.get<std::string>();
+        if (label.rfind("shape:", 0) == 0) continue;
+        if (r.named.empty()) wheel_said = wheel_of(label);
+        r.named.push_back(plain(label));
+        bool right = false;
+        for (const std::string &member : class_of(plain(label), result))
+            if (truths.count(member) != 0) right = true, found.insert(member);
+        r.named_right.push_back(right);
+    }
+    // one class among several names of a "class" verdict counts once
+    if (kind == "class" && std::find(r.named_right.begin(), r.named_right.end(), true) != r.named_right.end()) r.named_right.assign(1, true);
+    else if (kind == "class" && !r.named_right.empty()) r.named_right.assign(1, false);
+    r.truths_named = static_cast<int>(found.size());
+    r.first_named_right = !r.named_right.empty() && r.named_right.front();
+    const json &candidates = list_of(result, "candidates");
+    if (!candidates.empty() && !r.truth.empty()) {
+        const std::string first = text(candidates[0], "effect");
+        r.first_right = class_of(plain(first), result).count(r.truth) != 0;
+        if (r.named.empty()) wheel_said = static_cast<int>(number(candidates[0], "wheel", -1));
+    }
+    if (r.first_named_right) r.first_right = true;
+    for (const json &candidate : candidates) // the ranking carries the wheel as a number
+        if (!r.named.empty() && plain(text(candidate, "effect")) == r.named.front() && wheel_said < 0) {
+            wheel_said = static_cast<int>(number(candidate, "wheel", -1));
+            break;
+        }
+    r.wheel_right = wheel_said == r.truth_wheel;
+    for (const json &effect : hidden)
+        if (found.count(text(effect, "name")) != 0) coverage(effect, result, r);
+    if (!hidden.empty()) r.detectability = detectability(hidden[0], result);
+    r.visible = r.detectability >= 2;
+    if (r.category == "outside" && r.flagged_unknown) r.variable_right = variable_right(text(hidden[0], "variable"), result);
+
+    r.said = r.named.empty() ? (r.flagged_unknown ? "(unknown: " + (unknown != result.end() && unknown->is_object() ? text(*unknown, "variable") : std::string("?")) + ")" : "(nothing)")
+                             : (r.first_named_right && !r.truth.empty() ? r.truth : r.named.front());
+    const json &ladder = list_of(result, "ladder");
+    if (!ladder.empty()) {
+        const double floor = number(ladder.back(), "floor"), after = number(ladder.back(), "heldout");
+        if (floor > 0 && after > 0) r.error_over_floor = after / floor;
+    }
+    return r;
+}
+
+json reading_json(const Reading &r) {
+    return {{"category", r.category}, {"truth", r.truth}, {"truth_wheel", r.truth_wheel}, {"detectability", r.detectability},
+            {"said", r.said}, {"named", r.named}, {"named_right", r.named_right}, {"covered", r.covered}, {"first_right", r.first_right},
+            {"first_named_right", r.first_named_right}, {"wheel_right", r.wheel_right}, {"truths_named", r.truths_named},
+            {"flagged_unknown", r.flagged_unknown}, {"variable_right", r.variable_right}, {"error_over_floor", r.error_over_floor}};
+}
+
+} // namespace traction::bench_lab
