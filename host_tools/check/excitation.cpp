@@ -141,7 +141,7 @@ void judge_excitation(const Excitation &out, const Grid &grid, Findings &finding
     if (out.standstill_s < 2) note("no_standstill", say("the longest standstill is %.2g s: sensor offsets are not seen alone", out.standstill_s), "stand still for 3 s at the beginning", out.standstill_s);
     if (out.starts < 3) note("few_starts", say("%d start(s) from standstill: dry friction and inertia are hardly told apart", out.starts), "stop and start a few times", out.starts);
     if (out.slip_high - out.slip_low < 0.15) note("narrow_slip", say("slip stays within %.2f..%.2f: the soil law's shape is not seen", out.slip_low, out.slip_high), "brake hard, or sweep the slip of two wheels (soil sweep)", out.slip_high - out.slip_low);
-    if (std::isnan(out.slip_high)) note("no_ground_speed", "there is no ground speed (camera, radar, carriage): slip cannot be known", "log a camera or a radar", 0);
+    if (grid.ground_speed.empty()) note("no_ground_speed", "there is no ground speed (camera, radar, carriage): slip cannot be known", "log a camera or a radar", 0);
     if (std::isfinite(out.turning_s) && out.turning_s < 2) note("no_turns", say("%.2g s of turning: lateral scrub and left-right differences are not seen", out.turning_s), "turn to both sides", out.turning_s);
     if (out.accel_rms_m_s2 < 0.02) note("low_accel", say("the body's acceleration is %.2g m/s^2 rms: load transfer and inertia are not seen", out.accel_rms_m_s2), "start and brake harder", out.accel_rms_m_s2);
     if (std::isfinite(out.revisited) && out.revisited < 0.05) note("no_place_twice", say("%.0f %% of the path is driven twice: a change of soil with place and one with time look alike", 100 * out.revisited), "drive the same track twice", out.revisited);

@@ -62,20 +62,20 @@ nlohmann::json effect_json(const sim::Effect &effect) {
 void wrap(const char *label, std::string_view text) {
     constexpr std::size_t width = 84;
     std::string line;
-    std::printf("  %-9s ", label);
+    std::printf("  %-10s ", label);
     bool first = true;
     while (!text.empty()) {
         const std::size_t space = std::min(text.find(' '), text.size());
         const std::string_view word = text.substr(0, space);
         text.remove_prefix(std::min(space + 1, text.size()));
         if (!line.empty() && line.size() + 1 + word.size() > width) {
-            std::printf("%s%s\n", first ? "" : "            ", line.c_str());
+            std::printf("%s%s\n", first ? "" : "             ", line.c_str());
             first = false;
             line.clear();
         }
         line += (line.empty() ? "" : " ") + std::string(word);
     }
-    std::printf("%s%s\n", first ? "" : "            ", line.c_str());
+    std::printf("%s%s\n", first ? "" : "             ", line.c_str());
 }
 
 void explain(const sim::Effect &effect) {
