@@ -171,12 +171,18 @@ Soil soil_of(const std::string &name) {
     throw std::invalid_argument("unknown soil \"" + name + "\"; use sand, gravel or concrete");
 }
 
+Machine machine_of(const GeneratorConfig &config) {
+    Random random(config.seed, 11);
+    Machine machine = config.exact ? nominal(config.soil) : draw(config.soil, random);
+    if (config.exact) machine.grip_noise = 0;
+    return machine;
+}
+
 log::Log generate(const GeneratorConfig &config) {
     Hidden hidden;
     for (const Setting &setting : config.hidden) apply(setting, hidden);
-    Random random(config.seed, 11), ground(config.seed, 12), plan_random(config.seed, 13);
-    Machine machine = config.exact ? nominal(config.soil) : draw(config.soil, random);
-    if (config.exact) machine.grip_noise = 0;
+    Random ground(config.seed, 12), plan_random(config.seed, 13);
+    const Machine machine = machine_of(config);
     World world(machine, hidden, ground);
     const Machine believed = nominal(config.soil); // the operator knows the data sheet
     Driver driver(make_plan(config.drive, config.duration_s, plan_random), believed.radius, believed.half_track);

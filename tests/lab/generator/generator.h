@@ -28,6 +28,9 @@ struct GeneratorConfig {
 // The measured log, header with the sensors' specifications ("noise.<signal>"), never with what is hidden.
 log::Log generate(const GeneratorConfig &config);
 
+// The machine that `config` draws (the seal keeps it, so that a judge can tell which nuisance was off).
+Machine machine_of(const GeneratorConfig &config);
+
 Soil soil_of(const std::string &name); // throws std::invalid_argument
 std::string name_of(Soil soil);
 
