@@ -1,0 +1,259 @@
+// Every latch of fault_t: its cause is injected into control_step of a driving rover; the reaction and its delay are checked.
+#include "firmware/core/rover_config.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+// A rover whose sensors say that it drives at 3 rad/s with a healthy current.
+class DrivingRover : public ::testing::Test {
+  protected:
+    control_config_t config = rover_config_default();
+    control_state_t state = {};
+    command_t command = {};
+    sensor_frame_t frame = {};
+    trace_t trace = {};
+    int tick = 0;
+
+    void SetUp() override
+    {
+        control_reset(&config, &state);
+        command.mode = MODE_WHEEL_SPEED;
+        for (float &speed : command.wheel_speed_rad_s) {
+            speed = 3;
+        }
+        frame.present = 0xfffu;
+        frame.battery_count = 1800;
+        for (auto &count : frame.current_count) {
+            count = 2048 + 150;
+        }
+        run(100);
+        ASSERT_EQ(trace.faults, 0u);
+        ASSERT_TRUE(trace.actuator.motor_enable);
+        ASSERT_NE(trace.actuator.duty_q15[0], 0);
+    }
+    // A change of the frame made before run() lasts.
+    void run(int ticks)
+    {
+        for (int i = 0; i < ticks; ++i) {
+            frame.tick = static_cast<uint32_t>(tick);
+            for (int w = 0; w < WHEEL_COUNT; ++w) {
+                frame.encoder_count[w] += turn[w];
+            }
+            frame.radar_samples = static_cast<uint8_t>(tick % 8 == 0 ? 6 : 5);
+            for (int n = 0; n < frame.radar_samples && !frozen; ++n) {
+                phase += 2 * M_PI * 10 / 512;
+                frame.radar_count[n] = static_cast<uint16_t>(512 + 100 * std::cos(phase));
+            }
+            trace = control_step(&config, &state, &command, &frame);
+            ++tick;
+        }
+    }
+    // How many ticks pass until the bridges are released; -1 when they are not within `most`.
+    int ticks_until_off(int most)
+    {
+        for (int i = 1; i <= most; ++i) {
+            run(1);
+            if (!trace.actuator.motor_enable) {
+                for (const int16_t duty : trace.actuator.duty_q15) {
+                    EXPECT_EQ(duty, 0);
+                }
+                EXPECT_EQ(trace.mode, MODE_STOP);
+                return i;
+            }
+        }
+        return -1;
+    }
+    int turn[WHEEL_COUNT] = {29, 29, 29, 29}; // 3 rad/s
+    bool frozen = false;
+    double phase = 0;
+};
+
+TEST_F(DrivingRover, emergency_stop_releases_the_motors_in_its_own_tick)
+{
+    frame.emergency_stop = true;
+    EXPECT_EQ(ticks_until_off(10), 1); // asked for: two ticks
+    EXPECT_EQ(trace.faults, FAULT_EMERGENCY_STOP);
+}
+
+TEST_F(DrivingRover, emergency_stop_stays_latched_until_stop_is_commanded_without_it)
+{
+    frame.emergency_stop = true;
+    run(1);
+    frame.emergency_stop = false;
+    run(500);
+    EXPECT_FALSE(trace.actuator.motor_enable);
+    command.mode = MODE_STOP;
+    run(1);
+    EXPECT_EQ(trace.faults, 0u);
+    command.mode = MODE_WHEEL_SPEED;
+    run(1);
+    EXPECT_TRUE(trace.actuator.motor_enable);
+}
+
+struct Loss {
+    const char *name;
+    uint32_t bit, fault;
+};
+class Losing : public DrivingRover, public ::testing::WithParamInterface<Loss> {};
+
+TEST_P(Losing, a_silent_sensor_releases_the_motors_within_100_ms)
+{
+    frame.present &= ~GetParam().bit;
+    const int ticks = ticks_until_off(30);
+    EXPECT_GT(ticks, 2);   // one lost frame is forgiven
+    EXPECT_LE(ticks, 10);  // 100 ms
+    EXPECT_EQ(trace.faults, GetParam().fault);
+}
+
+INSTANTIATE_TEST_SUITE_P(Safety, Losing,
+                         ::testing::Values(Loss{"encoder0", FRAME_ENCODER_0, FAULT_ENCODER_LOST}, Loss{"encoder3", FRAME_ENCODER_0 << 3u, FAULT_ENCODER_LOST},
+                                           Loss{"current0", FRAME_CURRENT_0, FAULT_CURRENT_LOST}, Loss{"current3", FRAME_CURRENT_0 << 3u, FAULT_CURRENT_LOST},
+                                           Loss{"battery", FRAME_BATTERY, FAULT_BATTERY_LOST}, Loss{"accel", FRAME_ACCEL, FAULT_ACCEL_LOST},
+                                           Loss{"gyro", FRAME_GYRO, FAULT_GYRO_LOST}, Loss{"radar", FRAME_RADAR, FAULT_RADAR_LOST}),
+                         [](const auto &loss) { return loss.param.name; });
+
+TEST_F(DrivingRover, one_silent_tick_of_every_sensor_is_forgiven)
+{
+    frame.present = 0;
+    run(1);
+    frame.present = 0xfffu;
+    run(50);
+    EXPECT_EQ(trace.faults, 0u);
+}
+
+TEST_F(DrivingRover, a_sensor_that_the_rover_does_not_have_is_not_missed)
+{
+    config.safety.required &= ~static_cast<uint32_t>(FRAME_GYRO);
+    frame.present &= ~static_cast<uint32_t>(FRAME_GYRO);
+    run(100);
+    EXPECT_EQ(trace.faults, 0u);
+}
+
+TEST_F(DrivingRover, an_absurd_sensor_releases_the_motors_within_100_ms)
+{
+    frame.current_count[1] = 4095;
+    EXPECT_LE(ticks_until_off(30), 10);
+    EXPECT_EQ(trace.faults, FAULT_ABSURD_SENSOR | FAULT_CURRENT_LOST);
+}
+
+TEST_F(DrivingRover, an_old_command_releases_the_motors_within_100_ms)
+{
+    for (uint32_t age = 1; age <= 10; ++age) {
+        command.age_ticks = age;
+        run(1);
+    }
+    EXPECT_FALSE(trace.actuator.motor_enable);
+    EXPECT_EQ(trace.faults, FAULT_COMMAND_TIMEOUT);
+}
+
+TEST_F(DrivingRover, missed_ticks_release_the_motors_and_a_single_one_does_not)
+{
+    tick += 1;
+    run(1);
+    EXPECT_EQ(trace.faults, 0u);
+    run(200);
+    for (int &step : turn) {
+        step *= 12; // the wheels went on turning meanwhile
+    }
+    tick += 11;
+    run(1);
+    EXPECT_EQ(trace.faults, FAULT_MISSED_TICKS);
+    EXPECT_FALSE(trace.actuator.motor_enable);
+}
+
+TEST_F(DrivingRover, a_clock_that_stands_still_releases_the_motors)
+{
+    tick -= 1;
+    run(1);
+    EXPECT_EQ(trace.faults, FAULT_MISSED_TICKS);
+}
+
+TEST_F(DrivingRover, a_low_battery_releases_the_motors_after_half_a_second_and_a_dip_does_not)
+{
+    frame.battery_count = 1300; // 5.2 V
+    run(40);
+    EXPECT_EQ(trace.faults, 0u);
+    frame.battery_count = 1800;
+    run(1);
+    frame.battery_count = 1300;
+    const int ticks = ticks_until_off(100);
+    EXPECT_GE(ticks, 49); // 0.5 s
+    EXPECT_LE(ticks, 53);
+    EXPECT_EQ(trace.faults, FAULT_LOW_BATTERY);
+}
+
+TEST_F(DrivingRover, over_current_limits_that_wheel_alone_after_its_i2t)
+{
+    frame.current_count[2] = 2048 + 1100; // 2.2 A: (2.2^2 - 1.5^2) t = 8 at 3.09 s
+    run(300);
+    EXPECT_EQ(trace.faults, 0u);
+    run(15);
+    EXPECT_EQ(trace.faults, FAULT_OVER_CURRENT);
+    EXPECT_TRUE(trace.actuator.motor_enable);
+    command.mode = MODE_OPEN_LOOP;
+    for (float &duty : command.duty) {
+        duty = 1;
+    }
+    run(1);
+    const double current = (static_cast<double>(trace.wheel[2].duty) * 7.2 - 0.265 * static_cast<double>(trace.wheel[2].speed_rad_s)) / 3.24;
+    EXPECT_NEAR(current, 1.5, 0.01); // the continuous current; float rounding and Q15
+    EXPECT_EQ(trace.wheel[1].duty, 1.0f);
+}
+
+TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second)
+{
+    turn[0] = 0;
+    frame.current_count[0] = 2048 + 800;
+    run(99);
+    EXPECT_EQ(trace.faults, 0u);
+    run(5);
+    EXPECT_EQ(trace.faults, FAULT_STALL);
+    EXPECT_TRUE(trace.actuator.motor_enable);
+    EXPECT_LE(trace.wheel[0].duty, 1.5f * 3.24f / 7.2f + 1e-3f);
+}
+
+TEST_F(DrivingRover, an_overheated_winding_releases_the_motors)
+{
+    config.safety.i2t_max_A2s = 1e9f; // so that temperature alone decides
+    frame.current_count[3] = 2048 + 1100;
+    // 2.2 A: 15.7 W * 12 K/W = 188 K after many 60 s; 95 K after 60 ln(188/(188 - 95)) = 42 s
+    run(4000);
+    EXPECT_EQ(trace.faults & FAULT_OVER_TEMPERATURE, 0u);
+    run(500);
+    EXPECT_NE(trace.faults & FAULT_OVER_TEMPERATURE, 0u);
+    EXPECT_FALSE(trace.actuator.motor_enable);
+}
+
+TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motors)
+{
+    for (int &step : turn) {
+        step = 0;
+    }
+    for (auto &speed : command.wheel_speed_rad_s) {
+        speed = 0;
+    }
+    state.ground_speed.speed_m_s = 0.8f;
+    state.ground_speed.p_vv = 1e-6f;
+    for (int k = 0; k < 150 && trace.faults == 0u; ++k) {
+        state.ground_speed.speed_m_s = 0.8f; // as a radar that hears something else would make it
+        run(1);
+    }
+    EXPECT_EQ(trace.faults, FAULT_SPEED_DISAGREE);
+    EXPECT_FALSE(trace.actuator.motor_enable);
+}
+
+TEST_F(DrivingRover, a_radar_that_repeats_one_value_while_the_wheels_turn_is_lost)
+{
+    frozen = true;
+    for (auto &count : frame.radar_count) {
+        count = 512;
+    }
+    const int ticks = ticks_until_off(150);
+    EXPECT_GT(ticks, 90); // 1 s
+    EXPECT_EQ(trace.faults, FAULT_RADAR_LOST);
+}
+
+} // namespace
