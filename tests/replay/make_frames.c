@@ -47,7 +47,10 @@ int main(int argc, char **argv)
             fprintf(out, " %d", 2048 + (int)drive * 120 + (int)draw(40) - 20);
         }
         const uint32_t samples = tick % 25 < 3 ? 6 : 5;
-        fprintf(out, " %d %d %d %d %u", 1800 - (int)draw(20), (int)draw(100) - 40, (int)draw(40) - 20, tick >= 2900 && tick < 2910, samples);
+        const int battery = 1800 - (int)draw(20);
+        const int accel = (int)draw(100) - 40;
+        const int gyro = (int)draw(40) - 20;
+        fprintf(out, " %d %d %d %d %u", battery, accel, gyro, tick >= 2900 && tick < 2910, samples);
         for (uint32_t n = 0; n < samples; n++) {
             phase += drive * 1150; // about 9 Hz of Doppler per 0.15 m/s
             const int fade = triangle((uint32_t)(tick * 521));
