@@ -1,6 +1,7 @@
 #include "diagnose.h"
 
 #include "screen.h"
+#include "session.h"
 
 #include "sim/physics/effects/catalogue.h"
 
@@ -395,6 +396,7 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
     const bool any_class = !d.classes.empty();
     if (d.accepted.empty()) d.kind = d.unknown ? "unknown" : "nothing";
     else d.kind = d.unknown ? "partial" : any_class ? "class" : "named";
+    d.text = verdict_text(d);
     return d;
 }
 

@@ -1,0 +1,91 @@
+// verb_export.cpp - traction export: every residual as CSV, or the firmware's parameters from a fitted model.
+#include "verbs.h"
+
+#include "host_tools/lab/compare.h"
+#include "host_tools/lab/result.h"
+#include "host_tools/lab/session.h"
+#include "host_tools/report/report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace traction::cli {
+
+namespace {
+
+struct ExportRequest {
+    lab::Request input;
+    std::string residuals, firmware;
+};
+
+std::string line(const char *name, double value, const char *comment) {
+    char buffer[160];
+    std::snprintf(buffer, sizeof buffer, "%s = %.7g # %s\n", name, value, comment);
+    return buffer;
+}
+
+// The numbers of rover_config_t that a model knows, with the effects that change them folded in.
+std::string firmware_text(const lab::Model &model) {
+    const lab::WheelSpec &wheel = model.wheel.front();
+    double KG = wheel.motor.at("torque_constant_Nm_A").value, b = wheel.motor.at("viscous_Nms").value, t0 = wheel.motor.at("coulomb_Nm").value;
+    double radius = wheel.geometry.at("radius_m").value;
+    for (const lab::EffectUse &use : model.effects) {
+        if (use.wheel >= 0) continue; // the firmware has one set for all wheels
+        const auto value = [&](const char *key) { return use.parameters.count(key) != 0 ? use.parameters.at(key).value : 0.0; };
+        if (use.name == "torque_constant") KG *= 1 + value("change");
+        if (use.name == "viscous_friction") b += value("coefficient_Nms");
+        if (use.name == "coulomb_friction") t0 += value("torque_Nm");
+        if (use.name == "wheel_radius") radius *= 1 + value("change");
+    }
+    return "# parameters for the firmware, from the model \"" + model.name + "\"\nformat = \"traction.firmware/1\"\n" +
+           line("wheel_radius_m", radius, "m, under load") + line("torque_constant_Nm_A", KG, "N m/A at the wheel, (17)") +
+           line("viscous_Nms", b, "N m s, (18)") + line("coulomb_Nm", t0, "N m, (18)") + line("inertia_kg_m2", wheel.motor.at("inertia_kg_m2").value, "kg m^2, (17)") +
+           line("resistance_ohm", wheel.motor.at("resistance_ohm").value, "ohm") + line("mass_kg", model.rover.at("mass_kg").value, "kg");
+}
+
+void export_all(const ExportRequest &request, Outcome &outcome) {
+    outcome.json = {{"schema", "traction.lab/1"}, {"verb", "export"}};
+    if (!request.firmware.empty()) {
+        const std::string text = firmware_text(lab::read_model(request.input.model));
+        report::write_text(text, request.firmware);
+        std::printf("wrote %s\n", request.firmware.c_str());
+        outcome.json["firmware"] = text;
+    }
+    if (request.residuals.empty()) return;
+    if (request.input.log.empty()) throw CLI::ValidationError("export", "--residuals needs --log LOG");
+    const lab::Session session = lab::open_session(request.input);
+    const lab::Comparison comparison = lab::compare(session.model, session.data, true);
+    std::string text = "balance,t_s,measured,model,residual,noise,unit\n";
+    for (const lab::BalanceComparison &b : comparison.balances)
+        for (std::size_t i = 0; i < b.t_s.size(); ++i) {
+            char buffer[200];
+            std::snprintf(buffer, sizeof buffer, "%s,%.6f,%.9g,%.9g,%.9g,%.9g,%s\n", b.name.c_str(), b.t_s[i], b.measured[i], b.model[i], b.measured[i] - b.model[i], b.noise, b.unit.c_str());
+            text += buffer;
+        }
+    report::write_text(text, request.residuals);
+    std::printf("wrote %s\n", request.residuals.c_str());
+    const nlohmann::json firmware = outcome.json.value("firmware", nlohmann::json());
+    outcome.json = lab::head_json("export", session.model, session.data);
+    lab::put_comparison(outcome.json, comparison);
+    if (!firmware.is_null()) outcome.json["firmware"] = firmware;
+}
+
+} // namespace
+
+void add_export(CLI::App &app, Outcome &outcome) {
+    CLI::App *verb = app.add_subcommand("export", "residuals as CSV or JSON, a model's numbers for the firmware");
+    auto request = std::make_shared<ExportRequest>();
+    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
+    verb->add_option("--log", request->input.log, "log (CSV)")->type_name("FILE");
+    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
+    verb->add_option("--residuals", request->residuals, "write every residual to this CSV")->type_name("FILE");
+    verb->add_option("--firmware", request->firmware, "write the firmware's parameters to this file")->type_name("FILE");
+    add_json_option(verb, outcome);
+    verb->callback([=, &outcome] {
+        if (request->residuals.empty() && request->firmware.empty()) throw CLI::ValidationError("export", "give --residuals FILE or --firmware FILE");
+        export_all(*request, outcome);
+    });
+}
+
+} // namespace traction::cli

@@ -1,0 +1,83 @@
+// verb_fit.cpp - traction fit: a model's parameters from a log, with intervals, whiteness and held-out error.
+#include "verbs.h"
+
+#include "host_tools/lab/compare.h"
+#include "host_tools/lab/next.h"
+#include "host_tools/lab/result.h"
+#include "host_tools/lab/session.h"
+#include "host_tools/report/report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace traction::cli {
+
+namespace {
+
+void print_table(const char *title, const lab::Parameters &table) {
+    for (const auto &[key, p] : table)
+        if (std::isfinite(p.low)) std::printf("%-10s %-26s %12.5g  [%.5g, %.5g] %s\n", title, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
+}
+
+struct FitRequest {
+    lab::Request input;
+    std::string out, report;
+};
+
+void fit(const FitRequest &request, Outcome &outcome) {
+    const lab::Session session = lab::open_session(request.input);
+    lab::Model model = session.model;
+    for (const std::string &message : session.data.messages) std::printf("note: %s\n", message.c_str());
+    const lab::Rung rung = lab::fit_model(model, session.data, "fitted");
+    print_table("rover", model.rover);
+    print_table("wheel", model.wheel.front().geometry);
+    print_table("motor", model.wheel.front().motor);
+    print_table("soil", model.wheel.front().soil);
+    print_table("sensors", model.sensors);
+    for (const lab::EffectUse &use : model.effects) print_table(use.name.c_str(), use.parameters);
+    const lab::Comparison comparison = lab::compare(model, session.data, true);
+    std::fputs(lab::comparison_text(comparison).c_str(), stdout);
+    for (const lab::BalanceComparison &b : comparison.balances) {
+        if (b.acf.value.size() < 2) continue;
+        int outside = 0;
+        for (std::size_t i = 1; i < b.acf.value.size(); ++i) outside += std::fabs(b.acf.value[i]) > b.acf.band;
+        std::printf("whiteness  %-28s %d of %zu lags outside the 99 %% band\n", b.name.c_str(), outside, b.acf.value.size() - 1);
+    }
+    std::printf("error on training %.3f, held out %.3f (in units of noise)\n", rung.train, rung.heldout);
+    outcome.json = lab::head_json("fit", model, session.data);
+    lab::put_comparison(outcome.json, comparison);
+    outcome.json["ladder"] = lab::ladder_json({rung});
+    nlohmann::json fitted = nlohmann::json::object();
+    const auto put = [&](const std::string &name, const lab::Parameters &table) {
+        for (const auto &[key, p] : table)
+            if (std::isfinite(p.low)) fitted[name + "." + key] = {{"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
+    };
+    put("rover", model.rover), put("wheel", model.wheel.front().geometry), put("motor", model.wheel.front().motor);
+    put("soil", model.wheel.front().soil), put("sensors", model.sensors);
+    outcome.json["fitted"] = fitted;
+    if (!request.report.empty()) report::write_html(outcome.json, request.report);
+    if (request.out.empty()) return;
+    lab::append_lineage(model, session.data, {{"fitted", rung.train, rung.heldout, rung.floor}}, rung);
+    lab::write_model(model, request.out);
+    std::printf("wrote %s\n", request.out.c_str());
+}
+
+} // namespace
+
+void add_fit(CLI::App &app, Outcome &outcome) {
+    CLI::App *verb = app.add_subcommand("fit", "fit a model's parameters to a log, with intervals");
+    auto request = std::make_shared<FitRequest>();
+    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
+    verb->add_option("--log", request->input.log, "log (CSV)")->required()->type_name("FILE");
+    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
+    verb->add_option("--repeat", request->input.repeat, "a second run of the same drive")->type_name("FILE");
+    verb->add_option("--from", request->input.from_s, "use the log from this time [s]");
+    verb->add_option("--to", request->input.to_s, "use the log up to this time [s]");
+    verb->add_option("--out", request->out, "write the fitted model to this file")->type_name("FILE");
+    verb->add_option("--report", request->report, "write a report page (HTML)")->type_name("FILE");
+    add_json_option(verb, outcome);
+    verb->callback([=, &outcome] { fit(*request, outcome); });
+}
+
+} // namespace traction::cli

@@ -1,0 +1,35 @@
+// next.h - from a diagnosis onwards: adding an effect, the lineage, the next experiment.
+#pragma once
+
+#include "diagnose.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+struct Added {
+    Model model;
+    std::vector<Rung> ladder; // baseline, + effect
+    bool helps = false;       // the held-out error fell
+    std::string text;
+};
+
+// The model with the effect, fitted. `file`: TOML with [[effect]] tables of the user's own; empty for the catalogue. The best of the
+// effect's variants is taken. Throws ModelError for an unknown effect, a wheel that is not there, an effect that is in already.
+Added add_effect(const Model &model, const Dataset &data, const std::string &effect, int wheel, const std::string &file);
+std::string added_text(const Added &added);
+
+// Appends the ladder's steps to the model's history.
+void append_lineage(Model &model, const Dataset &data, const std::vector<Rung> &ladder, const Rung &final_rung);
+
+// The manoeuvre that separates what is still confounded, or shows what this log could not: title, scenario, what it separates.
+// null when there is nothing to separate.
+nlohmann::json next_json(const Diagnosis &diagnosis, const Model &model);
+
+// A scenario file for that manoeuvre (sim/scenario's format).
+std::string next_scenario(const std::vector<std::string> &effects, const Model &model, std::string &title);
+
+} // namespace traction::lab

@@ -1,0 +1,28 @@
+// session.h - what every verb of the lab does first: read the model, the log (through its map) and the repeat run.
+#pragma once
+
+#include "dataset.h"
+#include "model.h"
+
+#include <string>
+
+namespace traction::lab {
+
+struct Request {
+    std::string model, log, map, repeat;
+    double from_s = 0, to_s = 0; // part of the log; to_s 0: all
+};
+
+struct Session {
+    Model model;
+    Dataset data;
+};
+
+// Throws ModelError, log::LogError, std::ios_base::failure.
+Session open_session(const Request &request);
+
+// The sentence that ends a diagnosis.
+struct Diagnosis;
+std::string verdict_text(const Diagnosis &diagnosis);
+
+} // namespace traction::lab
