@@ -35,6 +35,19 @@ std::string panel_key(const std::string &signal) {
     return unit.empty() || unit == "count" ? quantity_of(signal) : "[" + unit + "]";
 }
 
+// "speed [rad/s]" where every signal of the panel is a speed, "[rad/s]" otherwise.
+std::string panel_label(const std::string &key, const std::vector<Series> &series) {
+    if (key.front() != '[') return key;
+    const auto stem = [](const std::string &signal) {
+        const std::string quantity = quantity_of(signal);
+        return quantity.substr(0, quantity.size() - suffix_of(signal).size() - 1);
+    };
+    const std::string first = stem(series.front().name);
+    for (const Series &other : series)
+        if (stem(other.name) != first) return key;
+    return first + " " + key;
+}
+
 bool matches(std::string_view pattern, std::string_view name) {
     if (pattern.empty()) return name.empty();
     if (pattern.front() == '*') return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
@@ -111,10 +124,11 @@ Figure log_figure(const log::Log &log, const LogFigureOptions &options) {
             if (keys[i] == key && figure.panels[i].series.size() < most_in_a_panel) at = i;
         if (at == figure.panels.size()) {
             keys.push_back(key);
-            figure.panels.push_back({.y_label = key});
+            figure.panels.emplace_back();
         }
         figure.panels[at].series.push_back(series_of(*signal, options));
     }
+    for (std::size_t i = 0; i < keys.size(); ++i) figure.panels[i].y_label = panel_label(keys[i], figure.panels[i].series);
     return figure;
 }
 

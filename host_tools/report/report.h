@@ -1,7 +1,8 @@
 // report.h - turns a result of the lab, or a set of figures, into one HTML file that works from disk without a network.
 //
 // The page is chosen by result["schema"]:
-//   "traction.lab/1"      what compare, diagnose, add, fit and check put out (docs/json_schema.md)
+//   "traction.lab/1"      what compare, diagnose, add and fit put out (docs/json_schema.md)
+//   "traction.check/1"    what check puts out
 //   "traction.figures/1"  a set of figures with what a source says beside what we measured:
 //     { "schema": "traction.figures/1", "title": str, "intro": str,
 //       "figures": [ { "id": str, "title": str, "paper": str, "ours": str, "verdict": "agrees|differs|<words>",

@@ -32,7 +32,7 @@ const shown = (page) => page.$eval('.toolbar output', (e) => e.textContent);
 const sectionIds = (page) => page.$$eval('main > section', (all) => all.map((e) => e.id));
 const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-for (const name of ['compare', 'diagnose', 'figures', 'empty', 'odd', 'large'])
+for (const name of ['check', 'compare', 'diagnose', 'figures', 'empty', 'odd', 'large'])
   claim(`${name}: opens from disk without an error and without a request`, async () => {
     const { page, trouble, close } = await open(name);
     assert.deepEqual(trouble, []);
@@ -43,7 +43,7 @@ for (const name of ['compare', 'diagnose', 'figures', 'empty', 'odd', 'large'])
 
 claim('diagnose: every part of the result has its section, in the order of the questions', async () => {
   const { page, close } = await open('diagnose');
-  assert.deepEqual(await sectionIds(page), ['verdict', 'messages', 'ladder', 'candidates', 'classes', 'unknown', 'next', 'balances', 'regimes', 'whiteness',
+  assert.deepEqual(await sectionIds(page), ['verdict', 'found', 'messages', 'ladder', 'candidates', 'classes', 'unknown', 'next', 'balances', 'regimes', 'whiteness',
     'not-excited', 'lineage']);
   assert.match(await page.textContent('#verdict'), /error 3\.1 × noise floor: there is something to find/);
   assert.equal((await page.$$('#candidates tbody tr')).length, 6);
@@ -52,6 +52,14 @@ claim('diagnose: every part of the result has its section, in the order of the q
   assert.match(await page.textContent('#next pre'), /duration_s = 40/);
   assert.match(await page.textContent('#unknown'), /0\.021 \* exp/);
   assert.match(await page.textContent('#regimes'), /6\.3/);
+  await close();
+});
+
+claim('check: findings with their mend, the rates and the excitation', async () => {
+  const { page, close } = await open('check');
+  assert.deepEqual(await sectionIds(page), ['verdict', 'findings', 'rates', 'excitation']);
+  assert.match(await page.textContent('#verdict'), /must be mended.*1 errors, 1 warnings/s);
+  assert.match(await page.textContent('#findings tbody tr'), /error.*wheel2\.speed_rad_s.*57\.3.*scale = 0\.01745/s);
   await close();
 });
 

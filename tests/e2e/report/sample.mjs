@@ -27,7 +27,7 @@ function balance(name, title, unit, sigma, points, missing) {
   const r = measured.map((m, i) => m - model[i]);
   const rmse = Math.sqrt(r.reduce((a, x) => a + x * x, 0) / points), bias = r.reduce((a, x) => a + x, 0) / points;
   const lag_s = Array.from({ length: 51 }, (_, i) => +(i * 0.04).toFixed(2));
-  return { name, title, unit, sigma, t_s, measured, model, rmse, nrmse: rmse / sigma, bias, r2: 1 - (0.02 + missing * 0.2),
+  return { name, title, unit, sigma, sigma_source: 'the model file', t_s, measured, model, rmse, nrmse: rmse / sigma, bias, r2: 1 - (0.02 + missing * 0.2),
     worst: [60, 65, 20].map((t0) => ({ t0_s: t0, t1_s: t0 + 5, rmse: rmse * (2 - t0 / 100) })),
     acf: { lag_s, value: lag_s.map((l) => (l === 0 ? 1 : missing * Math.exp(-l / 0.7) + 0.02 * normal())), band: 0.047 },
     ccf: [{ with: 'wheel2.set_speed_rad_s', lag_s: lag_s.map((l) => +(l - 1).toFixed(2)), value: lag_s.map((l) => missing * 0.5 * Math.exp(-Math.abs(l - 1.2)) + 0.02 * normal()), band: 0.047 }] };
@@ -71,6 +71,7 @@ const diagnose = { ...compare, verb: 'diagnose', title: 'What is missing in the 
     x: Array.from({ length: 13 }, (_, i) => i - 6), y: Array.from({ length: 13 }, (_, i) => 0.021 * Math.exp(-(((i - 6) / 1.8) ** 2)) * Math.sign(i - 6)),
     low: Array.from({ length: 13 }, (_, i) => 0.021 * Math.exp(-(((i - 6) / 1.8) ** 2)) * Math.sign(i - 6) - 0.004),
     high: Array.from({ length: 13 }, (_, i) => 0.021 * Math.exp(-(((i - 6) / 1.8) ** 2)) * Math.sign(i - 6) + 0.004) },
+  accepted: [candidate(1, 'slip_sinkage', 0.66, 'named', { coefficient: parameter(0.15, '1', 0.02) })],
   ladder: [{ label: 'baseline', train: 3.05, heldout: 3.12, floor: 1.006 }, { label: '+ slip_sinkage', train: 1.01, heldout: 1.03, floor: 1.006 },
     { label: 'noise floor', train: 1.006, heldout: 1.006, floor: 1.006 }],
   next: { title: 'one wheel drags', separates: ['mesh_loss', 'slip_sinkage'], scenario_toml: 'title = "one wheel drags"\nduration_s = 40\n\n[ground]\nname = "sand"\n\n[[command]]\nt_s = 2\nmode = "duty"\nduty = [0.4, 0.4, 0.4, 0.0]\n' },
@@ -95,7 +96,13 @@ const figures = { schema: 'traction.figures/1', title: 'The experiments of the p
     { id: 'fig-8', title: 'Fig. 8: radar spectrum at 0.18 m/s', paper: 'peak near 11 Hz', ours: '11.2 Hz', verdict: 'differs', svg: 'not a drawing', notes: '' }],
   tables: [{ title: 'Table III', columns: ['ground', 'Fm paper [N]', 'Fm ours [N]'], rows: [['sand', 5.1, 5.08], ['gravel', 6.8, 6.91], ['concrete', null, 5.6]], notes: 'Mean over 20 seeds.' }] };
 
+const check = { schema: 'traction.check/1', log: 'sand_identification.csv', map: '', model: 'rover_sand.toml', passed: false,
+  findings: [{ id: 'wrong_unit', severity: 'error', signal: 'wheel2.speed_rad_s', text: 'is 57.3 times what the encoder says: degrees, not radians', mend: 'scale = 0.01745 in the map', value: 57.3, t0_s: 0, t1_s: 120 },
+    { id: 'gap', severity: 'warning', signal: 'camera.x_m', text: '3 gaps longer than 0.5 s', mend: '', value: 3, t0_s: 12.1, t1_s: 12.9 }],
+  rates: [{ signal: 'wheel2.speed_rad_s', samples: 12000, median_s: 0.01, jitter: 0.002, missing: 0, largest_gap_s: 0.01 }],
+  excitation: { duration_s: 120, speed_max_m_s: 0.41, constant_input: false, wheels: [{ wheel: 0, slip_low: -0.2, slip_high: 0.4 }, { wheel: 1, slip_low: null, slip_high: 0.4 }] } };
+
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
-for (const [name, result] of Object.entries({ compare, diagnose, odd, large, figures, empty: { schema: 'traction.lab/1' } }))
+for (const [name, result] of Object.entries({ check, compare, diagnose, odd, large, figures, empty: { schema: 'traction.lab/1' } }))
   writeFileSync(`${out}/${name}.json`, JSON.stringify(result));

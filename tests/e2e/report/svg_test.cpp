@@ -168,11 +168,11 @@ TEST(LogFigure, signals_of_one_unit_share_a_panel) {
         log.signals.push_back({.name = name, .t_s = {0, 1, 2}, .value = {1, 2, 3}});
     const Figure figure = log_figure(log, {.signals = {}, .from_s = 0.5});
     ASSERT_EQ(figure.panels.size(), 6u);
-    EXPECT_EQ(figure.panels[0].y_label, "[rad/s]");
+    EXPECT_EQ(figure.panels[0].y_label, "speed [rad/s]");
     ASSERT_EQ(figure.panels[0].series.size(), 2u);
     EXPECT_EQ(figure.panels[0].series[1].name, "wheel1.speed_rad_s");
     EXPECT_EQ(figure.panels[0].series[1].y, (std::vector<double>{2, 3}));
-    EXPECT_EQ(figure.panels[5].y_label, "[m/s\u00b2]");
+    EXPECT_EQ(figure.panels[5].y_label, "accel_x [m/s\u00b2]");
     EXPECT_EQ(log_figure(log, {.signals = {"wheel*.current_A", "wheel0.*"}}).panels.size(), 4u);
 }
 

@@ -26,6 +26,13 @@ function verdict(result) {
     h('dl', { class: 'facts' }, facts.filter(([, x]) => x).map(([name, x]) => h('div', {}, h('dt', {}, name), h('dd', {}, x)))));
 }
 
+function found(result) {
+  const all = list(result.accepted);
+  return all.length ? section('found', 'Found', 'What was found and added',
+    table('Effects that held up, refitted together', [{ head: 'effect' }, { head: 'size [95 %]' }, { head: 'held-out fall', number: true }],
+      all.map((c) => [[effectName(c), variant(c.variant) && h('div', { class: 'quiet' }, variant(c.variant))], parameters(c.parameters).map((p) => h('div', {}, p)), percent(c.heldout_gain)]))) : null;
+}
+
 function messages(result) {
   const said = list(result.messages);
   return said.length ? section('messages', 'Messages', 'What the lab says about the data', h('ul', {}, said.map((m) => h('li', {}, m)))) : null;
@@ -73,7 +80,7 @@ function classes(result) {
   const all = list(result.classes);
   return all.length ? section('classes', 'Look-alikes', 'Effects this log cannot tell apart',
     h('ul', {}, all.map((c) => h('li', {}, h('strong', {}, list(c.members).join(' ≈ ')),
-      c.separate_by && `: ${c.separate_by} would separate them`)))) : null;
+      c.separate_by && `; to separate them: ${c.separate_by}`)))) : null;
 }
 
 function notExcited(result) {
@@ -125,11 +132,11 @@ function balances(result) {
     h('span', { class: 'quiet' }, ' Drag across a plot to zoom all of them; double click to go back. With a plot focused: + − ← → Home.'));
   onZoom((a, b, isWhole) => { shown.textContent = seconds(a, b); reset.disabled = isWhole; });
   const worst = (b) => list(b.worst).map((w) => [windowButton(w, `${seconds(w.t0_s, w.t1_s)} (${num(w.rmse, 2)})`), ' ']);
-  const summary = table('How well the model predicts each balance', [{ head: 'balance' }, { head: 'RMSE', number: true },
+  const summary = table('How well the model predicts each balance', [{ head: 'balance' }, { head: 'noise σ', number: true, title: 'where it comes from: hover over the number' }, { head: 'RMSE', number: true },
     { head: 'NRMSE', number: true, title: 'RMSE over the noise σ' }, { head: 'bias', number: true }, { head: 'R²', number: true },
     { head: 'outside the band', number: true, title: 'part of the shown samples; 1 % is what noise alone gives' },
     { head: 'worst 5 s (RMSE)' }],
-  all.map((b, i) => [h('a', { href: `#balance-${i}` }, b.title || b.name), `${num(b.rmse)}${unit(b.unit)}`, even(b.nrmse, 2), `${num(b.bias)}${unit(b.unit)}`,
+  all.map((b, i) => [h('a', { href: `#balance-${i}` }, b.title || b.name), h('span', { title: b.sigma_source }, `${num(b.sigma)}${unit(b.unit)}`), `${num(b.rmse)}${unit(b.unit)}`, even(b.nrmse, 2), `${num(b.bias)}${unit(b.unit)}`,
     even(b.r2, 3), percent(views[i].outside), worst(b)]));
   const bodies = all.map((b, i) => h('article', { id: `balance-${i}`, class: 'balance' },
     h('h3', {}, b.title || b.name, b.title && b.title !== b.name ? h('small', {}, ` ${b.name}`) : null), views[i].host));
@@ -160,7 +167,7 @@ function regimes(result) {
 function whiteness(result) {
   const all = list(result.balances).filter((b) => b.acf || list(b.ccf).length);
   if (!all.length) return null;
-  const outside = (c) => `${list(c.value).filter((v, i) => isNumber(v) && Math.abs(v) > c.band && c.lag_s?.[i] !== 0).length} of ${list(c.value).length} lags outside the 99 % band`;
+  const outside = (c) => `${list(c.value).filter((v, i) => isNumber(v) && Math.abs(v) > c.band && !(v === 1 && c.lag_s?.[i] === 0)).length} of ${list(c.value).length} lags outside the 99 % band`;
   const one = (c, title) => h('figure', {}, correlation(c, `${title}: ${outside(c)}`), h('figcaption', {}, title, h('div', { class: 'quiet' }, outside(c))));
   return section('whiteness', 'Correlations', 'Is the residual noise?',
     h('p', {}, 'A residual that is noise alone stays inside the shaded 99 % bands. A slow decay means a missing dynamic part; a cross-correlation names the signal it follows.'),
@@ -170,17 +177,19 @@ function whiteness(result) {
 
 function lineage(result) {
   const effects = list(result.model?.effects), history = list(result.lineage ?? result.model?.lineage);
-  if (!effects.length && !history.length) return null;
+  const fitted = Object.entries(result.fitted ?? {});
+  if (!effects.length && !history.length && !fitted.length) return null;
   const keys = [...new Set(history.flatMap((entry) => Object.keys(entry ?? {})))];
   const text = (x) => (x == null ? '–' : isNumber(x) ? num(x, 4) : typeof x === 'object' ? JSON.stringify(x) : String(x));
   return section('lineage', 'Model', 'The model and where it comes from',
     effects.length ? table(`Effects in ${result.model.name || result.model.file || 'the model'}`, [{ head: 'effect' }, { head: 'size [95 %]' }],
       effects.map((e) => [effectName(e), Object.entries(e.parameters ?? {}).map(([n, p]) => h('div', {}, `${n} = ${sized(p)}`))])) : null,
+    fitted.length ? table('Fitted parameters', [{ head: 'parameter' }, { head: 'value [95 %]' }], fitted.map(([name, p]) => [name, sized(p)])) : null,
     history.length ? table('Lineage, oldest first', keys.map((k) => ({ head: k.replaceAll('_', ' ') })), history.map((entry) => keys.map((k) => text(entry?.[k])))) : null);
 }
 
 export function lab(result) {
   const [plots, draw] = balances(result);
-  return { parts: [verdict(result), messages(result), ladder(result), candidates(result), classes(result), unknown(result), next(result),
+  return { parts: [verdict(result), found(result), messages(result), ladder(result), candidates(result), classes(result), unknown(result), next(result),
     plots, regimes(result), whiteness(result), notExcited(result), lineage(result)], then: draw };
 }

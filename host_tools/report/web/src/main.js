@@ -1,15 +1,16 @@
 // main.js - the page: reads the result that stands in the document and shows it by its schema.
 import 'uplot/dist/uPlot.min.css';
 import './page.css'; // after uPlot's own, which it mends
+import { check } from './check.js';
 import { h } from './dom.js';
 import { figures } from './figures.js';
 import { lab } from './lab.js';
 
 const result = JSON.parse(document.getElementById('result').textContent);
 const page = document.getElementById('page');
-document.title = result.title || 'Traction report';
+document.title = result.title || (result.log && typeof result.log === 'string' ? `check: ${result.log}` : 'Traction report');
 
-const { parts, then } = result.schema === 'traction.figures/1' ? figures(result) : lab(result);
+const { parts, then } = ({ 'traction.figures/1': figures, 'traction.check/1': check }[result.schema] ?? lab)(result);
 const sections = parts.filter(Boolean);
 
 page.replaceChildren(
