@@ -94,12 +94,49 @@ void check(const Log &log, const std::string &path) {
                 "give every sample a time");
         double previous = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
-            require(std::isfinite(signal.t_s[i]) && signal.t_s[i] > previous, path, "times of '" + signal.name + "' do not increase at sample " + std::to_string(i), "sort them and drop duplicates");
-            require(std::isfinite(signal.value[i]), path, "'" + signal.name + "' is not finite at sample " + std::to_string(i), "leave the sample out");
+            // the message is put together only when it is needed: this loop sees every sample
+            if (!(std::isfinite(signal.t_s[i]) && signal.t_s[i] > previous))
+                require(false, path, "times of '" + signal.name + "' do not increase at sample " + std::to_string(i), "sort them and drop duplicates");
+            if (!std::isfinite(signal.value[i])) require(false, path, "'" + signal.name + "' is not finite at sample " + std::to_string(i), "leave the sample out");
             previous = signal.t_s[i];
         }
     }
 }
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// Walks through the merged times. Signals that share their times share one clock, and most do.
+class Clocks {
+  public:
+    static constexpr std::size_t silent = static_cast<std::size_t>(-1);
+    explicit Clocks(const Log &log) {
+        for (const Signal &signal : log.signals) {
+            std::size_t i = 0;
+            while (i < clocks_.size() && *clocks_[i].t_s != signal.t_s) ++i;
+            if (i == clocks_.size()) clocks_.push_back({&signal.t_s, 0, silent});
+            clock_of_.push_back(i);
+        }
+    }
+    double next() { // the next time in the log, or never
+        double t_s = never;
+        for (const Clock &clock : clocks_)
+            if (clock.next < clock.t_s->size()) t_s = std::min(t_s, (*clock.t_s)[clock.next]);
+        for (Clock &clock : clocks_) {
+            const bool due = clock.next < clock.t_s->size() && (*clock.t_s)[clock.next] == t_s;
+            clock.now = due ? clock.next++ : silent;
+        }
+        return t_s;
+    }
+    std::size_t sample(std::size_t signal) const { return clocks_[clock_of_[signal]].now; } // silent: none at this time
+
+  private:
+    struct Clock {
+        const std::vector<double> *t_s;
+        std::size_t next, now;
+    };
+    std::vector<Clock> clocks_;
+    std::vector<std::size_t> clock_of_;
+};
 
 } // namespace
 
@@ -111,19 +148,13 @@ void write_csv(const Log &log, const std::string &path) {
     text += "t_s";
     for (const Signal &signal : log.signals) text.append(1, ',').append(name_cell(signal.name));
     text += '\n';
-    std::vector<std::size_t> next(log.signals.size(), 0);
-    constexpr double never = std::numeric_limits<double>::infinity();
-    for (;;) {
-        double t_s = never;
-        for (std::size_t i = 0; i < next.size(); ++i) {
-            if (next[i] < log.signals[i].t_s.size()) t_s = std::min(t_s, log.signals[i].t_s[next[i]]);
-        }
-        if (t_s == never) break;
+    Clocks clocks(log);
+    for (double t_s = clocks.next(); t_s != never; t_s = clocks.next()) {
         append_number(text, t_s);
-        for (std::size_t i = 0; i < next.size(); ++i) {
+        for (std::size_t i = 0; i < log.signals.size(); ++i) {
             text += ',';
-            const Signal &signal = log.signals[i];
-            if (next[i] < signal.t_s.size() && signal.t_s[next[i]] == t_s) append_number(text, signal.value[next[i]++]);
+            const std::size_t sample = clocks.sample(i);
+            if (sample != Clocks::silent) append_number(text, log.signals[i].value[sample]);
         }
         text += '\n';
         if (text.size() > std::size_t{1} << 20) {
