@@ -119,6 +119,8 @@ void check_units(const std::vector<Law> &laws, const Machine &machine, Findings 
 void check_drives(const Grid &grid, const Machine &machine, Findings &findings) {
     check_ranges(grid, findings);
     std::vector<Law> laws;
+    const bool no_volts = std::any_of(findings.begin(), findings.end(), [](const Finding &f) { return f.severity == Severity::error && f.signal == "battery.voltage_V"; });
+    if (no_volts) return; // every law below would be off by the same factor
     for (const Wheel &wheel : grid.wheel) {
         if (wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty() || wheel.unsigned_current) continue;
         Law law{&wheel, fit(wheel.voltage, wheel.speed, wheel.current)};

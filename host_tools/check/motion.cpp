@@ -16,6 +16,7 @@ class Motion {
     void run() {
         encoders();
         heading();
+        radar_beside_camera();
         ground();
         yaw();
         accel();
@@ -23,6 +24,8 @@ class Motion {
 
   private:
     void encoders();
+    bool stands(const std::vector<double> &rate, const std::vector<double> &speed, const std::string &column);
+    void radar_beside_camera();
     void heading();
     void ground();
     void yaw();
@@ -53,6 +56,42 @@ bool Motion::straight(std::size_t k) const {
     return grid_.gyro.empty() || !(std::fabs(grid_.gyro[k]) > 0.3) || blamed("imu.gyro");
 }
 
+// A count that stands for 1.5 s while its wheel turns.
+bool Motion::stands(const std::vector<double> &rate, const std::vector<double> &speed, const std::string &column) {
+    std::size_t run = 0, longest = 0, turning = 0, end = 0;
+    for (std::size_t k = 0; k < grid_.count; ++k) {
+        const bool turns = std::fabs(speed[k]) > 0.5;
+        turning += turns;
+        run = turns && rate[k] == 0 ? run + 1 : 0;
+        if (run > longest) longest = run, end = k;
+    }
+    const double lasts = static_cast<double>(longest) * step_s;
+    if (lasts < 1.5) return false;
+    const bool whole = longest > turning / 2;
+    add(whole ? "dead_sensor" : "stuck_sensor", Severity::error, column, say("'%s' stands for %.3g s until t = %.3f s while its wheel turns", column.c_str(), lasts, grid_.time(end)), "check its wiring; or take the column out of the log", lasts);
+    return true;
+}
+
+// Both see the ground, so slip does not come in.
+void Motion::radar_beside_camera() {
+    if (grid_.radar.empty() || grid_.camera_speed.empty()) return;
+    const double fast = 0.5 * quantile(grid_.camera_speed, 0.95);
+    std::vector<double> ratio;
+    for (std::size_t k = 0; k < grid_.count; ++k) {
+        if (grid_.camera_speed[k] > fast && grid_.camera_speed[k] > 0) ratio.push_back(std::fabs(grid_.radar[k]) / grid_.camera_speed[k]);
+    }
+    const double middle = quantile(ratio, 0.5);
+    if (ratio.size() < 40 || (middle > 0.5 && middle < 2)) return;
+    const UnitSlip *radar = unit_slip('v', middle), *camera = unit_slip('v', 1 / middle);
+    if (radar != nullptr && radar->factor > 1) {
+        add("unit", Severity::error, "radar.speed_m_s", say("the radar reads %.4g times the camera's speed: it looks like %s", middle, radar->written), say("multiply it by %.6g", 1 / radar->factor), middle);
+    } else if (camera != nullptr && camera->factor > 1) {
+        add("unit", Severity::error, "camera.x_m", say("the camera's speed is %.4g times the radar's: its positions look like %s", 1 / middle, camera->written), say("multiply x and y by %.6g", 1 / camera->factor), 1 / middle);
+    } else {
+        add("scale", Severity::warning, "radar.speed_m_s", say("the radar reads %.3g times the camera's speed", middle), "check the radar's mounting angle, and the camera's scale", middle);
+    }
+}
+
 void Motion::encoders() {
     std::vector<double> per_rad;
     std::vector<const Wheel *> wheels;
@@ -63,6 +102,7 @@ void Motion::encoders() {
         for (const bool count : {false, true}) {
             const std::vector<double> &rate = count ? wheel.count_rate : wheel.angle_rate;
             const std::string column = name + (count ? ".encoder_count" : ".angle_rad");
+            if (!rate.empty() && stands(rate, speed, column)) continue;
             const Fit line = rate.empty() ? Fit{} : fit(rate, speed);
             if (!line.good || line.rms > 0.5 * line.y_rms) continue;
             if (line.a < 0) {
@@ -159,11 +199,13 @@ void Motion::ground() {
         const bool is_unit = unit_slip('v', ratio) != nullptr || unit_slip('w', 1 / ratio) != nullptr;
         source.absurd = std::isfinite(known) ? is_unit : source.radius < 0.012 || source.radius > 1.0; // [m] assumed: wheels of 24 mm to 2 m
         if (source.speed == &grid_.carriage) source.absurd = source.radius > 1.0; // the carriage imposes slip: 0.9 is no mistake
+        const bool judged = blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); // beside the camera
+        if (judged) source.absurd = false;
         if (source.has_sign && source.alike < -0.3) {
             add("sign", Severity::error, source.name, say("'%s' is negative when the wheels turn forwards", source.name), "turn its sign round (map: sign = -1)", source.alike);
         }
     }
-    std::erase_if(sources, [](const Source &source) { return !std::isfinite(source.radius); });
+    std::erase_if(sources, [&](const Source &source) { return !std::isfinite(source.radius) || blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); });
     const std::size_t absurd = static_cast<std::size_t>(std::count_if(sources.begin(), sources.end(), [](const Source &source) { return source.absurd; }));
     if (absurd == 0) return;
     const double expected = std::isfinite(known) ? known : 0.06; // [m] assumed, to name the likeliest unit
@@ -208,7 +250,7 @@ void Motion::yaw() {
             } else if (std::fabs(alike) > 0.9 && (line.a < 0.7 || line.a > 1.4)) {
                 add("scale", Severity::warning, "imu.gyro_z_rad_s", say("the gyro reads %.3g times the camera's yaw rate", line.a), "calibrate the gyro", line.a);
             }
-            if (line.a > 0 && with_wheels < -0.7) {
+            if (line.a > 0 && with_wheels < -0.9) { // on a steep side slope, gravity alone was seen to reach -0.8
                 add("swapped_wheels", Severity::error, "wheel.speed_rad_s", say("gyro and camera agree, but the wheels turn the other way (correlation %.2f): left and right are exchanged", with_wheels), "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
             }
             return;

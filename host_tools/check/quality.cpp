@@ -92,10 +92,11 @@ void Quality::rate(const log::Signal &signal) {
     const bool is_regular = regular > 0.8 * static_cast<double>(step.size());
     rate.missing = is_regular ? 1 - static_cast<double>(step.size()) / expected : 0;
     rate.jitter = (quantile(step, 0.95) - quantile(step, 0.05)) / (2 * rate.median_s);
-    if (rate.missing > 0.03) {
+    const bool said = std::any_of(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.id == "not_finite" && f.signal == signal.name; });
+    if (rate.missing > 0.03 && !said) {
         add("samples_missing", rate.missing > 0.2 ? Severity::error : Severity::warning, signal.name, say("'%s' lacks %.0f %% of its samples (one every %.4g s expected)", signal.name.c_str(), 100 * rate.missing, rate.median_s),
             "look for an overloaded logger or a bad link; record again", rate.missing);
-    } else if (rate.jitter > 0.3) {
+    } else if (rate.jitter > 0.3 && !said) {
         add("jitter", Severity::warning, signal.name, say("the time from sample to sample of '%s' varies by +-%.0f %% around %.4g s", signal.name.c_str(), 100 * rate.jitter, rate.median_s),
             "stamp samples where they are measured, not where they are written", rate.jitter);
     }

@@ -54,8 +54,12 @@ constexpr std::array table{
     Quantity{"command", "mode", "", Kind::command, "mode asked for, number of control_mode_t"},
     Quantity{"command", "speed", "m_s", Kind::command, "platform speed asked for, forward"},
     Quantity{"command", "speed_y", "m_s", Kind::command, "platform speed asked for, to the left (machines that can)"},
+    Quantity{"wheel<i>", "command_speed", "rad_s", Kind::command, "wheel speed asked for, in wheel speed mode"},
+    Quantity{"wheel<i>", "command_duty", "", Kind::command, "duty asked for, in open loop mode"},
     Quantity{"command", "yaw_rate", "rad_s", Kind::command, "yaw rate asked for"},
     Quantity{"command", "slip", "", Kind::command, "slip asked for"},
+    Quantity{"frame", "present", "", Kind::raw, "which parts of the sensor frame were fresh, FRAME_* bits as one number"},
+    Quantity{"frame", "radar_samples", "", Kind::raw, "radar samples in the frame"},
     // benches
     Quantity{"carriage", "speed", "m_s", Kind::measured, "speed of the carriage that leads a single wheel"},
     Quantity{"carriage", "x", "m", Kind::measured, "position of that carriage"},
