@@ -63,7 +63,8 @@ Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
            .command_age = column("command.age_ticks", true),
            .present = column("frame.present"),
            .samples = column("frame.radar_samples"),
-           .emergency_stop = column("frame.emergency_stop", true)};
+           .emergency_stop = column("frame.emergency_stop", true),
+           .motor_enable = column("actuator.motor_enable")};
 }
 
 void Recorder::put(std::size_t column, double t_s, double value) {
@@ -142,6 +143,7 @@ void Recorder::add_estimates(double t_s, const trace_t &trace) {
     put(at_.standstill, t_s, trace.standstill ? 1 : 0);
     put(at_.mode, t_s, trace.mode);
     put(at_.faults, t_s, trace.faults);
+    put(at_.motor_enable, t_s, trace.actuator.motor_enable ? 1 : 0);
 }
 
 void Recorder::add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) {

@@ -49,7 +49,7 @@ class Recorder {
     struct {
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y,
             camera_yaw, speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate,
-            command_slip, command_slip_wheels, command_age, present, samples, emergency_stop;
+            command_slip, command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable;
     } at_{};
 };
 
