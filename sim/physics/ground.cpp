@@ -36,7 +36,10 @@ const Soil &Ground::at(double x_m, double y_m) const {
 }
 
 double Ground::grip_change(double x_m, double y_m) const {
-    if (grip_noise <= 0) return 0;
+    double trend = 0;
+    if (gradient_1_m != 0)
+        trend = gradient_1_m * (x_m * math::cos(gradient_direction_rad) + y_m * math::sin(gradient_direction_rad));
+    if (grip_noise <= 0) return trend > -0.95 ? trend : -0.95; // some grip is left everywhere
     const double u = x_m / grip_length_m, v = y_m / grip_length_m;
     const double iu = std::floor(u), iv = std::floor(v);
     const auto i = static_cast<std::int64_t>(iu), j = static_cast<std::int64_t>(iv);
@@ -45,7 +48,8 @@ double Ground::grip_change(double x_m, double y_m) const {
     const double high = lattice(i, j + 1, seed) * (1 - a) + lattice(i + 1, j + 1, seed) * a;
     // Uniform -1..1 has variance 1/3; the quintic weights keep 0.78355 of it per dimension (the mean of (1-a)^2 + a^2).
     constexpr double scale = 1.7320508075688772 / 0.78355; // makes the rms 1
-    return grip_noise * scale * (low * (1 - b) + high * b);
+    const double change = trend + grip_noise * scale * (low * (1 - b) + high * b);
+    return change > -0.95 ? change : -0.95;
 }
 
 } // namespace traction::sim

@@ -14,6 +14,13 @@ namespace traction::sim {
 // Ft/Fm for s_abs = |s| >= 0 and shear_slip > 0, within 0..1.
 double traction_share(TractionLaw law, double s_abs, double shear_slip);
 
+// How wheel and ground meet.
+enum class ContactLaw {
+    aggregated, // (20) or (21) with Rr = coefficient * Fn on an almost rigid surface: what the paper identifies
+    bekker,     // closed form: sinkage from load and slip, (5) with the contact length of that sinkage, Rr by (3)
+    arc         // Wong-Reece stresses integrated over the contact arc (terramechanics.h)
+};
+
 // A region of other soil, in world coordinates.
 struct SoilPatch {
     double x_min_m = 0, x_max_m = 0, y_min_m = -1e9, y_max_m = 1e9;
@@ -23,11 +30,15 @@ struct SoilPatch {
 struct Ground {
     Soil soil;                      // where no patch lies
     std::vector<SoilPatch> patches; // the last that covers a place wins
+    ContactLaw contact = ContactLaw::aggregated; // of every soil that has Bekker parameters; the others stay aggregated
     double slope_rad = 0;           // the ground rises ...
     double slope_direction_rad = 0; // ... towards this world heading
     double grip_noise = 0;          // relative rms of the grip over the ground [1]; 0.06 on soil, 0.02 on concrete (assumed)
     double grip_length_m = 0.2;     // its correlation length: lattice step of the noise
     std::uint64_t seed = 1;         // of the grip noise
+
+    double gradient_1_m = 0;        // grip times (1 + gradient * distance along its direction)
+    double gradient_direction_rad = 0;
 
     const Soil &at(double x_m, double y_m) const;
     // Relative change of the grip at a place: value noise, deterministic, rms grip_noise.

@@ -24,7 +24,7 @@ struct Bekker {
     double weight_N_m3 = 0;     // bulk density times gravity
     double c1 = 0.18, c2 = 0.32; // [1] place of the largest stress, theta_m = (c1 + c2 s) theta_1 (Wong-Reece 1967, compact sand)
     double slip_sinkage = 0;    // [1] sinkage exponent grows with slip: n(1 + slip_sinkage*|s|)
-    double reload_N_m3 = 0;     // stiffness of unloading and of a second pass, per area: dp/dz
+    double reload_N_m4 = 0;     // a second pass: dp/dz = reload * (depth reached before), Wong
 };
 
 struct Soil {

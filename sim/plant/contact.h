@@ -1,11 +1,13 @@
 // contact.h - the force between one wheel and the ground: a slip state with relaxation length, longitudinal and lateral.
 //
-//   sigma ds/dt  = (R*w - v)  - U*s,   U = max(|R*w|, |v|)        implicit in s; steady: s of (1)              (1)
+//   sigma ds/dt  = (R*w - v)  - U*s,   U = max(|R*w|, |v|)        implicit in s; steady: s of (1) Lhomme-Desages  (1)
 //   sigma dsy/dt = -vy        - U*sy                                                                          (2)
-//   F = Fm*f(|(s, sy)|) along (s, sy), + c*sigma*(ds/dt, dsy/dt) faded out above 0.2 m/s, never above Fm       (3)
-// f is (20) or (21). Steady slip is that of (1); at rest the state is a spring that holds the rover on a slope. With U = |v| alone
-// the driving slip would be wrong. The damping acts on the change of slip, so steady slip keeps its law. Derived here; the
-// relaxation equation is that of Pacejka's single contact point.
+//   (Ft, Fy) = f(S)/S (Fm s, Fym sy), S = |(s, sy)|, + c*sigma*(ds/dt, dsy/dt) faded out above 0.2 m/s; the whole
+//   inside the friction ellipse (Ft/Fm)^2 + (Fy/Fym)^2 <= 1                                                   (3)
+// f is (20) or (21), or a given traction (contact integral). Steady slip is that of (1) Lhomme-Desages; at rest the state is a
+// spring that holds the rover on a slope. With U = |v| alone the driving slip would be wrong. The damping acts on the change of
+// slip, so steady slip keeps its law. Force and combined slip point the same way: turning weakens the pull.
+// Derived here; the relaxation equation is that of Pacejka's single contact point.
 #pragma once
 
 #include "sim/physics/ground.h"
@@ -20,6 +22,7 @@ struct ContactInput {
     double rim_m_s = 0;           // R*w
     double along_m_s = 0;         // v, along the wheel's heading
     double across_m_s = 0;        // along body y
+    double side_ratio = 1;        // Fym/Fm, the friction ellipse's other axis
     double load_kg = 0.7;         // mass that hangs on this contact, for the damping
 };
 
@@ -27,11 +30,25 @@ struct ContactState {
     double slip = 0, side_slip = 0;
 };
 
+struct SlipChange { // over one step
+    double along = 0, across = 0;
+};
+
 struct ContactForce {
     double along_N = 0, across_N = 0; // on the rover
 };
 
-// Advances the slip state by dt and gives the force. Any input is accepted; grip 0 gives no force.
+// (1), (2): advances the slip state by dt. Grip and law are not used, shear_slip only bounds the state.
+SlipChange slip_step(const ContactInput &input, ContactState &state, double dt_s);
+
+// |(s, sy)|.
+double total_slip(const ContactState &state);
+
+// (3): `traction_N` >= 0 is what the ground gives at the total slip. Any input is accepted; grip 0 gives no force.
+ContactForce contact_force(const ContactInput &input, const ContactState &state, const SlipChange &change, double traction_N,
+                           double dt_s);
+
+// Both, with the traction of (20) or (21).
 ContactForce contact_step(const ContactInput &input, ContactState &state, double dt_s);
 
 } // namespace traction::sim

@@ -1,6 +1,6 @@
 #include "drive.h"
 
-#include "sim/physics/math.h"
+#include "sim/physics/effects/laws.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,30 +9,24 @@ namespace traction::sim {
 
 namespace {
 
-constexpr double copper_1_K = 0.0039; // temperature coefficient of copper's resistance
-constexpr double magnet_1_K = 0.002;  // of a ferrite magnet's flux, negative
-
 double torque_constant(const DriveParameters &p, const DriveEffects &e, const DriveState &s) {
-    return p.torque_constant_Nm_A * (1 + e.constant_change) * (1 - magnet_1_K * s.heat_K);
+    return law::hot_torque_constant(law::torque_constant(p.torque_constant_Nm_A, e.constant_change), s.heat_K);
 }
 
 double resistance(const DriveParameters &p, const DriveEffects &e, const DriveState &s) {
-    return p.resistance_ohm * (1 + copper_1_K * s.heat_K) + e.wiring_ohm;
+    return law::hot_resistance_ohm(p.resistance_ohm, s.heat_K) + e.wiring_ohm;
 }
 
 // Coulomb-like part of Gr at this speed, >= 0: what friction takes at the most.
 double dry_friction(const DriveParameters &p, const DriveEffects &e, double speed_rad_s, double load_Nm) {
-    double torque = p.coulomb_Nm + e.coulomb_Nm + e.mesh_fraction * std::fabs(load_Nm);
-    if (e.stribeck_Nm != 0) {
-        const double ratio = speed_rad_s / e.stribeck_speed_rad_s;
-        torque += e.stribeck_Nm * math::exp(-ratio * ratio);
-    }
+    double torque = p.coulomb_Nm + law::coulomb_friction_Nm(e.coulomb_Nm) + law::mesh_loss_Nm(e.mesh_fraction, load_Nm);
+    if (e.stribeck_Nm != 0) torque += law::stribeck_friction_Nm(e.stribeck_Nm, e.stribeck_speed_rad_s, speed_rad_s);
     return std::max(torque, 0.0);
 }
 
 double ripple(const DriveEffects &e, double angle_rad) {
     if (e.ripple_cos_Nm == 0 && e.ripple_sin_Nm == 0) return 0;
-    return e.ripple_cos_Nm * math::cos(e.ripple_order * angle_rad) + e.ripple_sin_Nm * math::sin(e.ripple_order * angle_rad);
+    return law::torque_ripple_Nm(e.ripple_cos_Nm, e.ripple_sin_Nm, e.ripple_order, angle_rad);
 }
 
 // One mass under a torque, viscous friction and Coulomb friction, both implicit. Returns the energy friction took.
@@ -48,11 +42,18 @@ double advance(double &speed_rad_s, double inertia, double torque_Nm, double vis
 
 } // namespace
 
-double drive_current(const DriveParameters &p, const DriveEffects &e, const DriveState &s, double duty, double supply_V) {
+double drive_current(const DriveParameters &p, const DriveEffects &e, const DriveState &s, double duty, double supply_V,
+                     double dt_s) {
     const double drop = duty * supply_V - torque_constant(p, e, s) * s.motor_speed_rad_s;
     // dead time of the bridge: no current until it is overcome
     const double left = std::copysign(std::max(std::fabs(drop) - e.dead_voltage_V, 0.0), drop);
-    return left / resistance(p, e, s);
+    const double ohm = resistance(p, e, s);
+    double current = left / ohm;
+    if (p.inductance_H > 0) { // L dI/dt = u - ke w - R I
+        const double h = dt_s / p.inductance_H;
+        current = (s.current_A + h * left) / (1 + h * ohm);
+    }
+    return std::clamp(current, -p.current_limit_A, p.current_limit_A);
 }
 
 DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState &s, double traction_torque_Nm, double dt_s) {
@@ -73,16 +74,9 @@ DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState
         constexpr int substeps = 8; // the teeth ring at about 45 Hz with the wheel: 0.125 ms resolves it
         const double h = dt_s / substeps;
         const double rotor_inertia = p.inertia_kg_m2 - p.wheel_inertia_kg_m2;
-        const double half_play = 0.5 * e.play_rad;
         for (int k = 0; k < substeps; ++k) {
-            const double twist = s.motor_angle_rad - s.wheel_angle_rad;
-            const double pressed = twist - std::clamp(twist, -half_play, half_play);
-            double mesh = 0;
-            if (pressed != 0) {
-                mesh = p.gear_stiffness_Nm_rad * pressed +
-                       p.gear_damping_Nms_rad * (s.motor_speed_rad_s - s.wheel_speed_rad_s);
-                mesh = pressed > 0 ? std::max(mesh, 0.0) : std::min(mesh, 0.0); // teeth push, never pull
-            }
+            const double mesh = law::backlash_Nm(e.play_rad, p.gear_stiffness_Nm_rad, p.gear_damping_Nms_rad,
+                                                 s.motor_angle_rad - s.wheel_angle_rad, s.motor_speed_rad_s - s.wheel_speed_rad_s);
             const double before = s.motor_speed_rad_s;
             work.friction += advance(s.motor_speed_rad_s, rotor_inertia, motor_torque - mesh - ripple(e, s.motor_angle_rad),
                                      viscous, dry_friction(p, e, before, mesh), h);
@@ -92,10 +86,8 @@ DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState
             s.wheel_angle_rad += h * s.wheel_speed_rad_s;
         }
     }
-    if (e.heating_K_W > 0) { // C dT/dt = I^2 Ra - T/Rth, C = time constant / Rth
-        const double heating_K_s = s.current_A * s.current_A * p.resistance_ohm * e.heating_K_W;
-        s.heat_K += dt_s * (heating_K_s - s.heat_K) / e.heating_time_s;
-    }
+    if (e.heating_K_W > 0) // with the cold resistance, as the catalogue states it
+        s.heat_K += dt_s * law::winding_heating_K_s(e.heating_K_W, e.heating_time_s, s.current_A, p.resistance_ohm, s.heat_K);
     return work;
 }
 

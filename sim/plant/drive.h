@@ -6,13 +6,15 @@
 // With backlash the rotor's share of J and the wheel's are two masses with a dead zone between them.
 #pragma once
 
-#include <array>
+#include <limits>
 
 namespace traction::sim {
 
 struct DriveParameters {
     double torque_constant_Nm_A = 0.265; // KG at the wheel; the back-EMF constant is the same number in SI (assumed)
     double resistance_ohm = 3.24;        // assumed: V^2/(4 Ra) = 4 W of mechanical power
+    double inductance_H = 0;             // 0: the winding's lag (0.3 ms for 1 mH) is below the step, assumed
+    double current_limit_A = std::numeric_limits<double>::infinity(); // of the bridge; the paper names none
     double inertia_kg_m2 = 5e-3;         // J, rotor and wheel together
     double wheel_inertia_kg_m2 = 5e-4;   // share of J on the wheel's side of the backlash, assumed
     double viscous_Nms = 1.6e-3;         // (18)
@@ -41,9 +43,9 @@ struct DriveWork {
     double motor = 0, friction = 0;
 };
 
-// Current of (1) for a duty and a supply voltage; 0 when released.
+// Current of (1) for a duty and a supply voltage, within the bridge's limit; with inductance the one after dt, implicit in I.
 double drive_current(const DriveParameters &parameters, const DriveEffects &effects, const DriveState &state, double duty,
-                     double supply_V);
+                     double supply_V, double dt_s);
 
 // Advances by dt under the current in `state` and the traction torque R*Ft [N m] that brakes the wheel.
 DriveWork drive_step(const DriveParameters &parameters, const DriveEffects &effects, DriveState &state, double traction_torque_Nm,

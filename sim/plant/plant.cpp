@@ -2,8 +2,11 @@
 
 #include "contact.h"
 #include "plant_effects.h"
+#include "rut.h"
 
+#include "sim/physics/effects/laws.h"
 #include "sim/physics/math.h"
+#include "sim/physics/terramechanics.h"
 
 #include <ode/ode.h>
 
@@ -55,6 +58,14 @@ struct Plant::World {
     void build_bodies();
     void step();
     void step_wheel(int i, double supply_V);
+    double grip_factor(int i, double x_m, double y_m, double sliding_m_s) const; // of Fm: place, track, sliding
+    struct Meeting {
+        ContactForce force;
+        double load_N = 0, rolling_N = 0, sinkage_m = 0, torque_m = 0; // torque of the wheel over force.along_N
+    };
+    Meeting meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N);
+    Meeting meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point, double sink_m_s);
+    const SoilConstants &constants_of(const Soil &soil) const;
     void push_body();
     void observe(const Vec3 &velocity_before);
     Vec3 mean_velocity() const;
@@ -75,6 +86,9 @@ struct Plant::World {
     std::array<ContactState, wheel_count> contact{};
     std::array<double, wheel_count> duty{};
     std::array<bool, wheel_count> blocked{};
+    std::vector<SoilConstants> constants; // of the base soil and of each patch, soft contact only
+    RutMemory ruts;
+    std::array<RutTrace, wheel_count> trace;
     struct Applied {
         Vec3 force{}, velocity{}; // at the contact point, world
         double rolling_N = 0, along_N = 0, rim_mean_m_s = 0;
@@ -86,6 +100,7 @@ struct Plant::World {
     double direction = 1;
     Vec3 heading_before{};
     double potential_0 = 0;
+    double used_C = 0; // charge taken from the battery
     std::uint64_t steps = 0;
     Truth truth;
     Energy energy;
@@ -97,6 +112,13 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(collect_effects(c
     world = dWorldCreate();
     dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     dWorldSetAutoDisableFlag(world, 0);
+    if (config.ground.contact != ContactLaw::aggregated) {
+        const auto prepare = [this](const Soil &soil) {
+            constants.push_back(soil.bekker ? soil_constants(*soil.bekker, config.rover.wheel_width_m) : SoilConstants{});
+        };
+        prepare(config.ground.soil);
+        for (const SoilPatch &patch : config.ground.patches) prepare(patch.soil);
+    }
     build_bodies();
     for (int i = 0; i < wheel_count; ++i) {
         const auto n = static_cast<std::size_t>(i);
@@ -119,7 +141,11 @@ Plant::World::~World() {
 void Plant::World::build_bodies() {
     const RoverParameters &r = config.rover;
     const double height = r.centre_height_m + effects.body.centre_height_m;
-    const double sunk = r.mass_kg * std::fabs(gravity[2]) / (4 * r.contact_stiffness_N_m);
+    const double load = r.mass_kg * std::fabs(gravity[2]) / 4;
+    double sunk = load / r.contact_stiffness_N_m;
+    if (config.ground.contact != ContactLaw::aggregated && config.ground.soil.bekker)
+        sunk = sinkage_under(config.ground.contact == ContactLaw::arc ? arc_force : bekker_force, *config.ground.soil.bekker,
+                             {r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis}, load, 0);
     const double cos_yaw = math::cos(config.yaw_rad), sin_yaw = math::sin(config.yaw_rad);
     dMatrix3 turn;
     dRSetIdentity(turn);
@@ -199,6 +225,60 @@ double Plant::World::potential() const {
     return sum;
 }
 
+double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) const {
+    const BodyEffects &b = effects.body;
+    double factor = 1 + config.ground.grip_change(x_m, y_m);
+    factor *= law::soil_patch(b.patch_change, b.patch_start_m, b.patch_length_m,
+                              truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m));
+    factor *= law::soil_gradient(b.gradient_1_m, truth.path_m);
+    factor *= law::multi_pass(b.multi_pass, trails(i) ? 1 : 0);
+    if (b.sliding_loss_s_m != 0) factor *= law::sliding_speed_loss(b.sliding_loss_s_m, sliding_m_s);
+    return factor;
+}
+
+const SoilConstants &Plant::World::constants_of(const Soil &soil) const {
+    std::size_t n = 0; // the base soil, unless a patch owns it
+    for (std::size_t i = 0; i < config.ground.patches.size(); ++i)
+        if (&config.ground.patches[i].soil == &soil) n = i + 1;
+    return constants[n];
+}
+
+Plant::World::Meeting Plant::World::meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N) {
+    const auto n = static_cast<std::size_t>(i);
+    Meeting out;
+    out.load_N = load_N;
+    in.grip_N = load_N > 0 ? (soil.adhesion_N + soil.fm_per_fn * load_N) * factor : 0;
+    in.shear_slip = law::shear_stiffness(soil.shear_slip, effects.body.shear_change);
+    in.side_ratio = in.grip_N > 0 ? soil.lateral_coefficient * load_N * factor / in.grip_N : 1;
+    out.force = contact_step(in, contact[n], config.dt_s);
+    out.rolling_N = law::rolling_resistance_N(soil.rolling_coefficient, load_N);
+    return out;
+}
+
+Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point,
+                                              double sink_m_s) {
+    const auto n = static_cast<std::size_t>(i);
+    const RoverParameters &r = config.rover;
+    Meeting out;
+    out.sinkage_m = std::max(0.0, -point[2]);
+    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m, config.dt_s * in.along_m_s);
+    const SlipChange change = slip_step(in, contact[n], config.dt_s);
+    const double total = total_slip(contact[n]);
+    const SoilContact where{out.sinkage_m, std::copysign(std::min(total, 1.0), contact[n].slip), rut};
+    const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, 1 + effects.body.shear_change};
+    const auto law = config.ground.contact == ContactLaw::arc ? arc_force : bekker_force;
+    const SoilForce soft = law(*soil.bekker, constants_of(soil), wheel, where);
+    out.load_N = std::max(0.0, soft.normal_N - (soft.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
+    if (out.load_N <= 0) return out;
+    in.grip_N = soft.largest_N;
+    in.shear_slip = soft.shear_slip;
+    out.force = contact_force(in, contact[n], change, std::fabs(soft.traction_N), config.dt_s);
+    out.rolling_N = soft.resistance_N;
+    const bool sure = std::fabs(soft.traction_N) > 1e-9 && in.rim_m_s * in.rim_m_s > 0;
+    out.torque_m = sure ? soft.torque_Nm / soft.traction_N : 0;
+    return out;
+}
+
 void Plant::World::step_wheel(int i, double supply_V) {
     const auto n = static_cast<std::size_t>(i);
     const RoverParameters &r = config.rover;
@@ -216,41 +296,40 @@ void Plant::World::step_wheel(int i, double supply_V) {
     out.heading = {rotation[0] / flat, rotation[4] / flat, 0};
     const Vec3 left{-out.heading[1], out.heading[0], 0};
     const double along = dot(out.velocity, out.heading), across = dot(out.velocity, left);
-    const double load =
-        std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]);
 
-    const double radius = r.wheel_radius_m * (1 + mine.radius_change);
+    const double radius = law::wheel_radius_m(r.wheel_radius_m, mine.radius_change);
     const double rim = radius * drive[n].wheel_speed_rad_s;
     const Soil &soil = config.ground.at(point[0], point[1]);
-    double grip = (soil.adhesion_N + soil.fm_per_fn * load) * (1 + config.ground.grip_change(point[0], point[1]));
-    if (load <= 0) grip = 0;
-    if (b.patch_change != 0 && truth.path_m >= b.patch_start_m && truth.path_m < b.patch_start_m + b.patch_length_m)
-        grip *= 1 + b.patch_change;
-    if (b.gradient_1_m != 0) grip *= std::max(0.05, 1 + b.gradient_1_m * truth.path_m);
-    if (b.multi_pass != 0 && trails(i)) grip *= 1 + b.multi_pass;
-    if (b.sliding_loss_s_m != 0) grip *= math::exp(-b.sliding_loss_s_m * std::fabs(rim - along));
-
-    const ContactForce force = contact_step({.law = soil.law, .grip_N = grip, .shear_slip = soil.shear_slip * (1 + b.shear_change),
-                                             .relaxation_m = r.relaxation_length_m + b.relaxation_m, .rim_m_s = rim,
-                                             .along_m_s = along, .across_m_s = across, .load_kg = r.mass_kg / 4},
-                                            contact[n], config.dt_s);
+    const double factor = grip_factor(i, point[0], point[1], rim - along);
+    const ContactInput input{.law = soil.law, .shear_slip = soil.shear_slip,
+                             .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, b.relaxation_m), .rim_m_s = rim,
+                             .along_m_s = along, .across_m_s = across, .load_kg = r.mass_kg / 4};
+    const bool soft = config.ground.contact != ContactLaw::aggregated && soil.bekker.has_value();
+    const Meeting met =
+        soft ? meet_soft(i, input, soil, factor, point, out.velocity[2])
+             : meet_aggregated(i, input, soil, factor,
+                               std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]));
+    const double load = met.load_N;
     const double slip_size = std::min(1.0, std::fabs(contact[n].slip));
-    double rolling = soil.rolling_coefficient + mine.rolling + b.slip_sinkage * slip_size + b.speed_resistance_s_m * std::fabs(along);
-    rolling *= load;
-    const double sideways = force.across_N - b.scrub * load * soft_sign(across, 0.02);
-    const double ahead = force.along_N - rolling * soft_sign(along, 0.005);
+    const double rolling = met.rolling_N + law::rolling_resistance_N(mine.rolling, load) +
+                           law::slip_sinkage_N(b.slip_sinkage, slip_size, load) +
+                           law::speed_resistance_N(b.speed_resistance_s_m, along, load);
+    const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
+    // reversing resistance: never more than would stop a quarter of the rover within the step
+    const double ahead = met.force.along_N - rolling * soft_sign(along, std::max(0.005, 4 * rolling * config.dt_s / r.mass_kg));
     for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * out.heading[k] + sideways * left[k];
     out.force[2] = load;
-    out.along_N = force.along_N;
+    out.along_N = met.force.along_N;
     out.rolling_N = rolling;
     dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], at[0], at[1], at[2]);
 
     DriveState &d = drive[n];
     const double speed_before = d.wheel_speed_rad_s;
     if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
-    d.current_A = enabled ? drive_current(r.drive, mine.drive, d, duty[n], supply_V) : 0;
+    d.current_A = enabled ? drive_current(r.drive, mine.drive, d, duty[n], supply_V, config.dt_s) : 0;
     if (!blocked[n]) {
-        const DriveWork work = drive_step(r.drive, mine.drive, d, radius * force.along_N, config.dt_s);
+        const double arm = met.torque_m > 0 ? met.torque_m : radius;
+        const DriveWork work = drive_step(r.drive, mine.drive, d, arm * met.force.along_N, config.dt_s);
         energy.motor += work.motor;
         energy.friction += work.friction;
     }
@@ -260,11 +339,12 @@ void Plant::World::step_wheel(int i, double supply_V) {
     if (r.centre_height_m + b.centre_height_m > 0) dBodyAddRelTorque(body, 0, -spin, 0);
 
     WheelTruth &w = truth.wheel[n];
-    w.traction_N = force.along_N;
+    w.traction_N = met.force.along_N;
     w.rolling_N = rolling;
     w.lateral_N = sideways;
     w.normal_N = load;
     w.slip = contact[n].slip;
+    w.sinkage_m = met.sinkage_m;
     w.ground_speed_m_s = along;
 }
 
@@ -284,7 +364,8 @@ void Plant::World::step() {
     const double dt = config.dt_s;
     double supply_A = 0;
     for (std::size_t i = 0; i < wheel_count; ++i) supply_A += duty[i] * drive[i].current_A;
-    const double supply_V = config.rover.battery_voltage_V - config.rover.battery_resistance_ohm * supply_A;
+    used_C += supply_A * dt;
+    const double supply_V = config.rover.battery_voltage_V - config.rover.battery_fade_V_C * used_C - config.rover.battery_resistance_ohm * supply_A;
     truth.battery_voltage_V = supply_V;
 
     const Vec3 before = mean_velocity();
@@ -383,7 +464,9 @@ std::uint64_t Plant::state_hash() const {
                                    d.heat_K, world_->contact[i].slip, world_->contact[i].side_slip})
             mix(value);
     }
-    return hash;
+    for (const RutTrace &trace : world_->trace) mix(trace.found_m()), mix(trace.deepest_m());
+    mix(world_->truth.path_m), mix(world_->truth.yaw_rad), mix(world_->used_C);
+    return hash ^ world_->ruts.hash();
 }
 
 } // namespace traction::sim

@@ -31,6 +31,9 @@ struct RoverParameters {
     DriveParameters drive;
     double battery_voltage_V = 7.2;       // open circuit, assumed
     double battery_resistance_ohm = 0.06; // assumed
+    double battery_fade_V_C = 0;          // fall of the open-circuit voltage per coulomb: 0 is a supply, 5e-5 six small cells (assumed)
+    double wheel_width_m = 0.042;         // table I; soft contact only
+    double tyre_hysteresis = 0.005;       // Rh/Fn of (3), soft contact only, assumed: a nearly rigid tyre
     double gravity_m_s2 = 9.81;
 };
 
