@@ -6,6 +6,8 @@ import {
   candidateVerdict, effectName, even, isNumber, list, num, parameters, percent, scoreLine, seconds, sized, unit, variant, verdictKind,
 } from './words.js';
 
+const SHOWN = 8; // candidates that a reader sees without asking for more
+
 function section(id, short, title, ...content) {
   return h('section', { id, 'data-short': short }, h('h2', {}, title), ...content);
 }
@@ -69,11 +71,12 @@ function candidates(result) {
     isNumber(c.p_value) ? (c.p_value < 1e-4 ? '< 0.0001' : num(c.p_value, 2)) : '–',
     isNumber(c.detectability) ? num(c.detectability, 2) : '–',
     h('span', { class: `badge ${c.verdict === 'named' ? 'good' : c.verdict === 'class' ? 'odd' : ''}` }, candidateVerdict(c)), strip(c)]);
-  return section('candidates', 'Ranking', 'What could be missing',
-    table('Candidate effects, best first', [{ head: 'rank', number: true }, { head: 'effect' },
+  const part = (caption, from, to) => table(caption, [{ head: 'rank', number: true }, { head: 'effect' },
       { head: 'held-out fall', number: true, title: 'by how much the error on held-out data falls, with its 95 % interval' },
       { head: 'size [95 %]' }, { head: 'p', number: true, title: 'corrected for the number of candidates' },
-      { head: "d′", number: true, title: 'detectability in this log' }, { head: 'verdict' }, { head: 'where the evidence sits' }], rows));
+      { head: "d′", number: true, title: 'detectability in this log' }, { head: 'verdict' }, { head: 'where the evidence sits' }], rows.slice(from, to));
+  return section('candidates', 'Ranking', 'What could be missing', part('Candidate effects, best first', 0, SHOWN),
+    rows.length > SHOWN ? h('details', {}, h('summary', {}, `${rows.length - SHOWN} more candidates`), part('Further candidates', SHOWN)) : null);
 }
 
 function classes(result) {
@@ -131,7 +134,7 @@ function balances(result) {
   const bar = h('div', { class: 'toolbar' }, 'Shown: ', shown, ' ', reset,
     h('span', { class: 'quiet' }, ' Drag across a plot to zoom all of them; double click to go back. With a plot focused: + − ← → Home.'));
   onZoom((a, b, isWhole) => { shown.textContent = seconds(a, b); reset.disabled = isWhole; });
-  const worst = (b) => list(b.worst).map((w) => [windowButton(w, `${seconds(w.t0_s, w.t1_s)} (${num(w.rmse, 2)})`), ' ']);
+  const worst = (b) => list(b.worst).slice(0, 3).map((w) => [windowButton(w, `${seconds(w.t0_s, w.t1_s)} (${num(w.rmse, 2)})`), ' ']);
   const summary = table('How well the model predicts each balance', [{ head: 'balance' }, { head: 'noise σ', number: true, title: 'where it comes from: hover over the number' }, { head: 'RMSE', number: true },
     { head: 'NRMSE', number: true, title: 'RMSE over the noise σ' }, { head: 'bias', number: true }, { head: 'R²', number: true },
     { head: 'outside the band', number: true, title: 'part of the shown samples; 1 % is what noise alone gives' },

@@ -21,10 +21,15 @@ function fixed(x, decimals) {
 // for a column: the same decimals in every row
 export const even = (x, decimals) => (isNumber(x) && Math.abs(x) < 1e5 ? x.toFixed(decimals).replace('-', '−') : num(x));
 
-export const percent = (x) => (isNumber(x) ? `${num(100 * x, 2)}\u00a0%` : '–');
+export const percent = (x) => (isNumber(x) ? `${Math.abs(x) < 5e-4 ? '0' : num(100 * x, 2)}\u00a0%` : '–');
 export const unitText = (u) => String(u ?? '').replace(/\^2/g, '²').replace(/\^3/g, '³').replaceAll(' ', '\u00a0');
 export const unit = (u) => (u && u !== '1' ? `\u00a0${unitText(u)}` : '');
-export const seconds = (a, b) => `${num(a, 4)}–${num(b, 4)} s`;
+
+// times to a fiftieth of the stretch they bound
+export function seconds(a, b) {
+  const decimals = b > a ? 1 - Math.floor(Math.log10((b - a) / 2)) : 3;
+  return isNumber(a) && isNumber(b) ? `${fixed(a, decimals)}–${fixed(b, decimals)} s` : '–';
+}
 
 // 0.15 [0.13 to 0.17] N m
 export function sized(p) {
