@@ -30,7 +30,7 @@ Soil from_bekker(std::string name, const Bekker &bekker, double rolling, std::st
 Bekker table_iii_ground(double kphi, double n, double c_Pa, double phi_deg, double K_m) {
     Bekker b;
     b.kphi = kphi, b.n = n, b.c_Pa = c_Pa, b.phi_rad = phi_deg * degree, b.K_m = K_m;
-    b.weight_N_m3 = 15000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.3;
+    b.weight_N_m3 = 15000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.1;
     return b;
 }
 
@@ -54,7 +54,7 @@ Soil sand() {
 Soil dry_sand() {
     Bekker b;
     b.kc = 990, b.kphi = 1528430, b.n = 1.1, b.c_Pa = 1040, b.phi_rad = 28 * degree, b.K_m = 0.02;
-    b.weight_N_m3 = 15000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.3;
+    b.weight_N_m3 = 15000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.1;
     return from_bekker("dry_sand_literature", b, 0.05,
                        "c, phi, K: SPEC section 2 (Bekker/Wong); kc, kphi, n: dry sand, Land Locomotion Laboratory, in Wong, Theory of "
                        "Ground Vehicles; weight, reload, slip_sinkage, rolling: assumed");
@@ -62,8 +62,8 @@ Soil dry_sand() {
 
 Soil loam() {
     Bekker b;
-    b.kc = 5270, b.kphi = 1515040, b.n = 0.7, b.c_Pa = 1720, b.phi_rad = 29 * degree, b.K_m = 0.025;
-    b.c1 = 0.43, b.weight_N_m3 = 16000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.2;
+    b.kc = 5270, b.kphi = 1515040, b.n = 0.7, b.c_Pa = 1720, b.phi_rad = 29 * degree, b.K_m = 0.01;
+    b.c1 = 0.43, b.weight_N_m3 = 16000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.1;
     return from_bekker("loam", b, 0.06,
                        "kc, kphi, n, c, phi: sandy loam at 15 % moisture, Land Locomotion Laboratory, in Wong, Theory of Ground Vehicles; "
                        "K, c1, weight, reload, slip_sinkage, rolling: assumed");
@@ -71,8 +71,8 @@ Soil loam() {
 
 Soil snow() {
     Bekker b;
-    b.kc = 10550, b.kphi = 3e6, b.n = 1.44, b.c_Pa = 1000, b.phi_rad = 19.7 * degree, b.K_m = 0.04;
-    b.weight_N_m3 = 3500, b.reload_N_m4 = 2e8, b.slip_sinkage = 0.2;
+    b.kphi = 1e7, b.n = 1.44, b.c_Pa = 1000, b.phi_rad = 19.7 * degree, b.K_m = 0.015;
+    b.weight_N_m3 = 3500, b.reload_N_m4 = 2e8, b.slip_sinkage = 0.1;
     return from_bekker("snow", b, 0.10,
                        "packed snow: phi and n in the range of Wong, Theory of Ground Vehicles (fresh snow of that table would bog a 7 N "
                        "wheel); every value assumed");
@@ -81,7 +81,7 @@ Soil snow() {
 Soil lunar() {
     Bekker b;
     b.kc = 1400, b.kphi = 820000, b.n = 1.0, b.c_Pa = 170, b.phi_rad = 35 * degree, b.K_m = 0.0178;
-    b.weight_N_m3 = 16700, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.3;
+    b.weight_N_m3 = 16700, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.1;
     return from_bekker("lunar_simulant", b, 0.06,
                        "kc, kphi, n, c, phi, K: recommended lunar soil, Lunar Sourcebook (Heiken, Vaniman, French 1991) chapter 9; weight "
                        "at 1700 kg/m^3 under Earth's gravity; reload, slip_sinkage, rolling: assumed");

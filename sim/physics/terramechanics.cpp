@@ -21,16 +21,21 @@ double slipped_exponent(const Bekker &soil, double s) { return soil.n * (1 + soi
 
 double chord_m(double radius_m, double depth_m) { return std::sqrt(depth_m * (2 * radius_m - depth_m)); }
 
-struct Arc {
-    double k, n, depth_m, surface_m, reload_N_m3; // stress below the original surface; reload 0: fresh soil
-};
+// k_u of (5).
+double reload_N_m3(const Bekker &soil, double k, double rut_m) {
+    const double own = soil.reload_N_m4 * rut_m, least = 2 * k * math::pow(rut_m, soil.n - 1);
+    return own > least ? own : least;
+}
 
-// sigma at the depth of a node, z >= 0 below the original surface.
-double stress_Pa(const Arc &arc, double z) {
-    const double fresh = arc.k * math::pow(z, arc.n);
-    if (arc.reload_N_m3 <= 0) return fresh;
-    const double again = z > arc.surface_m ? arc.reload_N_m3 * (z - arc.surface_m) : 0;
-    return again < fresh ? again : fresh;
+// Bulldozing: only soil that still stands is pushed.
+double bulldozing_N(const Bekker &soil, const SoilConstants &constants, double width_m, double z, double rut_m) {
+    const double fresh = z > rut_m ? z - rut_m : 0;
+    return 0.5 * width_m * soil.weight_N_m3 * fresh * fresh * constants.passive;
+}
+
+double bekker_normal(double width_m, double radius_m, double k, double n, double z) {
+    const double n_fit = n < largest_exponent ? n : largest_exponent;
+    return width_m * k * std::sqrt(2 * radius_m * z) * math::pow(z, n) * (3 - n_fit) / 3;
 }
 
 } // namespace
@@ -41,111 +46,137 @@ SoilConstants soil_constants(const Bekker &soil, double wheel_width_m) {
 }
 
 double rut_surface_m(const Bekker &soil, const SoilConstants &constants, double rut_m) {
-    if (rut_m <= 0 || soil.reload_N_m4 <= 0) return 0;
-    const double rebound = constants.k_wide * math::pow(rut_m, soil.n) / (soil.reload_N_m4 * rut_m);
-    return rebound < rut_m ? rut_m - rebound : 0;
+    if (rut_m <= 0) return 0;
+    return rut_m - constants.k_wide * math::pow(rut_m, soil.n) / reload_N_m3(soil, constants.k_wide, rut_m);
 }
 
 SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
     SoilForce out;
     const double z = contact.sinkage_m < 0.9 * wheel.radius_m ? contact.sinkage_m : 0.9 * wheel.radius_m;
-    if (!(z > 0)) return out;
-    const double n = slipped_exponent(soil, contact.slip), n_fit = n < largest_exponent ? n : largest_exponent;
+    const double surface = rut_surface_m(soil, constants, contact.rut_m);
+    if (!(z > surface)) return out;
+    const double n = slipped_exponent(soil, contact.slip);
     double length = chord_m(wheel.radius_m, z);
     const double k = modulus(soil, constants, wheel.width_m, length);
-    const double power = math::pow(z, n);
-    double normal = wheel.width_m * k * std::sqrt(2 * wheel.radius_m * z) * power * (3 - n_fit) / 3;
-    double compaction = wheel.width_m * k * power * z / (n + 1);
-    if (contact.rut_m > 0 && soil.reload_N_m4 > 0) {
-        const double surface = rut_surface_m(soil, constants, contact.rut_m), d = z - surface;
-        if (d <= 0) return out;
-        // elastic bed, both sides of the lowest point: integral of k_u (d - x^2/2R) over |x| < sqrt(2Rd)
-        const double half = std::sqrt(2 * wheel.radius_m * d);
-        const double again = wheel.width_m * soil.reload_N_m4 * contact.rut_m * d * half * (4.0 / 3);
-        if (again < normal) {
-            normal = again;
-            length = 2 * half < length ? 2 * half : length;
-        }
+    double compaction = wheel.width_m * k * math::pow(z, n) * z / (n + 1);
+    if (contact.rut_m > 0) {
+        const double d = z - surface, patch = 2 * std::sqrt(2 * wheel.radius_m * d);
+        if (patch < length) length = patch;
         const double before = contact.rut_m < z ? contact.rut_m : z; // the work up to the old depth is done already
-        compaction -= wheel.width_m * k * math::pow(before, n + 1) / (n + 1);
+        compaction -= wheel.width_m * k * math::pow(before, n) * before / (n + 1);
     }
-    out.normal_N = normal;
-    out.largest_N = wheel.strength * (length * wheel.width_m * soil.c_Pa + normal * constants.tan_phi);
+    if (z >= contact.rut_m) {
+        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z);
+    } else {
+        const double share = (z - surface) / (contact.rut_m - surface);
+        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, contact.rut_m) * share * std::sqrt(share);
+    }
+    out.largest_N = wheel.strength * (length * wheel.width_m * soil.c_Pa + out.normal_N * constants.tan_phi);
     out.shear_slip = wheel.shear * soil.K_m / length;
-    out.traction_N = out.largest_N * std::copysign(traction_share(TractionLaw::janosi, std::fabs(contact.slip), out.shear_slip), contact.slip);
-    const double fresh_depth = z > contact.rut_m ? z - contact.rut_m : 0; // only soil that still stands is pushed
-    const double bulldozing = 0.5 * wheel.width_m * soil.weight_N_m3 * fresh_depth * fresh_depth * constants.passive;
-    out.resistance_N = (compaction > 0 ? compaction : 0) + bulldozing + wheel.hysteresis * normal;
+    const double share = traction_share(TractionLaw::janosi, std::fabs(contact.slip), out.shear_slip);
+    out.traction_N = std::copysign(out.largest_N * share, contact.slip);
+    out.resistance_N = compaction + bulldozing_N(soil, constants, wheel.width_m, z, contact.rut_m) + wheel.hysteresis * out.normal_N;
     out.torque_Nm = wheel.radius_m * out.traction_N;
     return out;
 }
 
-SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
-    SoilForce out;
-    const double r = wheel.radius_m;
-    const double z = contact.sinkage_m < 0.9 * r ? contact.sinkage_m : 0.9 * r;
-    const bool rolled = contact.rut_m > 0 && soil.reload_N_m4 > 0;
-    const double surface = rolled ? rut_surface_m(soil, constants, contact.rut_m) : 0;
-    if (!(z > surface)) return out;
+namespace {
 
-    const double cos_entry = 1 - (z - surface) / r; // where the wheel meets the soil, counted from straight down
-    const double sin_entry = chord_m(r, z - surface) / r;
-    const double entry = math::atan2(sin_entry, cos_entry);
-    const double s = contact.slip, size = std::fabs(s);
-    const double share = soil.c1 + soil.c2 * size;
-    const double summit = (share < 0.95 ? share : 0.95) * entry; // theta_m
-    const double ratio = s >= 0 ? 1 - s : 1 / (1 + (s > -0.99 ? s : -0.99)); // v/(R w)
-    const double length = r * sin_entry;
-    const Arc arc{modulus(soil, constants, wheel.width_m, length), slipped_exponent(soil, s), z, surface,
-                  rolled ? soil.reload_N_m4 * contact.rut_m : 0};
-    const double step = entry / arc_nodes, inverse_K = 1 / (soil.K_m * wheel.shear);
-    const double behind = (entry - summit) / summit;
+using Nodes = std::array<double, arc_nodes>;
 
-    std::array<double, arc_nodes> sine, cosine, mirrored_cosine, sigma, tau;
-    // cos and sin of theta_i = (i + 1/2) step by rotation: no polynomial per node
-    double c = math::cos(0.5 * step), d = math::sin(0.5 * step);
-    const double turn_c = c * c - d * d, turn_s = 2 * c * d;
+// The arc from the entry angle to straight down, cut into equal steps; nodes in their middle.
+struct Arc {
+    double radius_m, entry_rad, sin_entry, step_rad;
+    Nodes cosine, sine;
+};
+
+Arc make_arc(double radius_m, double depth_m) {
+    Arc arc{};
+    arc.radius_m = radius_m;
+    arc.sin_entry = chord_m(radius_m, depth_m) / radius_m;
+    arc.entry_rad = math::atan2(arc.sin_entry, 1 - depth_m / radius_m);
+    arc.step_rad = arc.entry_rad / arc_nodes;
+    double c = math::cos(0.5 * arc.step_rad), s = math::sin(0.5 * arc.step_rad); // then by rotation: no polynomial per node
+    const double turn_c = c * c - s * s, turn_s = 2 * c * s;
     for (std::size_t i = 0; i < arc_nodes; ++i) {
-        cosine[i] = c, sine[i] = d;
-        const double next = c * turn_c - d * turn_s;
-        d = d * turn_c + c * turn_s;
+        arc.cosine[i] = c, arc.sine[i] = s;
+        const double next = c * turn_c - s * turn_s;
+        s = s * turn_c + c * turn_s;
         c = next;
     }
-    for (std::size_t i = 0; i < arc_nodes; ++i) { // series of cos to x^8: < 1e-7 of the stress for entry angles below 1 rad
-        const double theta = (static_cast<double>(i) + 0.5) * step;
-        const double image = entry - theta * behind, q = image * image;
-        const double shown = 1 - q * (0.5 - q * (1.0 / 24 - q * (1.0 / 720 - q * (1.0 / 40320))));
-        mirrored_cosine[i] = theta > summit ? cosine[i] : shown;
+    return arc;
+}
+
+double node_rad(const Arc &arc, std::size_t i) { return (static_cast<double>(i) + 0.5) * arc.step_rad; }
+
+// Depth below the original surface whose stress acts at each node: its own in front of the summit, its mirror's behind.
+void node_depths(const Arc &arc, double summit_rad, double sinkage_m, Nodes &depth) {
+    const double behind = (arc.entry_rad - summit_rad) / summit_rad, floor_cos = 1 - sinkage_m / arc.radius_m;
+    for (std::size_t i = 0; i < arc_nodes; ++i) { // series of cos to x^8: 3e-7 at 1 rad
+        const double theta = node_rad(arc, i), image = arc.entry_rad - theta * behind, q = image * image;
+        const double mirrored = 1 - q * (0.5 - q * (1.0 / 24 - q * (1.0 / 720 - q * (1.0 / 40320))));
+        depth[i] = arc.radius_m * ((theta > summit_rad ? arc.cosine[i] : mirrored) - floor_cos);
     }
-    const double floor_cos = 1 - z / r;
+}
+
+// tau at a ratio v/(R w).
+void shear(const Arc &arc, const Nodes &limit_Pa, double ratio, double inverse_K, Nodes &tau) {
     for (std::size_t i = 0; i < arc_nodes; ++i) {
-        const double depth = r * (mirrored_cosine[i] - floor_cos);
-        sigma[i] = arc.k * math::exp(arc.n * math::log(depth));
+        const double j = arc.radius_m * ((arc.entry_rad - node_rad(arc, i)) - ratio * (arc.sin_entry - arc.sine[i]));
+        tau[i] = limit_Pa[i] * std::copysign(1 - math::exp(-std::fabs(j) * inverse_K), j);
     }
-    if (rolled)
-        for (std::size_t i = 0; i < arc_nodes; ++i) sigma[i] = stress_Pa(arc, r * (mirrored_cosine[i] - floor_cos));
+}
+
+struct ArcSum {
+    double along = 0, down = 0, total = 0;
+};
+ArcSum sum_over(const Arc &arc, const Nodes &stress) {
+    ArcSum sum;
     for (std::size_t i = 0; i < arc_nodes; ++i) {
-        const double theta = (static_cast<double>(i) + 0.5) * step;
-        const double j = r * ((entry - theta) - ratio * (sin_entry - sine[i]));
-        const double grip = 1 - math::exp(-std::fabs(j) * inverse_K);
-        tau[i] = wheel.strength * (soil.c_Pa + sigma[i] * constants.tan_phi) * std::copysign(grip, j);
+        sum.along += stress[i] * arc.cosine[i];
+        sum.down += stress[i] * arc.sine[i];
+        sum.total += stress[i];
     }
-    double normal = 0, pull = 0, push = 0, twist = 0;
-    for (std::size_t i = 0; i < arc_nodes; ++i) {
-        normal += sigma[i] * cosine[i] + tau[i] * sine[i];
-        pull += tau[i] * cosine[i];
-        push += sigma[i] * sine[i];
-        twist += tau[i];
+    return sum;
+}
+
+} // namespace
+
+SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
+    SoilForce out;
+    const double r = wheel.radius_m, s = contact.slip;
+    const double z = contact.sinkage_m < 0.9 * r ? contact.sinkage_m : 0.9 * r;
+    const double surface = rut_surface_m(soil, constants, contact.rut_m);
+    if (!(z > surface)) return out;
+    const Arc arc = make_arc(r, z - surface);
+    const double length = r * arc.sin_entry, k = modulus(soil, constants, wheel.width_m, length);
+    const double n = slipped_exponent(soil, s), place = soil.c1 + soil.c2 * std::fabs(s);
+    Nodes depth, sigma, limit, tau, free_tau;
+    node_depths(arc, (place < 0.95 ? place : 0.95) * arc.entry_rad, z, depth);
+    for (std::size_t i = 0; i < arc_nodes; ++i) sigma[i] = k * math::exp(n * math::log(depth[i]));
+    if (contact.rut_m > 0) {
+        const double reload = reload_N_m3(soil, constants.k_wide, contact.rut_m);
+        for (std::size_t i = 0; i < arc_nodes; ++i) {
+            const double again = depth[i] > surface ? reload * (depth[i] - surface) : 0;
+            sigma[i] = again < sigma[i] ? again : sigma[i];
+        }
     }
-    const double area = r * wheel.width_m * step;
-    out.normal_N = area * normal > 0 ? area * normal : 0;
-    out.traction_N = area * pull;
-    out.torque_Nm = r * area * twist;
+    for (std::size_t i = 0; i < arc_nodes; ++i) limit[i] = wheel.strength * (soil.c_Pa + sigma[i] * constants.tan_phi);
+    const double inverse_K = 1 / (soil.K_m * wheel.shear);
+    shear(arc, limit, s >= 0 ? 1 - s : 1 / (1 + (s > -0.99 ? s : -0.99)), inverse_K, tau);
+    shear(arc, limit, 1, inverse_K, free_tau);
+
+    const double area = r * wheel.width_m * arc.step_rad;
+    const ArcSum press = sum_over(arc, sigma), grip = sum_over(arc, tau), free = sum_over(arc, free_tau);
+    const double normal = area * (press.along + grip.down);
+    out.normal_N = normal > 0 ? normal : 0;
+    out.traction_N = area * grip.along;
+    out.torque_Nm = r * area * grip.total;
+    out.free_traction_N = area * free.along;
+    out.free_torque_Nm = r * area * free.total;
     out.largest_N = wheel.strength * (length * wheel.width_m * soil.c_Pa + out.normal_N * constants.tan_phi);
     out.shear_slip = wheel.shear * soil.K_m / length;
-    const double fresh_depth = z > contact.rut_m ? z - contact.rut_m : 0;
-    const double bulldozing = 0.5 * wheel.width_m * soil.weight_N_m3 * fresh_depth * fresh_depth * constants.passive;
-    out.resistance_N = area * push + bulldozing + wheel.hysteresis * out.normal_N;
+    out.resistance_N = area * press.down + bulldozing_N(soil, constants, wheel.width_m, z, contact.rut_m) + wheel.hysteresis * out.normal_N;
     return out;
 }
 

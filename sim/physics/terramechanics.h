@@ -7,11 +7,13 @@
 //   Rr = Rc + Rb + Rh (3): Rc = ww k z^(N+1)/(N+1)             (4) Lhomme-Desages
 //        Rb = ww z^2 weight/2 tan^2(45 deg + phi/2)            Rankine passive pressure of loosened soil, cohesion lost: assumed
 //        Rh = h Fn                                             hysteresis of the tyre
-//   A place rolled before has depth z_r. Its surface is z_r - z_e, z_e = k z_r^n/k_u, k_u = reload*z_r; until z reaches z_r
-//   p = k_u (z - surface)                                      repeated loading: Wong, Terramechanics and Off-Road Vehicles   (5)
+//   A place rolled before has depth z_r and surface z_r - z_e, z_e = k z_r^n/k_u, k_u = max(reload*z_r, 2 k z_r^(n-1)). Up to z_r
+//   p = k_u (z - surface), above in closed form Fn(z_r) (d/z_e)^(3/2), d = z - surface, l = 2 sqrt(2Rd)
+//                                                              repeated loading: Wong, Terramechanics and Off-Road Vehicles   (5)
 //   arc: with theta_m = (c1 + c2 |s|) theta_1 the normal stress is (1) at the node's depth in front, mirrored behind;
 //   tau = (c + sigma tan phi)(1 - exp(-|j|/K)) sgn j, j(theta) = R[(theta_1 - theta) - (v/Rw)(sin theta_1 - sin theta)]
 //   Fn, Ft, Rr, torque = integrals over the arc, midpoint rule on 16 nodes  Wong and Reece, J. Terramechanics 4 (1967) 81, 7   (6)
+//   Rolling bends the soil also at s = 0: Ft(0) > 0. `free_*` give that part, which follows the direction of rolling.
 // Valid for z < R and a wheel on fresh or once-rolled soil; unloading on the spot follows the loading curve.
 #pragma once
 
@@ -37,6 +39,7 @@ struct SoilForce {
     double traction_N = 0;    // Ft
     double resistance_N = 0;  // Rr >= 0
     double torque_Nm = 0;     // about the axle
+    double free_traction_N = 0, free_torque_Nm = 0; // the same at s = 0 and equal sinkage: 0 in closed form
 };
 
 // Numbers of one soil and wheel that do not change while rolling.

@@ -44,6 +44,8 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g) 
 }
 
 // -1..1, the sign of a speed made continuous over `width`.
+constexpr double reversal_m_s = 0.005; // resistances reverse over this speed: assumed, below any sensor's resolution
+
 double soft_sign(double speed, double width) { return std::clamp(speed / width, -1.0, 1.0); }
 
 constexpr double half_offset_share = 0.25; // a half's centre lies a quarter of the width beside the middle
@@ -61,7 +63,9 @@ struct Plant::World {
     double grip_factor(int i, double x_m, double y_m, double sliding_m_s) const; // of Fm: place, track, sliding
     struct Meeting {
         ContactForce force;
-        double load_N = 0, rolling_N = 0, sinkage_m = 0, torque_m = 0; // torque of the wheel over force.along_N
+        double load_N = 0, rolling_N = 0, sinkage_m = 0;
+        double arm_m = 0;             // of force.along_N about the axle; 0: the radius
+        double free_N = 0, free_Nm = 0; // pull and torque of rolling alone, in its direction
     };
     Meeting meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N);
     Meeting meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point, double sink_m_s);
@@ -91,7 +95,7 @@ struct Plant::World {
     std::array<RutTrace, wheel_count> trace;
     struct Applied {
         Vec3 force{}, velocity{}; // at the contact point, world
-        double rolling_N = 0, along_N = 0, rim_mean_m_s = 0;
+        double resist_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
         Vec3 heading{};
     };
     std::array<Applied, wheel_count> applied{};
@@ -264,18 +268,32 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Soil
     const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m, config.dt_s * in.along_m_s);
     const SlipChange change = slip_step(in, contact[n], config.dt_s);
     const double total = total_slip(contact[n]);
-    const SoilContact where{out.sinkage_m, std::copysign(std::min(total, 1.0), contact[n].slip), rut};
     const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, 1 + effects.body.shear_change};
     const auto law = config.ground.contact == ContactLaw::arc ? arc_force : bekker_force;
-    const SoilForce soft = law(*soil.bekker, constants_of(soil), wheel, where);
-    out.load_N = std::max(0.0, soft.normal_N - (soft.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
+    // the law counts slip along the motion: a wheel that rolls backwards sees the mirrored one; near rest, the mean of both
+    const double slip = std::copysign(std::min(total, 1.0), in.along_m_s < 0 ? -contact[n].slip : contact[n].slip);
+    SoilForce soft = law(*soil.bekker, constants_of(soil), wheel, {out.sinkage_m, slip, rut});
+    double by_slip = std::fabs(soft.traction_N - soft.free_traction_N), twist = std::fabs(soft.torque_Nm - soft.free_torque_Nm);
+    const double still = 0.5 * (1 - std::fabs(in.along_m_s) / reversal_m_s);
+    if (still > 0 && config.ground.contact == ContactLaw::arc) {
+        const SoilForce other = law(*soil.bekker, constants_of(soil), wheel, {out.sinkage_m, -slip, rut});
+        by_slip += still * (std::fabs(other.traction_N - other.free_traction_N) - by_slip);
+        twist += still * (std::fabs(other.torque_Nm - other.free_torque_Nm) - twist);
+        soft.normal_N += still * (other.normal_N - soft.normal_N);
+        soft.resistance_N += still * (other.resistance_N - soft.resistance_N);
+    }
+    const double belly = std::max(0.0, out.sinkage_m - 0.9 * r.wheel_radius_m) * r.contact_stiffness_N_m; // the body sits down
+    out.load_N = std::max(0.0, soft.normal_N + belly - (soft.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
     if (out.load_N <= 0) return out;
     in.grip_N = soft.largest_N;
     in.shear_slip = soft.shear_slip;
-    out.force = contact_force(in, contact[n], change, std::fabs(soft.traction_N), config.dt_s);
+    in.law = TractionLaw::janosi;
+    // the part due to slip goes with the slip; what rolling alone does goes with the direction of rolling
+    out.force = contact_force(in, contact[n], change, by_slip, config.dt_s);
+    out.free_N = soft.free_traction_N;
+    out.free_Nm = soft.free_torque_Nm;
+    out.arm_m = by_slip > 1e-6 ? twist / by_slip : 0;
     out.rolling_N = soft.resistance_N;
-    const bool sure = std::fabs(soft.traction_N) > 1e-9 && in.rim_m_s * in.rim_m_s > 0;
-    out.torque_m = sure ? soft.torque_Nm / soft.traction_N : 0;
     return out;
 }
 
@@ -316,11 +334,12 @@ void Plant::World::step_wheel(int i, double supply_V) {
                            law::speed_resistance_N(b.speed_resistance_s_m, along, load);
     const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
     // reversing resistance: never more than would stop a quarter of the rover within the step
-    const double ahead = met.force.along_N - rolling * soft_sign(along, std::max(0.005, 4 * rolling * config.dt_s / r.mass_kg));
+    const double width = std::max(reversal_m_s, 4 * (rolling + met.free_N) * config.dt_s / r.mass_kg);
+    const double pull = met.force.along_N + met.free_N * soft_sign(along, width);
+    const double ahead = pull - rolling * soft_sign(along, width);
     for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * out.heading[k] + sideways * left[k];
     out.force[2] = load;
-    out.along_N = met.force.along_N;
-    out.rolling_N = rolling;
+    out.resist_N = pull - ahead;
     dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], at[0], at[1], at[2]);
 
     DriveState &d = drive[n];
@@ -328,18 +347,18 @@ void Plant::World::step_wheel(int i, double supply_V) {
     if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
     d.current_A = enabled ? drive_current(r.drive, mine.drive, d, duty[n], supply_V, config.dt_s) : 0;
     if (!blocked[n]) {
-        const double arm = met.torque_m > 0 ? met.torque_m : radius;
-        const DriveWork work = drive_step(r.drive, mine.drive, d, arm * met.force.along_N, config.dt_s);
+        out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
+        const DriveWork work = drive_step(r.drive, mine.drive, d, out.torque_Nm, config.dt_s);
         energy.motor += work.motor;
         energy.friction += work.friction;
     }
-    out.rim_mean_m_s = radius * 0.5 * (speed_before + d.wheel_speed_rad_s);
+    out.spin_mean_rad_s = blocked[n] ? 0 : 0.5 * (speed_before + d.wheel_speed_rad_s);
     // the wheel's own spin-up turns the chassis the other way about y
     const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
     if (r.centre_height_m + b.centre_height_m > 0) dBodyAddRelTorque(body, 0, -spin, 0);
 
     WheelTruth &w = truth.wheel[n];
-    w.traction_N = met.force.along_N;
+    w.traction_N = pull;
     w.rolling_N = rolling;
     w.lateral_N = sideways;
     w.normal_N = load;
@@ -382,9 +401,9 @@ void Plant::World::step() {
         const double along = dot(after, a.heading);
         const double to_body = dot(a.force, after);
         const double vertical = a.force[2] * after[2];
-        const double rolling = a.along_N * along - (a.force[0] * a.heading[0] + a.force[1] * a.heading[1]) * along;
+        const double rolling = a.resist_N * along;
         energy.rolling += rolling * dt;
-        energy.slip += (a.along_N * a.rim_mean_m_s - (to_body - vertical + rolling)) * dt;
+        energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling)) * dt;
         energy.body -= vertical * dt;
     }
     const Vec3 velocity = mean_velocity();

@@ -22,7 +22,7 @@ RutMemory::RutMemory() : slots_(1024) {}
 
 std::uint64_t RutMemory::cell(double x_m, double y_m) {
     const auto index = [](double place_m) {
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(place_m / cell_m)) + 0x40000000) & 0xffffffffu;
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(place_m / cell_m + 0.5)) + 0x40000000) & 0xffffffffu;
     };
     return (index(x_m) << 32) | index(y_m);
 }
