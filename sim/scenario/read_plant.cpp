@@ -12,10 +12,11 @@ namespace {
 void read_soil(Keys &keys, Soil &soil) {
     std::string names;
     for (const Soil &known : soil_library()) names += (names.empty() ? "" : ", ") + known.name;
-    const std::string name = keys.text("soil", soil.name);
-    const Soil *found = find_soil(name);
-    if (found == nullptr) keys.fail("soil", "no such soil", "use one of: " + names);
-    soil = *found;
+    if (keys.has("soil")) {
+        const Soil *found = find_soil(keys.text("soil", ""));
+        if (found == nullptr) keys.fail("soil", "no such soil", "use one of: " + names);
+        soil = *found;
+    }
     soil.adhesion_N = keys.number("adhesion_N", soil.adhesion_N, {0, 100});
     soil.fm_per_fn = keys.number("fm_per_fn", soil.fm_per_fn, {0.01, 5});
     soil.shear_slip = keys.number("shear_slip", soil.shear_slip, {0.001, 5});

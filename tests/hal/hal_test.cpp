@@ -1,0 +1,313 @@
+// The simulated HAL: counts inside the converters, scales that agree with the firmware's, faults that never stall the loop.
+#include "hal/sim/fault_hal.h"
+#include "hal/sim/sim_hal.h"
+
+#include "firmware/core/rover_config.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+using namespace traction;
+
+namespace {
+
+// A HAL whose frames count up, so that a fault's doing can be told from the truth.
+class CountingHal {
+  public:
+    hal_t hal() {
+        hal_t hal{};
+        hal.context = this;
+        hal.wait_tick = [](void *context) {
+            static_cast<CountingHal *>(context)->ticks++;
+            return HAL_OK;
+        };
+        hal.read = [](void *context, sensor_frame_t *frame) {
+            auto *self = static_cast<CountingHal *>(context);
+            *frame = {};
+            frame->tick = self->ticks - 1;
+            frame->present = 0xfffu;
+            const int n = static_cast<int>(frame->tick);
+            for (int i = 0; i < WHEEL_COUNT; i++) {
+                frame->encoder_count[i] = 100 * n + i;
+                frame->current_count[i] = static_cast<std::uint16_t>(2048 + n % 100);
+            }
+            frame->battery_count = static_cast<std::uint16_t>(1800 + n % 50);
+            frame->accel_x_count = static_cast<std::int16_t>(n);
+            frame->gyro_z_count = static_cast<std::int16_t>(-n);
+            frame->radar_samples = n % 5 == 0 ? 6 : 5;
+            for (int i = 0; i < frame->radar_samples; i++) frame->radar_count[i] = static_cast<std::uint16_t>(self->sample++ % 1024);
+            return HAL_OK;
+        };
+        hal.write = [](void *context, const actuator_frame_t *) {
+            static_cast<CountingHal *>(context)->writes++;
+            return HAL_OK;
+        };
+        hal.safe_stop = [](void *context) { static_cast<CountingHal *>(context)->stops++; };
+        return hal;
+    }
+    std::uint32_t ticks = 0;
+    int sample = 0, writes = 0, stops = 0;
+};
+
+std::vector<sensor_frame_t> run(hal::FaultScript script, int ticks) {
+    CountingHal inner;
+    hal::FaultHal faulty(inner.hal(), std::move(script), {}, 5);
+    const hal_t hal = faulty.hal();
+    std::vector<sensor_frame_t> frames;
+    for (int i = 0; i < ticks; i++) {
+        EXPECT_EQ(hal.wait_tick(hal.context), HAL_OK);
+        sensor_frame_t frame{};
+        EXPECT_EQ(hal.read(hal.context, &frame), HAL_OK);
+        frames.push_back(frame);
+    }
+    return frames;
+}
+
+constexpr double never_s = 1e9;
+
+hal::SimHalConfig sand() {
+    hal::SimHalConfig config;
+    config.plant.ground.soil = *sim::find_soil("sand");
+    config.sensors = sim::default_sensors();
+    config.ticks = 300;
+    return config;
+}
+
+} // namespace
+
+TEST(Counts, scales_are_those_that_the_firmware_assumes) {
+    const control_config_t firmware = rover_config_default();
+    const hal::CountScale scale;
+    // the firmware's are floats: equal to 1 part in 2^24
+    EXPECT_FLOAT_EQ(static_cast<float>(scale.current_A), firmware.sense.current_A_per_count);
+    EXPECT_FLOAT_EQ(static_cast<float>(scale.battery_V), firmware.sense.battery_V_per_count);
+    EXPECT_FLOAT_EQ(static_cast<float>(scale.accel_m_s2), firmware.sense.accel_m_s2_per_count);
+    EXPECT_FLOAT_EQ(static_cast<float>(scale.gyro_rad_s), firmware.sense.gyro_rad_s_per_count);
+    EXPECT_FLOAT_EQ(static_cast<float>(sim::encoder_rad_per_count), firmware.sense.encoder_rad_per_count);
+    EXPECT_EQ(scale.current_offset, firmware.sense.current_offset_count);
+    EXPECT_EQ(scale.converter_max, firmware.sense.current_max_count);
+    EXPECT_EQ(sim::Radar::count_max, firmware.sense.radar_max_count);
+    EXPECT_EQ(sim::Radar::rate_Hz, static_cast<double>(firmware.doppler.beam->sample_rate_Hz));
+}
+
+TEST(Counts, a_quantity_comes_back_within_half_a_count) {
+    const control_config_t firmware = rover_config_default();
+    for (double current = -4; current <= 4; current += 0.0317) {
+        sim::Measurements measured;
+        measured.current_A.fill(current);
+        measured.battery_V = 7 + current / 2;
+        measured.accel_x_m_s2 = 3 * current;
+        measured.gyro_z_rad_s = current / 2;
+        sensor_frame_t frame{};
+        hal::to_counts({}, measured, &frame);
+        sense_state_t state{};
+        const sense_output_t out = sense_measure(&firmware.sense, &state, &frame);
+        // rounding leaves half a count; 1e-6 for the firmware's single precision
+        EXPECT_NEAR(static_cast<double>(out.current_A[2]), current, 0.001 + 1e-6);
+        EXPECT_NEAR(static_cast<double>(out.battery_V), measured.battery_V, 0.002 + 1e-6);
+        EXPECT_NEAR(static_cast<double>(out.accel_x_m_s2), measured.accel_x_m_s2, 0.002 + 1e-6);
+        EXPECT_NEAR(static_cast<double>(out.gyro_z_rad_s), measured.gyro_z_rad_s, 0.00025 + 1e-6);
+    }
+}
+
+TEST(Counts, stay_inside_the_converters_for_any_quantity) {
+    constexpr double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double value : {-inf, -1e30, -5.0, 0.0, 5.0, 1e30, inf, nan}) {
+        sim::Measurements measured;
+        measured.current_A.fill(value);
+        measured.battery_V = measured.accel_x_m_s2 = measured.gyro_z_rad_s = value;
+        measured.radar_count.assign(12, 1023); // more than a frame holds
+        sensor_frame_t frame{};
+        hal::to_counts({}, measured, &frame);
+        for (const auto count : frame.current_count) EXPECT_LE(count, 4095);
+        EXPECT_LE(frame.battery_count, 4095);
+        EXPECT_EQ(frame.radar_samples, RADAR_SAMPLES_PER_TICK_MAX);
+    }
+}
+
+TEST(Encoder, counts_pulses_of_the_motor_side_and_wraps) {
+    const sim::Encoder encoder;
+    EXPECT_EQ(encoder.count(0), 0);
+    EXPECT_EQ(encoder.count(2 * 3.14159265358979323846 + 1e-9), 6000); // 120 pulses x gear 50, SPEC section 3
+    EXPECT_EQ(encoder.count(-1e-9), -1);
+    EXPECT_EQ(encoder.count((2147483648.0 + 0.5) * sim::encoder_rad_per_count), INT32_MIN);
+    // one pulse in ten lost: 5400 of 6000
+    EXPECT_EQ(sim::Encoder(0.1).count(2 * 3.14159265358979323846 + 1e-9), 5400);
+}
+
+TEST(FaultHal, changes_nothing_when_nothing_fails) {
+    CountingHal plain;
+    const hal_t direct = plain.hal();
+    for (const sensor_frame_t &frame : run({}, 50)) {
+        direct.wait_tick(direct.context);
+        sensor_frame_t expected{};
+        direct.read(direct.context, &expected);
+        EXPECT_EQ(frame.present, expected.present);
+        EXPECT_EQ(frame.encoder_count[3], expected.encoder_count[3]);
+        EXPECT_EQ(frame.radar_count[4], expected.radar_count[4]);
+    }
+}
+
+TEST(FaultHal, a_dropped_sensor_loses_its_bit_and_no_other) {
+    struct Case {
+        sim::FaultySensor sensor;
+        int wheel;
+        std::uint32_t lost;
+    };
+    using enum sim::FaultySensor;
+    for (const Case &c : {Case{encoder, 1, 0x002}, Case{encoder, -1, 0x00f}, Case{current, 3, 0x080}, Case{current, -1, 0x0f0},
+                          Case{battery, -1, 0x100}, Case{accel, -1, 0x200}, Case{gyro, -1, 0x400}, Case{radar, -1, 0x800}}) {
+        const auto frames = run({.sensors = {{.sensor = c.sensor, .wheel = c.wheel, .kind = sim::FaultKind::dropped, .from_s = 0.1, .to_s = 0.2}},
+                                 .emergency_stop_s = {}}, 40);
+        for (std::size_t i = 0; i < frames.size(); i++) {
+            const bool failing = i + 1 >= 10 && i + 1 < 20; // frame i ends at (i + 1) * 10 ms
+            EXPECT_EQ(frames[i].present, failing ? 0xfffu & ~c.lost : 0xfffu) << i;
+        }
+    }
+}
+
+TEST(FaultHal, a_stuck_sensor_repeats_and_a_delayed_one_tells_the_past) {
+    const auto stuck = run({.sensors = {{.sensor = sim::FaultySensor::encoder, .wheel = 2, .kind = sim::FaultKind::stuck, .from_s = 0.1, .to_s = never_s}},
+                            .emergency_stop_s = {}}, 30);
+    EXPECT_EQ(stuck[8].encoder_count[2], 802);
+    for (std::size_t i = 9; i < stuck.size(); i++) EXPECT_EQ(stuck[i].encoder_count[2], 902);
+    EXPECT_EQ(stuck[29].encoder_count[1], 2901);
+
+    const auto late = run({.sensors = {{.sensor = sim::FaultySensor::accel, .kind = sim::FaultKind::delayed, .from_s = 0, .to_s = never_s, .amount = 0.05}},
+                           .emergency_stop_s = {}}, 30);
+    for (std::size_t i = 5; i < late.size(); i++) EXPECT_EQ(late[i].accel_x_count, static_cast<int>(i) - 5);
+    EXPECT_EQ(late[29].gyro_z_count, -29);
+}
+
+TEST(FaultHal, a_late_radar_loses_no_sample) {
+    const auto frames = run({.sensors = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::delayed, .from_s = 0, .to_s = never_s, .amount = 0.1}},
+                             .emergency_stop_s = {}}, 60);
+    std::vector<int> samples;
+    for (const sensor_frame_t &frame : frames) samples.insert(samples.end(), frame.radar_count, frame.radar_count + frame.radar_samples);
+    const std::size_t late = 51; // 0.1 s at 512 Hz
+    for (std::size_t i = late; i < samples.size(); i++) EXPECT_EQ(samples[i], static_cast<int>(i - late) % 1024);
+}
+
+TEST(FaultHal, added_noise_has_the_stated_size) {
+    const auto frames = run({.sensors = {{.sensor = sim::FaultySensor::current, .wheel = 0, .kind = sim::FaultKind::noisy, .from_s = 0, .to_s = never_s, .amount = 0.1}},
+                             .emergency_stop_s = {}}, 4000);
+    double square = 0;
+    for (std::size_t i = 0; i < frames.size(); i++) {
+        const double error = frames[i].current_count[0] - (2048.0 + static_cast<double>(i % 100));
+        square += error * error;
+    }
+    // 0.1 A is 50 counts of 2 mA; standard deviation of the estimate 50/sqrt(2*4000) = 0.56, three of them
+    EXPECT_NEAR(std::sqrt(square / 4000), 50, 1.7);
+}
+
+TEST(FaultHal, the_emergency_line_and_the_calls_of_the_loop_pass_through) {
+    CountingHal inner;
+    hal::FaultHal faulty(inner.hal(), {.sensors = {}, .emergency_stop_s = {{0.02, 0.04}}}, {}, 1);
+    const hal_t hal = faulty.hal();
+    std::vector<bool> stop;
+    for (int i = 0; i < 5; i++) {
+        hal.wait_tick(hal.context);
+        sensor_frame_t frame{};
+        hal.read(hal.context, &frame);
+        stop.push_back(frame.emergency_stop);
+        const actuator_frame_t actuator{};
+        EXPECT_EQ(hal.write(hal.context, &actuator), HAL_OK);
+    }
+    hal.safe_stop(hal.context);
+    EXPECT_EQ(stop, (std::vector<bool>{false, true, true, false, false}));
+    EXPECT_EQ(inner.writes, 5);
+    EXPECT_EQ(inner.stops, 1);
+}
+
+TEST(SimHal, a_tick_is_ten_milliseconds_and_the_run_ends) {
+    hal::SimHal world(sand());
+    const hal_t hal = world.hal();
+    sensor_frame_t frame{};
+    EXPECT_EQ(hal.read(hal.context, &frame), HAL_ERR_TIMEOUT); // nothing measured before the first tick
+    std::uint32_t ticks = 0;
+    int samples = 0;
+    while (hal.wait_tick(hal.context) == HAL_OK) {
+        ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
+        EXPECT_EQ(frame.tick, ticks++);
+        EXPECT_EQ(frame.present, 0xfffu);
+        EXPECT_NEAR(world.truth().t_s, 0.01 * ticks, 1e-9); // sums of 1 ms in double precision
+        samples += frame.radar_samples;
+    }
+    EXPECT_EQ(ticks, 300u);
+    EXPECT_EQ(samples, 3 * 512); // 512 Hz, none lost, none twice
+    EXPECT_EQ(hal.wait_tick(hal.context), HAL_END);
+}
+
+TEST(SimHal, a_blocked_wheel_stands_and_is_let_go) {
+    hal::SimHalConfig config = sand();
+    config.wheel_blocks = {{.wheel = 2, .from_s = 1, .to_s = 2}};
+    hal::SimHal world(config);
+    const hal_t hal = world.hal();
+    for (int tick = 0; hal.wait_tick(hal.context) == HAL_OK; tick++) {
+        actuator_frame_t actuator{.duty_q15 = {16000, 16000, 16000, 16000}, .motor_enable = true, .status_led = false};
+        hal.write(hal.context, &actuator);
+        const double speed = world.truth().wheel[2].speed_rad_s;
+        const bool held = tick > 102 && tick < 199, free = tick == 90 || tick == 290;
+        EXPECT_TRUE(!held || speed == 0) << tick;
+        EXPECT_TRUE(!free || speed > 2) << tick; // duty 0.5 turns a free wheel at 13 rad/s
+    }
+}
+
+TEST(SimHal, a_released_bridge_carries_no_current_and_safe_stop_releases) {
+    hal::SimHal world(sand());
+    const hal_t hal = world.hal();
+    const actuator_frame_t push{.duty_q15 = {30000, 30000, 30000, 30000}, .motor_enable = true, .status_led = false};
+    for (int i = 0; i < 50; i++) {
+        hal.wait_tick(hal.context);
+        hal.write(hal.context, &push);
+    }
+    EXPECT_GT(std::fabs(world.truth().wheel[0].current_A), 0.1);
+    hal.safe_stop(hal.context);
+    hal.wait_tick(hal.context);
+    for (const auto &wheel : world.truth().wheel) EXPECT_EQ(wheel.current_A, 0);
+}
+
+TEST(SimHal, a_delayed_duty_acts_late_by_the_delay) {
+    const auto first_motion_ms = [](double delay_s) {
+        hal::SimHalConfig config = sand();
+        config.actuation_delay_s = delay_s;
+        hal::SimHal world(config);
+        const hal_t hal = world.hal();
+        const actuator_frame_t push{.duty_q15 = {30000, 30000, 30000, 30000}, .motor_enable = true, .status_led = false};
+        for (int tick = 0; hal.wait_tick(hal.context) == HAL_OK; tick++) {
+            if (world.truth().wheel[0].current_A > 0.01) return tick * 10;
+            hal.write(hal.context, &push);
+        }
+        return -1;
+    };
+    EXPECT_EQ(first_motion_ms(0.10) - first_motion_ms(0), 100);
+}
+
+TEST(SimHal, a_dead_sensor_never_stalls_the_loop) {
+    using enum sim::FaultySensor;
+    for (const sim::FaultySensor sensor : {encoder, current, battery, accel, gyro, radar}) {
+        for (const sim::FaultKind kind : {sim::FaultKind::dropped, sim::FaultKind::stuck, sim::FaultKind::noisy, sim::FaultKind::delayed}) {
+            hal::SimHal world(sand());
+            hal::FaultHal faulty(world.hal(), {.sensors = {{.sensor = sensor, .kind = kind, .from_s = 0.5, .to_s = never_s, .amount = 0.3}}, .emergency_stop_s = {}}, {}, 3);
+            const hal_t hal = faulty.hal();
+            const control_config_t config = rover_config_default();
+            static control_state_t state;
+            control_reset(&config, &state);
+            const command_t command{.mode = MODE_PLATFORM_SPEED, .platform_speed_m_s = 0.3f, .yaw_rate_rad_s = 0, .wheel_speed_rad_s = {},
+                                    .duty = {}, .slip_ref = 0, .slip_wheels = 0, .age_ticks = 0};
+            int ticks = 0;
+            while (hal.wait_tick(hal.context) == HAL_OK) {
+                sensor_frame_t frame{};
+                ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
+                const trace_t trace = control_step(&config, &state, &command, &frame);
+                ASSERT_EQ(hal.write(hal.context, &trace.actuator), HAL_OK);
+                ticks++;
+            }
+            EXPECT_EQ(ticks, 300);
+        }
+    }
+}
