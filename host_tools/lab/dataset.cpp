@@ -116,6 +116,10 @@ struct Builder {
             input.speed_rad_s = std::move(smooth.slope);
             mark_gaps(smooth.distance_s, *s);
             slopes_of(input);
+            WheelInput narrow;
+            narrow.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
+            slopes_of(narrow);
+            for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow.accel_rad_s2[k] - input.accel_rad_s2[k]);
         } else if (data.independent_rows) {
             for (std::size_t k = 0; k < data.count; ++k) input.speed_rad_s.push_back(interpolate(s->t_s, s->value, data.time(k)));
             input.angle_rad.assign(data.count, 0);
@@ -125,6 +129,8 @@ struct Builder {
             input.speed_rad_s = std::move(smooth.value);
             input.accel_rad_s2 = std::move(smooth.slope);
             mark_gaps(smooth.distance_s, *s);
+            const std::vector<double> narrow = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
+            for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow[k] - input.accel_rad_s2[k]);
             input.angle_rad.assign(data.count, 0);
             for (std::size_t k = 1; k < data.count; ++k)
                 input.angle_rad[k] = input.angle_rad[k - 1] + 0.5 * data.step_s * (input.speed_rad_s[k] + input.speed_rad_s[k - 1]);
@@ -298,6 +304,30 @@ struct Builder {
         return true;
     }
 
+    // Current that the smoothing of the acceleration may have cost the torque balance in a window [A].
+    double smoothing_error(std::size_t i, double t0, double t1) const {
+        const std::vector<double> &jerk = data.wheel[i].jerk_rad_s2;
+        if (jerk.empty()) return 0;
+        const auto a = static_cast<std::size_t>(std::max(0.0, (t0 - data.start_s) / data.step_s));
+        const auto b = std::min(data.count - 1, static_cast<std::size_t>((t1 - data.start_s) / data.step_s) + 1);
+        double sum = 0;
+        for (std::size_t k = a; k <= b; ++k) sum += std::fabs(jerk[k]);
+        const double mean = std::max(0.0, sum / static_cast<double>(b - a + 1) - jerk_noise(i));
+        return mean * parameter(model.wheel[i].motor, "inertia_kg_m2") / parameter(model.wheel[i].motor, "torque_constant_Nm_A");
+    }
+
+    // Median of the same difference: what the encoder's noise alone makes.
+    double jerk_noise(std::size_t i) const {
+        if (jerk_noise_.size() < data.wheel.size()) jerk_noise_.assign(data.wheel.size(), -1);
+        if (jerk_noise_[i] < 0) {
+            std::vector<double> size(data.wheel[i].jerk_rad_s2);
+            for (double &x : size) x = std::fabs(x);
+            jerk_noise_[i] = 2 * median(size);
+        }
+        return jerk_noise_[i];
+    }
+    mutable std::vector<double> jerk_noise_;
+
     void currents(std::size_t i) {
         const log::Signal *current = wheel_signal(i, "current_A");
         if (current == nullptr) {
@@ -317,6 +347,7 @@ struct Builder {
                 torque.t0_s.push_back(all.t0_s[r]);
                 torque.t1_s.push_back(all.t1_s[r]);
                 torque.measured.push_back(all.measured[r]);
+                torque.noise_factor.push_back(std::hypot(1.0, smoothing_error(i, all.t0_s[r], all.t1_s[r]) / torque.noise));
             }
             add(std::move(torque));
         } else {
@@ -477,10 +508,10 @@ void noise_from_repeat(Dataset &data, const Dataset &other) {
 } // namespace
 
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
-    Builder builder{model, log, {}};
+    Builder builder{model, log, {}, {}};
     builder.build();
     if (repeat != nullptr) {
-        Builder other{model, *repeat, {}};
+        Builder other{model, *repeat, {}, {}};
         other.build();
         noise_from_repeat(builder.data, other.data);
     }

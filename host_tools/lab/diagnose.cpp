@@ -52,6 +52,7 @@ class Columns {
         for (const auto &[name, value] : c.variant) key += "/" + name + std::to_string(value);
         const auto found = cache_.find(key);
         if (found != cache_.end()) return found->second;
+        if (c.effect == "soil_patch") return cache_[key] = patch(c, p);
         Physics at = physics_;
         Candidate one = c;
         one.wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : c.wheel;
@@ -59,9 +60,38 @@ class Columns {
         return cache_[key] = problem_.column(at, p, c.step[j]);
     }
 
+    // A patch is the sum of the cells of the path that it covers.
+    Eigen::VectorXd patch(const Candidate &c, const FreeParameter &p) {
+        const std::vector<double> &path = problem_.forward().motion().path_m;
+        if (cells_.empty()) {
+            const auto [low, high] = std::minmax_element(path.begin(), path.end());
+            cell_start_ = *low;
+            cell_length_ = std::max(0.125, (*high - *low) / 48);
+            cells_.resize(static_cast<std::size_t>((*high - *low) / cell_length_) + 1);
+        }
+        double start = 0, length = 0;
+        for (const auto &[key, value] : c.variant) (key == "start_m" ? start : length) = value;
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(problem_.row_scale.size());
+        for (std::size_t i = 0; i < cells_.size(); ++i) {
+            const double begin = cell_start_ + static_cast<double>(i) * cell_length_;
+            const double overlap = std::min(begin + cell_length_, start + length) - std::max(begin, start);
+            if (overlap <= 0) continue;
+            if (cells_[i].size() == 0) {
+                Physics at = physics_;
+                at.body.patch_start = begin;
+                at.body.patch_length = cell_length_;
+                cells_[i] = problem_.column(at, p, c.step[0]);
+            }
+            sum += overlap / cell_length_ * cells_[i];
+        }
+        return sum;
+    }
+
     Problem &problem_;
     Physics physics_;
     std::map<std::string, Eigen::VectorXd> cache_;
+    std::vector<Eigen::VectorXd> cells_;
+    double cell_start_ = 0, cell_length_ = 1;
 };
 
 struct Scored {
@@ -270,14 +300,10 @@ double overall_error(const Problem &problem) {
 
 double overall_heldout(const Problem &problem) {
     const Screen screen(problem);
-    const std::vector<double> squares = screen.heldout_by_balance();
+    const std::vector<double> squares = screen.heldout_by_balance(true);
     double sum = 0;
     const std::size_t n = problem.data().balance.size();
-    for (std::size_t b = 0; b < n; ++b) {
-        const Balance &balance = problem.data().balance[b];
-        const double in_noise = problem.sigma[b] / balance.noise;
-        sum += squares[b] / static_cast<double>(balance.measured.size()) * in_noise * in_noise;
-    }
+    for (std::size_t b = 0; b < n; ++b) sum += squares[b] / static_cast<double>(problem.data().balance[b].measured.size());
     return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0;
 }
 

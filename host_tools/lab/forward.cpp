@@ -179,21 +179,26 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
 }
 
 Eigen::VectorXd Forward::predict(const Physics &physics) {
+    if (data_->count < 3) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
+    integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr, false);
+    return observe(physics, scratch_);
+}
+
+Eigen::VectorXd Forward::observe(const Physics &physics, const Motion &motion) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
-    if (data_->count < 3) return out;
-    integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr);
-    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, scratch_, i, stage_torque | stage_voltage, current_, out);
-    sensors(physics, scratch_, out);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, motion, i, stage_torque | stage_voltage, current_, out);
+    sensors(physics, motion, out);
     return out;
 }
 
 void Forward::set_base(const Physics &physics) {
-    base_prediction_ = predict(physics);
+    base_prediction_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
     if (data_->count < 3) return;
+    integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr, true);
     std::swap(base_motion_, scratch_);
     have_base_ = true;
-    Eigen::VectorXd ignored = base_prediction_;
-    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, base_motion_, i, stage_torque, base_current_[i], ignored);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
+    sensors(physics, base_motion_, base_prediction_);
 }
 
 Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {

@@ -23,6 +23,7 @@ struct Motion {
         std::vector<double> traction_N, rolling_N, slip, load_N, ground_speed_m_s;
     };
     std::vector<Wheel> wheel;
+    std::vector<Eigen::Matrix2d> inverse; // of the step's Jacobian in (v, yaw rate), where asked for: neighbours are found with it
 };
 
 class Forward {
@@ -43,6 +44,7 @@ class Forward {
     std::size_t first_row(std::size_t balance) const { return first_row_[balance]; }
 
   private:
+    Eigen::VectorXd observe(const Physics &physics, const Motion &motion) const;
     void electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
                     Eigen::VectorXd &out) const;
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;

@@ -40,7 +40,7 @@ class Step {
             s.theta = s.gain * data_.wheel[i].angle_rad[k];
             s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i, accel_before) : data_.load_N[i][k];
             double strength = 1;
-            const double place = path + w.x;
+            const double place = path;
             if (b.patch_change != 0 && place >= b.patch_start && place < b.patch_start + b.patch_length) strength *= 1 + b.patch_change;
             if (b.soil_gradient != 0) strength *= std::max(0.05, 1 + b.soil_gradient * path);
             if (b.multi_pass != 0) strength *= 1 + b.multi_pass * follows(i, v_before);
@@ -267,33 +267,63 @@ template <typename Function> Eigen::Vector2d root_of_two(Function &&g, Eigen::Ve
     return x;
 }
 
-void integrate_longitudinal(const Dataset &data, const Physics &p, Motion &m, const Motion *guess) {
+void integrate_longitudinal(const Dataset &data, const Physics &p, Motion &m, const Motion *guess, bool keep) {
     Step step(data, p);
-    double v = 0, r = 0, accel = 0, path = 0, shift = 0, shift_r = 0;
+    double v = 0, r = 0, accel = 0, path = 0;
     for (std::size_t i = 0; i < p.wheel.size(); ++i) v += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     const double h = data.step_s / p.body.mass;
     double most = 0; // bound of the total force
     for (const WheelPhysics &w : p.wheel) most += (w.adhesion + std::fabs(w.mu) * 10 + 1) + p.body.gravity * p.body.mass * (std::fabs(w.mu) + 2);
+    const bool chord = guess != nullptr && guess->inverse.size() == data.count;
+    if (keep) m.inverse.resize(data.count);
+    Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+    double felt = 0;
     for (std::size_t k = 0; k < data.count; ++k) {
         step.prepare(k, v, accel, path);
         const double before = v, before_r = r, other = step.grade_force();
         if (!data.yaw_free) r = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
-        const auto g = [&](double x) { return x - before - h * (total_force(step, x, r, p) + step.body_force(x) + other); };
-        const double start = guess != nullptr ? guess->v_m_s[k] + shift : before + data.step_s * accel;
-        if (data.yaw_free) {
-            const auto both = [&](const Eigen::Vector2d &x) -> Eigen::Vector2d {
-                const double force = total_force(step, x[0], x[1], p) + step.body_force(x[0]) + other;
-                return {x[0] - before - h * force, x[1] - before_r - data.step_s * yaw_accel(step, x[1], p)};
-            };
-            const Eigen::Vector2d x = root_of_two(both, {start, guess != nullptr ? guess->yaw_rate_rad_s[k] + shift_r : r});
-            r = x[1];
-            v = x[0];
-            if (!(std::fabs(both(x)[0]) < 1e-6)) v = bracketed_root(g, before - h * most, before + h * most, start);
-        } else {
-            v = bracketed_root(g, before - h * most, before + h * most, start);
+        const auto g = [&](const Eigen::Vector2d &x) -> Eigen::Vector2d {
+            felt = total_force(step, x[0], x[1], p) + step.body_force(x[0]);
+            return {x[0] - before - h * (felt + other), data.yaw_free ? x[1] - before_r - data.step_s * yaw_accel(step, x[1], p) : x[1] - r};
+        };
+        const auto converged = [](const Eigen::Vector2d &f) { return std::fabs(f[0]) < 1e-9 && std::fabs(f[1]) < 1e-8; };
+        Eigen::Vector2d x(before + data.step_s * accel, r), f;
+        bool done = false;
+        if (guess != nullptr) x = Eigen::Vector2d(guess->v_m_s[k], data.yaw_free ? guess->yaw_rate_rad_s[k] : r) + shift;
+        if (chord) {
+            double last = 1e300;
+            f = g(x);
+            for (int i = 0; i < 8; ++i) {
+                if ((done = converged(f)) || !(f.squaredNorm() < last)) break;
+                last = f.squaredNorm();
+                x -= guess->inverse[k] * f;
+                f = g(x);
+            }
         }
-        const double felt = total_force(step, v, r, p) + step.body_force(v);
-        if (guess != nullptr) shift = v - guess->v_m_s[k], shift_r = r - guess->yaw_rate_rad_s[k];
+        if (!done) {
+            if (data.yaw_free) x = root_of_two(g, x);
+            f = g(x);
+            if (!data.yaw_free || !(std::fabs(f[0]) < 1e-6)) {
+                x[0] = bracketed_root([&](double speed) { return g({speed, x[1]})[0]; }, before - h * most, before + h * most, x[0]);
+                f = g(x);
+            }
+        }
+        if (keep) {
+            Eigen::Matrix2d J = Eigen::Matrix2d::Identity();
+            const double kept = felt;
+            for (int c = 0; c < (data.yaw_free ? 2 : 1); ++c) {
+                Eigen::Vector2d moved = x;
+                moved[c] += 1e-6;
+                J.col(c) = (g(moved) - f) / 1e-6;
+            }
+            m.inverse[k] = J.inverse();
+            if (!m.inverse[k].allFinite()) m.inverse[k].setIdentity();
+            g(x);
+            felt = kept;
+        }
+        v = x[0];
+        r = x[1];
+        if (guess != nullptr) shift = x - Eigen::Vector2d(guess->v_m_s[k], data.yaw_free ? guess->yaw_rate_rad_s[k] : r);
         accel = (v - before) / data.step_s;
         step.commit();
         path += v * data.step_s;
@@ -395,11 +425,11 @@ double traction_shape(SoilLaw law, double s, double sc) {
     return s < 0 ? -f : f;
 }
 
-void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess) {
+void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep) {
     resize(motion, data.count, physics.wheel.size());
     if (physics.wheel.size() > most_wheels) return;
     switch (physics.motion) {
-    case BodyMotion::longitudinal: return integrate_longitudinal(data, physics, motion, guess);
+    case BodyMotion::longitudinal: return integrate_longitudinal(data, physics, motion, guess, keep);
     case BodyMotion::planar: return integrate_planar(data, physics, motion, guess);
     case BodyMotion::imposed:
     case BodyMotion::none: return integrate_imposed(data, physics, motion);

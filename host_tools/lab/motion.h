@@ -8,8 +8,9 @@
 
 namespace traction::lab {
 
-// Integrates over the whole grid. `guess`: a nearby trajectory that starts the root search, or nullptr.
-void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess);
+// Integrates over the whole grid. `guess`: a nearby trajectory that starts the root search, or nullptr; with its inverse
+// Jacobians the search is a chord iteration, two evaluations a step. `keep`: store the inverse Jacobians.
+void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep);
 
 // Slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest. rim = R w.
 inline double slip_of(double rim, double v) {

@@ -144,25 +144,55 @@ void Problem::solve(int iterations) {
     linearise();
 }
 
+// Variance of each row of a balance as a sum of non-negative parts: constant, traction squared (ground that is not even), jerk
+// squared, slip sensitivity squared (encoder noise through a stiff soil). Multiplicative updates of a weighted least squares.
+Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squares, double floor_variance) const {
+    const Balance &balance = data_->balance[b];
+    const auto n = static_cast<Eigen::Index>(balance.measured.size());
+    const Motion &m = forward_.motion();
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, 4);
+    for (Eigen::Index r = 0; r < n; ++r) {
+        const double t0 = balance.t0_s[static_cast<std::size_t>(r)], t1 = balance.t1_s[static_cast<std::size_t>(r)];
+        const auto k = std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (0.5 * (t0 + t1) - data_->start_s) / data_->step_s)));
+        F(r, 0) = 1;
+        for (std::size_t i = 0; i < m.wheel.size(); ++i) {
+            if (balance.wheel >= 0 && static_cast<std::size_t>(balance.wheel) != i) continue;
+            const double traction = m.wheel[i].traction_N[k], slip = m.wheel[i].slip[k];
+            F(r, 1) += traction * traction;
+            if (!data_->wheel[i].jerk_rad_s2.empty()) F(r, 2) += data_->wheel[i].accel_rad_s2[k] * data_->wheel[i].accel_rad_s2[k];
+            const double speed = std::max(0.2, std::fabs(data_->wheel[i].speed_rad_s[k])), sc = 0.1;
+            const double steep = std::exp(-std::fabs(slip) / sc) / speed; // where the soil's curve is steep, and the wheel slow
+            F(r, 3) += steep * steep;
+        }
+    }
+    Eigen::VectorXd variance = Eigen::VectorXd::Constant(n, std::max(floor_variance, squares.mean()));
+    for (Eigen::Index c = 0; c < 4; ++c)
+        if (const double mean = F.col(c).mean(); mean > 0) F.col(c) /= mean;
+    Eigen::Vector4d x = Eigen::Vector4d::Constant(squares.mean() / 4);
+    for (int pass = 0; pass < 3; ++pass) {
+        const Eigen::VectorXd weight = variance.array().square().inverse();
+        const Eigen::Vector4d target = F.transpose() * weight.cwiseProduct(squares);
+        const Eigen::Matrix4d gram = F.transpose() * weight.asDiagonal() * F;
+        for (int i = 0; i < 200; ++i) x = x.cwiseProduct(target.cwiseQuotient((gram * x).cwiseMax(1e-300)));
+        variance = (F * x).cwiseMax(floor_variance);
+    }
+    return variance;
+}
+
 void Problem::set_scales() {
     const Eigen::VectorXd noise = noise_rows();
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
-        const std::size_t first = forward_.first_row(b), n = data_->balance[b].measured.size();
-        std::vector<double> size;
-        for (std::size_t r = 0; r < n; ++r) {
-            const auto row = static_cast<Eigen::Index>(first + r);
-            size.push_back(std::fabs(residual[row]) / noise[row]);
-        }
-        // rms of the residual with its largest values cut at three robust deviations
-        const double cut = 3 * std::max(1.0, 1.4826 * median(size));
-        double sum = 0;
-        for (const double s : size) sum += std::min(s, cut) * std::min(s, cut);
-        const double scale = std::max(1.0, std::sqrt(sum / static_cast<double>(n)));
-        sigma[b] = scale * data_->balance[b].noise;
-        for (std::size_t r = 0; r < n; ++r) {
-            const auto row = static_cast<Eigen::Index>(first + r);
-            const double weight = size[r] > huber * scale ? huber * scale / size[r] : 1.0;
-            row_scale[row] = std::sqrt(weight) / (scale * noise[row]);
+        const auto first = static_cast<Eigen::Index>(forward_.first_row(b)), n = static_cast<Eigen::Index>(data_->balance[b].measured.size());
+        Eigen::VectorXd e = residual.segment(first, n).cwiseQuotient(noise.segment(first, n)); // in units of the row's noise
+        std::vector<double> size(static_cast<std::size_t>(n));
+        for (Eigen::Index r = 0; r < n; ++r) size[static_cast<std::size_t>(r)] = std::fabs(e[r]);
+        const double cut = 4 * std::max(1.0, 1.4826 * median(size)); // the largest residuals count as four robust deviations
+        const Eigen::VectorXd squares = e.cwiseAbs().cwiseMin(cut).cwiseAbs2();
+        const Eigen::VectorXd variance = row_variance(b, squares, 1.0);
+        sigma[b] = std::sqrt(variance.mean()) * data_->balance[b].noise;
+        for (Eigen::Index r = 0; r < n; ++r) {
+            const double scale = std::sqrt(variance[r]), ratio = std::fabs(e[r]) / scale;
+            row_scale[first + r] = std::sqrt(ratio > huber ? huber / ratio : 1.0) / (scale * noise[first + r]);
         }
     }
 }

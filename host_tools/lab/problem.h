@@ -51,6 +51,7 @@ class Problem {
   private:
     friend class RowsCost;
     void set_scales();
+    Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
 

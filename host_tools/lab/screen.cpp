@@ -184,7 +184,8 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     return out;
 }
 
-std::vector<double> Screen::heldout_by_balance() const {
+std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
+    const Eigen::VectorXd noise = problem_.noise_rows();
     const Dataset &data = problem_.data();
     std::vector<double> sum(data.balance.size(), 0);
     std::vector<std::size_t> balance_of_row;
@@ -193,7 +194,9 @@ std::vector<double> Screen::heldout_by_balance() const {
     for (Eigen::Index b = 0; b < coarse_.count(); ++b) {
         const auto i = static_cast<std::size_t>(b);
         for (Eigen::Index row = coarse_.first[i]; row < coarse_.first[i + 1]; ++row) {
-            const double e = residual_[row] - nuisance_.row(row).dot(changes[i]);
+            double e = residual_[row] - nuisance_.row(row).dot(changes[i]);
+            const Eigen::Index original = order_[static_cast<std::size_t>(row)];
+            if (in_noise) e /= problem_.row_scale[original] * noise[original];
             sum[balance_of_row[static_cast<std::size_t>(order_[static_cast<std::size_t>(row)])]] += e * e;
         }
     }

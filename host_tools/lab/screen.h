@@ -40,8 +40,8 @@ class Screen {
     double heldout_error() const { return base_error_; }            // sum of squares over held-out blocks, priors included
     const Eigen::VectorXd &block_error() const { return block_error_; }
     const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
-    // Held-out sum of squares per balance (rows of that balance only).
-    std::vector<double> heldout_by_balance() const;
+    // Held-out sum of squares per balance; in_noise: in units of each row's measurement noise, which no model changes.
+    std::vector<double> heldout_by_balance(bool in_noise = false) const;
     // Robust standard errors of the problem's own parameters.
     Eigen::VectorXd parameter_errors() const;
     std::vector<Eigen::VectorXd> heldout_changes() const; // parameters without block b, relative to the optimum
