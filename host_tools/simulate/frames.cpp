@@ -17,7 +17,7 @@ namespace {
 
 FrameWriter::FrameWriter(const std::string &path, const std::string &config) : path_(path), file_(std::fopen((path + ".part").c_str(), "wb")) {
     if (file_ == nullptr) fail(path);
-    std::fprintf(file_, "# traction-frames 1 %s\n", config.c_str());
+    std::fprintf(file_, "# frames of traction simulate, firmware configuration %s; tests/replay/replay.c reads them\n", config.c_str());
 }
 
 FrameWriter::~FrameWriter() {
@@ -37,16 +37,18 @@ void FrameWriter::keep() {
 
 void FrameWriter::integer(long value) { line_.append(line_.empty() ? "" : " ").append(std::to_string(value)); }
 
-void FrameWriter::real(float value) {
+void FrameWriter::hexadecimal(std::uint32_t value, int digits) {
     char text[16];
-    std::snprintf(text, sizeof text, " %08" PRIx32, std::bit_cast<std::uint32_t>(value));
+    std::snprintf(text, sizeof text, " %0*" PRIx32, digits, value);
     line_ += text;
 }
 
-void FrameWriter::add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) {
+void FrameWriter::real(float value) { hexadecimal(std::bit_cast<std::uint32_t>(value), 8); }
+
+void FrameWriter::add(const sensor_frame_t &frame, const command_t &command) {
     line_.clear();
     integer(frame.tick);
-    integer(frame.present);
+    hexadecimal(frame.present, 1);
     for (const auto value : frame.encoder_count) integer(value);
     for (const auto value : frame.current_count) integer(value);
     integer(frame.battery_count);
@@ -54,8 +56,7 @@ void FrameWriter::add(const sensor_frame_t &frame, const command_t &command, con
     integer(frame.gyro_z_count);
     integer(frame.emergency_stop ? 1 : 0);
     integer(frame.radar_samples);
-    for (const auto value : frame.radar_count) integer(value);
-
+    for (int i = 0; i < frame.radar_samples; i++) integer(frame.radar_count[i]);
     integer(command.mode);
     real(command.platform_speed_m_s);
     real(command.yaw_rate_rad_s);
@@ -64,22 +65,6 @@ void FrameWriter::add(const sensor_frame_t &frame, const command_t &command, con
     real(command.slip_ref);
     integer(command.slip_wheels);
     integer(command.age_ticks);
-
-    integer(trace.mode);
-    integer(trace.faults);
-    for (const wheel_trace_t &wheel : trace.wheel) {
-        for (const float value : {wheel.speed_rad_s, wheel.accel_rad_s2, wheel.set_speed_rad_s, wheel.current_A, wheel.torque_Nm,
-                                  wheel.traction_N, wheel.slip, wheel.duty})
-            real(value);
-        integer(wheel.slip_valid ? 1 : 0);
-        integer(wheel.saturated ? 1 : 0);
-    }
-    for (const float value : {trace.battery_voltage_V, trace.accel_x_m_s2, trace.gyro_z_rad_s, trace.radar_speed_m_s}) real(value);
-    integer(trace.radar_fresh ? 1 : 0);
-    for (const float value : {trace.speed_m_s, trace.speed_std_m_s, trace.accel_bias_m_s2}) real(value);
-    integer(trace.standstill ? 1 : 0);
-    for (const auto value : trace.actuator.duty_q15) integer(value);
-    integer(trace.actuator.motor_enable ? 1 : 0);
     line_ += '\n';
     std::fputs(line_.c_str(), file_);
 }

@@ -1,15 +1,13 @@
-// frames.h - a run as text that any build of the firmware can replay: per tick the frame, the command, and the trace it must give.
+// frames.h - a run as text that any build of the firmware can replay: per tick the frame and the command.
 //
-// One line a tick, fields separated by one blank, integers in decimal, floats as the 8 hex digits of their bits:
-//   frame:   tick present encoder[4] current[4] battery accel gyro stop samples radar[8]
-//   command: mode speed yaw_rate wheel_speed[4] duty[4] slip slip_wheels age
-//   trace:   mode faults, per wheel: speed accel set current torque traction slip duty valid saturated;
-//            battery accel gyro radar fresh speed std bias standstill duty_q15[4] enable
-// The first line is "# traction-frames 1 default" or "... paper": the configuration that made the traces.
+// The format is that of tests/replay/replay.c: one line a tick, fields separated by one blank,
+//   tick present enc[4] cur[4] battery accel gyro estop n radar[n] mode v yaw w[4] duty[4] slip slip_wheels age
+// counts in decimal, `present` in hexadecimal, floats as the 8 hex digits of their bits.
 #pragma once
 
-#include "firmware/core/control.h"
+#include "firmware/core/signals.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -17,16 +15,18 @@ namespace traction {
 
 class FrameWriter {
   public:
-    FrameWriter(const std::string &path, const std::string &config); // throws log::FileError
-    ~FrameWriter();                                                  // unless kept, leaves nothing
+    // config: "default" or "paper", the firmware configuration of the run. Throws log::FileError.
+    FrameWriter(const std::string &path, const std::string &config);
+    ~FrameWriter(); // unless kept, leaves nothing
     FrameWriter(const FrameWriter &) = delete;
     FrameWriter &operator=(const FrameWriter &) = delete;
 
-    void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
+    void add(const sensor_frame_t &frame, const command_t &command);
     void keep(); // gives the file its name
 
   private:
     void integer(long value);
+    void hexadecimal(std::uint32_t value, int digits);
     void real(float value);
     std::string path_, line_;
     std::FILE *file_;

@@ -189,7 +189,7 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
             recorder.add_camera(poses);
         }
         if (options.truth) truth.add(world.truth());
-        if (frames) frames->add(frame, command, trace);
+        if (frames) frames->add(frame, command);
         if (options.after_second && result.ticks % 100 == 0) options.after_second();
         if (options.realtime)
             std::this_thread::sleep_until(start + std::chrono::milliseconds(10) * static_cast<std::int64_t>(result.ticks));
