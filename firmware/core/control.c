@@ -10,6 +10,7 @@ typedef struct {
     const sense_output_t *sense;
     slip_output_t slip[WHEEL_COUNT];
     float speed_m_s;
+    float per_supply_1_V;
 } estimate_t;
 
 void control_reset(const control_config_t *config, control_state_t *state)
@@ -19,9 +20,9 @@ void control_reset(const control_config_t *config, control_state_t *state)
     ground_speed_reset(&config->ground_speed, &state->ground_speed);
 }
 
-static float feed_forward(const control_config_t *config, float reference_rad_s, float battery_V)
+static float feed_forward(const control_config_t *config, float reference_rad_s, float per_supply_1_V)
 {
-    return config->feed_forward ? motor_duty_for_speed(&config->motor, reference_rad_s, battery_V) : 0.0f;
+    return config->feed_forward ? motor_duty_for_speed(&config->motor, reference_rad_s, per_supply_1_V) : 0.0f;
 }
 
 // --- estimate
@@ -46,7 +47,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .accel_x_m_s2 = sense->accel_x_m_s2,
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_m_s = doppler.speed_m_s,
-        .doppler_late_s = (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz,
+        .doppler_late_s = doppler.fresh ? (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz : 0.0f,
         .doppler_fresh = doppler.fresh,
         .doppler_quiet = doppler.quiet,
         .wheel_m_s = rim_hint_m_s(config, sense),
@@ -96,13 +97,13 @@ static void drive_wheel_speed(const control_config_t *config, control_state_t *s
     const float speed_rad_s = estimate->sense->speed_rad_s[i];
     if (fresh_loop) {
         wheel_pid_preset(&config->wheel_pid, &state->wheel_pid[i], state->duty[i], speed_rad_s,
-                         feed_forward(config, speed_rad_s, estimate->sense->battery_V));
+                         feed_forward(config, speed_rad_s, estimate->per_supply_1_V));
     }
     const float slewed = wheel_pid_slew(&config->wheel_pid, &state->wheel_pid[i], reference_rad_s);
     const wheel_pid_input_t input = {
         .speed_rad_s = speed_rad_s,
         .accel_rad_s2 = estimate->sense->accel_rad_s2[i],
-        .feed_forward = feed_forward(config, slewed, estimate->sense->battery_V),
+        .feed_forward = feed_forward(config, slewed, estimate->per_supply_1_V),
     };
     const wheel_pid_output_t out = wheel_pid_step(&config->wheel_pid, &state->wheel_pid[i], &input);
     wheel->set_speed_rad_s = slewed;
@@ -192,6 +193,8 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
 static safety_output_t judge(const control_config_t *config, control_state_t *state, const estimate_t *estimate,
                              const sensor_frame_t *frame)
 {
+    float most_rad_s = 0.0f;
+    float least_rad_s = 0.0f;
     safety_input_t input = {
         .frame = frame,
         .command_age_ticks = estimate->command->age_ticks,
@@ -202,12 +205,14 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
         .ground_speed_m_s = estimate->speed_m_s,
     };
     for (int i = 0; i < WHEEL_COUNT; i++) {
-        const float rim = fabsf(estimate->sense->speed_rad_s[i]) * config->slip.wheel_radius_m;
+        const float turn = fabsf(estimate->sense->speed_rad_s[i]);
         input.speed_rad_s[i] = estimate->sense->speed_rad_s[i];
         input.current_A[i] = estimate->sense->current_A[i];
-        input.rim_max_m_s = i == 0 || rim > input.rim_max_m_s ? rim : input.rim_max_m_s;
-        input.rim_min_m_s = i == 0 || rim < input.rim_min_m_s ? rim : input.rim_min_m_s;
+        most_rad_s = i == 0 || fixed_greater(turn, most_rad_s) ? turn : most_rad_s;
+        least_rad_s = i == 0 || fixed_greater(least_rad_s, turn) ? turn : least_rad_s;
     }
+    input.rim_max_m_s = most_rad_s * config->slip.wheel_radius_m;
+    input.rim_min_m_s = least_rad_s * config->slip.wheel_radius_m;
     return safety_step(&config->safety, &state->safety, &input);
 }
 
@@ -224,7 +229,7 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
         if ((safety->limited & (1u << (uint32_t)i)) != 0u) {
-            wheel->duty = motor_duty_limited(&config->motor, wheel->duty, estimate->sense->speed_rad_s[i], estimate->sense->battery_V,
+            wheel->duty = motor_duty_limited(&config->motor, wheel->duty, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
                                              config->safety.current_continuous_A);
         }
         wheel->duty = mode == MODE_STOP ? 0.0f : fixed_clamp(fixed_finite(wheel->duty), -1.0f, 1.0f);
@@ -249,7 +254,7 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
     trace.accel_x_m_s2 = sense.accel_x_m_s2;
     trace.gyro_z_rad_s = sense.gyro_z_rad_s;
 
-    estimate_t estimate = {.command = command, .sense = &sense};
+    estimate_t estimate = {.command = command, .sense = &sense, .per_supply_1_V = motor_per_supply(sense.battery_V)};
     estimate.speed_m_s = estimate_speed(config, state, &sense, frame, &trace).speed_m_s;
     estimate_wheels(config, &estimate, &trace);
 

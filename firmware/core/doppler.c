@@ -1,5 +1,7 @@
 #include "doppler.h"
 
+#include "fixed.h"
+
 // Gain from ADC counts to the transform's input: 10 bit to within 1 bit of full scale.
 enum { DOPPLER_GAIN = 32 };
 
@@ -15,52 +17,36 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
     return (float)best * (beam->sample_rate_Hz / (float)FFT_LENGTH) * beam->paper_m_s_per_Hz;
 }
 
-// True when the mean in-band power, as ADC counts squared, is below the noise.
-static bool is_quiet(const doppler_config_t *config, const uint64_t *power)
-{
-    uint64_t sum = 0;
-    const int32_t last = config->beam->first_bin + config->beam->bins;
-    for (int32_t k = config->beam->first_bin; k < last && k < FFT_BINS; k++) {
-        sum += power[k] >> 8;
-    }
-    // sum |X|^2 over positive bins = 2^18 gain^2 (N sum(h^2)/2) variance = 2^18 2^10 (256 * 96 / 2) variance, less the shift by 8
-    const float per_count2 = 268435456.0f * 12288.0f / 256.0f;
-    return (float)sum < config->quiet_power_count2 * per_count2;
-}
-
 // --- (2)
 
-enum { COARSE = 4, BINS_MAX = 124 };
+enum { COARSE = 4, BINS_MAX = 120 };
 
 // J of one grid speed.
 static int32_t cost(const doppler_template_t *beam, const int16_t *power, int32_t total, int32_t speed)
 {
     const int16_t *inverse = beam->inverse + speed * beam->bins;
-    int32_t sum = total * beam->volume[speed];
-    for (int32_t k = 0; k < beam->bins; k += 4) {
-        sum += power[k] * inverse[k];
-        sum += power[k + 1] * inverse[k + 1];
-        sum += power[k + 2] * inverse[k + 2];
-        sum += power[k + 3] * inverse[k + 3];
-    }
-    return sum;
+    return fixed_dot_product(total * beam->volume[speed], power, inverse, beam->bins);
 }
 
-// Powers of the template's bins, reduced so that their sum has at most 15 bits; returns the sum.
-static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int16_t *reduced)
+// Powers of the template's bins, reduced so that their sum has at most 15 bits; returns the reduced sum. *energy is the sum of
+// the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of the transform, 2^10 of the gain,
+// 256 * 96 / 2 of the window).
+static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int16_t *reduced, uint64_t *energy)
 {
-    uint64_t sum = 0; // at most 124 * 2^61 / 2^8
+    uint64_t sum = 0; // at most 120 * 2^61 / 2^8
+    const uint64_t *in = power + beam->first_bin;
     for (int32_t k = 0; k < beam->bins; k++) {
-        sum += power[beam->first_bin + k] >> 8;
+        sum += in[k] >> 8;
     }
-    int32_t shift = 0;
-    while (sum >> shift > 127u) {
-        shift++;
-    }
+    *energy = sum >> 14;
+    const int32_t shift = sum <= 127u ? 0 : 57 - __builtin_clzll(sum); // sum >> shift is 64..127
     int32_t total = 0;
     for (int32_t k = 0; k < beam->bins; k++) {
-        reduced[k] = (int16_t)(power[beam->first_bin + k] >> shift); // sum < 128 * 2^8 = 2^15
-        total += reduced[k];
+        const uint32_t low = (uint32_t)in[k];
+        const uint32_t high = (uint32_t)(in[k] >> 32);
+        const uint32_t value = shift >= 32 ? high >> (shift - 32) : shift == 0 ? low : (low >> shift) | high << (32 - shift);
+        reduced[k] = (int16_t)value; // sum < 128 * 2^8 = 2^15
+        total += (int16_t)value;
     }
     return total;
 }
@@ -68,10 +54,8 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int
 // exp(x) for |x| <= 0.05: error below 3e-7.
 static float exp_small(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
 
-static float likelihood_speed(const doppler_template_t *beam, const uint64_t *power, bool *white)
+static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white)
 {
-    int16_t reduced[BINS_MAX];
-    const int32_t total = reduce(beam, power, reduced);
     int32_t best = 0;
     int32_t least = INT32_MAX;
     for (int32_t i = COARSE / 2; i < beam->speeds; i += COARSE) {
@@ -87,6 +71,9 @@ static float likelihood_speed(const doppler_template_t *beam, const uint64_t *po
     around[fine] = least;
     for (int32_t j = 0; j <= 2 * COARSE; j++) {
         const int32_t i = low + j;
+        if (j == COARSE) {
+            continue;
+        }
         around[j] = i < 0 || i >= beam->speeds ? INT32_MAX : cost(beam, reduced, total, i);
         fine = around[j] < around[fine] ? j : fine;
     }
@@ -104,33 +91,49 @@ static float likelihood_speed(const doppler_template_t *beam, const uint64_t *po
 
 static void measure(const doppler_config_t *config, const uint64_t *power, doppler_output_t *out)
 {
+    int16_t reduced[BINS_MAX] __attribute__((aligned(8)));
+    uint64_t energy = 0;
     bool white = false;
-    const float speed_m_s = config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, power, &white)
+    const int32_t total = reduce(config->beam, power, reduced, &energy);
+    const float speed_m_s = config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, reduced, total, &white)
                                                                  : argmax_speed(config->beam, power);
     out->speed_m_s = config->scale * speed_m_s;
-    out->quiet = white || is_quiet(config, power);
+    out->quiet = white || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
     out->fresh = true;
+}
+
+// Drops the oldest `hop` samples.
+static void slide(doppler_state_t *state, int32_t hop)
+{
+    if (hop % 4 == 0) {
+        for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
+            state->window.word[j - hop / 4] = state->window.word[j];
+        }
+    } else {
+        for (int32_t j = hop; j < FFT_LENGTH; j++) {
+            state->window.sample[j - hop] = state->window.sample[j];
+        }
+    }
+    state->filled = FFT_LENGTH - hop;
 }
 
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
 {
     doppler_output_t out = {false, false, 0.0f, 0};
+    if (state->pending) {
+        measure(config, state->power, &out);
+        out.late_samples = state->late_samples + (count > 0 ? count : 0);
+        state->pending = false;
+    }
     for (int32_t i = 0; i < count; i++) {
         const int32_t limited = sample[i] > 1023u ? 1023 : (int32_t)sample[i];
-        if (state->filled < FFT_LENGTH) {
-            state->sample[state->filled] = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
-            state->filled++;
-        }
+        state->window.sample[state->filled] = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
+        state->filled++;
         if (state->filled == FFT_LENGTH) {
-            uint64_t power[FFT_BINS];
-            fft_power(state->sample, power);
-            measure(config, power, &out);
-            out.late_samples = count - 1 - i;
-            const int32_t hop = config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH;
-            for (int32_t j = hop; j < FFT_LENGTH; j++) {
-                state->sample[j - hop] = state->sample[j];
-            }
-            state->filled = FFT_LENGTH - hop;
+            fft_power(state->window.sample, state->power);
+            state->pending = true;
+            state->late_samples = count - 1 - i;
+            slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
         }
     }
     return out;

@@ -42,12 +42,18 @@ typedef struct {
     int32_t offset_count;     // ADC value of no signal
     int32_t hop;              // samples between values, 1..256
     float scale;              // calibrated speed over geometric speed [1]
-    float quiet_power_count2; // in-band mean power below which there is no echo [ADC count^2]
+    uint32_t quiet_power_count2; // variance of the band below which there is no echo [ADC count^2]
 } doppler_config_t;
 
 typedef struct {
-    int16_t sample[FFT_LENGTH]; // oldest first
+    union {
+        int16_t sample[FFT_LENGTH]; // oldest first
+        uint64_t word[FFT_LENGTH / 4];
+    } window;
     int32_t filled;             // valid samples so far
+    uint64_t power[FFT_BINS];   // of the last full window
+    int32_t late_samples;       // samples since that window's end
+    bool pending;               // its speed is not made yet
 } doppler_state_t; // zeroed = reset
 
 typedef struct {
@@ -57,6 +63,7 @@ typedef struct {
     int32_t late_samples; // samples that arrived after the window's end
 } doppler_output_t;
 
+// The transform runs in the call that fills the window, the search for the speed in the next one, so that no tick pays for both.
 // Any counts are accepted (limited to 0..1023); samples beyond `count` are not read.
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count);
 

@@ -33,7 +33,7 @@ static void predict(const ground_speed_config_t *config, ground_speed_state_t *s
 static void integrate(const ground_speed_config_t *config, ground_speed_state_t *state, float accel_m_s2)
 {
     const float step = fixed_clamp(accel_m_s2 * config->tick_s, -100.0f, 100.0f) * 1048576.0f + state->integral_rest_m_s;
-    const int32_t whole = (int32_t)step;
+    const int32_t whole = (int32_t)step; // |step| < 2^27
     state->integral_rest_m_s = step - (float)whole;
     const int32_t last = state->integral_q20[state->head];
     state->head = (state->head + 1) % GROUND_SPEED_HISTORY;
@@ -44,12 +44,12 @@ static void integrate(const ground_speed_config_t *config, ground_speed_state_t 
 static float window_change_m_s(const ground_speed_state_t *state)
 {
     const int32_t now = state->integral_q20[state->head];
-    int64_t sum = 0;
-    for (int32_t j = 0; j < WINDOW_TICKS; j++) {
-        const int32_t then = state->integral_q20[(state->head - j + GROUND_SPEED_HISTORY) % GROUND_SPEED_HISTORY];
-        sum += (int64_t)fixed_wrap_difference(now, then) * weight_q15[j];
+    int32_t sum = 0; // Q19, each product truncated: 51 * 2^-20 m/s at most
+    for (uint32_t j = 0; j < WINDOW_TICKS; j++) {
+        const int32_t then = state->integral_q20[((uint32_t)state->head - j) % GROUND_SPEED_HISTORY];
+        sum += fixed_mul_low(fixed_wrap_difference(now, then), (uint32_t)weight_q15[j]);
     }
-    return (float)(int32_t)(sum >> 15) * (1.0f / 1048576.0f);
+    return (float)sum * (1.0f / 524288.0f);
 }
 
 static void correct(ground_speed_state_t *state, float innovation, float tau, float noise)
@@ -57,8 +57,9 @@ static void correct(ground_speed_state_t *state, float innovation, float tau, fl
     const float hv = state->p_vv + tau * state->p_vb;
     const float hb = state->p_vb + tau * state->p_bb;
     const float total = hv + tau * hb + noise;
-    const float kv = hv / total;
-    const float kb = hb / total;
+    const float per_total = 1.0f / total;
+    const float kv = hv * per_total;
+    const float kb = hb * per_total;
     state->speed_m_s += kv * innovation;
     state->bias_m_s2 += kb * innovation;
     state->p_vv -= kv * hv;
@@ -66,9 +67,10 @@ static void correct(ground_speed_state_t *state, float innovation, float tau, fl
     state->p_bb -= kb * hb;
 }
 
-static void update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s)
+// The paper drives forward only; the sign of the wheels extends its filter to reverse.
+static void update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s, float wheel_m_s)
 {
-    const float sign = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
+    const float sign = fixed_greater(0.0f, wheel_m_s) ? -1.0f : 1.0f;
     const float gain = state->p_vv / (state->p_vv + config->doppler_noise_m2_s2); // (1)
     state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, 10.0f) - state->speed_m_s);
     state->p_vv -= gain * state->p_vv;
@@ -147,12 +149,12 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     if (fresh) {
         state->quiet = input->doppler_quiet ? state->quiet + (state->quiet < 1000 ? 1 : 0) : 0;
     }
-    const bool rest = fabsf(fixed_finite(input->wheel_m_s)) < config->still_m_s;
+    const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     state->standstill = is_standing(config, state);
     if (config->method == GROUND_SPEED_PAPER) {
         if (fresh) {
-            update_paper(config, state, input->doppler_m_s);
+            update_paper(config, state, input->doppler_m_s, input->wheel_m_s);
         }
     } else if (state->standstill) {
         correct(state, -state->speed_m_s, 0.0f, config->standing_noise_m2_s2);
@@ -162,9 +164,12 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         update_doppler(config, state, input, accel);
     }
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
+    if (fresh || state->standstill || state->std_m_s == 0.0f) { // between, the filter forgets little: a root is dear
+        state->std_m_s = sqrtf(state->p_vv > 0.0f ? state->p_vv : 0.0f);
+    }
     const ground_speed_output_t out = {
         .speed_m_s = state->speed_m_s,
-        .std_m_s = sqrtf(state->p_vv > 0.0f ? state->p_vv : 0.0f),
+        .std_m_s = state->std_m_s,
         .bias_m_s2 = state->bias_m_s2,
         .standstill = state->standstill,
     };

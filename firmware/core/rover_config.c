@@ -19,8 +19,9 @@ static const float encoder_rad_per_count = 6.28318531f / 6000.0f; // [rad] 120 p
 static sense_config_t sense_default(void)
 {
     const sense_config_t sense = {
-        .tick_s = tick_s,
         .encoder_rad_per_count = encoder_rad_per_count,
+        .speed_rad_s_per_count = encoder_rad_per_count / tick_s,
+        .accel_rad_s2_per_count = encoder_rad_per_count / (16.0f * tick_s * tick_s),
         .current_A_per_count = 0.002f,   // [A] assumed: 12 bit over +-4.1 A
         .battery_V_per_count = 0.004f,   // [V] assumed: 12 bit over 16.4 V
         .accel_m_s2_per_count = 0.004f,  // [m/s^2] assumed, about 0.4 mg
@@ -42,7 +43,7 @@ static doppler_config_t doppler_default(void)
         .offset_count = 512, // [count] assumed: mid-scale of 10 bit
         .hop = 64,
         .scale = 1.0f,       // until `traction calibrate` has measured it
-        .quiet_power_count2 = 2.0f, // [count^2] assumed
+        .quiet_power_count2 = 2, // [count^2] assumed
     };
     return doppler;
 }
@@ -80,14 +81,14 @@ static safety_config_t safety_default(void)
         .command_patience_ticks = 8, // 80 ms
         .missed_ticks_max = 5,       // 50 ms
         .missed_forget_ticks = 100,  // assumed: 1 % missed ticks are tolerated for ever
+        .current_continuous_A2 = 2.25f,
         .current_continuous_A = 1.5f, // [A] assumed: above the 1.35 A of full traction on concrete (5.6 N R + Gr)/KG
-        .i2t_max_A2s = 8.0f,         // [A^2 s] assumed: 3 s of stall at 2.2 A
+        .i2t_max_A2_ticks = 800.0f, // 8 A^2 s assumed: 3 s of stall at 2.2 A
         .stall_current_A = 1.4f,     // [A] assumed: above the current of a wheel held by full traction
         .stall_speed_rad_s = 0.3f,   // [rad/s] assumed
         .stall_s = 1.0f,             // [s] assumed
-        .resistance_ohm = resistance_ohm,
-        .thermal_K_W = 12.0f,        // [K/W] assumed
-        .thermal_J_K = 5.0f,         // [J/K] assumed: time constant 60 s
+        .heating_K_A2 = 4.0f * tick_s * resistance_ohm / 5.0f, // C_th = 5 J/K assumed
+        .keeping = 1.0f - 4.0f * tick_s / (12.0f * 5.0f),   // R_th = 12 K/W assumed: time constant 60 s
         .temperature_rise_max_K = 95.0f, // [K] assumed: class B winding at 35 C
         .battery_min_V = 5.4f,       // [V] assumed: 0.9 V per cell of 6
         .battery_s = 0.5f,           // [s] assumed
@@ -107,13 +108,15 @@ control_config_t rover_config_default(void)
         .ground_speed = ground_speed_default(),
         .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
         .motor = {.torque_constant_Nm_A = torque_constant_Nm_A,
+                  .volt_per_speed_Vs = resistance_ohm * viscous_Nms / torque_constant_Nm_A + torque_constant_Nm_A,
+                  .volt_dry_V = resistance_ohm * dry_Nm / torque_constant_Nm_A,
                   .back_emf_Vs = torque_constant_Nm_A, // assumed: equal in SI
                   .resistance_ohm = resistance_ohm,
                   .viscous_Nms = viscous_Nms,
                   .dry_Nm = dry_Nm,
-                  .dry_speed_rad_s = 0.2f, // [rad/s] assumed: five steps of the speed's rounding noise
+                  .per_dry_speed_s = 5.0f, // 1/0.2 [rad/s] assumed: five steps of the speed's rounding noise
                   .inertia_kg_m2 = wheel_inertia_kg_m2,
-                  .wheel_radius_m = wheel_radius_m},
+                  .per_radius_1_m = 1.0f / wheel_radius_m},
         .wheel_pid = {.kp_s = 0.2f, // docs/firmware.md: crossover 24 rad/s free, 16 rad/s gripping
                       .ki_T_s = 0.009f, // zero of the PI on the motor's pole 4.6 rad/s
                       .kd_s2 = 0.0f,
@@ -121,15 +124,16 @@ control_config_t rover_config_default(void)
                       .integral_max = 2.0f,
                       .duty_max = 1.0f},
         .slip_pi = {.kp = 2.0f, .ki_T = 0.09f, .duty_max = 1.0f, .per_speed_s_m = 5.0f, .gain_min = 0.25f, .gain_max = 2.5f},
-        .speed_control = {.wheel_radius_m = wheel_radius_m,
-                          .half_track_m = half_track_m,
+        .speed_control = {.per_radius_1_m = 1.0f / wheel_radius_m,
+                          .half_track_per_radius = half_track_m / wheel_radius_m,
                           .kv_rad_m = 17.5f,     // 1/R: halves the error, docs/firmware.md
                           .ki_T_rad_m = 0.35f,   // 35 rad/s per m/s per s
                           .integral_max_rad_s = 6.0f,
                           .speed_max_m_s = speed_max_m_s,
                           .yaw_rate_max_rad_s = 4.0f, // [rad/s] assumed
                           .wheel_max_rad_s = 25.0f},  // [rad/s] below the no-load speed of 27
-        .soil_sweep = {.wheel_radius_m = wheel_radius_m, .tick_s = tick_s, .zero_slip_s = 10.0f, .duration_ticks = 2000, .wheel_max_rad_s = 25.0f},
+        .soil_sweep = {.ramp_1_m = tick_s / (wheel_radius_m * 10.0f), // t_zero = 10 s, section 6
+                       .duration_ticks = 2000, .wheel_max_rad_s = 25.0f},
         .safety = safety_default(),
         .feed_forward = true,
     };

@@ -13,8 +13,12 @@ static const uint32_t lost_fault[SAFETY_SENSORS] = {
 // Counts how long a cause has lasted; true once it has lasted longer than `limit_s`.
 static bool lasted(float *elapsed_s, bool cause, float tick_s, float limit_s)
 {
-    *elapsed_s = cause ? fixed_clamp(*elapsed_s + tick_s, 0.0f, limit_s + 2.0f * tick_s) : 0.0f;
-    return *elapsed_s > limit_s;
+    if (!cause) {
+        *elapsed_s = 0.0f;
+        return false;
+    }
+    *elapsed_s = fixed_clamp(*elapsed_s + tick_s, 0.0f, limit_s + 2.0f * tick_s);
+    return fixed_greater(*elapsed_s, limit_s);
 }
 
 static uint32_t check_sensors(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
@@ -67,19 +71,21 @@ static uint32_t check_wheel(const safety_config_t *config, safety_state_t *state
     uint32_t faults = 0;
     const float current_A = fixed_clamp(input->current_A[wheel], -100.0f, 100.0f); // [A] far beyond any rail: keeps (1), (2) finite
     const float square = current_A * current_A;
-    const float excess = square - config->current_continuous_A * config->current_continuous_A;
-    state->i2t_A2s[wheel] = fixed_clamp(state->i2t_A2s[wheel] + excess * config->tick_s, 0.0f, 2.0f * config->i2t_max_A2s); // (1)
-    if (state->i2t_A2s[wheel] > config->i2t_max_A2s) {
+    const float excess = square - config->current_continuous_A2;
+    state->i2t_A2_ticks[wheel] = fixed_clamp(state->i2t_A2_ticks[wheel] + excess, 0.0f, 1e6f); // (1)
+    if (fixed_greater(state->i2t_A2_ticks[wheel], config->i2t_max_A2_ticks)) {
         faults |= FAULT_OVER_CURRENT;
         *limit |= 1u << (uint32_t)wheel;
     }
-    const float heat_W = square * config->resistance_ohm - state->rise_K[wheel] / config->thermal_K_W;
-    state->rise_K[wheel] = fixed_clamp(state->rise_K[wheel] + config->tick_s / config->thermal_J_K * heat_W, 0.0f, 1000.0f); // (2)
-    if (state->rise_K[wheel] > config->temperature_rise_max_K) {
+    if ((uint32_t)wheel == state->turn) {
+        state->rise_K[wheel] = fixed_clamp(config->keeping * state->rise_K[wheel] + config->heating_K_A2 * square, 0.0f, 1000.0f); // (2)
+    }
+    if (fixed_greater(state->rise_K[wheel], config->temperature_rise_max_K)) {
         faults |= FAULT_OVER_TEMPERATURE;
     }
     const bool stalled =
-        fabsf(current_A) > config->stall_current_A && fabsf(input->speed_rad_s[wheel]) < config->stall_speed_rad_s;
+        fixed_greater(fabsf(current_A), config->stall_current_A) &&
+        fixed_greater(config->stall_speed_rad_s, fabsf(input->speed_rad_s[wheel]));
     if (lasted(&state->stall_s[wheel], stalled, config->tick_s, config->stall_s)) {
         faults |= FAULT_STALL;
         *limit |= 1u << (uint32_t)wheel;
@@ -89,7 +95,7 @@ static uint32_t check_wheel(const safety_config_t *config, safety_state_t *state
 
 static uint32_t check_battery(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
-    const bool low = (input->usable & FRAME_BATTERY) != 0u && !(input->battery_V >= config->battery_min_V);
+    const bool low = (input->usable & FRAME_BATTERY) != 0u && !fixed_greater(input->battery_V, config->battery_min_V);
     return lasted(&state->low_battery_s, low, config->tick_s, config->battery_s) ? FAULT_LOW_BATTERY : 0u;
 }
 
@@ -98,12 +104,12 @@ static uint32_t check_agreement(const safety_config_t *config, safety_state_t *s
 {
     uint32_t faults = 0;
     const float explained = input->rim_max_m_s * config->disagree_ratio + config->disagree_m_s;
-    if (lasted(&state->disagree_s, fabsf(input->ground_speed_m_s) > explained, config->tick_s, config->disagree_s)) {
+    if (lasted(&state->disagree_s, fixed_greater(fabsf(input->ground_speed_m_s), explained), config->tick_s, config->disagree_s)) {
         faults |= FAULT_SPEED_DISAGREE;
     }
     bool frozen = false;
     if ((input->usable & FRAME_RADAR) != 0u) {
-        frozen = input->rim_min_m_s > config->disagree_m_s;
+        frozen = fixed_greater(input->rim_min_m_s, config->disagree_m_s);
         for (uint32_t i = 0; i < input->frame->radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; i++) {
             frozen = frozen && input->frame->radar_count[i] == state->radar_last_count;
             state->radar_last_count = input->frame->radar_count[i];
@@ -124,6 +130,7 @@ safety_output_t safety_step(const safety_config_t *config, safety_state_t *state
     for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
         now |= check_wheel(config, state, input, wheel, &limit);
     }
+    state->turn = (state->turn + 1u) % WHEEL_COUNT;
     now |= check_battery(config, state, input);
     now |= check_agreement(config, state, input);
 

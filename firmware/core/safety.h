@@ -1,7 +1,7 @@
 // safety.h - the last word of every tick: which faults are latched, whether the bridges may be on, how much current a wheel gets.
 //
 //   x_i[k] = max(0, x_i[k-1] + (I_i^2 - I_cont^2) T);  over-current when x_i > x_max        (1)  i^2 t
-//   h_i[k] = h_i[k-1] + T (I_i^2 Ra - h_i[k-1]/R_th)/C_th                                  (2)  winding above ambient
+//   h_i[k] = h_i[k-4] + 4T (I_i^2 Ra - h_i[k-4]/R_th)/C_th                                 (2)  winding above ambient; one wheel a tick
 //   A sensor is lost when it was silent or absurd for more than its patience; a count of bad ticks goes up by 1 in a bad tick
 //   and is cleared by a good one.
 //
@@ -28,13 +28,13 @@ typedef struct {
     uint32_t missed_ticks_max;      // missed ticks that are forgiven
     uint32_t missed_forget_ticks;   // one missed tick is forgotten per this many good ones
     float current_continuous_A;     // I_cont
-    float i2t_max_A2s;              // x_max
+    float current_continuous_A2;    // I_cont^2
+    float i2t_max_A2_ticks;         // x_max/T
     float stall_current_A;
     float stall_speed_rad_s;
     float stall_s;
-    float resistance_ohm;           // Ra
-    float thermal_K_W;              // R_th
-    float thermal_J_K;              // C_th
+    float heating_K_A2;             // 4T Ra/C_th of (2)
+    float keeping;                  // 1 - 4T/(R_th C_th) of (2)
     float temperature_rise_max_K;
     float battery_min_V;
     float battery_s;                // how long the battery must be low
@@ -53,7 +53,8 @@ typedef struct {
     uint32_t last_tick;
     uint32_t missed;
     uint32_t good_ticks;
-    float i2t_A2s[WHEEL_COUNT];
+    float i2t_A2_ticks[WHEEL_COUNT];// x/T of (1)
+    uint32_t turn;                  // wheel whose temperature is due
     float rise_K[WHEEL_COUNT];
     float stall_s[WHEEL_COUNT];
     float low_battery_s;

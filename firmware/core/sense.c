@@ -11,8 +11,7 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
     const int32_t last = ring[(state->head + SENSE_HISTORY - 1) % SENSE_HISTORY];
     const int32_t middle = ring[(state->head + SENSE_HISTORY - 4) % SENSE_HISTORY];
     const int32_t oldest = ring[state->head];
-    const float held = state->speed_rad_s[wheel];
-    int32_t now = (int32_t)((uint32_t)last + (uint32_t)(int32_t)(held * config->tick_s / config->encoder_rad_per_count));
+    int32_t now = (int32_t)((uint32_t)last + (uint32_t)state->step[wheel]); // what a silent encoder would have said
 
     if ((frame->present & bit) != 0u) {
         const bool first = (state->encoder_seen & bit) == 0u;
@@ -24,11 +23,13 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
             }
             state->encoder_seen |= bit;
             state->speed_rad_s[wheel] = 0.0f;
+            state->step[wheel] = 0;
             out->usable |= bit;
         } else if (step > config->encoder_step_max || step < -config->encoder_step_max) {
             out->absurd |= bit; // the new count is the base of the next difference; the speed is held
         } else {
-            state->speed_rad_s[wheel] = (float)step * (config->encoder_rad_per_count / config->tick_s); // (1)
+            state->step[wheel] = step;
+            state->speed_rad_s[wheel] = (float)step * config->speed_rad_s_per_count; // (1)
             out->usable |= bit;
         }
         if (first) {
@@ -38,13 +39,11 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
             return;
         }
     }
-    const float window_s = 4.0f * config->tick_s;
-    const int32_t bend =
-        fixed_wrap_difference(fixed_wrap_difference(now, middle), fixed_wrap_difference(middle, oldest));
-    const float limit = 4.0f * (float)config->encoder_step_max;
+    const int32_t bend = fixed_wrap_difference(fixed_wrap_difference(now, middle), fixed_wrap_difference(middle, oldest));
+    const int32_t limit = 4 * config->encoder_step_max;
+    const int32_t limited = bend < -limit ? -limit : bend > limit ? limit : bend;
     out->speed_rad_s[wheel] = state->speed_rad_s[wheel];
-    out->accel_rad_s2[wheel] =
-        fixed_clamp((float)bend, -limit, limit) * (config->encoder_rad_per_count / (window_s * window_s)); // (2)
+    out->accel_rad_s2[wheel] = (float)limited * config->accel_rad_s2_per_count; // (2)
     ring[state->head] = now;
 }
 

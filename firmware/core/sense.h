@@ -17,8 +17,9 @@ extern "C" {
 enum { SENSE_HISTORY = 8 };
 
 typedef struct {
-    float tick_s;                 // T
     float encoder_rad_per_count;  // q
+    float speed_rad_s_per_count;  // q/T of (1)
+    float accel_rad_s2_per_count; // q/(4T)^2 of (2)
     float current_A_per_count;
     float battery_V_per_count;
     float accel_m_s2_per_count;
@@ -34,6 +35,7 @@ typedef struct {
     int32_t count[WHEEL_COUNT][SENSE_HISTORY]; // ring of past counts
     int32_t head;
     float speed_rad_s[WHEEL_COUNT];
+    int32_t step[WHEEL_COUNT];    // pulses of the last good tick
     float current_A[WHEEL_COUNT];
     float battery_V;
     float accel_x_m_s2;

@@ -9,14 +9,14 @@ slip_output_t slip_measure(const slip_config_t *config, float wheel_speed_rad_s,
     const float rim_m_s = config->wheel_radius_m * wheel_speed_rad_s;
     const float rim_abs = fabsf(rim_m_s);
     const float ground_abs = fabsf(ground_speed_m_s);
-    const float largest = rim_abs >= ground_abs ? rim_abs : ground_abs;
+    const float largest = fixed_greater(rim_abs, ground_abs) ? rim_abs : ground_abs;
     slip_output_t out = {0.0f, false};
-    if (!fixed_is_finite(rim_m_s) || !fixed_is_finite(ground_speed_m_s) || !(largest > 0.0f)) {
+    if (!fixed_is_finite(rim_m_s) || !fixed_is_finite(ground_speed_m_s) || !fixed_greater(largest, 0.0f)) {
         return out;
     }
     const float difference = rim_m_s - ground_speed_m_s;
     // (1); a difference that overflows means opposite signs, hence full sliding
     out.slip = fixed_clamp(fixed_is_finite(difference) ? difference / largest : rim_m_s / rim_abs, -1.0f, 1.0f);
-    out.valid = largest >= config->valid_m_s;
+    out.valid = fixed_greater(largest, config->valid_m_s);
     return out;
 }

@@ -21,11 +21,12 @@ slip_pi_output_t slip_pi_step(const slip_pi_config_t *config, slip_pi_state_t *s
     const float before = fixed_finite(state->integral);
     const float wanted = direct + before;
     const float change = config->ki_T * gain * error;
-    const bool winds_up = (wanted > config->duty_max && change > 0.0f) || (wanted < -config->duty_max && change < 0.0f);
+    const bool winds_up = (fixed_greater(wanted, config->duty_max) && fixed_greater(change, 0.0f)) ||
+                          (fixed_greater(-config->duty_max, wanted) && fixed_greater(0.0f, change));
     state->integral = winds_up ? before : fixed_clamp(before + change, -config->duty_max, config->duty_max); // (2)
     const float total = direct + state->integral;
     out.duty = fixed_clamp(total, -config->duty_max, config->duty_max); // (3)
-    out.saturated = total > config->duty_max || total < -config->duty_max;
+    out.saturated = fixed_greater(fabsf(total), config->duty_max);
     return out;
 }
 

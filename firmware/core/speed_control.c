@@ -14,8 +14,8 @@ speed_control_output_t speed_control_step(const speed_control_config_t *config, 
         state->integral_rad_s =
             fixed_clamp(before + config->ki_T_rad_m * error, -config->integral_max_rad_s, config->integral_max_rad_s); // (1)
     }
-    const float common = v_ref / config->wheel_radius_m + config->kv_rad_m * error + state->integral_rad_s;
-    const float turn = config->half_track_m * yaw / config->wheel_radius_m;
+    const float common = v_ref * config->per_radius_1_m + config->kv_rad_m * error + state->integral_rad_s;
+    const float turn = config->half_track_per_radius * yaw;
     speed_control_output_t out;
     out.left_rad_s = fixed_clamp(common - turn, -config->wheel_max_rad_s, config->wheel_max_rad_s); // (22)
     out.right_rad_s = fixed_clamp(common + turn, -config->wheel_max_rad_s, config->wheel_max_rad_s);

@@ -15,8 +15,8 @@ extern "C" {
 #endif
 
 typedef struct {
-    float wheel_radius_m;      // R
-    float half_track_m;        // b
+    float per_radius_1_m;      // 1/R
+    float half_track_per_radius; // b/R
     float kv_rad_m;            // Kv [rad/s per m/s]
     float ki_T_rad_m;          // Ki*T [rad/s per m/s]
     float integral_max_rad_s;  // I_max

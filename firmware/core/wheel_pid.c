@@ -2,6 +2,8 @@
 
 #include "fixed.h"
 
+#include <math.h>
+
 float wheel_pid_slew(const wheel_pid_config_t *config, wheel_pid_state_t *state, float reference_rad_s)
 {
     const float now = fixed_finite(state->reference_rad_s);
@@ -17,16 +19,20 @@ wheel_pid_output_t wheel_pid_step(const wheel_pid_config_t *config, wheel_pid_st
     if (!fixed_is_finite(error)) {
         return out;
     }
-    const float direct =
-        fixed_finite(config->kp_s * error - config->kd_s2 * fixed_finite(input->accel_rad_s2) + fixed_finite(input->feed_forward)); // (2)
+    float direct = config->kp_s * error + fixed_finite(input->feed_forward);
+    if (fixed_bits(config->kd_s2) != 0u) {
+        direct -= config->kd_s2 * fixed_finite(input->accel_rad_s2);
+    }
+    direct = fixed_finite(direct); // (2)
     const float before = fixed_finite(state->integral);
     const float wanted = direct + before;
     const float change = config->ki_T_s * error;
-    const bool winds_up = (wanted > config->duty_max && change > 0.0f) || (wanted < -config->duty_max && change < 0.0f);
+    const bool winds_up = (fixed_greater(wanted, config->duty_max) && fixed_greater(change, 0.0f)) ||
+                          (fixed_greater(-config->duty_max, wanted) && fixed_greater(0.0f, change));
     state->integral = winds_up ? before : fixed_clamp(before + change, -config->integral_max, config->integral_max); // (3)
     const float total = direct + state->integral;
     out.duty = fixed_clamp(total, -config->duty_max, config->duty_max); // (4)
-    out.saturated = total > config->duty_max || total < -config->duty_max;
+    out.saturated = fixed_greater(fabsf(total), config->duty_max);
     return out;
 }
 

@@ -128,11 +128,11 @@ static int write_template(const radar_t *radar, FILE *out)
     static double weight[FINE];
     static double S[SPEEDS][LENGTH / 2];
     const double shift = 2 * radar->f0_Hz / c_m_s; // [Hz per m/s] along the ground
-    const double highest = fmin(speed_high_m_s, 0.47 * sample_rate_Hz / shift);
+    const double highest = fmin(speed_high_m_s, 0.46 * sample_rate_Hz / shift);
     const double step = log(highest / speed_low_m_s) / (SPEEDS - 1);
     int bins = (int)ceil(highest * shift / (sample_rate_Hz / LENGTH)) - FIRST_BIN + 1;
-    bins = (bins + 3) / 4 * 4; // rows of whole 64-bit words
-    bins = bins > 124 ? 124 : bins;
+    bins = (bins + 7) / 8 * 8; // rows of whole 128-bit groups
+    bins = bins > 120 ? 120 : bins;
     double smallest = 1;
     beam_histogram(radar, weight);
     for (int i = 0; i < SPEEDS; i++) {

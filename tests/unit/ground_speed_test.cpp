@@ -190,7 +190,7 @@ TEST(Doppler, argmax_finds_a_pure_tone_to_half_a_bin)
         const double f = 2 * v * 9.9e9 / 299792458.0 * std::cos(20 * clutter::pi / 180); // (11)
         doppler_state_t state = {};
         doppler_output_t out = {};
-        for (int n = 0; n < 256; ++n) {
+        for (int n = 0; n <= 256; ++n) { // the speed comes in the call after the window's last sample
             const auto count = static_cast<uint16_t>(512 + 200 * std::cos(2 * clutter::pi * f * n / 512));
             out = doppler_step(&config.doppler, &state, &count, 1);
         }

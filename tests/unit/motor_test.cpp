@@ -42,9 +42,9 @@ TEST(Motor, feed_forward_duty_balances_the_circuit)
     for (double w = -20.0; w <= 20.0; w += 1.0) {
         const double sign = w > 0 ? 1 : (w < 0 ? -1 : 0);
         const double volts = 3.24 * (1.6e-3 * w + 0.03 * sign) / 0.265 + 0.265 * w; // steady state of the circuit
-        EXPECT_NEAR(motor_duty_for_speed(&config, static_cast<float>(w), 7.2f), volts / 7.2, 1e-6);
+        EXPECT_NEAR(motor_duty_for_speed(&config, static_cast<float>(w), motor_per_supply(7.2f)), volts / 7.2, 1e-6);
     }
-    EXPECT_EQ(motor_duty_for_speed(&config, 10.0f, 0.0f), 0.0f);
+    EXPECT_EQ(motor_duty_for_speed(&config, 10.0f, motor_per_supply(0.0f)), 0.0f);
 }
 
 TEST(Motor, limited_duty_keeps_the_current_within_its_limit)
@@ -52,12 +52,12 @@ TEST(Motor, limited_duty_keeps_the_current_within_its_limit)
     const motor_config_t config = rover_motor();
     for (float duty = -1.0f; duty <= 1.0f; duty += 0.1f) {
         for (float w = -20.0f; w <= 20.0f; w += 2.0f) {
-            const double limited = motor_duty_limited(&config, duty, w, 7.2f, 1.5f);
+            const double limited = motor_duty_limited(&config, duty, w, motor_per_supply(7.2f), 1.5f);
             const double current = (limited * 7.2 - 0.265 * static_cast<double>(w)) / 3.24;
             EXPECT_LE(std::fabs(current), 1.5 + 1e-5); // float rounding of volts / ohm
         }
     }
-    EXPECT_EQ(motor_duty_limited(&config, 0.1f, 0.0f, 7.2f, 1.5f), 0.1f);
+    EXPECT_EQ(motor_duty_limited(&config, 0.1f, 0.0f, motor_per_supply(7.2f), 1.5f), 0.1f);
 }
 
 TEST(Motor, every_extreme_gives_a_bounded_duty)
@@ -66,7 +66,7 @@ TEST(Motor, every_extreme_gives_a_bounded_duty)
     const float inf = std::numeric_limits<float>::infinity();
     for (const float a : {0.0f, 1e-45f, 3e38f, -3e38f, inf, -inf, std::nanf("")}) {
         for (const float b : {0.0f, 7.2f, inf, -inf, std::nanf("")}) {
-            EXPECT_LE(std::fabs(motor_duty_for_speed(&config, a, b)), 1.0f);
+            EXPECT_LE(std::fabs(motor_duty_for_speed(&config, a, motor_per_supply(b))), 1.0f);
             EXPECT_LE(std::fabs(motor_duty_limited(&config, a, a, b, 1.5f)), 1.0f);
         }
     }

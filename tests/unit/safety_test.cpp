@@ -217,7 +217,7 @@ TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second)
 
 TEST_F(DrivingRover, an_overheated_winding_releases_the_motors)
 {
-    config.safety.i2t_max_A2s = 1e9f; // so that temperature alone decides
+    config.safety.i2t_max_A2_ticks = 1e9f; // so that temperature alone decides
     frame.current_count[3] = 2048 + 1100;
     // 2.2 A: 15.7 W * 12 K/W = 188 K after many 60 s; 95 K after 60 ln(188/(188 - 95)) = 42 s
     run(4000);
