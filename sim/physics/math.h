@@ -1,4 +1,4 @@
-// math.h - exp, log, sin, cos, tanh, pow and atan2 whose bits do not change with the CPU or its C library.
+// math.h - exp, log, sin, cos, tan, pow, atan2 and asin whose bits do not change with the CPU or its C library.
 //
 // libm picks an implementation by the CPU at run time, and so changes last bits between machines; these are polynomials in plain
 // multiplications and additions (built with -ffp-contract=off). Branch-free where a loop over nodes should become vector code.
@@ -83,12 +83,6 @@ inline double cos(double x) {
 }
 
 inline double tan(double x) { return sin(x) / cos(x); }
-
-inline double tanh(double x) {
-    const double e = exp(-2 * std::fabs(x));
-    const double value = (1 - e) / (1 + e);
-    return x < 0 ? -value : value;
-}
 
 // atan2(0, 0) = 0.
 inline double atan2(double y, double x) {
