@@ -1,4 +1,5 @@
-# cmake -DNODE= -DNPM= -DSOURCE= -DWORK= -DPAGES= -P browser_test.cmake: makes sample results, their pages, and looks at them.
+# cmake -DNODE= -DNPM= -DSOURCE= -DWORK= -DPAGES= -DTRACTION= -DROOT= -P browser_test.cmake: makes sample results and real ones, their
+# pages, and looks at them.
 find_program(CHROMIUM NAMES chromium chromium-browser)
 if(NOT CHROMIUM)
   message("SKIPPED: the report page was not looked at: no chromium here (Debian: apt-get install chromium)")
@@ -29,5 +30,8 @@ if(NOT installed STREQUAL lock)
   file(WRITE ${WORK}/node_modules/.traction-lock ${lock})
 endif()
 run_or_fail("the sample results could not be made" ${NODE} sample.mjs ${WORK}/pages)
+run_or_fail("no drive" ${TRACTION} simulate ${ROOT}/scenarios/sweep_sand.toml --out ${WORK}/sweep.csv)
+run_or_fail("no comparison" ${TRACTION} compare --model ${ROOT}/models/rover_sand.toml --log ${WORK}/sweep.csv --json ${WORK}/pages/real_compare.json)
+run_or_fail("no check" ${TRACTION} check ${WORK}/sweep.csv --json ${WORK}/pages/real_check.json)
 run_or_fail("the pages could not be written" ${PAGES} ${WORK}/pages)
 run_or_fail("a claim about the page does not hold" ${NODE} browser_test.mjs ${CHROMIUM} ${WORK}/pages ${WORK}/shots)

@@ -32,12 +32,12 @@ const shown = (page) => page.$eval('.toolbar output', (e) => e.textContent);
 const sectionIds = (page) => page.$$eval('main > section', (all) => all.map((e) => e.id));
 const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-for (const name of ['check', 'compare', 'diagnose', 'figures', 'empty', 'odd', 'large'])
+for (const name of ['check', 'compare', 'diagnose', 'figures', 'empty', 'odd', 'large', 'real_compare', 'real_check'])
   claim(`${name}: opens from disk without an error and without a request`, async () => {
     const { page, trouble, close } = await open(name);
     assert.deepEqual(trouble, []);
     assert.ok((await page.$$('main h1')).length === 1);
-    await page.screenshot({ path: `${shots}/${name}_desktop.png`, fullPage: true });
+    if (!['large', 'empty', 'real_check'].includes(name)) await page.screenshot({ path: `${shots}/${name}_desktop.png`, fullPage: true });
     await close();
   });
 
@@ -60,6 +60,17 @@ claim('check: findings with their mend, the rates and the excitation', async () 
   assert.deepEqual(await sectionIds(page), ['verdict', 'findings', 'rates', 'excitation']);
   assert.match(await page.textContent('#verdict'), /must be mended.*1 errors, 1 warnings/s);
   assert.match(await page.textContent('#findings tbody tr'), /error.*wheel2\.speed_rad_s.*57\.3.*scale = 0\.01745/s);
+  await close();
+});
+
+claim('real_compare: every balance that traction compare put out is drawn, with its numbers', async () => {
+  const { page, close } = await open('real_compare');
+  const names = await page.evaluate(() => JSON.parse(document.getElementById('result').textContent).balances.map((b) => b.name));
+  assert.ok(names.length >= 4); // at least the current of each of four wheels
+  assert.equal((await page.$$('#balances canvas')).length, 2 * names.length);
+  assert.equal((await page.$$('#balances > .scroll tbody tr')).length, names.length);
+  assert.match(await page.textContent('#verdict'), /x noise floor/);
+  for (const id of ['regimes', 'whiteness']) assert.ok((await sectionIds(page)).includes(id), id);
   await close();
 });
 
