@@ -217,7 +217,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
                 for (std::size_t k = 0; k < series->size(); k += 10) values.push_back(kind.axis == Axis::abs_speed ? std::fabs((*series)[k]) : (*series)[k]);
         }
         if (values.empty()) continue;
-        for (const double q : {0.02, 0.18, 0.34, 0.5, 0.66, 0.82, 0.98}) {
+        for (const double q : {0.02, 0.2, 0.4, 0.6, 0.8, 0.98}) {
             const double knot = quantile(values, q);
             if (c.knots.empty() || knot > c.knots.back() + 1e-6 + 0.02 * (quantile(values, 0.98) - quantile(values, 0.02))) c.knots.push_back(knot);
         }

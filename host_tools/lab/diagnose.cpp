@@ -25,11 +25,12 @@ std::string one_decimal(double value) {
 // Structured columns of all candidates at a baseline: a wheel's column is computed once, "all wheels" is the sum.
 class Columns {
   public:
-    explicit Columns(Problem &problem) : problem_(problem), physics_(problem.physics()) {}
+    using Cache = std::map<std::string, Eigen::VectorXd>; // unscaled: good for later rounds too, whose refits are exact anyway
+    Columns(Problem &problem, Cache &cache) : problem_(problem), physics_(problem.physics()), cache_(cache) {}
 
     Eigen::MatrixXd of(const Candidate &c) {
         Eigen::MatrixXd out(problem_.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
-        for (std::size_t j = 0; j < c.strengths.size(); ++j) out.col(static_cast<Eigen::Index>(j)) = column(c, j);
+        for (std::size_t j = 0; j < c.strengths.size(); ++j) out.col(static_cast<Eigen::Index>(j)) = column(c, j).cwiseProduct(problem_.row_scale);
         return out;
     }
 
@@ -57,7 +58,7 @@ class Columns {
         Candidate one = c;
         one.wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : c.wheel;
         one.prepare(at);
-        return cache_[key] = problem_.column(at, p, c.step[j]);
+        return cache_[key] = problem_.column(at, p, c.step[j]).cwiseQuotient(problem_.row_scale);
     }
 
     // A patch is the sum of the cells of the path that it covers.
@@ -66,7 +67,7 @@ class Columns {
         if (cells_.empty()) {
             const auto [low, high] = std::minmax_element(path.begin(), path.end());
             cell_start_ = *low;
-            cell_length_ = std::max(0.125, (*high - *low) / 48);
+            cell_length_ = std::max(0.125, (*high - *low) / 32);
             cells_.resize(static_cast<std::size_t>((*high - *low) / cell_length_) + 1);
         }
         double start = 0, length = 0;
@@ -80,7 +81,7 @@ class Columns {
                 Physics at = physics_;
                 at.body.patch_start = begin;
                 at.body.patch_length = cell_length_;
-                cells_[i] = problem_.column(at, p, c.step[0]);
+                cells_[i] = problem_.column(at, p, c.step[0]).cwiseQuotient(problem_.row_scale);
             }
             sum += overlap / cell_length_ * cells_[i];
         }
@@ -89,7 +90,7 @@ class Columns {
 
     Problem &problem_;
     Physics physics_;
-    std::map<std::string, Eigen::VectorXd> cache_;
+    Cache &cache_;
     std::vector<Eigen::VectorXd> cells_;
     double cell_start_ = 0, cell_length_ = 1;
 };
@@ -137,6 +138,8 @@ Scored score(const Candidate &c, const Screen &screen, Columns &columns, bool fu
     return s;
 }
 
+bool nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
+
 // Fits baseline plus candidate in full, from the linear estimate.
 void refit(Scored &s, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data) {
     Physics physics = make_physics(model);
@@ -156,7 +159,7 @@ void refit(Scored &s, const Problem &base, const Screen &base_screen, const Mode
         if (limited && std::fabs(start) < 1e-3 * span) start = s.candidate.of_interest[static_cast<std::size_t>(j)];
         problem.theta[n + j] = start;
     }
-    problem.fit({.iterations = 5, .reweight = false});
+    problem.quick_fit(base, nonlinear(s.candidate.effect) ? 12 : 4);
     const Screen screen(problem, n);
     const Eigen::VectorXd present = problem.theta.tail(k);
     s.assessment = screen.assess(problem.jacobian.rightCols(k), present, true);
@@ -226,13 +229,11 @@ struct Round {
     double base_error = 0;
 };
 
-bool nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
-
 Round run_round(Problem &problem, const Screen &screen, const Model &model, const Dataset &data, const DiagnoseOptions &options,
-                const std::function<void()> &tick) {
+                Columns::Cache &cache, const std::function<void()> &tick) {
     Round round;
     round.base_error = screen.heldout_error();
-    Columns columns(problem);
+    Columns columns(problem, cache);
     std::map<std::string, Scored> best;
     std::vector<std::string> order;
     for (const Candidate &c : catalogue_candidates(model, data, problem.forward().motion())) {
@@ -320,7 +321,7 @@ Rung fit_model(Model &model, const Dataset &data, const std::string &label) {
 }
 
 // In diagnose_shapes.cpp: what no effect of the catalogue explains.
-std::optional<UnknownShape> find_unknown(const Model &baseline, const Model &improved, const Dataset &data, const DiagnoseOptions &options);
+std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, bool something_named, const DiagnoseOptions &options);
 
 Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOptions &options) {
     Diagnosis d;
@@ -337,14 +338,14 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         if (options.progress) options.progress(done, 400);
     };
     Eigen::VectorXd warm;
+    Columns::Cache cache;
+    std::optional<Problem> first, last;
     for (int round_index = 0; round_index <= options.most_effects; ++round_index) {
         const Physics physics = make_physics(d.model);
         Problem problem(data, physics, free_parameters(d.model, physics));
         for (Eigen::Index i = 0; i < std::min(warm.size(), problem.theta.size()); ++i) problem.theta[i] = warm[i];
-        problem.fit({.iterations = 6, .reweight = true});
+        problem.fit({.iterations = round_index == 0 ? 6 : 3, .reweight = true});
         warm = problem.theta;
-        const auto original_count = problem.parameters.size();
-        (void)original_count;
         const std::string label = d.accepted.empty() ? "baseline" : "+ " + d.accepted.back().candidate.label();
         d.ladder.push_back({label, overall_error(problem), overall_heldout(problem), 1});
         const Screen screen(problem);
@@ -359,8 +360,10 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
                         a.low[j] = a.value[j] - 1.96 * errors[row];
                         a.high[j] = a.value[j] + 1.96 * errors[row];
                     }
+        if (round_index == 0) first = problem;
+        last = problem;
         if (round_index == options.most_effects) break;
-        Round round = run_round(problem, screen, d.model, data, options, tick);
+        Round round = run_round(problem, screen, d.model, data, options, cache, tick);
         std::size_t winner = round.scored.size();
         for (std::size_t i = 0; i < round.scored.size() && winner == round.scored.size(); ++i)
             if (round.scored[i].verdict == "passes") winner = i;
@@ -415,9 +418,10 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         if (s.verdict == "passes") continue;
         d.messages.push_back(c.label() + " was found first, and is not needed beside the others: dropped");
         d.model = without;
+        last = problem;
         d.accepted.erase(d.accepted.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    if (options.shapes) d.unknown = find_unknown(original, d.model, data, options);
+    if (options.shapes) d.unknown = find_unknown(*first, *last, !d.accepted.empty(), options);
     for (const CandidateResult &a : d.accepted) d.effects.push_back(a.candidate.label());
     const bool any_class = !d.classes.empty();
     if (d.accepted.empty()) d.kind = d.unknown ? "unknown" : "nothing";

@@ -17,13 +17,6 @@ struct ShapeScore {
     double p_value = 1;
 };
 
-Problem fitted(const Model &model, const Dataset &data) {
-    const Physics physics = make_physics(model);
-    Problem problem(data, physics, free_parameters(model, physics));
-    problem.fit({.iterations = 6, .reweight = true});
-    return problem;
-}
-
 ShapeScore assess_shape(const Candidate &c, Problem &problem, const Screen &screen, const Physics &physics) {
     ShapeScore s;
     s.candidate = c;
@@ -78,26 +71,23 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
 
 } // namespace
 
-std::optional<UnknownShape> find_unknown(const Model &baseline, const Model &improved, const Dataset &data, const DiagnoseOptions &options) {
-    Problem last = fitted(improved, data);
+std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, bool something_named, const DiagnoseOptions &options) {
     const Screen last_screen(last);
-    const std::vector<ShapeScore> after = all_shapes(last, last_screen);
-    for (const ShapeScore &s : after) {
+    for (const ShapeScore &s : all_shapes(last, last_screen)) {
         const double relative = last_screen.heldout_error() > 0 ? s.assessment.gain / last_screen.heldout_error() : 0;
-        if (s.p_value < options.p_limit && relative > 2 * options.least_gain && s.assessment.gain > 2 * s.assessment.gain_error) return describe(s, last_screen.heldout_error());
+        if (s.p_value < options.p_limit && relative > options.least_shape_gain && s.assessment.gain > 2 * s.assessment.gain_error) return describe(s, last_screen.heldout_error());
     }
-    if (improved.effects.size() <= baseline.effects.size()) return std::nullopt;
+    if (!something_named) return std::nullopt;
     // does one shape alone do better than all that was named?
-    Problem first = fitted(baseline, data);
     const Screen first_screen(first);
-    Problem same_scale = fitted(improved, data);
-    same_scale.keep_scales(first);
-    same_scale.fit({.iterations = 4, .reweight = false});
-    const Screen same_screen(same_scale);
-    const double named_gain = first_screen.heldout_error() - same_screen.heldout_error();
+    Problem named = last; // all that was named, on the first problem's scales
+    named.keep_scales(first);
+    named.linearise();
+    const Screen named_screen(named);
+    const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(first, first_screen)) {
         if (!(s.p_value < options.p_limit) || !(s.assessment.gain > options.shape_margin * named_gain)) continue;
-        const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - same_screen.block_error());
+        const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
         const double n = static_cast<double>(difference.size());
         const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
         if (s.assessment.gain - named_gain > 2 * error) return describe(s, first_screen.heldout_error());

@@ -202,6 +202,57 @@ void Problem::keep_scales(const Problem &other) {
     sigma = other.sigma;
 }
 
+void Problem::quick_fit(const Problem &base, int iterations) {
+    keep_scales(base);
+    const Eigen::Index n = base.theta.size(), all = theta.size(), rows = measured_.size();
+    jacobian.resize(rows, all);
+    jacobian.leftCols(n) = base.jacobian;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(all, all);
+    normal.topLeftCorner(n, n) = base.jacobian.transpose() * base.jacobian;
+    const Eigen::VectorXd precision = prior_precision();
+    double cost_before = 1e300;
+    Eigen::VectorXd theta_before = theta, residual_before;
+    Eigen::MatrixXd columns_before;
+    for (int i = 0; i <= iterations; ++i) {
+        const Physics at = physics();
+        forward_.set_base(at);
+        residual = measured_ - forward_.base();
+        const double cost = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
+        if (i > 0 && !(cost < cost_before)) { // too far: half way back, at most a few times
+            if (cost > 1.0001 * cost_before && i < iterations) {
+                theta = 0.5 * (theta + theta_before);
+                continue;
+            }
+            theta = theta_before;
+            residual = residual_before;
+            jacobian.rightCols(all - n) = columns_before;
+            return;
+        }
+        for (Eigen::Index c = n; c < all; ++c) {
+            const FreeParameter &p = parameters[static_cast<std::size_t>(c)];
+            double low = 0, high = 0;
+            bounds(static_cast<std::size_t>(c), low, high);
+            jacobian.col(c) = column(at, p, theta[c] + p.step > high ? -p.step : p.step);
+        }
+        if (i == iterations || cost > 0.9998 * cost_before) return;
+        cost_before = cost;
+        theta_before = theta, residual_before = residual;
+        columns_before = jacobian.rightCols(all - n);
+        const Eigen::MatrixXd cross = jacobian.transpose() * columns_before;
+        normal.rightCols(all - n) = cross;
+        normal.bottomRows(all - n) = cross.transpose();
+        Eigen::MatrixXd system = normal;
+        system.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(all, 1e-12);
+        const Eigen::VectorXd moment = jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta);
+        theta += system.ldlt().solve(moment);
+        for (Eigen::Index c = 0; c < all; ++c) {
+            double low = 0, high = 0;
+            bounds(static_cast<std::size_t>(c), low, high);
+            theta[c] = std::clamp(theta[c], low, high);
+        }
+    }
+}
+
 void Problem::fit(const FitOptions &options) {
     if (data_->count < 3 || measured_.size() == 0) return;
     if (options.reweight) {
