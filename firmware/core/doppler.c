@@ -19,7 +19,7 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 
 // --- (2)
 
-enum { COARSE = 4, BINS_MAX = 120 };
+enum { COARSE = 4 };
 
 // J of one grid speed.
 static int32_t cost(const doppler_template_t *beam, const int16_t *power, int32_t total, int32_t speed)
@@ -91,7 +91,7 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
 
 static void measure(const doppler_config_t *config, const uint64_t *power, doppler_output_t *out)
 {
-    int16_t reduced[BINS_MAX] __attribute__((aligned(8)));
+    int16_t reduced[DOPPLER_BINS_MAX] __attribute__((aligned(8)));
     uint64_t energy = 0;
     bool white = false;
     const int32_t total = reduce(config->beam, power, reduced, &energy);

@@ -20,8 +20,11 @@
 extern "C" {
 #endif
 
+enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
+
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
+// Arrays, not pointers: a pointer in a constant must be relocated, hence lies in writable memory.
 // Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
 typedef struct {
     float log_step;           // ln of the ratio of neighbouring grid speeds
@@ -30,10 +33,10 @@ typedef struct {
     int32_t speeds;           // grid size
     int32_t first_bin;        // spectral bins used: first_bin .. first_bin + bins - 1
     int32_t bins;
-    const float *speed_m_s;   // [speeds] the grid, rising
-    const int16_t *inverse;   // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
-    const int32_t *volume;    // [speeds] q * sum_k ln S_v[k]
-    const int32_t *quiet;     // [speeds] q * expected J/a of an echo of which half is white noise
+    float speed_m_s[DOPPLER_SPEEDS_MAX]; // the grid, rising
+    int16_t inverse[DOPPLER_SPEEDS_MAX * DOPPLER_BINS_MAX] __attribute__((aligned(8))); // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
+    int32_t volume[DOPPLER_SPEEDS_MAX];  // q * sum_k ln S_v[k]
+    int32_t quiet[DOPPLER_SPEEDS_MAX];   // q * expected J/a of an echo of which half is white noise
 } doppler_template_t;
 
 typedef struct {

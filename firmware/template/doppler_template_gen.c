@@ -144,18 +144,21 @@ static int write_template(const radar_t *radar, FILE *out)
     const double scale = 32767 * smallest;
     fprintf(out, "// Made by doppler_template_gen from the radar's geometry; do not edit.\n");
     describe(radar, weight, out);
-    fprintf(out, "#include \"firmware/core/doppler_template.h\"\n\nstatic const float speed_m_s[%d] = {", SPEEDS);
+    fprintf(out, "#include \"firmware/core/doppler_template.h\"\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n"
+                 "    .paper_m_s_per_Hz = %.8ef,\n    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n"
+                 "    .speed_m_s = {",
+            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
     for (int i = 0; i < SPEEDS; i++) {
         fprintf(out, "%.8ef, ", speed_low_m_s * exp(step * i));
     }
-    fprintf(out, "};\n\nstatic const int16_t inverse[%d] __attribute__((aligned(8))) = {\n", SPEEDS * bins);
+    fprintf(out, "},\n    .inverse = {\n");
     for (int i = 0; i < SPEEDS; i++) {
         for (int k = 0; k < bins; k++) {
             fprintf(out, "%d,", (int)floor(scale / S[i][k] + 0.5));
         }
         fprintf(out, "\n");
     }
-    fprintf(out, "};\n\nstatic const int32_t volume[%d] = {", SPEEDS);
+    fprintf(out, "},\n    .volume = {");
     for (int i = 0; i < SPEEDS; i++) {
         double ln = 0;
         for (int k = 0; k < bins; k++) {
@@ -164,7 +167,7 @@ static int write_template(const radar_t *radar, FILE *out)
         fprintf(out, "%d, ", (int)floor(scale * ln + 0.5));
     }
     // E[J]/a where half of the power is white: sum_k ((S_v - e/bins) / (1 - e) + 1/bins) / 2 / S_v[k] + ln S_v[k]
-    fprintf(out, "};\n\nstatic const int32_t quiet[%d] = {", SPEEDS);
+    fprintf(out, "},\n    .quiet = {");
     for (int i = 0; i < SPEEDS; i++) {
         double mean = 0;
         for (int k = 0; k < bins; k++) {
@@ -173,10 +176,7 @@ static int write_template(const radar_t *radar, FILE *out)
         }
         fprintf(out, "%d, ", (int)floor(scale * mean + 0.5));
     }
-    fprintf(out, "};\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n    .paper_m_s_per_Hz = %.8ef,\n"
-                 "    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n    .speed_m_s = speed_m_s,\n    .quiet = quiet,\n"
-                 "    .inverse = inverse,\n    .volume = volume,\n};\n",
-            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
+    fprintf(out, "},\n};\n");
     return ferror(out) ? 4 : 0;
 }
 
