@@ -7,7 +7,7 @@ std::vector<Effect> body_effects() {
     return {
         {"load_transfer", "A centre of mass higher than thought", load, false, "dFn = -+ M*a*h/(2*wheelbase) on each front/rear wheel",
          "moment balance about the ground, derived here", "When it accelerates, front currents fall and rear currents rise.",
-         "Hard starts and stops. On steady drives there is nothing to see.",
+         "Hard starts and stops, both directions. Steady drives show nothing; an offset mass shows all the time.",
          {strength("height_m", "m", "added height of the centre of mass", 0, 0.2, 0.08, 0.01)}},
         {"mass_offset_x", "A load carried fore or aft", load, false, "static Fn shifts: sum Fn*x = M*g*offset",
          "moment balance, derived here", "Front and rear wheels pull unlike shares at all times.",
@@ -15,7 +15,7 @@ std::vector<Effect> body_effects() {
          {strength("offset_m", "m", "centre of mass forward of the platform's centre", -0.06, 0.06, 0.025, 0.003)}},
         {"mass_offset_y", "A load carried to one side", load, false, "static Fn shifts: sum Fn*y = M*g*offset",
          "moment balance, derived here", "Left and right wheels pull unlike shares; the rover veers.",
-         "Straight drives with slip, both directions.",
+         "Straight drives with slip, both directions. A weaker motor on one side shows in its own current balance too.",
          {strength("offset_m", "m", "centre of mass left of the platform's centre", -0.06, 0.06, 0.025, 0.003)}},
         {"grade", "A slope nobody noticed", body_force, false, "F_body = -M*g*sin(slope)*cos(yaw - direction)",
          "statics, derived here", "A constant force along one direction of the world; the accelerometer feels it as well.",
