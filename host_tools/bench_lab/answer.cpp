@@ -56,6 +56,19 @@ json ask_lab(const std::string &log_file, const std::string &model_file) {
     return answer;
 }
 
+double floor_with_truth(const std::string &log_file, const std::string &model_file, const json &seal) {
+    std::string text = lab::model_text(lab::read_model(model_file));
+    for (const json &effect : seal.at("effects")) {
+        if (effect.value("outside", false)) return 0;
+        text += "\n[[effect]]\nname = \"" + effect.at("name").get<std::string>() + "\"\n";
+        if (effect.at("wheel").get<int>() >= 0) text += "wheel = " + std::to_string(effect.at("wheel").get<int>()) + "\n";
+        for (const auto &[key, value] : effect.at("parameters").items()) text += key + " = " + json(value.get<double>()).dump() + "\n";
+    }
+    lab::Model model = lab::parse_model(text, model_file);
+    const lab::Dataset data = lab::make_dataset(model, log::read_csv(log_file));
+    return lab::fit_model(model, data, "truth").train;
+}
+
 std::string campaign_model(const std::string &generator, const std::string &soil) {
     return std::string(TRACTION_SOURCE_DIR) + "/tests/lab/campaign/" + (generator == "plant" ? "plant_" : "machine_") + soil + ".toml";
 }

@@ -7,8 +7,12 @@
 
 namespace traction::bench_lab {
 
-// Reads the log and the model, runs diagnose, returns the answer. `timing`: seconds of reading, preparing and diagnosing.
+// Reads the log and the model, runs diagnose, returns the answer.
 nlohmann::json ask_lab(const std::string &log_file, const std::string &model_file);
+
+// The floor: error (root of the mean over balances, in units of noise) that the lab's own fit leaves when the model holds every
+// effect of the opened seal. 0 when there is none.
+double floor_with_truth(const std::string &log_file, const std::string &model_file, const nlohmann::json &seal);
 
 // Data sheet of the campaign's rover on that soil.
 std::string campaign_model(const std::string &generator, const std::string &soil);

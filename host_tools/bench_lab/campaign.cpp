@@ -125,4 +125,12 @@ std::vector<Judged> open_seals(const std::vector<SealedLog> &logs) {
     return judged;
 }
 
+void add_floors(std::vector<Judged> &judged, const std::vector<SealedLog> &logs, const CampaignOptions &options, const Floor &floor) {
+    in_parallel(judged.size(), options.jobs, [&](std::size_t i) {
+        if (judged[i].result.contains("error") || judged[i].seal.at("effects").empty()) return;
+        judged[i].result["floor_with_truth"] = floor(logs[i], judged[i].seal);
+        if (options.step) options.step();
+    });
+}
+
 } // namespace traction::bench_lab

@@ -41,4 +41,8 @@ void answer_all(std::vector<SealedLog> &logs, const CampaignOptions &options, co
 // Reads the seals. Call it last.
 std::vector<Judged> open_seals(const std::vector<SealedLog> &logs);
 
+// Adds the floor to every answered log with catalogue effects: the error that the fit with the true effects leaves.
+using Floor = std::function<double(const SealedLog &, const nlohmann::json &seal)>;
+void add_floors(std::vector<Judged> &judged, const std::vector<SealedLog> &logs, const CampaignOptions &options, const Floor &floor);
+
 } // namespace traction::bench_lab

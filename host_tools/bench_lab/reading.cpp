@@ -148,10 +148,8 @@ Reading read_case(const json &seal, const json &result) {
     r.said = r.named.empty() ? (r.flagged_unknown ? "(unknown: " + (unknown != result.end() && unknown->is_object() ? text(*unknown, "variable") : std::string("?")) + ")" : "(nothing)")
                              : (r.first_named_right && !r.truth.empty() ? r.truth : r.named.front());
     const json &ladder = list_of(result, "ladder");
-    if (!ladder.empty()) {
-        const double floor = number(ladder.back(), "floor"), after = number(ladder.back(), "heldout");
-        if (floor > 0 && after > 0) r.error_over_floor = after / floor;
-    }
+    const double floor = number(result, "floor_with_truth");
+    if (!ladder.empty() && floor > 0) r.error_over_floor = number(ladder.back(), "train") / floor;
     return r;
 }
 

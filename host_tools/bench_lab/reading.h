@@ -25,7 +25,7 @@ struct Reading {
     bool flagged_unknown = false;     // "depends on X", alone or beside named effects
     bool variable_right = false;
     bool has_lag = false;             // backlash or relaxation length hidden
-    double error_over_floor = 0;      // held-out error after the verdict / floor, as the lab states them; 0 unknown
+    double error_over_floor = 0;      // error of the lab's last model / error of the fit that holds every true effect; 0 unknown
 };
 
 Reading read_case(const nlohmann::json &seal, const nlohmann::json &result);

@@ -34,7 +34,7 @@ void run(Request &request, Outcome &outcome) {
     }
     options.lab_generate = TRACTION_LAB_GENERATE;
     options.traction = own_path();
-    Progress progress("blind campaign", 2L * options.logs);
+    Progress progress("blind campaign", 3L * options.logs);
     options.step = [&] { progress.step(); };
     std::vector<bench_lab::SealedLog> logs = bench_lab::make_logs(options);
     bench_lab::answer_all(logs, options, [&](const bench_lab::SealedLog &one) {
@@ -42,16 +42,19 @@ void run(Request &request, Outcome &outcome) {
     });
     nlohmann::json peers;
     if (request.peers) peers = bench_lab::run_peers(logs, options.folder);
-    const bench_lab::Score score = bench_lab::judge(bench_lab::open_seals(logs)); // only now
+    std::vector<bench_lab::Judged> judged = bench_lab::open_seals(logs); // only now
+    bench_lab::add_floors(judged, logs, options, [&](const bench_lab::SealedLog &one, const nlohmann::json &seal) {
+        return bench_lab::floor_with_truth(one.log, bench_lab::campaign_model(options.generator, one.soil), seal);
+    });
+    const bench_lab::Score score = bench_lab::judge(judged);
     std::printf("%d sealed logs, generator: %s, %g s each, seeds %lu to %lu\n\n%s", options.logs, options.generator.c_str(), options.duration_s,
                 static_cast<unsigned long>(options.seed), static_cast<unsigned long>(options.seed) + static_cast<unsigned long>(options.logs) - 1,
                 bench_lab::table_text(score).c_str());
     outcome.json = bench_lab::table_json(score);
     outcome.json["generator"] = options.generator;
     if (request.peers) {
-        const nlohmann::json judged = bench_lab::judge_peers(peers, logs);
-        std::printf("\n%s", bench_lab::peers_text(judged).c_str());
-        outcome.json["peers"] = judged;
+        outcome.json["peers"] = bench_lab::judge_peers(peers, logs);
+        std::printf("\n%s", bench_lab::peers_text(outcome.json["peers"]).c_str());
     }
     if (temporary) std::filesystem::remove_all(options.folder);
     else std::printf("\nlogs, seals and answers: %s\n", options.folder.c_str());
