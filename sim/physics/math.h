@@ -39,12 +39,13 @@ inline double log(double x) {
     x = x >= 2.2250738585072014e-308 ? x : 2.2250738585072014e-308;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
     const std::uint64_t offset = 0x3fe6a09e667f3bcdu; // sqrt(1/2)
-    const std::int64_t e = static_cast<std::int64_t>(bits - offset) >> 52;
-    const double m = std::bit_cast<double>(bits - (static_cast<std::uint64_t>(e) << 52));
+    const std::uint64_t biased = (bits - offset + (std::uint64_t{1023} << 52)) >> 52; // e + 1023: unsigned shifts exist as vectors
+    const double m = std::bit_cast<double>(bits - ((biased - 1023) << 52));
+    const double e = std::bit_cast<double>(biased | 0x4330000000000000u) - (4503599627370496.0 + 1023); // integer to double by 2^52
     const double f = (m - 1) / (m + 1), q = f * f;
     const double s = 1 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13 + q * (1.0 / 15 +
                      q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21))))))))));
-    return static_cast<double>(e) * ln2 + 2 * f * s;
+    return e * ln2 + 2 * f * s;
 }
 
 // x >= 0; 0^y is taken as (smallest normal)^y, that is 0 for the powers of soil mechanics.

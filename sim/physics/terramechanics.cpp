@@ -87,7 +87,7 @@ using Nodes = std::array<double, arc_nodes>;
 // The arc from the entry angle to straight down, cut into equal steps; nodes in their middle.
 struct Arc {
     double radius_m, entry_rad, sin_entry, step_rad;
-    Nodes cosine, sine;
+    Nodes angle, cosine, sine;
 };
 
 Arc make_arc(double radius_m, double depth_m) {
@@ -99,7 +99,7 @@ Arc make_arc(double radius_m, double depth_m) {
     double c = math::cos(0.5 * arc.step_rad), s = math::sin(0.5 * arc.step_rad); // then by rotation: no polynomial per node
     const double turn_c = c * c - s * s, turn_s = 2 * c * s;
     for (std::size_t i = 0; i < arc_nodes; ++i) {
-        arc.cosine[i] = c, arc.sine[i] = s;
+        arc.angle[i] = (static_cast<double>(i) + 0.5) * arc.step_rad, arc.cosine[i] = c, arc.sine[i] = s;
         const double next = c * turn_c - s * turn_s;
         s = s * turn_c + c * turn_s;
         c = next;
@@ -107,23 +107,24 @@ Arc make_arc(double radius_m, double depth_m) {
     return arc;
 }
 
-double node_rad(const Arc &arc, std::size_t i) { return (static_cast<double>(i) + 0.5) * arc.step_rad; }
-
 // Depth below the original surface whose stress acts at each node: its own in front of the summit, its mirror's behind.
 void node_depths(const Arc &arc, double summit_rad, double sinkage_m, Nodes &depth) {
     const double behind = (arc.entry_rad - summit_rad) / summit_rad, floor_cos = 1 - sinkage_m / arc.radius_m;
+    const double *angle = arc.angle.data(), *cosine = arc.cosine.data();
     for (std::size_t i = 0; i < arc_nodes; ++i) { // series of cos to x^8: 3e-7 at 1 rad
-        const double theta = node_rad(arc, i), image = arc.entry_rad - theta * behind, q = image * image;
+        const double theta = angle[i], own = cosine[i], image = arc.entry_rad - theta * behind, q = image * image;
         const double mirrored = 1 - q * (0.5 - q * (1.0 / 24 - q * (1.0 / 720 - q * (1.0 / 40320))));
-        depth[i] = arc.radius_m * ((theta > summit_rad ? arc.cosine[i] : mirrored) - floor_cos);
+        depth[i] = arc.radius_m * ((theta > summit_rad ? own : mirrored) - floor_cos);
     }
 }
 
 // tau at a ratio v/(R w).
 void shear(const Arc &arc, const Nodes &limit_Pa, double ratio, double inverse_K, Nodes &tau) {
+    const double *angle = arc.angle.data(), *sine = arc.sine.data(), *limit = limit_Pa.data();
+    double *out = tau.data();
     for (std::size_t i = 0; i < arc_nodes; ++i) {
-        const double j = arc.radius_m * ((arc.entry_rad - node_rad(arc, i)) - ratio * (arc.sin_entry - arc.sine[i]));
-        tau[i] = limit_Pa[i] * std::copysign(1 - math::exp(-std::fabs(j) * inverse_K), j);
+        const double j = arc.radius_m * ((arc.entry_rad - angle[i]) - ratio * (arc.sin_entry - sine[i]));
+        out[i] = limit[i] * std::copysign(1 - math::exp(-std::fabs(j) * inverse_K), j);
     }
 }
 
