@@ -1,0 +1,157 @@
+// verb_demo.cpp - traction demo: hides an effect by seed, simulates, lets the lab find it, opens the seal.
+//
+// The lab gets what any user's lab gets: the log file and the baseline model file. The seal is written first and read last, here.
+#include "verbs.h"
+
+#include "host_tools/lab/compare.h"
+#include "host_tools/lab/next.h"
+#include "host_tools/lab/result.h"
+#include "host_tools/lab/session.h"
+#include "host_tools/log/log.h"
+#include "host_tools/report/report.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace traction::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoRequest {
+    std::uint64_t seed = 1;
+    std::string folder = "out/demo";
+};
+
+// Where scenarios/ and models/ lie: the entry script says so; without it the current folder must be the project's.
+fs::path project_root() {
+    const char *root = std::getenv("TRACTION_ROOT");
+    return root != nullptr && *root != '\0' ? fs::path(root) : fs::current_path();
+}
+
+void seal(const std::vector<sim::ActiveEffect> &hidden, const std::string &scenario, std::uint64_t seed, const fs::path &path) {
+    report::write_text(sim::seal_text(hidden, scenario, seed), path.string());
+}
+
+nlohmann::json open_seal(const fs::path &path) {
+    std::ifstream file;
+    file.exceptions(std::ios::failbit | std::ios::badbit);
+    file.open(path);
+    return nlohmann::json::parse(file);
+}
+
+std::string described(const nlohmann::json &effect) {
+    std::string text = effect.at("name");
+    if (effect.value("wheel", -1) >= 0) text += " on wheel " + std::to_string(effect["wheel"].get<int>());
+    for (const auto &[name, value] : effect.at("parameters").items()) {
+        char number[40];
+        std::snprintf(number, sizeof number, " %.3g", value.get<double>());
+        text += ", " + name + number;
+    }
+    return text;
+}
+
+// What the seal says against what the lab said, in words; `right` is true only for the effect itself, or its class said as such.
+std::string judged(const nlohmann::json &truth, const lab::Diagnosis &diagnosis, bool &right) {
+    const std::string name = truth.at("effects").at(0).at("name");
+    right = !diagnosis.effects.empty() && diagnosis.effects.front().rfind(name, 0) == 0;
+    if (right) return "the lab was right";
+    for (const lab::ConfoundedClass &group : diagnosis.classes)
+        for (const std::string &member : group.members)
+            if (member.rfind(name, 0) == 0) {
+                right = true;
+                return "the lab named a class that holds it, and said that this log cannot tell its members apart";
+            }
+    for (const auto &[effect, why] : diagnosis.not_excited)
+        if (effect.rfind(name, 0) == 0) return "the lab said beforehand that this log cannot show it: " + why;
+    if (diagnosis.kind == "nothing") return "the lab found nothing: the effect stayed below what this log can show";
+    return "the lab was wrong";
+}
+
+void measured_run(const fs::path &root, Outcome &outcome) {
+    const fs::path log = root / "../shared/data/robotino/one_gray_v0.1_dir060.csv";
+    if (!fs::exists(log)) {
+        std::printf("\nNo ../shared/data beside the project: the comparison with a measured Robotino run is left out.\n");
+        return;
+    }
+    const lab::Session session = lab::open_session({.model = (root / "models/robotino.toml").string(), .log = log.string(),
+                                                    .map = (root / "models/maps/robotino.toml").string(), .repeat = ""});
+    const lab::Comparison comparison = lab::compare(session.model, session.data, true);
+    std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino.toml:\n%s",
+                lab::comparison_text(comparison).c_str());
+    outcome.json["measured"] = {{"log", log.filename().string()}, {"error", comparison.error}, {"floor", comparison.floor}};
+}
+
+void demo(const DemoRequest &request, Outcome &outcome) {
+    const fs::path root = project_root(), folder = request.folder;
+    fs::create_directories(folder);
+    const std::string log_file = (folder / "run.csv").string(), model_file = (root / "models/rover_sand.toml").string();
+    const std::string better_file = (folder / "rover_better.toml").string(), report_file = (folder / "report.html").string();
+
+    const sim::Scenario scenario = sim::read_scenario((root / "scenarios/demo_sand.toml").string());
+    std::printf("1. Simulate %s with one effect hidden by seed %llu: firmware, plant and sensors in lockstep.\n",
+                scenario.name.c_str(), static_cast<unsigned long long>(request.seed));
+    std::fflush(stdout);
+    SimulateOptions options;
+    options.seed = request.seed;
+    options.hide = sim::HiddenDraw{.seed = request.seed, .count = 1, .among = {}};
+    {
+        const SimulationResult run = simulate(scenario, options);
+        seal(run.hidden, scenario.name, request.seed, folder / "sealed.json");
+        log::write_csv(run.log, log_file);
+    }
+    std::printf("   log: %s; the truth is sealed in %s\n\n", log_file.c_str(), (folder / "sealed.json").string().c_str());
+
+    std::printf("2. Compare the baseline model with the log.\n");
+    const lab::Session session = lab::open_session({.model = model_file, .log = log_file, .map = "", .repeat = ""});
+    const lab::Comparison before = lab::compare(session.model, session.data, true);
+    std::printf("%s\n3. Diagnose: what is missing?\n", lab::comparison_text(before).c_str());
+    std::fflush(stdout);
+    const lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, {});
+    std::printf("%s\n", lab::diagnosis_text(diagnosis).c_str());
+
+    outcome.json = lab::head_json("diagnose", session.model, session.data);
+    lab::put_comparison(outcome.json, before);
+    lab::put_diagnosis(outcome.json, diagnosis);
+    outcome.json["next"] = lab::next_json(diagnosis, session.model);
+    report::write_html(outcome.json, report_file);
+
+    std::printf("4. Add what was named, refit, and watch the error.\n%s", lab::ladder_text(diagnosis.ladder).c_str());
+    if (!diagnosis.accepted.empty()) {
+        lab::Model better = diagnosis.model;
+        const lab::Rung rung = lab::fit_model(better, session.data, "fitted");
+        lab::append_lineage(better, session.data, diagnosis.ladder, rung);
+        lab::write_model(better, better_file);
+        std::printf("   the better model: %s\n", better_file.c_str());
+    }
+
+    const nlohmann::json truth = open_seal(folder / "sealed.json");
+    bool right = false;
+    const std::string words = judged(truth, diagnosis, right);
+    std::printf("\n5. The seal: %s.\n   %s\n", described(truth.at("effects").at(0)).c_str(), words.c_str());
+    const lab::Rung &first = diagnosis.ladder.front(), &last = diagnosis.ladder.back();
+    outcome.json["demo"] = {{"seed", request.seed}, {"hidden", truth.at("effects").at(0)}, {"named", diagnosis.effects},
+                            {"right", right}, {"judgement", words}, {"error_before", first.heldout},
+                            {"error_after", last.heldout}, {"floor", last.floor}};
+    measured_run(root, outcome);
+    std::printf("\nOpen the report: %s\n", report_file.c_str());
+}
+
+} // namespace
+
+void add_demo(CLI::App &app, Outcome &outcome) {
+    auto request = std::make_shared<DemoRequest>();
+    CLI::App *verb = app.add_subcommand("demo", "the whole loop: hide an effect, simulate, compare, diagnose, add, open the seal");
+    verb->add_option("--seed", request->seed, "draws the hidden effect, the ground and the noise")->capture_default_str();
+    verb->add_option("--out", request->folder, "folder for the log, the seal, the model and the report")->capture_default_str();
+    add_json_option(verb, outcome);
+    verb->callback([request, &outcome] { demo(*request, outcome); });
+}
+
+} // namespace traction::cli

@@ -1,0 +1,192 @@
+#include "replay_log.h"
+
+#include "firmware/core/rover_config.h"
+
+#include <bit>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+
+namespace traction::replay {
+
+namespace {
+
+// One column read forward, sample by sample.
+class Column {
+  public:
+    Column(const log::Log &log, const std::string &name) : signal_(log.find(name)) {}
+    bool there() const { return signal_ != nullptr; }
+    // The sample at t_s; `otherwise` when there is none. Times must not fall from call to call.
+    double at(double t_s, double otherwise = 0) {
+        if (signal_ == nullptr) return otherwise;
+        while (next_ < signal_->t_s.size() && signal_->t_s[next_] < t_s - tolerance_s) ++next_;
+        return next_ < signal_->t_s.size() && signal_->t_s[next_] < t_s + tolerance_s ? signal_->value[next_] : otherwise;
+    }
+
+  private:
+    static constexpr double tolerance_s = 1e-4; // radar samples are 1.95 ms apart, ticks 10 ms
+    const log::Signal *signal_;
+    std::size_t next_ = 0;
+};
+
+struct Columns {
+    explicit Columns(const log::Log &log)
+        : present(log, "frame.present"), samples(log, "frame.radar_samples"), stop(log, "frame.emergency_stop"),
+          battery(log, "battery.voltage_count"), accel(log, "imu.accel_x_count"), gyro(log, "imu.gyro_z_count"),
+          radar(log, "radar.adc_count"), mode(log, "command.mode"), speed(log, "command.speed_m_s"),
+          yaw_rate(log, "command.yaw_rate_rad_s"), slip(log, "command.slip"), slip_wheels(log, "command.slip_wheels"),
+          age(log, "command.age_ticks") {
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            const std::string wheel = "wheel" + std::to_string(i) + '.';
+            encoder.emplace_back(log, wheel + "encoder_count");
+            current.emplace_back(log, wheel + "current_count");
+            wheel_speed.emplace_back(log, wheel + "command_speed_rad_s");
+            duty.emplace_back(log, wheel + "command_duty");
+        }
+    }
+    Column present, samples, stop, battery, accel, gyro, radar, mode, speed, yaw_rate, slip, slip_wheels, age;
+    std::vector<Column> encoder, current, wheel_speed, duty;
+};
+
+void read_radar(Columns &columns, double t_s, sensor_frame_t &frame) {
+    frame.radar_samples = static_cast<std::uint8_t>(columns.samples.at(t_s));
+    const double due = std::floor(t_s * 512 + 1e-6); // the converter's clock: sample n at n/512 s
+    for (int i = 0; i < frame.radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; ++i)
+        frame.radar_count[i] = static_cast<std::uint16_t>(columns.radar.at((due - frame.radar_samples + 1 + i) / 512));
+}
+
+LoggedTick read_tick(Columns &columns, double t_s) {
+    LoggedTick tick{};
+    sensor_frame_t &frame = tick.frame;
+    frame.tick = static_cast<std::uint32_t>(std::lround(t_s * 100)) - 1; // a tick ends its 10 ms
+    frame.present = static_cast<std::uint32_t>(columns.present.at(t_s));
+    frame.battery_count = static_cast<std::uint16_t>(columns.battery.at(t_s));
+    frame.accel_x_count = static_cast<std::int16_t>(columns.accel.at(t_s));
+    frame.gyro_z_count = static_cast<std::int16_t>(columns.gyro.at(t_s));
+    frame.emergency_stop = columns.stop.at(t_s) != 0;
+    read_radar(columns, t_s, frame);
+    command_t &command = tick.command;
+    const double mode = columns.mode.at(t_s);
+    command.mode = mode >= 0 && mode < static_cast<double>(MODE_COUNT) ? static_cast<control_mode_t>(static_cast<int>(mode)) : MODE_STOP;
+    command.platform_speed_m_s = static_cast<float>(columns.speed.at(t_s));
+    command.yaw_rate_rad_s = static_cast<float>(columns.yaw_rate.at(t_s));
+    command.slip_ref = static_cast<float>(columns.slip.at(t_s));
+    command.slip_wheels = static_cast<std::uint8_t>(columns.slip_wheels.at(t_s));
+    command.age_ticks = static_cast<std::uint32_t>(columns.age.at(t_s));
+    for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
+        frame.encoder_count[i] = static_cast<std::int32_t>(columns.encoder[i].at(t_s));
+        frame.current_count[i] = static_cast<std::uint16_t>(columns.current[i].at(t_s));
+        command.wheel_speed_rad_s[i] = static_cast<float>(columns.wheel_speed[i].at(t_s));
+        command.duty[i] = static_cast<float>(columns.duty[i].at(t_s));
+    }
+    return tick;
+}
+
+void append(std::string &text, long value) {
+    text += ' ';
+    text += std::to_string(value);
+}
+
+void append_hex(std::string &text, std::uint32_t value, int digits) {
+    char number[16];
+    std::snprintf(number, sizeof number, " %0*" PRIx32, digits, value);
+    text += number;
+}
+
+void append_bits(std::string &text, float value) { append_hex(text, std::bit_cast<std::uint32_t>(value), 8); }
+
+} // namespace
+
+std::vector<LoggedTick> logged_ticks(const log::Log &log) {
+    for (const char *name : {"frame.present", "command.mode", "wheel0.encoder_count", "wheel0.current_count"})
+        if (log.find(name) == nullptr)
+            throw log::LogError(log.source, 0, 0, std::string("there is no column ") + name + ", so its frames cannot be replayed",
+                                "replay a log that `traction simulate` or the on-board log wrote whole");
+    const log::Signal &clock = *log.find("frame.present");
+    Columns columns(log);
+    std::vector<LoggedTick> ticks;
+    ticks.reserve(clock.t_s.size());
+    for (const double t_s : clock.t_s) ticks.push_back(read_tick(columns, t_s));
+    return ticks;
+}
+
+std::string frames_text(const std::vector<LoggedTick> &ticks) {
+    std::string text;
+    text.reserve(ticks.size() * 220);
+    for (const auto &[frame, command] : ticks) {
+        text += std::to_string(frame.tick);
+        append_hex(text, frame.present, 1);
+        for (const auto count : frame.encoder_count) append(text, count);
+        for (const auto count : frame.current_count) append(text, count);
+        for (const long value : {static_cast<long>(frame.battery_count), static_cast<long>(frame.accel_x_count),
+                                 static_cast<long>(frame.gyro_z_count), frame.emergency_stop ? 1L : 0L,
+                                 static_cast<long>(frame.radar_samples)})
+            append(text, value);
+        for (int i = 0; i < frame.radar_samples; ++i) append(text, frame.radar_count[i]);
+        append(text, command.mode);
+        append_bits(text, command.platform_speed_m_s);
+        append_bits(text, command.yaw_rate_rad_s);
+        for (const float value : command.wheel_speed_rad_s) append_bits(text, value);
+        for (const float value : command.duty) append_bits(text, value);
+        append_bits(text, command.slip_ref);
+        append(text, command.slip_wheels);
+        append(text, static_cast<long>(command.age_ticks));
+        text += '\n';
+    }
+    return text;
+}
+
+control_config_t logged_config(const log::Log &log) {
+    const auto firmware = log.header.find("firmware");
+    return firmware != log.header.end() && firmware->second == "paper" ? rover_config_paper() : rover_config_default();
+}
+
+Comparison replay_log(const log::Log &log, const std::vector<LoggedTick> &ticks) {
+    struct Watched {
+        std::string name;
+        Column column;
+        double (*value)(const trace_t &, std::size_t);
+        std::size_t wheel;
+    };
+    std::vector<Watched> watched;
+    const auto watch = [&](const std::string &name, double (*value)(const trace_t &, std::size_t), std::size_t wheel) {
+        watched.push_back({name, Column(log, name), value, wheel});
+    };
+    for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
+        const std::string wheel = "wheel" + std::to_string(i) + '.';
+        watch(wheel + "duty", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].duty); }, i);
+        watch(wheel + "slip", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].slip); }, i);
+        watch(wheel + "traction_N", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].traction_N); }, i);
+        watch(wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].set_speed_rad_s); }, i);
+    }
+    watch("estimate.speed_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_m_s); }, 0);
+    watch("estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_std_m_s); }, 0);
+    watch("estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return static_cast<double>(t.accel_bias_m_s2); }, 0);
+    watch("control.faults", [](const trace_t &t, std::size_t) { return static_cast<double>(t.faults); }, 0);
+
+    const control_config_t config = logged_config(log);
+    control_state_t state;
+    control_reset(&config, &state);
+    Comparison result;
+    for (const LoggedTick &tick : ticks) {
+        const trace_t trace = control_step(&config, &state, &tick.command, &tick.frame);
+        const double t_s = (tick.frame.tick + 1.0) / 100;
+        bool differs = false;
+        for (Watched &w : watched) {
+            const double now = w.value(trace, w.wheel), logged = w.column.at(t_s, now);
+            if (std::fabs(now - logged) <= 5.1e-7) continue; // six decimals are kept: half of the last, and its own rounding
+            if (result.differing == 0 && !differs) {
+                result.first_s = t_s;
+                result.first_signal = w.name;
+                result.logged = logged;
+                result.replayed = now;
+            }
+            differs = true;
+        }
+        ++result.ticks;
+        if (differs) ++result.differing;
+    }
+    return result;
+}
+
+} // namespace traction::replay

@@ -1,0 +1,22 @@
+#!/bin/sh
+# Runs every ./traction command of a Markdown file's ```sh blocks, in order, in a folder of its own that sees scenarios/ and
+# models/; stops at the first that fails. `test` and `build` are left out: they are what runs this.
+# usage: run_commands.sh FILE.md CLI WORK_FOLDER PROJECT_ROOT
+set -eu
+file=$1 cli=$2 work=$3 root=$4
+rm -rf "$work"
+mkdir -p "$work"
+ln -s "$root/scenarios" "$root/models" "$work/"
+ln -s "$root/../shared" "$work/../shared" 2>/dev/null || true
+cd "$work"
+awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^\.\/traction / { sub(/[ \t]+#.*$/, ""); print }' "$file" >commands
+count=0
+while read -r command; do
+    set -- $command
+    case $2 in test | build) continue ;; esac
+    count=$((count + 1))
+    echo "+ $command"
+    sh -c "$(printf '%s' "$command" | sed "s|^\./traction|$cli|")" </dev/null || { echo "failed (exit $?): $command"; exit 1; }
+done <commands
+[ "$count" -gt 0 ] || { echo "no command found in $file"; exit 1; }
+echo "$count commands of $(basename "$file") ran"
