@@ -55,8 +55,6 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
         for (std::size_t i = 0; i < list->size(); i++)
             ground.patches.push_back(read_patch(*(*list)[i].as_table(), file, "ground.patch[" + std::to_string(i) + "]", ground.soil));
     keys.finish();
-    scenario.sensors.ground_slope_rad = ground.slope_rad;
-    scenario.sensors.ground_direction_rad = ground.slope_direction_rad;
 }
 
 void read_rover(const toml::table &table, const std::string &file, Scenario &scenario) {
