@@ -231,6 +231,12 @@ struct Builder {
         }
     }
 
+    // A released bridge carries no current whatever the duty says (actuator.motor_enable 0).
+    bool powered(double t0, double t1) const {
+        const log::Signal *enable = signal("actuator.motor_enable");
+        return enable == nullptr || (hold(enable->t_s, enable->value, t0 - 0.02) > 0.5 && hold(enable->t_s, enable->value, t1 + 0.02) > 0.5);
+    }
+
     bool usable(double t0, double t1) const {
         if (t0 < data.start_s || t1 > data.time(data.count - 1)) return false;
         const auto a = static_cast<std::size_t>((t0 - data.start_s) / data.step_s);
@@ -338,8 +344,16 @@ struct Builder {
         if (motion_signal(i, scale) == nullptr) return;
         Balance torque{BalanceKind::current_torque, static_cast<int>(i), "wheel" + std::to_string(i) + ".current_A", "current of wheel " + std::to_string(i) + ", torque balance", "A", 0, "", {}, {}, {}, {}};
         const double noise = sample_noise(*current, "current.noise_A", torque.noise_source);
-        Balance all = torque;
+        Balance all = torque, powered_rows = torque;
         add_rows(all, *current, noise);
+        for (std::size_t r = 0; r < all.measured.size(); ++r) {
+            if (!powered(all.t0_s[r], all.t1_s[r])) continue;
+            powered_rows.t0_s.push_back(all.t0_s[r]);
+            powered_rows.t1_s.push_back(all.t1_s[r]);
+            powered_rows.measured.push_back(all.measured[r]);
+        }
+        powered_rows.noise = all.noise;
+        all = std::move(powered_rows);
         if (parameter(model.wheel[i].motor, "torque_constant_Nm_A") > 0) {
             torque.noise = all.noise;
             for (std::size_t r = 0; r < all.measured.size(); ++r) {

@@ -171,6 +171,7 @@ void refit(Scored &s, const Problem &base, const Screen &base_screen, const Mode
     }
     s.p_value = std::min(1.0, s.assessment.p_value * s.candidate.variants * classes_tried);
     s.gain = base_screen.heldout_error() - (screen.heldout_error() - s.assessment.gain);
+    s.assessment.relief += base_screen.penalty() - screen.penalty();
     s.block_gain = base_screen.block_error() - (screen.block_error() - s.assessment.block_gain);
     const double blocks = static_cast<double>(s.block_gain.size()), mean = s.block_gain.mean();
     s.gain_error = std::sqrt((s.block_gain.array() - mean).square().sum() * blocks / std::max(1.0, blocks - 1));
@@ -251,15 +252,15 @@ Round run_round(Problem &problem, const Screen &screen, const Model &model, cons
     for (const std::string &key : order) round.scored.push_back(std::move(best.at(key)));
     std::stable_sort(round.scored.begin(), round.scored.end(), [](const Scored &a, const Scored &b) { return a.gain > b.gain; });
     // full refits: the best distinct effects that stand a chance, and the strongly nonlinear ones
-    int done = 0;
+    int done = 0, specials = 0;
     for (Scored &s : round.scored) {
         judge(s, round.base_error, options);
-        const bool chance = s.gain > 0.002 * round.base_error && s.p_value < 0.2;
-        const bool special = nonlinear(s.candidate.effect) && s.gain > 0.002 * round.base_error && done < options.refits + 3;
-        if (!((chance && done < options.refits) || special)) continue;
+        const bool worth = s.gain > 0.002 * round.base_error || s.assessment.relief > 0.5 * options.least_relief;
+        const bool special = nonlinear(s.candidate.effect);
+        if (!worth || !(special ? specials < 2 : done < options.refits && s.p_value < 0.2)) continue;
         refit(s, problem, screen, model, data);
         judge(s, round.base_error, options);
-        ++done;
+        ++(special ? specials : done);
         tick();
     }
     for (Scored &s : round.scored)
@@ -321,7 +322,7 @@ Rung fit_model(Model &model, const Dataset &data, const std::string &label) {
 }
 
 // In diagnose_shapes.cpp: what no effect of the catalogue explains.
-std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, bool something_named, const DiagnoseOptions &options);
+std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, std::size_t named_count, const DiagnoseOptions &options);
 
 Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOptions &options) {
     Diagnosis d;
@@ -372,9 +373,15 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         if (round_index == 0)
             for (const Scored &s : round.scored) {
                 if (s.candidate.wheel >= 0) continue;
-                bool seen = false; // three sizes of interest, twice their own uncertainty
-                for (std::size_t j = 0; j < s.error.size(); ++j) seen = seen || 3 * s.candidate.of_interest[j] > 2 * s.error[j];
-                if (!seen) d.not_excited.emplace_back(s.candidate.effect, "a size three times that of interest would be " + one_decimal(s.error.empty() || !std::isfinite(s.error[0]) ? 0.0 : 3 * s.candidate.of_interest[0] / s.error[0]) + " standard errors");
+                // three sizes of interest: do they show at all, and do they show beside what the model may adjust?
+                bool alone = false, beside = false;
+                for (std::size_t j = 0; j < s.error.size(); ++j) {
+                    const double size = 3 * s.candidate.of_interest[j];
+                    alone = alone || size * s.assessment.column_norm > 2;
+                    beside = beside || size > 2 * s.error[j];
+                }
+                if (!alone) d.not_excited.emplace_back(s.candidate.effect, "a size three times that of interest changes the log by " + one_decimal(s.candidate.of_interest.empty() ? 0.0 : 3 * s.candidate.of_interest[0] * s.assessment.column_norm) + " standard deviations");
+                else if (!beside && s.p_value > 0.05) d.not_excited.emplace_back(s.candidate.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " + one_decimal(3 * s.candidate.of_interest[0] / s.error[0]) + " standard errors");
             }
         for (std::size_t i = 0; i < round.scored.size(); ++i) {
             CandidateResult r = result_of(round.scored[i], round.base_error, screen);
@@ -421,7 +428,7 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         last = problem;
         d.accepted.erase(d.accepted.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    if (options.shapes) d.unknown = find_unknown(*first, *last, !d.accepted.empty(), options);
+    if (options.shapes) d.unknown = find_unknown(*first, *last, d.accepted.size(), options);
     for (const CandidateResult &a : d.accepted) d.effects.push_back(a.candidate.label());
     const bool any_class = !d.classes.empty();
     if (d.accepted.empty()) d.kind = d.unknown ? "unknown" : "nothing";

@@ -71,26 +71,30 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
 
 } // namespace
 
-std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, bool something_named, const DiagnoseOptions &options) {
+std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, std::size_t named_count, const DiagnoseOptions &options) {
+    const bool something_named = named_count > 0;
     const Screen last_screen(last);
-    for (const ShapeScore &s : all_shapes(last, last_screen)) {
-        const double relative = last_screen.heldout_error() > 0 ? s.assessment.gain / last_screen.heldout_error() : 0;
-        if (s.p_value < options.p_limit && relative > options.least_shape_gain && s.assessment.gain > 2 * s.assessment.gain_error) return describe(s, last_screen.heldout_error());
-    }
+    const Screen first_screen(first);
+    const auto material = [&](const ShapeScore &s, double base) {
+        const double least = something_named ? 0.05 : options.least_shape_gain;
+        return s.p_value < options.p_limit && s.assessment.gain > least * base && s.assessment.gain > 2.5 * s.assessment.gain_error;
+    };
+    for (const ShapeScore &s : all_shapes(last, last_screen))
+        if (material(s, last_screen.heldout_error())) return describe(s, last_screen.heldout_error());
     if (!something_named) return std::nullopt;
     // does one shape alone do better than all that was named?
-    const Screen first_screen(first);
     Problem named = last; // all that was named, on the first problem's scales
     named.keep_scales(first);
     named.linearise();
     const Screen named_screen(named);
+    const double margin = named_count > 1 ? 0.95 : options.shape_margin; // one shape in the stead of several effects is the simpler story
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(first, first_screen)) {
-        if (!(s.p_value < options.p_limit) || !(s.assessment.gain > options.shape_margin * named_gain)) continue;
+        if (!(s.p_value < options.p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
         const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
         const double n = static_cast<double>(difference.size());
         const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-        if (s.assessment.gain - named_gain > 2 * error) return describe(s, first_screen.heldout_error());
+        if (named_count > 1 || s.assessment.gain - named_gain > 2 * error) return describe(s, first_screen.heldout_error());
     }
     return std::nullopt;
 }

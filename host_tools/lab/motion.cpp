@@ -53,8 +53,9 @@ class Step {
         yaw_ = data_.yaw_rad.empty() ? 0 : data_.yaw_rad[k];
     }
 
-    // Force of wheel i on the body along its heading at wheel-centre speed v.
-    double wheel_force(std::size_t i, double v, double body_v) {
+    // Force of wheel i on the body along its heading at wheel-centre speed v; `side_v` across it. Combined slip: the grip acts
+    // against the whole sliding velocity, sideways with the share `lateral_grip`.
+    double wheel_force(std::size_t i, double v, double body_v, double side_v) {
         State &s = state_[i];
         const BodyPhysics &b = p_.body;
         s.v = v;
@@ -68,10 +69,22 @@ class Step {
         double Fm = s.Fm, sc = s.sc, extra = 0, extra_rolling = 0;
         if (b.sliding_loss != 0) Fm *= std::exp(-std::min(20.0, b.sliding_loss * std::fabs(s.rim - v)));
         if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
-        s.traction = Fm * traction_shape(p_.soil_law, s.slip, sc);
+        s.side = 0;
+        if (side_v != 0 && p_.wheel[i].grip > 0 && p_.grips_sideways[i]) {
+            const double across = -p_.wheel[i].grip * side_v / std::max({std::fabs(s.rim), std::fabs(v), 0.02});
+            const double whole = std::sqrt(s.slip * s.slip + across * across);
+            const double pull = whole > 1e-9 ? Fm * traction_shape(p_.soil_law, whole, sc) / whole : 0;
+            s.traction = pull * s.slip;
+            s.side = pull * across;
+        } else {
+            s.traction = Fm * traction_shape(p_.soil_law, s.slip, sc);
+        }
         if (p_.wheel[i].backlash > 0) s.traction *= contact(i, v);
         const double resist = s.load * (p_.wheel[i].crr + p_.wheel[i].rolling + b.slip_sinkage * std::fabs(s.slip) + b.speed_resistance * std::fabs(v)) + extra_rolling;
-        s.rolling = resist * soft_sign(v, resist_speed_m_s);
+        // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
+        const double speed = p_.grips_sideways[i] ? std::fabs(v) : std::hypot(v, side_v);
+        s.rolling = resist * v / std::hypot(speed, resist_speed_m_s);
+        if (!p_.grips_sideways[i]) s.side = -resist * side_v / std::hypot(speed, resist_speed_m_s);
         return s.pull = s.traction - s.rolling + extra;
     }
 
@@ -113,7 +126,7 @@ class Step {
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1;
         double rim = 0, w = 0, theta = 0, load = 0, Fm = 0, sc = 0.1;
         double slip_before = 0, play_before = 0;
-        double v = 0, slip = 0, play = 0, traction = 0, rolling = 0, pull = 0;
+        double v = 0, slip = 0, play = 0, traction = 0, rolling = 0, pull = 0, side = 0;
     };
     const State &state(std::size_t i) const { return state_[i]; }
     std::size_t wheels() const { return n_; }
@@ -203,7 +216,9 @@ double total_force(Step &step, double v, double yaw_rate, const Physics &p) {
     for (std::size_t i = 0; i < step.wheels(); ++i) {
         const auto &s = step.state(i);
         const double along = (v - p.wheel[i].y * yaw_rate) * s.c + p.wheel[i].x * yaw_rate * s.s;
-        force += step.wheel_force(i, along, v) * s.c;
+        const double across = p.wheel[i].x * yaw_rate * s.c - (v - p.wheel[i].y * yaw_rate) * s.s;
+        const double pull = step.wheel_force(i, along, v, across);
+        force += pull * s.c - s.side * s.s;
     }
     return force;
 }
@@ -224,7 +239,7 @@ double yaw_accel(const Step &step, double yaw_rate, const Physics &p) {
     for (std::size_t i = 0; i < step.wheels(); ++i) {
         const auto &s = step.state(i);
         const WheelPhysics &w = p.wheel[i];
-        moment += s.pull * (w.x * s.s - w.y * s.c);
+        moment += s.pull * (w.x * s.s - w.y * s.c) + s.side * (w.x * s.c + w.y * s.s);
         const double side_speed = w.x * yaw_rate; // vy = 0: skid steer turns about its middle
         moment -= (w.lateral + p.body.scrub) * s.load * w.x * soft_sign(side_speed, 5e-3);
     }
@@ -359,8 +374,8 @@ Eigen::Vector3d planar_force(Step &step, const Eigen::Vector3d &q, const Physics
         const WheelPhysics &w = p.wheel[i];
         const double vx = q[0] - w.y * q[2], vy = q[1] + w.x * q[2];
         const double along = vx * s.c + vy * s.s, side = -vx * s.s + vy * s.c;
-        const double pull = step.wheel_force(i, along, q[0]);
-        const double grip = p.grips_sideways[i] ? -(w.lateral + p.body.scrub) * s.load * soft_sign(side, 5e-3) : 0;
+        const double pull = step.wheel_force(i, along, q[0], side);
+        const double grip = s.side + (p.grips_sideways[i] ? -(w.lateral + p.body.scrub) * s.load * soft_sign(side, 5e-3) : 0);
         const double fx = pull * s.c - grip * s.s, fy = pull * s.s + grip * s.c;
         force += Eigen::Vector3d(fx, fy, w.x * fy - w.y * fx);
     }

@@ -35,6 +35,7 @@ constexpr Key keys[] = {
     {"soil", "shear_slip", &W::sc, nullptr, stage_motion},
     {"soil", "rolling_coefficient", &W::crr, nullptr, stage_motion},
     {"soil", "lateral_coefficient", &W::lateral, nullptr, stage_motion},
+    {"soil", "lateral_grip", &W::grip, nullptr, stage_motion},
     {"soil", "relaxation_length_m", &W::relaxation, nullptr, stage_motion},
     {"rover", "mass_kg", nullptr, &B::mass, stage_motion},
     {"rover", "yaw_inertia_kg_m2", nullptr, &B::yaw_inertia, stage_motion},

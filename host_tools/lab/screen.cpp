@@ -108,6 +108,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     out.change = Eigen::VectorXd::Zero(n);
     out.block_gain = Eigen::VectorXd::Zero(coarse_.count());
     const double own = cc.trace();
+    out.column_norm = std::sqrt(cc(0, 0));
     if (!(own > 0) || !(schur.diagonal().minCoeff() > 1e-9 * cc.diagonal().maxCoeff())) return out; // absorbed, or not seen at all
     out.information = schur.trace() / own;
     // a coefficient that the data barely see (a knot without samples) must not blow up

@@ -21,6 +21,7 @@ struct Assessment {
     double gain_error = 0;    // its standard error over blocks
     double relief = 0;        // part of the gain that is relief of priors
     double p_value = 1;       // of the robust F test, not corrected
+    double column_norm = 0;   // size of the first column alone: what one unit changes, in standard deviations
     double freedom = 1;       // degrees of freedom of the test's denominator
     double information = 0;   // share of the candidate's column that the baseline cannot absorb
     Eigen::VectorXd block_gain;  // held-out fall per 5 s block
@@ -37,6 +38,7 @@ class Screen {
     // full: also fills `projected`.
     Assessment assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd &present, bool full) const;
 
+    double penalty() const { return base_penalty_; }                // of the priors, at the baseline's optimum
     double heldout_error() const { return base_error_; }            // sum of squares over held-out blocks, priors included
     const Eigen::VectorXd &block_error() const { return block_error_; }
     const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
