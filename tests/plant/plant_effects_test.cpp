@@ -99,7 +99,8 @@ Residuals run(const std::vector<ActiveEffect> &effects, std::uint64_t *hash = nu
             add(rolling, w.rolling_N - soil.rolling_coefficient * w.normal_N);
             // relaxation equation of the baseline, times the step
             const double h = config.dt_s / r.relaxation_length_m;
-            add(slipping, w.slip * (1 + h * fast) - o.slip - h * (rim - v));
+            if (std::fabs(w.slip) < 1 && std::fabs(o.slip) < 1) // the truth is held at +-1
+                add(slipping, w.slip * (1 + h * fast) - o.slip - h * (rim - v));
             add(sideways, w.lateral_N);
         }
         if (rolling_all) {

@@ -1,0 +1,147 @@
+#include "world.h"
+
+#include "sim/physics/effects/laws.h"
+
+#include <cmath>
+
+namespace traction::sim {
+
+double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) const {
+    const BodyEffects &b = effects.body;
+    double factor = 1 + config.ground.grip_change(x_m, y_m);
+    factor *= law::soil_patch(b.patch_change, b.patch_start_m, b.patch_length_m,
+                              truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m));
+    factor *= law::soil_gradient(b.gradient_1_m, truth.path_m);
+    factor *= law::multi_pass(b.multi_pass, trails(i) ? 1 : 0);
+    if (b.sliding_loss_s_m != 0) factor *= law::sliding_speed_loss(b.sliding_loss_s_m, sliding_m_s);
+    return factor;
+}
+
+const SoilConstants &Plant::World::constants_of(const Soil &soil) const {
+    std::size_t n = 0; // the base soil, unless a patch owns it
+    for (std::size_t i = 0; i < config.ground.patches.size(); ++i)
+        if (&config.ground.patches[i].soil == &soil) n = i + 1;
+    return constants[n];
+}
+
+Plant::World::Meeting Plant::World::meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N) {
+    const auto n = static_cast<std::size_t>(i);
+    Meeting out;
+    out.load_N = load_N;
+    in.grip_N = load_N > 0 ? (soil.adhesion_N + soil.fm_per_fn * load_N) * factor : 0;
+    in.shear_slip = law::shear_stiffness(soil.shear_slip, effects.body.shear_change);
+    in.side_ratio = in.grip_N > 0 ? soil.lateral_coefficient * load_N * factor / in.grip_N : 1;
+    out.force = contact_step(in, contact[n], config.dt_s);
+    out.rolling_N = law::rolling_resistance_N(soil.rolling_coefficient, load_N);
+    return out;
+}
+
+Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point,
+                                              double sink_m_s) {
+    const auto n = static_cast<std::size_t>(i);
+    const RoverParameters &r = config.rover;
+    Meeting out;
+    out.sinkage_m = std::max(0.0, -point[2]);
+    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m, config.dt_s * in.along_m_s);
+    const SlipChange change = slip_step(in, contact[n], config.dt_s);
+    const double total = total_slip(contact[n]);
+    const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, 1 + effects.body.shear_change};
+    const auto law = config.ground.contact == ContactLaw::arc ? arc_force : bekker_force;
+    // the law counts slip along the motion: a wheel that rolls backwards sees the mirrored one; near rest, the mean of both
+    const double slip = std::copysign(std::min(total, 1.0), in.along_m_s < 0 ? -contact[n].slip : contact[n].slip);
+    SoilForce soft = law(*soil.bekker, constants_of(soil), wheel, {out.sinkage_m, slip, rut});
+    double by_slip = std::fabs(soft.traction_N - soft.free_traction_N), twist = std::fabs(soft.torque_Nm - soft.free_torque_Nm);
+    const double still = 0.5 * (1 - std::fabs(in.along_m_s) / reversal_m_s);
+    if (still > 0 && config.ground.contact == ContactLaw::arc) {
+        const SoilForce other = law(*soil.bekker, constants_of(soil), wheel, {out.sinkage_m, -slip, rut});
+        by_slip += still * (std::fabs(other.traction_N - other.free_traction_N) - by_slip);
+        twist += still * (std::fabs(other.torque_Nm - other.free_torque_Nm) - twist);
+        soft.normal_N += still * (other.normal_N - soft.normal_N);
+        soft.resistance_N += still * (other.resistance_N - soft.resistance_N);
+    }
+    const double belly = std::max(0.0, out.sinkage_m - 0.9 * r.wheel_radius_m) * r.contact_stiffness_N_m; // the body sits down
+    out.load_N = std::max(0.0, soft.normal_N + belly - (soft.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
+    if (out.load_N <= 0) return out;
+    in.grip_N = soft.largest_N;
+    in.shear_slip = soft.shear_slip;
+    in.law = TractionLaw::janosi;
+    // the part due to slip goes with the slip; what rolling alone does goes with the direction of rolling
+    out.force = contact_force(in, contact[n], change, by_slip, config.dt_s);
+    out.free_N = soft.free_traction_N;
+    out.free_Nm = soft.free_torque_Nm;
+    out.arm_m = by_slip > 1e-6 ? twist / by_slip : 0;
+    out.rolling_N = soft.resistance_N;
+    return out;
+}
+
+void Plant::World::step_wheel(int i, double supply_V) {
+    const auto n = static_cast<std::size_t>(i);
+    const RoverParameters &r = config.rover;
+    const WheelEffects &mine = effects.wheel[n];
+    const BodyEffects &b = effects.body;
+    Applied &out = applied[n];
+    const Vec3 &at = contact_at[n];
+    const dBodyID body = half_of(i);
+
+    dVector3 point;
+    dBodyGetRelPointPos(body, at[0], at[1], at[2], point);
+    contact_velocity(i, out.velocity);
+    const dReal *rotation = dBodyGetRotation(body);
+    const double flat = std::sqrt(rotation[0] * rotation[0] + rotation[4] * rotation[4]);
+    out.heading = {rotation[0] / flat, rotation[4] / flat, 0};
+    const Vec3 left{-out.heading[1], out.heading[0], 0};
+    const double along = dot(out.velocity, out.heading), across = dot(out.velocity, left);
+
+    const double radius = law::wheel_radius_m(r.wheel_radius_m, mine.radius_change);
+    const double rim = radius * drive[n].wheel_speed_rad_s;
+    const Soil &soil = config.ground.at(point[0], point[1]);
+    const double factor = grip_factor(i, point[0], point[1], rim - along);
+    const ContactInput input{.law = soil.law, .shear_slip = soil.shear_slip,
+                             .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, b.relaxation_m), .rim_m_s = rim,
+                             .along_m_s = along, .across_m_s = across, .load_kg = r.mass_kg / 4};
+    const bool soft = config.ground.contact != ContactLaw::aggregated && soil.bekker.has_value();
+    const Meeting met =
+        soft ? meet_soft(i, input, soil, factor, point, out.velocity[2])
+             : meet_aggregated(i, input, soil, factor,
+                               std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]));
+    const double load = met.load_N;
+    const double slip_size = std::min(1.0, std::fabs(contact[n].slip));
+    const double rolling = met.rolling_N + law::rolling_resistance_N(mine.rolling, load) +
+                           law::slip_sinkage_N(b.slip_sinkage, slip_size, load) +
+                           law::speed_resistance_N(b.speed_resistance_s_m, along, load);
+    const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
+    // reversing resistance: never more than would stop a quarter of the rover within the step
+    const double width = std::max(reversal_m_s, 4 * (rolling + met.free_N) * config.dt_s / r.mass_kg);
+    const double pull = met.force.along_N + met.free_N * soft_sign(along, width);
+    const double ahead = pull - rolling * soft_sign(along, width);
+    for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * out.heading[k] + sideways * left[k];
+    out.force[2] = load;
+    out.resist_N = pull - ahead;
+    dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], at[0], at[1], at[2]);
+
+    DriveState &d = drive[n];
+    const double speed_before = d.wheel_speed_rad_s;
+    if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
+    d.current_A = enabled ? drive_current(r.drive, mine.drive, d, duty[n], supply_V, config.dt_s) : 0;
+    if (!blocked[n]) {
+        out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
+        const DriveWork work = drive_step(r.drive, mine.drive, d, out.torque_Nm, config.dt_s);
+        energy.motor += work.motor;
+        energy.friction += work.friction;
+    }
+    out.spin_mean_rad_s = blocked[n] ? 0 : 0.5 * (speed_before + d.wheel_speed_rad_s);
+    // the wheel's own spin-up turns the chassis the other way about y
+    const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
+    if (r.centre_height_m + b.centre_height_m > 0) dBodyAddRelTorque(body, 0, -spin, 0);
+
+    WheelTruth &w = truth.wheel[n];
+    w.traction_N = pull;
+    w.rolling_N = rolling;
+    w.lateral_N = sideways;
+    w.normal_N = load;
+    w.slip = std::clamp(contact[n].slip, -1.0, 1.0); // beyond: wheels that turn against the motion, full sliding all the same
+    w.sinkage_m = met.sinkage_m;
+    w.ground_speed_m_s = along;
+}
+
+} // namespace traction::sim

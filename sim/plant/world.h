@@ -1,0 +1,88 @@
+// world.h - the state behind Plant: bodies, wheels, drives, and the steps between them. Included by plant.cpp and wheels.cpp only.
+#pragma once
+
+#include "contact.h"
+#include "plant.h"
+#include "plant_effects.h"
+#include "rut.h"
+
+#include "sim/physics/terramechanics.h"
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace traction::sim {
+
+using Vec3 = std::array<double, 3>;
+
+inline double dot(const Vec3 &a, const Vec3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+inline constexpr double reversal_m_s = 0.005; // resistances reverse over this speed: assumed, below any sensor's resolution
+
+// -1..1, the sign of a speed made continuous over `width`.
+inline double soft_sign(double speed, double width) { return std::clamp(speed / width, -1.0, 1.0); }
+
+inline constexpr double half_offset_share = 0.25; // a half's centre lies a quarter of the width beside the middle
+constexpr bool is_left(int wheel) { return wheel == 0 || wheel == 2; }
+constexpr bool is_front(int wheel) { return wheel >= 2; }
+
+struct Plant::World {
+    explicit World(const PlantConfig &c);
+    ~World();
+    void build_bodies();
+    void step();
+    void step_wheel(int i, double supply_V);
+    double grip_factor(int i, double x_m, double y_m, double sliding_m_s) const; // of Fm: place, track, sliding
+    struct Meeting {
+        ContactForce force;
+        double load_N = 0, rolling_N = 0, sinkage_m = 0;
+        double arm_m = 0;             // of force.along_N about the axle; 0: the radius
+        double free_N = 0, free_Nm = 0; // pull and torque of rolling alone, in its direction
+    };
+    Meeting meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N);
+    Meeting meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point, double sink_m_s);
+    const SoilConstants &constants_of(const Soil &soil) const;
+    void push_body();
+    void observe(const Vec3 &velocity_before);
+    Vec3 mean_velocity() const;
+    Vec3 axis(int column) const; // mean of the halves, unit, world
+    void contact_velocity(int i, Vec3 &out) const;
+    double kinetic() const;
+    double potential() const;
+    bool trails(int wheel) const { return is_front(wheel) != (direction > 0); }
+    dBodyID half_of(int wheel) const { return half[is_left(wheel) ? 0 : 1]; }
+
+    PlantConfig config;
+    PlantEffects effects;
+    Vec3 gravity{};
+    dWorldID world = nullptr;
+    std::array<dBodyID, 2> half{};
+    std::array<Vec3, wheel_count> contact_at{}; // contact point in its half's frame
+    std::array<DriveState, wheel_count> drive{};
+    std::array<ContactState, wheel_count> contact{};
+    std::array<double, wheel_count> duty{};
+    std::array<bool, wheel_count> blocked{};
+    std::vector<SoilConstants> constants; // of the base soil and of each patch, soft contact only
+    RutMemory ruts;
+    std::array<RutTrace, wheel_count> trace;
+    struct Applied {
+        Vec3 force{}, velocity{}; // at the contact point, world
+        double resist_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
+        Vec3 heading{};
+    };
+    std::array<Applied, wheel_count> applied{};
+    Vec3 push{}, push_velocity{}; // drag and tether, whole rover
+    bool enabled = true;
+    double direction = 1;
+    Vec3 heading_before{};
+    double potential_0 = 0;
+    double used_C = 0; // charge taken from the battery
+    std::uint64_t steps = 0;
+    Truth truth;
+    Energy energy;
+};
+
+} // namespace traction::sim
