@@ -187,9 +187,10 @@ def equations(path, soil):
     weight = 1 / np.maximum(1, np.abs(Y) / 5)  # jerks must not rule
     Y, N, X = Y * weight, N * weight[:, None], X * weight[:, None]
     q, _ = np.linalg.qr(N + 1e-12)
+    before = np.sqrt((X**2).mean(0)) + 1e-12
     Y, X = Y - q @ (q.T @ Y), X - q @ (q.T @ X)
     size = np.sqrt((X**2).mean(0))
-    keep = size > 1e-3
+    keep = (size > 1e-3) & (size > 0.05 * before)  # the rest is what the baseline's own parameters can do
     return Y / np.sqrt((Y**2).mean()), X[:, keep] / size[keep], [k for k, ok in zip(names, keep) if ok]
 
 

@@ -1,0 +1,1 @@
+const char *peek = "seals/seal_1.json";

@@ -1,0 +1,92 @@
+// The campaign's judge: Wilson's interval against published values, and what counts as right, silent, flagged.
+#include "host_tools/bench_lab/score.h"
+
+#include <gtest/gtest.h>
+
+using namespace traction::bench_lab;
+using nlohmann::json;
+
+namespace {
+
+json seal(const std::string &category, const std::string &effect, int wheel = -1, const std::string &variable = "") {
+    json one = {{"schema", "traction.seal/1"}, {"category", category}, {"soil", "sand"}, {"seed", 1}, {"effects", json::array()}};
+    if (!effect.empty())
+        one["effects"].push_back({{"name", effect}, {"wheel", wheel}, {"outside", category == "outside"}, {"variable", variable}, {"parameters", {{"size", 2.0}}}});
+    return one;
+}
+
+json answer(const std::string &kind, const std::vector<std::string> &effects) {
+    json one = {{"verdict", {{"kind", kind}, {"effects", effects}}}, {"candidates", json::array()}, {"classes", json::array()}};
+    for (const std::string &effect : effects) {
+        const std::string plain = effect.substr(0, effect.find(' '));
+        one["candidates"].push_back({{"effect", plain}, {"wheel", plain == effect ? -1 : effect.back() - '0'}, {"verdict", "named"}, {"detectability", 10.0},
+                                     {"parameters", {{"size", {{"value", 2.1}, {"low", 1.9}, {"high", 2.3}}}}}});
+    }
+    return one;
+}
+
+const Line &line(const Score &score, const std::string &key) {
+    for (const Line &one : score.lines)
+        if (one.key == key) return one;
+    throw std::out_of_range(key);
+}
+
+} // namespace
+
+TEST(Share, interval_is_wilsons) {
+    Share share{81, 263}; // Newcombe, Statistics in Medicine 17 (1998) 857-872, table I, method 3: 0.2553 to 0.3662
+    EXPECT_NEAR(share.interval().first, 0.2553, 5e-5); // four digits printed
+    EXPECT_NEAR(share.interval().second, 0.3662, 5e-5);
+    Share none{0, 20}; // the same table: 0 to 0.1611
+    EXPECT_DOUBLE_EQ(none.interval().first, 0);
+    EXPECT_NEAR(none.interval().second, 0.1611, 5e-5);
+}
+
+TEST(Judge, counts_a_right_name_its_wheel_and_its_interval) {
+    const Score score = judge({{"a", seal("one", "wiring_resistance", 2), answer("named", {"wiring_resistance on wheel 2"}), 0.5}});
+    EXPECT_EQ(line(score, "right_when_naming").value, 1);
+    EXPECT_EQ(line(score, "wheel_right").value, 1);
+    EXPECT_EQ(line(score, "coverage").value, 1);
+    EXPECT_EQ(line(score, "false_discoveries").value, 0);
+}
+
+TEST(Judge, counts_a_wrong_name_and_shows_it_in_the_confusion) {
+    const Score score = judge({{"a", seal("one", "slip_sinkage"), answer("named", {"mesh_loss"}), 0.5}});
+    EXPECT_EQ(line(score, "right_when_naming").value, 0);
+    EXPECT_EQ(line(score, "false_discoveries").value, 1);
+    EXPECT_EQ(score.confusion.at("slip_sinkage").at("mesh_loss"), 1);
+}
+
+TEST(Judge, accepts_a_class_that_holds_the_truth_once) {
+    json said = answer("class", {"mesh_loss", "slip_sinkage"});
+    said["classes"].push_back({{"members", {"mesh_loss", "slip_sinkage"}}, {"separate_by", "three wheels push, one drags"}});
+    const Score score = judge({{"a", seal("one", "slip_sinkage"), said, 0.5}});
+    EXPECT_EQ(line(score, "right_when_naming").value, 1);
+    EXPECT_EQ(line(score, "false_discoveries").value, 0);
+    EXPECT_EQ(line(score, "false_discoveries").count, 1); // one discovery, not two
+}
+
+TEST(Judge, a_clean_log_must_stay_silent) {
+    const Score named = judge({{"a", seal("clean", ""), answer("named", {"grade"}), 0.5}});
+    EXPECT_EQ(line(named, "clean_named").value, 1);
+    const Score silent = judge({{"a", seal("clean", ""), answer("nothing", {}), 0.5}});
+    EXPECT_EQ(line(silent, "clean_named").value, 0);
+}
+
+TEST(Judge, outside_the_catalogue_a_bare_name_is_the_worst_answer) {
+    const Score bare = judge({{"a", seal("outside", "friction_squared", -1, "speed"), answer("named", {"viscous_friction"}), 0.5}});
+    EXPECT_EQ(line(bare, "outside_misnamed").value, 1);
+    EXPECT_EQ(line(bare, "outside_flagged").value, 0);
+    json partial = answer("partial", {"viscous_friction"});
+    partial["unknown"] = {{"variable", "wheel speed"}, {"balance", "wheel_torque"}};
+    const Score flagged = judge({{"a", seal("outside", "friction_squared", -1, "speed"), partial, 0.5}});
+    EXPECT_EQ(line(flagged, "outside_misnamed").value, 0);
+    EXPECT_EQ(line(flagged, "outside_flagged").value, 1);
+    EXPECT_EQ(line(flagged, "outside_variable").value, 1);
+}
+
+TEST(Judge, a_lab_that_fails_is_counted) {
+    const Score score = judge({{"a", seal("one", "grade"), {{"error", "no wheel speed"}}, 0.1}});
+    EXPECT_EQ(score.failures, 1);
+    EXPECT_EQ(line(score, "right_first").value, 0);
+}

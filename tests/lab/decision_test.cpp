@@ -1,0 +1,128 @@
+// The lab's decisions on logs of the independent generator (tests/lab/generator), where the answer is known.
+#include "host_tools/lab/compare.h"
+#include "host_tools/lab/diagnose.h"
+#include "host_tools/lab/next.h"
+#include "host_tools/lab/result.h"
+#include "tests/lab/generator/generator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::lab {
+namespace {
+
+using generator::GeneratorConfig;
+using generator::Soil;
+
+log::Log log_with(Soil soil, const std::string &effect, std::uint64_t seed) {
+    GeneratorConfig config;
+    config.soil = soil;
+    config.seed = seed;
+    config.duration_s = 120;
+    if (!effect.empty()) config.hidden.push_back(generator::parse_setting(effect));
+    return generator::generate(config);
+}
+
+Model model_for(Soil soil) { return read_model("models/rover_" + generator::name_of(soil) + ".toml"); }
+
+Diagnosis ask(Soil soil, const log::Log &log) {
+    const Model model = model_for(soil);
+    return diagnose(model, make_dataset(model, log), {});
+}
+
+TEST(Diagnose, names_nothing_when_nothing_is_hidden) {
+    for (const Soil soil : {Soil::sand, Soil::concrete}) {
+        const Diagnosis d = ask(soil, log_with(soil, "", 3));
+        EXPECT_EQ(d.kind, "nothing") << d.text;
+        EXPECT_TRUE(d.accepted.empty());
+    }
+}
+
+TEST(Diagnose, names_slip_sinkage_and_its_size_and_the_error_falls) {
+    const Diagnosis d = ask(Soil::sand, log_with(Soil::sand, "slip_sinkage:coefficient=0.2", 5));
+    ASSERT_FALSE(d.accepted.empty());
+    EXPECT_EQ(d.accepted[0].candidate.effect, "slip_sinkage");
+    EXPECT_NEAR(d.accepted[0].value[0], 0.2, 0.02); // size of interest: below it a difference is not worth knowing
+    EXPECT_LT(d.ladder.back().heldout, 0.7 * d.ladder.front().heldout);
+}
+
+TEST(Diagnose, names_the_wheel_that_has_more_friction) {
+    const Diagnosis d = ask(Soil::concrete, log_with(Soil::concrete, "coulomb_friction:torque_Nm=0.03,wheel=2", 4));
+    ASSERT_FALSE(d.accepted.empty());
+    EXPECT_EQ(d.accepted[0].candidate.effect, "coulomb_friction");
+    EXPECT_EQ(d.accepted[0].candidate.wheel, 2);
+    EXPECT_NEAR(d.accepted[0].value[0], 0.03, 0.004); // size of interest
+}
+
+TEST(Diagnose, says_the_same_bytes_twice) {
+    const log::Log log = log_with(Soil::sand, "accel_scale:change=0.2", 6);
+    const auto text = [&] {
+        nlohmann::json json;
+        put_diagnosis(json, ask(Soil::sand, log));
+        return json.dump();
+    };
+    EXPECT_EQ(text(), text());
+}
+
+TEST(Robustness, any_signal_may_be_missing_and_is_then_told) {
+    const log::Log whole = log_with(Soil::sand, "", 7);
+    const Model model = model_for(Soil::sand);
+    for (const char *gone : {"wheel0.current_A", "wheel1.encoder_count", "wheel2.duty", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "radar.speed_m_s",
+                             "camera.x_m", "camera.yaw_rad"}) {
+        log::Log log = whole;
+        std::erase_if(log.signals, [&](const log::Signal &s) { return s.name == gone; });
+        const Dataset data = make_dataset(model, log);
+        const Comparison c = compare(model, data, true);
+        EXPECT_TRUE(std::isfinite(c.error)) << gone;
+        EXPECT_FALSE(c.balances.empty()) << gone;
+    }
+    const Dataset nothing = make_dataset(model, log::Log{});
+    EXPECT_TRUE(compare(model, nothing, true).balances.empty());
+    EXPECT_EQ(diagnose(model, nothing, {}).kind, "nothing");
+    EXPECT_FALSE(nothing.messages.empty());
+}
+
+TEST(Robustness, truth_columns_change_nothing) {
+    log::Log log = log_with(Soil::sand, "", 8);
+    const Model model = model_for(Soil::sand);
+    const double before = compare(model, make_dataset(model, log), true).error;
+    log.signals.push_back({"truth.speed_m_s", log.signals[0].t_s, std::vector<double>(log.signals[0].t_s.size(), 99.0)});
+    EXPECT_EQ(compare(model, make_dataset(model, log), true).error, before);
+}
+
+TEST(Add, a_users_own_expression_takes_part_like_an_effect_of_the_catalogue) {
+    const log::Log log = log_with(Soil::sand, "viscous_friction:coefficient_Nms=0.005", 9);
+    Model model = model_for(Soil::sand);
+    const Dataset data = make_dataset(model, log);
+    Model bare = model;
+    const double before = fit_model(bare, data, "baseline").heldout;
+    EffectUse own;
+    own.name = "grease";
+    own.acts_on = "wheel_torque";
+    own.expression = "k*w";
+    Parameter k;
+    k.value = 1e-3;
+    k.minimum = 0;
+    k.maximum = 0.1;
+    own.parameters["k"] = k;
+    model.effects.push_back(own);
+    EXPECT_LT(fit_model(model, data, "+ grease").heldout, 0.9 * before);
+    EXPECT_NEAR(model.effects[0].parameters.at("k").value, 0.005, 4e-4); // size of interest of viscous friction
+}
+
+TEST(Add, keeps_the_ladder_in_the_model) {
+    const log::Log log = log_with(Soil::sand, "body_drag:force_N=2", 10);
+    const Model model = model_for(Soil::sand);
+    const Added added = add_effect(model, make_dataset(model, log), "body_drag", -1, "");
+    EXPECT_TRUE(added.helps);
+    EXPECT_NEAR(added.model.effects[0].parameters.at("force_N").value, 2, 0.3); // rolling resistance, known to 0.004 * 28 N = 0.11 N, stands in: 3 of that
+    ASSERT_EQ(added.model.lineage.size(), 2U);
+    EXPECT_LT(added.model.lineage[1].heldout, added.model.lineage[0].heldout);
+    EXPECT_THROW(add_effect(added.model, make_dataset(model, log), "body_drag", -1, ""), ModelError);
+    EXPECT_THROW(add_effect(model, make_dataset(model, log), "gremlin", -1, ""), ModelError);
+}
+
+} // namespace
+} // namespace traction::lab
