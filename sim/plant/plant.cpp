@@ -40,6 +40,8 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(collect_effects(c
     start_ode();
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2);
     world = dWorldCreate();
+    threading = dThreadingAllocateSelfThreadedImplementation();
+    dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading), threading);
     dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     dWorldSetAutoDisableFlag(world, 0);
     if (config.ground.contact != ContactLaw::aggregated) {
@@ -66,6 +68,7 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(collect_effects(c
 
 Plant::World::~World() {
     if (world != nullptr) dWorldDestroy(world);
+    if (threading != nullptr) dThreadingFreeImplementation(threading);
 }
 
 void Plant::World::build_bodies() {

@@ -59,6 +59,7 @@ struct Plant::World {
     PlantEffects effects;
     Vec3 gravity{};
     dWorldID world = nullptr;
+    dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
     std::array<dBodyID, 2> half{};
     std::array<Vec3, wheel_count> contact_at{}; // contact point in its half's frame
     std::array<DriveState, wheel_count> drive{};
