@@ -1,0 +1,54 @@
+// verb_reproduce.cpp - traction reproduce: makes the paper's experiments and says where we differ.
+#include "progress.h"
+#include "verbs.h"
+
+#include "host_tools/report/report.h"
+#include "host_tools/reproduce/reproduce.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace traction::cli {
+
+namespace {
+
+struct Arguments {
+    std::string out, data;
+    ReproduceSettings settings;
+};
+
+void run(Arguments arguments, Outcome &outcome) {
+    const std::filesystem::path bench = std::filesystem::path(arguments.data) / "cmu_single_wheel/cmu_wheel_smooth_steady_state.csv";
+    if (std::filesystem::exists(bench)) arguments.settings.bench_data = bench.string();
+    Progress progress("reproduce", 9 + 6L * arguments.settings.seeds); // drives: 2 calibrations, 2 + 1 + 1 + 3, and table III
+    arguments.settings.after_run = [&progress] { progress.step(); };
+    outcome.json = reproduce(arguments.settings);
+    for (const auto &figure : outcome.json["figures"])
+        std::printf("%-8s %-20s paper: %s\n%-29s ours:  %s\n", figure["verdict"].get<std::string>().c_str(), figure["id"].get<std::string>().c_str(), figure["paper"].get<std::string>().c_str(), "", figure["ours"].get<std::string>().c_str());
+    for (const auto &check : outcome.json["checks"])
+        if (!check["pass"]) std::printf("outside its bound: %s, %s: %.4g, not in %.4g to %.4g\n", check["id"].get<std::string>().c_str(), check["what"].get<std::string>().c_str(), check["value"].get<double>(), check["low"].get<double>(), check["high"].get<double>());
+    if (arguments.settings.bench_data.empty()) std::printf("left out: the measured bench (no data in %s)\n", arguments.data.c_str());
+    if (!arguments.out.empty()) {
+        report::write_html(outcome.json, arguments.out);
+        std::printf("report: %s\n", arguments.out.c_str());
+    }
+    if (!outcome.json["pass"]) outcome.exit_code = exit_negative;
+}
+
+} // namespace
+
+void add_reproduce(CLI::App &app, Outcome &outcome) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App *verb = app.add_subcommand("reproduce", "make the paper's experiments again, figure by figure, with its numbers beside ours");
+    verb->add_option("--out", arguments->out, "report with every figure, HTML")->type_name("FILE");
+    verb->add_option("--scenarios", arguments->settings.scenarios, "folder of the scenario gallery")->check(CLI::ExistingDirectory);
+    arguments->data = "../shared/data";
+    verb->add_option("--data", arguments->data, "folder with measured data; where it is absent, its experiment is left out")->type_name("DIR");
+    verb->add_option("--seeds", arguments->settings.seeds, "runs per ground for table III")->check(CLI::Range(2, 1000));
+    verb->add_option("--jobs", arguments->settings.jobs, "runs side by side")->check(CLI::Range(1, 256));
+    add_json_option(verb, outcome);
+    verb->callback([arguments, &outcome] { run(*arguments, outcome); });
+}
+
+} // namespace traction::cli
