@@ -172,7 +172,11 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
         const sim::Effect *effect = sim::find_effect(handle.name);
         if (effect == nullptr || model.find_effect(handle.name, -1) != nullptr) continue;
         const bool patch = handle.name == "soil_patch";
-        const auto shapes = patch ? patch_choices(motion) : shape_choices(*effect);
+        auto shapes = patch ? patch_choices(motion) : shape_choices(*effect);
+        if (handle.name == "torque_ripple") { // cogging keeps its sign when the motion reverses, friction that varies does not
+            const std::size_t n = shapes.size();
+            for (std::size_t i = 0; i < n; ++i) shapes.push_back({{"order", -shapes[i][0].second}});
+        }
         const auto wheels = wheel_choices(*effect, model);
         for (const auto &shape : shapes)
             for (const int wheel : wheels) {

@@ -85,8 +85,9 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
         if (p.mesh != 0) friction += p.mesh * std::fabs(radius * m.traction_N[k]);
         double gear = friction * soft_sign(w, friction_speed_rad_s), current_factor = 1 + p.current_gain;
         if (p.ripple_cos != 0 || p.ripple_sin != 0) {
-            const double angle = p.ripple_order * gain * in.angle_rad[k];
-            gear += p.ripple_cos * std::cos(angle) + p.ripple_sin * std::sin(angle);
+            const double angle = std::fabs(p.ripple_order) * gain * in.angle_rad[k];
+            const double ripple = p.ripple_cos * std::cos(angle) + p.ripple_sin * std::sin(angle);
+            gear += p.ripple_order < 0 ? ripple * soft_sign(w, friction_speed_rad_s) : ripple; // negative order: a friction that varies over the turn
         }
         double u = 0;
         if (with_voltage) {

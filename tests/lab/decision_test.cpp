@@ -16,11 +16,11 @@ namespace {
 using generator::GeneratorConfig;
 using generator::Soil;
 
-log::Log log_with(Soil soil, const std::string &effect, std::uint64_t seed) {
+log::Log log_with(Soil soil, const std::string &effect, std::uint64_t seed, double duration_s = 120) {
     GeneratorConfig config;
     config.soil = soil;
     config.seed = seed;
-    config.duration_s = 120;
+    config.duration_s = duration_s;
     if (!effect.empty()) config.hidden.push_back(generator::parse_setting(effect));
     return generator::generate(config);
 }
@@ -57,7 +57,7 @@ TEST(Diagnose, names_the_wheel_that_has_more_friction) {
 }
 
 TEST(Diagnose, says_the_same_bytes_twice) {
-    const log::Log log = log_with(Soil::sand, "accel_scale:change=0.2", 6);
+    const log::Log log = log_with(Soil::sand, "accel_scale:change=0.2", 6, 40);
     const auto text = [&] {
         nlohmann::json json;
         put_diagnosis(json, ask(Soil::sand, log));
@@ -67,7 +67,7 @@ TEST(Diagnose, says_the_same_bytes_twice) {
 }
 
 TEST(Robustness, any_signal_may_be_missing_and_is_then_told) {
-    const log::Log whole = log_with(Soil::sand, "", 7);
+    const log::Log whole = log_with(Soil::sand, "", 7, 30);
     const Model model = model_for(Soil::sand);
     for (const char *gone : {"wheel0.current_A", "wheel1.encoder_count", "wheel2.duty", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "radar.speed_m_s",
                              "camera.x_m", "camera.yaw_rad"}) {
@@ -85,7 +85,7 @@ TEST(Robustness, any_signal_may_be_missing_and_is_then_told) {
 }
 
 TEST(Robustness, truth_columns_change_nothing) {
-    log::Log log = log_with(Soil::sand, "", 8);
+    log::Log log = log_with(Soil::sand, "", 8, 30);
     const Model model = model_for(Soil::sand);
     const double before = compare(model, make_dataset(model, log), true).error;
     log.signals.push_back({"truth.speed_m_s", log.signals[0].t_s, std::vector<double>(log.signals[0].t_s.size(), 99.0)});
