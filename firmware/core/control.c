@@ -54,7 +54,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
     trace->radar_speed_m_s = state->doppler_m_s;
-    trace->radar_fresh = doppler.fresh;
+    trace->radar_fresh = doppler.fresh && !doppler.quiet; // without an echo there is no value
     trace->speed_m_s = speed.speed_m_s;
     trace->speed_std_m_s = speed.std_m_s;
     trace->accel_bias_m_s2 = speed.bias_m_s2;

@@ -113,7 +113,7 @@ typedef struct {
     float accel_x_m_s2;      // scaled measurement
     float gyro_z_rad_s;      // scaled measurement
     float radar_speed_m_s;   // last Doppler value
-    bool radar_fresh;        // a new Doppler value was made in this tick
+    bool radar_fresh;        // a new Doppler value with an echo behind it was made in this tick
     float speed_m_s;         // fused ground speed estimate
     float speed_std_m_s;     // its standard deviation as the filter believes it
     float accel_bias_m_s2;   // estimated accelerometer bias (0 in the paper's filter)

@@ -52,6 +52,11 @@ void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world,
     log.header["quantum.imu.gyro_z_rad_s"] = number(world.scale.gyro_rad_s);
     log.header["noise.camera.x_m"] = log.header["noise.camera.y_m"] = number(sensors.camera.noise_m);
     log.header["noise.camera.yaw_rad"] = number(sensors.camera.noise_rad);
+    // a value of the firmware's Doppler stage: floor and share of the speed (docs/performance.md), mean over its window
+    const bool paper = scenario.firmware.config == "paper";
+    log.header["noise.radar.speed_m_s"] = paper ? "0.02" : "0.008";
+    log.header["noise.radar.speed_m_s.relative"] = paper ? "0.1" : "0.015";
+    log.header["window.radar.speed_m_s"] = "0.5";
     log.header["radar.model"] = std::string(sensors.radar.model);
     log.header["radar.sample_rate_Hz"] = "512";
 }
