@@ -3,6 +3,7 @@
 #include "verbs.h"
 
 #include "host_tools/log/log.h"
+#include "host_tools/report/report.h"
 #include "host_tools/simulate/batch.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
@@ -11,7 +12,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 namespace traction::cli {
@@ -25,16 +25,6 @@ struct Arguments {
     std::vector<std::string> effects;
     bool realtime = false;
 };
-
-// Whole or not at all.
-void write_text(const std::string &path, const std::string &text) {
-    std::ofstream file;
-    file.exceptions(std::ios::failbit | std::ios::badbit);
-    file.open(path + ".part", std::ios::binary);
-    file << text;
-    file.close();
-    std::filesystem::rename(path + ".part", path);
-}
 
 // "log.csv" for seed 7 is "log.7.csv".
 std::string with_seed(const std::string &path, std::uint64_t seed) {
@@ -55,7 +45,7 @@ void keep(const Arguments &arguments, const sim::Scenario &scenario, const Simul
     const auto name = [&](const std::string &path) { return batch ? with_seed(path, seed) : path; };
     if (!arguments.out.empty()) log::write_csv(result.log, name(arguments.out));
     if (!arguments.truth.empty()) log::write_csv(result.truth, name(arguments.truth));
-    if (!arguments.seal.empty()) write_text(name(arguments.seal), sim::seal_text(result.hidden, scenario.name, result.hide_seed));
+    if (!arguments.seal.empty()) report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed), name(arguments.seal));
 }
 
 nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {

@@ -2,7 +2,9 @@
 
 #include "read_parts.h"
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 namespace traction::sim {
 
@@ -42,6 +44,10 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
     Keys keys(table, file, "ground");
     Ground &ground = scenario.plant.ground;
     read_soil(keys, ground.soil);
+    constexpr std::array<std::string_view, 3> laws{"aggregated", "bekker", "arc"};
+    ground.contact = static_cast<ContactLaw>(keys.word("contact", "aggregated", laws));
+    ground.gradient_1_m = keys.number("gradient_1_m", 0, {-1, 1});
+    ground.gradient_direction_rad = keys.number("gradient_direction_rad", 0, {-10, 10});
     ground.slope_rad = keys.number("slope_rad", 0, {-0.5, 0.5});
     ground.slope_direction_rad = keys.number("slope_direction_rad", 0, {-10, 10});
     ground.grip_noise = keys.number("grip_noise", ground.soil.law == TractionLaw::janosi ? 0.06 : 0.02, {0, 0.5});

@@ -3,9 +3,10 @@
 #include "read_parts.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <ios>
 #include <iterator>
+#include <system_error>
 
 namespace traction::sim {
 
@@ -69,10 +70,10 @@ Scenario parse_scenario(const std::string &text, const std::string &file) {
 }
 
 Scenario read_scenario(const std::string &path) {
-    std::ifstream file;
-    file.exceptions(std::ios::failbit | std::ios::badbit);
-    file.open(path, std::ios::binary);
+    std::ifstream file(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
+        throw std::filesystem::filesystem_error("cannot read the scenario", path, std::make_error_code(std::errc::no_such_file_or_directory));
     return parse_scenario(text, path);
 }
 

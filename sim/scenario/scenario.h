@@ -49,7 +49,7 @@ struct Scenario {
     std::optional<HiddenDraw> hidden;
 };
 
-// Throws ScenarioError; std::ios_base::failure when the file cannot be read.
+// Throws ScenarioError; std::filesystem::filesystem_error when the file cannot be read.
 Scenario read_scenario(const std::string &path);
 
 // The same from text; `file` is for messages.
