@@ -51,8 +51,8 @@ std::string described(const nlohmann::json &effect) {
     if (effect.value("wheel", -1) >= 0) text += " on wheel " + std::to_string(effect["wheel"].get<int>());
     for (const auto &[name, value] : effect.at("parameters").items()) {
         char number[40];
-        std::snprintf(number, sizeof number, " %.3g", value.get<double>());
-        text += ", " + name + number;
+        std::snprintf(number, sizeof number, " %.3g ", value.at("value").get<double>());
+        text += ", " + name + number + value.value("unit", "");
     }
     return text;
 }
