@@ -140,6 +140,18 @@ Scored score(const Candidate &c, const Screen &screen, Columns &columns, bool fu
 
 bool nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
 
+// A law whose slope at zero says little of its size: the best of a few sizes starts the fit.
+double best_start(Problem &problem, const Candidate &candidate, Eigen::Index place, double linear) {
+    double best = linear, least = 1e300;
+    const double largest = candidate.maximum[0];
+    for (const double size : {linear, candidate.of_interest[0], 0.1 * largest, 0.25 * largest, 0.5 * largest, 0.8 * largest}) {
+        problem.theta[place] = size;
+        const double cost = problem.cost();
+        if (cost < least) least = cost, best = size;
+    }
+    return best;
+}
+
 // Fits baseline plus candidate in full, from the linear estimate.
 void refit(Scored &s, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data) {
     Physics physics = make_physics(model);
@@ -159,6 +171,7 @@ void refit(Scored &s, const Problem &base, const Screen &base_screen, const Mode
         if (limited && std::fabs(start) < 1e-3 * span) start = s.candidate.of_interest[static_cast<std::size_t>(j)];
         problem.theta[n + j] = start;
     }
+    if (nonlinear(s.candidate.effect)) problem.theta[n] = best_start(problem, s.candidate, n, problem.theta[n]);
     problem.quick_fit(base, nonlinear(s.candidate.effect) ? 12 : 4);
     const Screen screen(problem, n);
     const Eigen::VectorXd present = problem.theta.tail(k);
@@ -255,9 +268,10 @@ Round run_round(Problem &problem, const Screen &screen, const Model &model, cons
     int done = 0, specials = 0;
     for (Scored &s : round.scored) {
         judge(s, round.base_error, options);
-        const bool worth = s.gain > 0.002 * round.base_error || s.assessment.relief > 0.5 * options.least_relief;
+        const bool anyway = nonlinear(s.candidate.effect) && s.candidate.wheel < 0;
+        const bool worth = anyway || s.gain > 0.002 * round.base_error || s.assessment.relief > 0.5 * options.least_relief;
         const bool special = nonlinear(s.candidate.effect);
-        if (!worth || !(special ? specials < 2 : done < options.refits && s.p_value < 0.2)) continue;
+        if (!worth || !(anyway || special ? anyway || specials < 2 : done < options.refits && s.p_value < 0.2)) continue;
         refit(s, problem, screen, model, data);
         judge(s, round.base_error, options);
         ++(special ? specials : done);

@@ -202,6 +202,11 @@ void Problem::keep_scales(const Problem &other) {
     sigma = other.sigma;
 }
 
+double Problem::cost() {
+    const Eigen::VectorXd error = (measured_ - forward_.predict(physics())).cwiseProduct(row_scale);
+    return error.squaredNorm() + theta.cwiseAbs2().dot(prior_precision());
+}
+
 void Problem::quick_fit(const Problem &base, int iterations) {
     keep_scales(base);
     const Eigen::Index n = base.theta.size(), all = theta.size(), rows = measured_.size();

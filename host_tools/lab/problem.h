@@ -45,6 +45,8 @@ class Problem {
     Eigen::VectorXd noise_rows() const; // measurement noise of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
+    double cost(); // squares of all rows and priors at the present increments
+
     // Gauss-Newton on baseline plus candidate where the baseline's sensitivities are kept from `base` (the first columns here, same
     // scales): a candidate moves them little, and a pass for each is saved. Leaves the problem linearised.
     void quick_fit(const Problem &base, int iterations);
