@@ -421,7 +421,8 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         d.model.effects.push_back(effect_of(w.candidate, w.value));
     }
     // backward: drop what no longer matters beside the others
-    for (std::size_t i = d.accepted.size(); i-- > 0 && d.accepted.size() > 1;) {
+    for (std::size_t i = d.accepted.size(); i-- > 0;) {
+        if (d.accepted.size() == 1 && large_enough(d.accepted[i].candidate, d.accepted[i].value)) break;
         Model without = d.model;
         const Candidate &c = d.accepted[i].candidate;
         std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == c.effect && use.wheel == c.wheel; });
@@ -436,8 +437,10 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         s.value = d.accepted[i].value;
         refit(s, problem, screen, without, data);
         judge(s, screen.heldout_error(), options);
-        if (s.verdict == "passes") continue;
+        if (s.verdict == "passes" && large_enough(c, d.accepted[i].value)) continue;
         d.messages.push_back(c.label() + " was found first, and is not needed beside the others: dropped");
+        std::erase_if(d.ladder, [&](const Rung &r) { return r.label == "+ " + c.label(); });
+        if (d.ladder.size() > 1) d.ladder.back().train = overall_error(problem), d.ladder.back().heldout = overall_heldout(problem);
         d.model = without;
         last = problem;
         d.accepted.erase(d.accepted.begin() + static_cast<std::ptrdiff_t>(i));

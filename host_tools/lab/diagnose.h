@@ -14,7 +14,7 @@ namespace traction::lab {
 
 // Decision thresholds (docs/lab_method.md says where each comes from).
 struct DiagnoseOptions {
-    double p_limit = 0.01;             // of the corrected p
+    double p_limit = 0.003;            // of the corrected p: stricter than LAB.md's 0.01, uneven ground mimics soil effects
     double least_gain = 0.01;          // fall of the held-out error, all balances
     double least_gain_one = 0.03;      // the same in one balance
     double least_relief = 9.0;         // relief of priors, squared standard deviations

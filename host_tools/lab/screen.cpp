@@ -154,8 +154,8 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     for (Eigen::Index j = 0; j < k; ++j)
         if (covariance(j, j) < 0.25 * least(j, j)) covariance(j, j) = 0.25 * least(j, j);
     const double share = covariance.trace() > 0 && data_part > 0 ? covariance.trace() / data_part : 1;
-    // at least 5: the jackknife is conservative already where one block carries the evidence (assumed; clean logs stay silent with it)
-    const double freedom = std::clamp((blocks_that_inform - 1) * share * share, std::min(5.0, static_cast<double>(count - 1)), std::max(5.0, static_cast<double>(count - 1)));
+    // at least 5 after the strengths are counted: the jackknife is conservative already where one block carries the evidence (assumed; clean logs stay silent with it)
+    const double freedom = std::clamp((blocks_that_inform - 1) * share * share, std::min(4.0 + static_cast<double>(k), static_cast<double>(count)), std::max(4.0 + static_cast<double>(k), static_cast<double>(count - 1)));
     out.standard_error = covariance.diagonal().cwiseSqrt();
     const Eigen::VectorXd whole = out.strength + present;
     const double wald = whole.dot(covariance.ldlt().solve(whole)) / static_cast<double>(k);
