@@ -117,6 +117,22 @@ static void slide(doppler_state_t *state, int32_t hop)
     state->filled = FFT_LENGTH - hop;
 }
 
+// Until the window has been full once, its missing part is the mirror image of what there is: the same frequencies, no step, no
+// influence of the offset. Returns true when a value is due, and by how many samples its mean age is less than a full window's.
+static bool mirror_early(doppler_state_t *state, int32_t *younger)
+{
+    static const int16_t less[2] = {98, 63}; // mean of |m - n| over the square of the Hann window, m = 128 and 192: 29.1, 65.3 of 127.5
+    const int32_t m = state->filled;
+    if (state->full || (m != 128 && m != 192)) {
+        return false;
+    }
+    for (int32_t j = m; j < FFT_LENGTH; j++) {
+        state->window.sample[j] = state->window.sample[2 * m - 1 - j];
+    }
+    *younger = less[m == 192];
+    return true;
+}
+
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
 {
     doppler_output_t out = {false, false, 0.0f, 0};
@@ -129,10 +145,14 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         const int32_t limited = sample[i] > 1023u ? 1023 : (int32_t)sample[i];
         state->window.sample[state->filled] = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
         state->filled++;
-        if (state->filled == FFT_LENGTH) {
+        int32_t younger = 0;
+        if (state->filled == FFT_LENGTH || (config->method == DOPPLER_LIKELIHOOD && mirror_early(state, &younger))) {
             fft_power(state->window.sample, state->power);
             state->pending = true;
-            state->late_samples = count - 1 - i;
+            state->late_samples = count - 1 - i - younger;
+        }
+        if (state->filled == FFT_LENGTH) {
+            state->full = true;
             slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
         }
     }

@@ -7,7 +7,8 @@
 // sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
 // geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
 // ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
-// below a stated one. Powers are reduced to 15 bits of their sum: J is exact in 32 bits.
+// below a stated one. Powers are reduced to 15 bits of their sum: J is exact in 32 bits. Until 256 samples have come, 128 and
+// then 192 of them with their mirror image make two early values (ours alone).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -57,13 +58,14 @@ typedef struct {
     uint64_t power[FFT_BINS];   // of the last full window
     int32_t late_samples;       // samples since that window's end
     bool pending;               // its speed is not made yet
+    bool full;                  // the window has been filled once
 } doppler_state_t; // zeroed = reset
 
 typedef struct {
     bool fresh;         // a value was made in this call
     bool quiet;         // no echo above the noise: the speed means nothing
     float speed_m_s;    // magnitude
-    int32_t late_samples; // samples that arrived after the window's end
+    int32_t late_samples; // samples that arrived after the window's end; less for the first two values, whose window is shorter
 } doppler_output_t;
 
 // The transform runs in the call that fills the window, the search for the speed in the next one, so that no tick pays for both.

@@ -6,11 +6,16 @@
 
 enum { WINDOW_TICKS = 51 }; // ticks that a window of 256 samples at 512 Hz covers
 
-// w_j of (3): the square of the Hann window, over its age in ticks, Q15, sum 32768. tau = 25 ticks.
+// w_j of (3): the square of the Hann window over its age in ticks, Q15, sum 32768. A sample's weight is shared between the two
+// ticks around it, so the mean age is the window's own. ground_speed_test: no lag with exact sensors.
 static const int16_t weight_q15[WINDOW_TICKS] = {
-    0, 0, 0, 2, 5, 13, 26, 46, 77, 119, 175, 245, 332, 434, 550, 680, 821, 969, 1122, 1273, 1419, 1554, 1675, 1777, 1855, 1906,
-    1924, 1906, 1855, 1777, 1675, 1554, 1419, 1273, 1122, 969, 821, 680, 550, 434, 332, 245, 175, 119, 77, 46, 26, 13, 5, 2, 0,
+    0, 0, 1, 3, 8, 18, 35, 61, 99, 151, 217, 298, 396, 507, 629, 762, 902, 1044, 1184, 1317, 1440, 1551, 1632, 1695, 1733,
+    1745, 1728, 1685, 1617, 1532, 1417, 1291, 1157, 1016, 874, 736, 604, 484, 375, 281, 203, 140, 91, 55, 31, 15, 6, 2, 0, 0,
+    0,
 };
+static const float window_tau_s = 0.249f; // [s] mean age: 127.5 samples at 512 Hz, the newest half a sample old on average
+
+static const float early_accel_m_s2 = 0.2f; // [m/s^2] assumed: the speed changes by 0.05 m/s at most in the first half window
 
 void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
@@ -89,7 +94,7 @@ static window_t look_back(const ground_speed_state_t *state, float accel, float 
 {
     const int32_t oldest = (state->head - (WINDOW_TICKS - 1) + GROUND_SPEED_HISTORY) % GROUND_SPEED_HISTORY;
     const float span = (float)fixed_wrap_difference(state->integral_q20[state->head], state->integral_q20[oldest]) * (1.0f / 1048576.0f);
-    const float tau = 0.25f + late_s;
+    const float tau = window_tau_s + late_s;
     const window_t out = {
         .tau_s = tau,
         .middle_m_s = state->speed_m_s + tau * state->bias_m_s2 - window_change_m_s(state) - accel * late_s, // (3)
@@ -98,19 +103,38 @@ static window_t look_back(const ground_speed_state_t *state, float accel, float 
     return out;
 }
 
+// (4), (5): a slope or a tilt changes the bias at once; values that keep missing on one side tell of it long before (2) would.
+static const float one_sided_max = 4.0f; // [1] assumed: no single value tells of a jump
+
+static void watch_bias(const ground_speed_config_t *config, ground_speed_state_t *state, float innovation, float spread)
+{
+    const float one_sided = fixed_clamp(innovation * fabsf(innovation) / spread, -one_sided_max, one_sided_max);
+    state->one_sided += config->jump_share * (one_sided - state->one_sided); // (4)
+    if (fabsf(state->one_sided) > config->jump_limit) {
+        state->p_bb = fixed_clamp(state->p_bb + config->jump_m2_s4, 0.0f, config->bias_max_m_s2 * config->bias_max_m_s2); // (5)
+        state->one_sided = 0.0f;
+    }
+}
+
 static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
-    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), 0.0f, 1.0f));
+    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
     const float measured = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
     float sign = window.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const bool lost = state->refused >= config->gate_patience;
     if ((lost || fabsf(window.middle_m_s) < config->sign_hysteresis_m_s) && state->still_ticks == 0) {
         sign = input->wheel_m_s < 0.0f ? -1.0f : 1.0f;
     }
-    const float noise = config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured +
+    const bool early = input->doppler_late_s < 0.0f;
+    if (early && fabsf(window.accel_m_s2) > early_accel_m_s2) {
+        return; // w of (3) is that of a full window
+    }
+    const float shorter = early ? 2.5f : 1.0f; // assumed: half the samples, blurred by their mirror image
+    const float noise = shorter * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured) +
                         config->doppler_accel_s2 * window.accel_m_s2 * window.accel_m_s2;
     const float innovation = sign * measured - window.middle_m_s;
     const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + noise;
+    watch_bias(config, state, innovation, spread);
     if (innovation * innovation > config->gate_sigma * config->gate_sigma * spread) {
         if (!lost) {
             state->refused++;
@@ -126,7 +150,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
 // A quiet echo says that the window's mean speed was too low to be heard.
 static void update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
-    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), 0.0f, 1.0f));
+    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
     const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + config->quiet_noise_m2_s2;
     if (window.middle_m_s * window.middle_m_s <= config->gate_sigma * config->gate_sigma * spread) { // else a fade of the echo
         correct(state, -window.middle_m_s, window.tau_s, config->quiet_noise_m2_s2);
@@ -163,6 +187,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     } else if (fresh && !input->doppler_quiet) {
         update_doppler(config, state, input, accel);
     }
+    state->speed_m_s = fixed_clamp(state->speed_m_s, -10.0f, 10.0f);
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || state->std_m_s == 0.0f) { // between, the filter forgets little: a root is dear
         state->std_m_s = sqrtf(state->p_vv > 0.0f ? state->p_vv : 0.0f);

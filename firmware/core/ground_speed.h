@@ -4,6 +4,9 @@
 //   ours:  v[k+1] = v[k] + (a - b) T,  b[k+1] = b[k]                                  (2)
 //          z + sum_j w_j (V(t) - V(t - s_j)) = v + tau b + n,  tau = sum_j w_j s_j    (3)
 //
+//   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
+//   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has jumped: a slope
+//
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
@@ -32,6 +35,9 @@ typedef struct {
     float doppler_accel_s2;        // R per a^2
     float gate_sigma;              // values further than this from the prediction are refused
     int32_t gate_patience;         // refusals in a row after which the next value is taken as the truth
+    float jump_share;              // c of (4)
+    float jump_limit;              // |m| of (4) that tells of a jump of the bias
+    float jump_m2_s4;              // by how much its variance grows then
     int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
     float quiet_noise_m2_s2;       // R of that speed, taken as 0
     float still_m_s;               // rim speed below which the wheels are at rest
@@ -48,6 +54,7 @@ typedef struct {
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
     float integral_rest_m_s;       // part of V below one unit
+    float one_sided;               // m of (4)
     int32_t refused;
     int32_t quiet;
     int32_t still_ticks;
@@ -57,7 +64,7 @@ typedef struct {
 typedef struct {
     float accel_x_m_s2;
     float doppler_m_s;             // magnitude
-    float doppler_late_s;          // age of the window's end
+    float doppler_late_s;          // age of the window's end; negative for a shorter window
     float wheel_m_s;               // rim speed of the wheels as a hint for the sign
     bool accel_valid;
     bool doppler_fresh;

@@ -54,7 +54,7 @@ static ground_speed_config_t ground_speed_default(void)
         .method = GROUND_SPEED_BIAS,
         .tick_s = tick_s,
         .speed_noise_m2_s2 = 4e-6f, // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
-        .bias_noise_m2_s4 = 1e-6f,  // [m^2/s^4] per tick: 1e-4 per second
+        .bias_noise_m2_s4 = 5e-7f,  // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .bias_start_m_s2 = 0.1f,
         .bias_max_m_s2 = 1.0f,
         .doppler_noise_m2_s2 = 3e-5f,
@@ -62,6 +62,9 @@ static ground_speed_config_t ground_speed_default(void)
         .doppler_accel_s2 = 0.0125f,
         .gate_sigma = 3.5f,
         .gate_patience = 8,
+        .jump_share = 0.25f,         // half a second of values 0.125 s apart
+        .jump_limit = 2.0f,          // [1] docs/firmware.md: twice what steady driving reaches
+        .jump_m2_s4 = 0.002f,        // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
         .quiet_needed = 3,
         .quiet_noise_m2_s2 = 9e-4f,    // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = 0.006f,           // one encoder pulse a tick
@@ -149,6 +152,8 @@ control_config_t rover_config_paper(void)
     // With Q per tick and one value every 50 ticks a gain of 0.22 has a time constant of 2 s: Q = R 0.22^2/(1 - 0.22)/50
     config.ground_speed.doppler_noise_m2_s2 = 4e-4f; // (0.02 m/s)^2: 10 % at 0.2 m/s, (12)
     config.ground_speed.speed_noise_m2_s2 = 5e-7f;
+    config.ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
+    config.ground_speed.bias_start_m_s2 = 0.0f;
     config.wheel_pid.slew_T_rad_s = 1e6f;
     config.feed_forward = false;
     config.speed_control.ki_T_rad_m = 0.0f; // (22) has no integral
