@@ -1,14 +1,17 @@
-// speed_bench - ground speed by the paper's method and by ours, on the tests' own radar clutter: table by profile.
+// speed_bench - ground speed by the paper's method and by ours, on two radars that share no code: the tests' clutter (clutter.h)
+// and the simulator's radar (sim/sensors/radar.h). Tables by profile, then what a misfit of radar or ground does.
 //
-// usage: speed_bench [seeds] [variant]; variants: base, mount3 (3 deg mounting error), n0, n2 (ground exponent), snr10, accel2
-// (accelerometer noise x 2). Scored from 4 s on, when the slowest method has its first fix.
+// usage: speed_bench [--seeds N] [--json FILE] [--brief]; brief: the first table alone. `traction bench speed` runs it.
+// Scored from 4 s on, when the slowest method has its first fix. Exit 1 when a goal of ours is missed on the tests' clutter.
 #include "firmware/core/rover_config.h"
+#include "sim/sensors/radar.h"
 #include "tests/unit/clutter.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <map>
+#include <fstream>
 #include <string>
 
 namespace {
@@ -22,8 +25,6 @@ double ramp(double t, double t0, double t1, double v0, double v1) { return t <= 
 
 std::vector<Profile> profiles()
 {
-    const double none = 0;
-    (void)none;
     return {
         {"constant 0.1", [](double) { return 0.1; }},
         {"constant 0.2", [](double) { return 0.2; }},
@@ -44,31 +45,61 @@ struct Score {
 };
 
 struct Variant {
-    double mounting = 20, exponent = 1, snr = 20, accel_noise = 0.2;
+    std::string name;
+    double mounting_error_deg = 0, exponent = 1, snr_dB = 20, accel_noise = 0.2;
+    bool noise_stated = false; // the firmware's configuration knows accel_noise
 };
 
-void run(const Profile &profile, const std::vector<double> &echo, int seed, const Variant &variant, const control_config_t &config, Score &score)
+// What a run reads from the radar, at 512 Hz.
+using Samples = std::vector<std::uint16_t>;
+
+constexpr double duration_s = 20;
+
+std::vector<double> path_of(const Profile &profile)
 {
-    const double duration = 20;
     std::vector<double> path{0};
-    for (int i = 0; i < 20 * 512 + 8; ++i) {
+    for (int i = 0; i < duration_s * 512 + 8; ++i) {
         path.push_back(path.back() + profile.speed((i + 0.5) / 512.0) / 512.0);
     }
+    return path;
+}
+
+// The tests' own clutter; there and back, so that a long drive fits the track: the radar only sees |v|.
+Samples listen_clutter(const std::vector<double> &echo, const std::vector<double> &path, int seed, const Variant &variant)
+{
     const double track = (static_cast<double>(echo.size()) - 8) * clutter::grid_m;
-    const auto position = [&](double t) { // there and back, so that a long drive fits the track; the radar only sees |v|
+    const auto position = [&](double t) {
         const double x = std::fmod(path[static_cast<std::size_t>(t * 512 + 0.5)], 2 * track);
         return x < track ? x : 2 * track - x;
     };
     clutter::Adc adc;
-    adc.snr_dB = variant.snr;
+    adc.snr_dB = variant.snr_dB;
     adc.seed = static_cast<std::uint64_t>(seed);
-    const std::vector<std::uint16_t> samples = clutter::drive(echo, duration, position, adc);
+    return clutter::drive(echo, duration_s, position, adc);
+}
+
+Samples listen_simulator(const std::vector<double> &path, int seed, const Variant &variant)
+{
+    traction::sim::RadarConfig config;
+    config.mounting_error_deg = variant.mounting_error_deg;
+    config.ground_exponent = variant.exponent;
+    config.noise_count = config.echo_count * std::pow(10, -variant.snr_dB / 20);
+    traction::sim::Radar radar(config, static_cast<std::uint64_t>(seed));
+    Samples samples;
+    for (int n = 0; n < duration_s * 512; ++n) {
+        samples.push_back(radar.sample(path[static_cast<std::size_t>(n)]));
+    }
+    return samples;
+}
+
+void run(const Profile &profile, const Samples &samples, int seed, const Variant &variant, const control_config_t &config, Score &score)
+{
     clutter::Random random{static_cast<std::uint64_t>(seed) * 31 + 7};
     doppler_state_t doppler = {};
     ground_speed_state_t filter;
     ground_speed_reset(&config.ground_speed, &filter);
     std::size_t used = 0;
-    double fix = duration;
+    double fix = duration_s;
     bool fixed = false;
     int ok_run = 0;
     for (int k = 0; k < 2000; ++k) {
@@ -104,47 +135,149 @@ void run(const Profile &profile, const std::vector<double> &echo, int seed, cons
     score.runs++;
 }
 
+struct Row {
+    std::string profile;
+    double rmse_cm_s, p95_percent, lag_s, first_fix_s;
+};
+
+struct Table {
+    std::vector<Row> rows;
+    double rmse_cm_s = 0; // over all profiles alike
+};
+
+Table table_of(std::vector<Score> scores)
+{
+    Table table;
+    const std::vector<Profile> all = profiles();
+    double square = 0;
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        Score &score = scores[p];
+        std::sort(score.relative.begin(), score.relative.end());
+        square += score.square / score.n / static_cast<double>(all.size());
+        table.rows.push_back({all[p].name, 100 * std::sqrt(score.square / score.n), 100 * score.relative[score.relative.size() * 95 / 100],
+                              score.lag_den > 0 ? score.lag_num / score.lag_den : 0.0, score.first_fix / score.runs});
+    }
+    table.rmse_cm_s = 100 * std::sqrt(square);
+    return table;
+}
+
+struct Both {
+    Table paper, ours;
+};
+
+// One radar, one variant: both methods on the same samples.
+Both measure(bool simulator, const Variant &variant, int seeds)
+{
+    const std::vector<Profile> all = profiles();
+    const control_config_t paper = rover_config_paper();
+    control_config_t ours = rover_config_default();
+    if (variant.noise_stated) {
+        ours.ground_speed.speed_noise_m2_s2 = static_cast<float>(std::pow(variant.accel_noise * 0.01, 2));
+    }
+    std::vector<Score> paper_scores(all.size()), our_scores(all.size());
+    for (int seed = 1; seed <= seeds; ++seed) {
+        std::vector<double> echo;
+        if (!simulator) {
+            clutter::Ground ground;
+            ground.seed = static_cast<std::uint64_t>(seed);
+            ground.mounting_deg += variant.mounting_error_deg;
+            ground.exponent = variant.exponent;
+            echo = clutter::echo_along_track(ground);
+        }
+        for (std::size_t p = 0; p < all.size(); ++p) {
+            const std::vector<double> path = path_of(all[p]);
+            const Samples samples = simulator ? listen_simulator(path, seed, variant) : listen_clutter(echo, path, seed, variant);
+            run(all[p], samples, seed, variant, paper, paper_scores[p]);
+            run(all[p], samples, seed, variant, ours, our_scores[p]);
+        }
+    }
+    return {table_of(std::move(paper_scores)), table_of(std::move(our_scores))};
+}
+
+void print(const char *radar, int seeds, const Both &both)
+{
+    std::printf("%s, %d seeds\n%-16s | paper RMSE cm/s  p95 %%  lag s  fix s | ours RMSE cm/s  p95 %%  lag s  fix s\n", radar, seeds, "profile");
+    for (std::size_t p = 0; p < both.ours.rows.size(); ++p) {
+        const Row &a = both.paper.rows[p], &b = both.ours.rows[p];
+        std::printf("%-16s |%15.2f %7.1f %6.3f %6.2f |%14.2f %7.1f %6.3f %6.2f\n", a.profile.c_str(), a.rmse_cm_s, a.p95_percent, a.lag_s,
+                    a.first_fix_s, b.rmse_cm_s, b.p95_percent, b.lag_s, b.first_fix_s);
+    }
+    std::printf("%-16s |%15.2f                       |%14.2f\n", "all", both.paper.rmse_cm_s, both.ours.rmse_cm_s);
+}
+
+nlohmann::json json_of(const Table &table)
+{
+    nlohmann::json rows = nlohmann::json::array();
+    for (const Row &row : table.rows) {
+        rows.push_back({{"profile", row.profile}, {"rmse_cm_s", row.rmse_cm_s}, {"p95_percent", row.p95_percent}, {"lag_s", row.lag_s},
+                        {"first_fix_s", row.first_fix_s}});
+    }
+    return {{"rows", rows}, {"rmse_cm_s", table.rmse_cm_s}};
+}
+
+// DSP.md's goals; rows 1 and 3 are the constant speeds 0.2 and 1.0 m/s.
+bool goals_met(const Table &ours)
+{
+    bool met = ours.rmse_cm_s <= 1.8 && ours.rows[1].p95_percent <= 15 && ours.rows[3].p95_percent <= 4 && ours.rows[1].first_fix_s <= 0.5 &&
+               ours.rows[2].first_fix_s <= 0.5 && ours.rows[3].first_fix_s <= 0.5;
+    for (const Row &row : ours.rows) {
+        met = met && std::fabs(row.lag_s) <= 0.03;
+    }
+    return met;
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
-    const int seeds = argc > 1 ? std::atoi(argv[1]) : 12;
-    const std::string name = argc > 2 ? argv[2] : "base";
-    Variant variant;
-    variant.mounting = name == "mount3" ? 23 : name == "mount-3" ? 17 : 20;
-    variant.exponent = name == "n0" ? 0 : name == "n2" ? 2 : 1;
-    variant.snr = name == "snr10" ? 10 : 20;
-    variant.accel_noise = name == "accel2" ? 0.4 : 0.2;
-    std::map<std::string, std::vector<Score>> table;
-    const std::vector<Profile> all = profiles();
-    const control_config_t configs[] = {rover_config_paper(), rover_config_default()};
-    table["paper"].resize(all.size());
-    table["ours"].resize(all.size());
-    for (int seed = 1; seed <= seeds; ++seed) {
-        clutter::Ground ground;
-        ground.seed = static_cast<std::uint64_t>(seed);
-        ground.mounting_deg = variant.mounting;
-        ground.exponent = variant.exponent;
-        const std::vector<double> echo = clutter::echo_along_track(ground);
-        for (std::size_t p = 0; p < all.size(); ++p) {
-            run(all[p], echo, seed, variant, configs[0], table["paper"][p]);
-            run(all[p], echo, seed, variant, configs[1], table["ours"][p]);
+    int seeds = 12;
+    bool brief = false;
+    std::string json_file;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--brief") {
+            brief = true;
+        } else if (word == "--seeds" && i + 1 < argc) {
+            seeds = std::max(1, std::atoi(argv[++i]));
+        } else if (word == "--json" && i + 1 < argc) {
+            json_file = argv[++i];
+        } else {
+            std::fprintf(stderr, "speed_bench: %s is not known; usage: speed_bench [--seeds N] [--json FILE] [--brief]\n", argv[i]);
+            return 2;
         }
     }
-    std::printf("%d seeds, %s\n%-16s | paper RMSE cm/s  p95 %%  lag s  fix s | ours RMSE cm/s  p95 %%  lag s  fix s\n", seeds, name.c_str(), "profile");
-    double total[2] = {0, 0};
-    for (std::size_t p = 0; p < all.size(); ++p) {
-        std::printf("%-16s |", all[p].name);
-        int column = 0;
-        for (const char *method : {"paper", "ours"}) {
-            Score &score = table[method][p];
-            std::sort(score.relative.begin(), score.relative.end());
-            total[column++] += score.square / score.n / static_cast<double>(all.size());
-            std::printf("%15.2f %7.1f %6.3f %6.2f %s", 100 * std::sqrt(score.square / score.n),
-                        100 * score.relative[score.relative.size() * 95 / 100], score.lag_den > 0 ? score.lag_num / score.lag_den : 0.0,
-                        score.first_fix / score.runs, column == 1 ? "|" : "\n");
+    nlohmann::json json = {{"schema", "traction.bench_speed/1"}, {"seeds", seeds}};
+    const Both base = measure(false, {.name = "base"}, seeds);
+    print("the tests' clutter", seeds, base);
+    json["clutter"] = {{"paper", json_of(base.paper)}, {"ours", json_of(base.ours)}};
+    const bool met = goals_met(base.ours);
+    std::printf("goals of DSP.md (RMSE 1.8 cm/s, p95 15 %% at 0.2 and 4 %% at 1.0 m/s, |lag| 0.03 s, first fix 0.5 s from 0.2 m/s on): %s\n",
+                met ? "met" : "missed");
+    json["goals_met"] = met;
+    if (!brief) {
+        const Both simulated = measure(true, {.name = "base"}, seeds);
+        print("\nthe simulator's radar", seeds, simulated);
+        json["simulator"] = {{"paper", json_of(simulated.paper)}, {"ours", json_of(simulated.ours)}};
+        const Variant variants[] = {{.name = "mounting +3 deg", .mounting_error_deg = 3},
+                                    {.name = "mounting -3 deg", .mounting_error_deg = -3},
+                                    {.name = "ground exponent 0", .exponent = 0},
+                                    {.name = "ground exponent 2", .exponent = 2},
+                                    {.name = "SNR 10 dB", .snr_dB = 10},
+                                    {.name = "accelerometer noise x 2", .accel_noise = 0.4},
+                                    {.name = "the same, noise stated", .accel_noise = 0.4, .noise_stated = true}};
+        const int few = (seeds + 2) / 3;
+        std::printf("\n%-24s | RMSE cm/s, %d seeds: clutter paper, ours | simulator paper, ours\n", "misfit", few);
+        for (const Variant &variant : variants) {
+            const Both a = measure(false, variant, few), b = measure(true, variant, few);
+            std::printf("%-24s | %28.2f %7.2f   | %12.2f %7.2f\n", variant.name.c_str(), a.paper.rmse_cm_s, a.ours.rmse_cm_s, b.paper.rmse_cm_s,
+                        b.ours.rmse_cm_s);
+            json["misfit"].push_back({{"name", variant.name},
+                                      {"clutter", {{"paper_cm_s", a.paper.rmse_cm_s}, {"ours_cm_s", a.ours.rmse_cm_s}}},
+                                      {"simulator", {{"paper_cm_s", b.paper.rmse_cm_s}, {"ours_cm_s", b.ours.rmse_cm_s}}}});
         }
     }
-    std::printf("%-16s |%15.2f                       |%15.2f\n", "all", 100 * std::sqrt(total[0]), 100 * std::sqrt(total[1]));
-    return 0;
+    if (!json_file.empty()) {
+        std::ofstream(json_file) << json.dump(1) << '\n';
+    }
+    return met ? 0 : 1;
 }
