@@ -181,6 +181,9 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
         for (const auto &shape : shapes)
             for (const int wheel : wheels) {
                 if (model.find_effect(handle.name, wheel) != nullptr) continue;
+                // on one wheel already: another wheel may join, all wheels would be a second copy
+                const bool elsewhere = std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse &use) { return use.name == handle.name; });
+                if (wheel < 0 && elsewhere) continue;
                 Candidate c;
                 c.effect = handle.name;
                 c.wheel = wheel;

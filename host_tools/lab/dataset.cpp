@@ -333,6 +333,7 @@ struct Builder {
         return jerk_noise_[i];
     }
     mutable std::vector<double> jerk_noise_;
+    std::size_t too_quick_ = 0;
 
     void currents(std::size_t i) {
         const log::Signal *current = wheel_signal(i, "current_A");
@@ -358,6 +359,10 @@ struct Builder {
             torque.noise = all.noise;
             for (std::size_t r = 0; r < all.measured.size(); ++r) {
                 if (!data.independent_rows && !moves(i, all.t0_s[r], all.t1_s[r])) continue;
+                if (smoothing_error(i, all.t0_s[r], all.t1_s[r]) > 8 * torque.noise) {
+                    ++too_quick_; // a set-point step: the encoder cannot follow it
+                    continue;
+                }
                 torque.t0_s.push_back(all.t0_s[r]);
                 torque.t1_s.push_back(all.t1_s[r]);
                 torque.measured.push_back(all.measured[r]);
@@ -493,6 +498,7 @@ struct Builder {
         yaw();
         imposed_motion();
         balances();
+        if (too_quick_ > 0) say(std::to_string(too_quick_) + " rows of the torque balances lie at speed steps quicker than the encoder can tell: left out");
         if (data.balance.empty()) say("the log has no measurement that this model predicts: nothing can be compared");
     }
 };
@@ -522,10 +528,10 @@ void noise_from_repeat(Dataset &data, const Dataset &other) {
 } // namespace
 
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
-    Builder builder{model, log, {}, {}};
+    Builder builder{model, log, {}, {}, 0};
     builder.build();
     if (repeat != nullptr) {
-        Builder other{model, *repeat, {}, {}};
+        Builder other{model, *repeat, {}, {}, 0};
         other.build();
         noise_from_repeat(builder.data, other.data);
     }

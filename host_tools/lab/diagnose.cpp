@@ -173,6 +173,7 @@ void refit(Scored &s, const Problem &base, const Screen &base_screen, const Mode
     }
     if (nonlinear(s.candidate.effect)) problem.theta[n] = best_start(problem, s.candidate, n, problem.theta[n]);
     problem.quick_fit(base, nonlinear(s.candidate.effect) ? 12 : 4);
+    if ((s.candidate.touched & stage_motion) != 0) problem.fit({.iterations = 6, .reweight = false}); // the soil's curve is strongly nonlinear: fresh sensitivities until it stands
     const Screen screen(problem, n);
     const Eigen::VectorXd present = problem.theta.tail(k);
     s.assessment = screen.assess(problem.jacobian.rightCols(k), present, true);
@@ -286,6 +287,21 @@ Round run_round(Problem &problem, const Screen &screen, const Model &model, cons
     return round;
 }
 
+// The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
+// candidate must keep its size.
+bool holds_up(const Scored &s, const Model &model, const Dataset &data, const Problem &before) {
+    Model with = model;
+    with.effects.push_back(effect_of(s.candidate, s.value));
+    const Physics physics = make_physics(with);
+    Problem problem(data, physics, free_parameters(with, physics));
+    problem.theta.head(before.theta.size()) = before.theta;
+    problem.fit({.iterations = 3, .reweight = true});
+    std::vector<double> value;
+    for (Eigen::Index i = problem.theta.size() - static_cast<Eigen::Index>(s.value.size()); i < problem.theta.size(); ++i)
+        value.push_back(problem.parameters[static_cast<std::size_t>(i)].base + problem.theta[i]);
+    return large_enough(s.candidate, value) && overall_heldout(problem) < 1.01 * overall_heldout(before);
+}
+
 // Which passers the data cannot tell from the winner.
 std::vector<std::size_t> confounded_with(Round &round, std::size_t winner, const DiagnoseOptions &options) {
     std::vector<std::size_t> members;
@@ -380,8 +396,11 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         if (round_index == options.most_effects) break;
         Round round = run_round(problem, screen, d.model, data, options, cache, tick);
         std::size_t winner = round.scored.size();
-        for (std::size_t i = 0; i < round.scored.size() && winner == round.scored.size(); ++i)
-            if (round.scored[i].verdict == "passes") winner = i;
+        for (std::size_t i = 0; i < round.scored.size() && winner == round.scored.size(); ++i) {
+            if (round.scored[i].verdict != "passes") continue;
+            if (holds_up(round.scored[i], d.model, data, problem)) winner = i;
+            else round.scored[i].verdict = "not_significant";
+        }
         std::vector<std::size_t> members;
         if (winner < round.scored.size()) members = confounded_with(round, winner, options);
         if (round_index == 0)
@@ -422,7 +441,11 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
     }
     // backward: drop what no longer matters beside the others
     for (std::size_t i = d.accepted.size(); i-- > 0;) {
-        if (d.accepted.size() == 1 && large_enough(d.accepted[i].candidate, d.accepted[i].value)) break;
+        const CandidateResult &one = d.accepted[i];
+        bool solid = large_enough(one.candidate, one.value), sure = false;
+        for (std::size_t j = 0; j < one.value.size(); ++j) sure = sure || one.low[j] * one.high[j] > 0;
+        solid = solid && sure; // larger than its own uncertainty
+        if (d.accepted.size() == 1 && solid) break;
         Model without = d.model;
         const Candidate &c = d.accepted[i].candidate;
         std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == c.effect && use.wheel == c.wheel; });
@@ -437,7 +460,7 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         s.value = d.accepted[i].value;
         refit(s, problem, screen, without, data);
         judge(s, screen.heldout_error(), options);
-        if (s.verdict == "passes" && large_enough(c, d.accepted[i].value)) continue;
+        if (s.verdict == "passes" && solid) continue;
         d.messages.push_back(c.label() + " was found first, and is not needed beside the others: dropped");
         std::erase_if(d.ladder, [&](const Rung &r) { return r.label == "+ " + c.label(); });
         if (d.ladder.size() > 1) d.ladder.back().train = overall_error(problem), d.ladder.back().heldout = overall_heldout(problem);

@@ -40,7 +40,7 @@ class Step {
             s.theta = s.gain * data_.wheel[i].angle_rad[k];
             s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i, accel_before) : data_.load_N[i][k];
             double strength = 1;
-            const double place = path;
+            const double place = path + w.x; // each wheel at its own place, as the catalogue has it
             if (b.patch_change != 0 && place >= b.patch_start && place < b.patch_start + b.patch_length) strength *= 1 + b.patch_change;
             if (b.soil_gradient != 0) strength *= std::max(0.05, 1 + b.soil_gradient * path);
             if (b.multi_pass != 0) strength *= 1 + b.multi_pass * follows(i, v_before);
