@@ -1,0 +1,37 @@
+// daemon.h - the rover's main loop: open; while wait_tick: read, control_step, write, log; safe_stop.
+//
+// The world is a hal_t, the operator and the log are two function pointers, so the loop is the same on the rover, in the simulator
+// and in a test. It ends with the motors stopped, whatever ended it. It never waits but in wait_tick.
+#ifndef TRACTION_FIRMWARE_APP_DAEMON_H
+#define TRACTION_FIRMWARE_APP_DAEMON_H
+
+#include "firmware/core/control.h"
+#include "hal/hal.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    void *context;
+    // What is asked for in this tick; fills age_ticks, which ends the drive when it grows (FAULT_COMMAND_TIMEOUT). Must not block.
+    void (*command)(void *context, uint32_t tick, command_t *command);
+    // One tick as it was. May be null. Must not block.
+    void (*log)(void *context, const sensor_frame_t *frame, const command_t *command, const trace_t *trace);
+} daemon_link_t;
+
+typedef struct {
+    hal_result_t ended_by; // HAL_END, or the error that ended the loop
+    uint32_t ticks;        // ticks that were controlled
+    uint32_t faults;       // fault_t bits seen on the way
+} daemon_result_t;
+
+// Runs until wait_tick says so or a device is lost. A device that did not answer in time (HAL_ERR_TIMEOUT) is what its bits in
+// `present` say, and safety decides; any other error stops the rover at once.
+daemon_result_t daemon_run(const hal_t *hal, const control_config_t *config, const daemon_link_t *link);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,179 @@
+// The daemon's loop on a scripted HAL, and its parameter file: right, wrong and hostile.
+#include "firmware/app/daemon.h"
+#include "firmware/app/parameters.h"
+#include "firmware/core/rover_config.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace {
+
+// A rover on blocks: every device answers, nothing moves.
+struct Bench {
+    int ticks = 50, fail_read_at = -1, fail_write_at = -1, done = 0, stops = 0, writes = 0, logged = 0;
+    hal_result_t failure = HAL_ERR_IO;
+    bool silent = false; // devices time out from tick 10 on
+    std::vector<actuator_frame_t> written;
+
+    hal_t hal()
+    {
+        return {.context = this,
+                .wait_tick = [](void *c) { auto &b = *static_cast<Bench *>(c); return b.done++ < b.ticks ? HAL_OK : HAL_END; },
+                .read = [](void *c, sensor_frame_t *frame) {
+                    auto &b = *static_cast<Bench *>(c);
+                    frame->tick = static_cast<uint32_t>(b.done - 1);
+                    if (b.done - 1 == b.fail_read_at) return b.failure;
+                    if (b.silent && b.done > 10) return HAL_ERR_TIMEOUT;
+                    frame->present = 0xfffu;
+                    for (auto &count : frame->current_count) count = 2048;
+                    frame->battery_count = 1800; // 7.2 V
+                    frame->radar_samples = 5;
+                    for (int i = 0; i < 5; ++i) frame->radar_count[i] = static_cast<uint16_t>(512 + (i + b.done) % 2);
+                    return HAL_OK;
+                },
+                .write = [](void *c, const actuator_frame_t *actuator) {
+                    auto &b = *static_cast<Bench *>(c);
+                    b.written.push_back(*actuator);
+                    return b.writes++ == b.fail_write_at ? HAL_ERR_IO : HAL_OK;
+                },
+                .safe_stop = [](void *c) { static_cast<Bench *>(c)->stops++; }};
+    }
+    daemon_link_t link()
+    {
+        return {.context = this,
+                .command = [](void *, uint32_t, command_t *command) { command->mode = MODE_OPEN_LOOP; command->duty[0] = 0.25f; },
+                .log = [](void *c, const sensor_frame_t *, const command_t *, const trace_t *) { static_cast<Bench *>(c)->logged++; }};
+    }
+    daemon_result_t run()
+    {
+        const control_config_t config = rover_config_default();
+        const hal_t world = hal();
+        const daemon_link_t person = link();
+        return daemon_run(&world, &config, &person);
+    }
+};
+
+TEST(Daemon, drives_logs_every_tick_and_ends_with_the_motors_stopped)
+{
+    Bench bench;
+    const daemon_result_t result = bench.run();
+    EXPECT_EQ(result.ended_by, HAL_END);
+    EXPECT_EQ(result.ticks, 50u);
+    EXPECT_EQ(bench.logged, 50);
+    EXPECT_EQ(bench.stops, 1);
+    EXPECT_EQ(result.faults, 0u);
+    EXPECT_NEAR(bench.written.back().duty_q15[0], 0.25 * 32767, 1);
+}
+
+TEST(Daemon, stops_the_rover_when_a_device_is_lost)
+{
+    for (const hal_result_t failure : {HAL_ERR_IO, HAL_ERR_CONFIG}) {
+        Bench bench;
+        bench.fail_read_at = 20;
+        bench.failure = failure;
+        EXPECT_EQ(bench.run().ended_by, failure);
+        EXPECT_EQ(bench.stops, 1);
+        EXPECT_EQ(bench.writes, 20); // nothing is written on what was not read
+    }
+    Bench bench;
+    bench.fail_write_at = 20;
+    EXPECT_EQ(bench.run().ended_by, HAL_ERR_IO);
+    EXPECT_EQ(bench.stops, 1);
+    EXPECT_EQ(bench.writes, 21);
+}
+
+TEST(Daemon, leaves_a_silent_device_to_safety)
+{
+    Bench bench;
+    bench.silent = true;
+    const daemon_result_t result = bench.run();
+    EXPECT_EQ(result.ended_by, HAL_END); // the loop never stalls
+    EXPECT_NE(result.faults & FAULT_ENCODER_LOST, 0u);
+    EXPECT_FALSE(bench.written.back().motor_enable);
+    int off = 0;
+    while (bench.written[static_cast<std::size_t>(off)].motor_enable) ++off;
+    EXPECT_LE(off, 10 + 10); // 100 ms after the first silent tick
+}
+
+std::string refused(const std::string &text)
+{
+    control_config_t config = rover_config_default();
+    const control_config_t before = config;
+    char message[PARAMETERS_MESSAGE];
+    if (parameters_parse(text.data(), text.size(), "rover.txt", &config, message)) return "accepted";
+    EXPECT_EQ(config.motor.resistance_ohm, before.motor.resistance_ohm);
+    EXPECT_EQ(config.geometry.wheel_radius_m, before.geometry.wheel_radius_m);
+    return message;
+}
+
+const std::string format = "format = \"traction.firmware/1\"\n";
+
+TEST(Parameters, set_what_they_name_and_all_that_follows_from_it)
+{
+    const std::string text = "# from a model\r\n" + format + "wheel_radius_m = 0.06 # m\n\ntorque_constant_Nm_A=0.3\nresistance_ohm = 4\nviscous_Nms = 2e-3\n"
+                             "coulomb_Nm = 0.05\ninertia_kg_m2 = 6e-3\nmass_kg = 3\ndoppler_scale = 1.02\nwheel_kp_s = 0.1\nwheel_ki_1 = 0.5\n";
+    control_config_t config = rover_config_default();
+    const control_config_t before = config;
+    char message[PARAMETERS_MESSAGE];
+    ASSERT_TRUE(parameters_parse(text.data(), text.size(), "rover.txt", &config, message)) << message;
+    EXPECT_FLOAT_EQ(config.slip.wheel_radius_m, 0.06f);
+    EXPECT_FLOAT_EQ(config.motor.per_radius_1_m, 1 / 0.06f);
+    EXPECT_FLOAT_EQ(config.speed_control.half_track_per_radius, 0.12f / 0.06f);
+    EXPECT_FLOAT_EQ(config.soil_sweep.ramp_1_m, 0.01f / (0.06f * 10));           // (15)
+    EXPECT_FLOAT_EQ(config.motor.volt_per_speed_Vs, 4 * 2e-3f / 0.3f + 0.3f);    // (a) and (18)
+    EXPECT_FLOAT_EQ(config.motor.volt_dry_V, 4 * 0.05f / 0.3f);
+    EXPECT_FLOAT_EQ(config.safety.heating_K_A2, before.safety.heating_K_A2 * 4 / 3.24f);
+    EXPECT_FLOAT_EQ(config.doppler.scale, 1.02f);
+    EXPECT_FLOAT_EQ(config.wheel_pid.ki_T_s, 0.005f);
+}
+
+TEST(Parameters, an_empty_list_changes_nothing)
+{
+    control_config_t config = rover_config_default();
+    const control_config_t before = config;
+    char message[PARAMETERS_MESSAGE];
+    ASSERT_TRUE(parameters_parse(format.data(), format.size(), "x", &config, message));
+    EXPECT_EQ(config.motor.volt_per_speed_Vs, before.motor.volt_per_speed_Vs);
+    EXPECT_EQ(config.soil_sweep.ramp_1_m, before.soil_sweep.ramp_1_m);
+}
+
+TEST(Parameters, a_mistake_is_told_with_file_line_key_value_and_mend)
+{
+    EXPECT_EQ(refused(format + "mass_kg = heavy\n"), "rover.txt:2: mass_kg = heavy: not a finite number");
+    EXPECT_EQ(refused(format + "mass_kg = nan\n"), "rover.txt:2: mass_kg = nan: not a finite number");
+    EXPECT_EQ(refused(format + "\nwheel_radius_m = 57\n"), "rover.txt:3: wheel_radius_m = 57: out of range; give a number from 0.01 to 0.5");
+    EXPECT_NE(refused(format + "radius = 1\n").find("rover.txt:2: radius = 1: unknown key"), std::string::npos);
+    EXPECT_NE(refused(format + "mass_kg = 3\nmass_kg = 3\n").find("given twice"), std::string::npos);
+    EXPECT_NE(refused(format + "mass_kg 3\n").find("no '='"), std::string::npos);
+    EXPECT_NE(refused("mass_kg = 3\n").find("format"), std::string::npos);
+    EXPECT_NE(refused("format = \"traction.firmware/9\"\n").find("this firmware reads"), std::string::npos);
+    EXPECT_NE(refused(format + std::string(5000, 'x')).find("too long"), std::string::npos);
+    EXPECT_NE(refused(format + std::string("mass\0kg = 3", 11)).find("not text"), std::string::npos);
+    control_config_t config = rover_config_default();
+    char message[PARAMETERS_MESSAGE];
+    EXPECT_FALSE(parameters_read("no/such/file", &config, message));
+    EXPECT_NE(std::string(message).find("no/such/file: cannot be read"), std::string::npos);
+}
+
+TEST(Parameters, any_bytes_are_read_or_refused)
+{
+    uint32_t random = 1;
+    const std::string alphabet = "=#\n\" .e-+0123456789mass_kgformatraction/wheel\r\t";
+    for (int repeat = 0; repeat < 2000; ++repeat) {
+        std::string text = repeat % 2 == 0 ? format : "";
+        for (int i = 0; i < 60; ++i) {
+            random = random * 1664525u + 1013904223u;
+            text += alphabet[(random >> 16) % alphabet.size()];
+        }
+        control_config_t config = rover_config_default();
+        char message[PARAMETERS_MESSAGE];
+        const bool read = parameters_parse(text.data(), text.size(), "x", &config, message);
+        EXPECT_NE(read, std::strlen(message) > 0);
+        EXPECT_GT(config.motor.resistance_ohm, 0.0f);
+    }
+}
+
+} // namespace
