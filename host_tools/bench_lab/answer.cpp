@@ -70,7 +70,8 @@ double floor_with_truth(const std::string &log_file, const std::string &model_fi
 }
 
 std::string campaign_model(const std::string &generator, const std::string &soil) {
-    return std::string(TRACTION_SOURCE_DIR) + "/tests/lab/campaign/" + (generator == "plant" ? "plant_" : "machine_") + soil + ".toml";
+    const std::string root = TRACTION_SOURCE_DIR;
+    return generator == "plant" ? root + "/models/rover_" + soil + ".toml" : root + "/tests/lab/campaign/machine_" + soil + ".toml";
 }
 
 } // namespace traction::bench_lab

@@ -22,6 +22,7 @@ struct CampaignOptions {
     std::string folder;              // logs, seals and answers are kept here
     std::string lab_generate;        // the generator's program
     std::string traction;            // this program, for the plant
+    std::string scenario;            // the plant's drive
     std::function<void()> step;      // one log made, or one answered
 };
 

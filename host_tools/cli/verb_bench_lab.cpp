@@ -34,6 +34,7 @@ void run(Request &request, Outcome &outcome) {
     }
     options.lab_generate = TRACTION_LAB_GENERATE;
     options.traction = own_path();
+    options.scenario = TRACTION_SOURCE_DIR "/scenarios/identification.toml";
     Progress progress("blind campaign", 3L * options.logs);
     options.step = [&] { progress.step(); };
     std::vector<bench_lab::SealedLog> logs = bench_lab::make_logs(options);

@@ -164,8 +164,9 @@ void World::set_grip() {
         const double forward = along[i] * m_.half_base, left = side[i] * m_.half_track;
         const double px = x + forward * std::cos(yaw) - left * std::sin(yaw), py = y + forward * std::sin(yaw) + left * std::cos(yaw);
         double grip = 1 + field_.at(px, py);
-        if (h_.patch != 0 && path >= h_.patch_start && path < h_.patch_start + h_.patch_length) grip *= 1 + h_.patch;
-        grip *= std::max(0.1, 1 + h_.gradient * path);
+        const double place = path + forward; // along the travelled path, each wheel at its own
+        if (h_.patch != 0 && place >= h_.patch_start && place < h_.patch_start + h_.patch_length) grip *= 1 + h_.patch;
+        grip *= std::max(0.1, 1 + h_.gradient * place);
         if (along[i] * v() < 0) grip *= 1 + h_.multi_pass; // it follows in the other's track
         grip *= 1 + h_.place_wave * std::sin(2 * std::numbers::pi * path / h_.place_length);
         grip *= 1 + h_.grip_drift * t / 120;
