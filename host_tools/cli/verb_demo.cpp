@@ -82,7 +82,7 @@ void measured_run(const fs::path &root, Outcome &outcome) {
     }
     const lab::Session session = lab::open_session({.model = (root / "models/robotino.toml").string(), .log = log.string(),
                                                     .map = (root / "models/maps/robotino.toml").string(), .repeat = ""});
-    const lab::Comparison comparison = lab::compare(session.model, session.data, true);
+    const lab::Comparison comparison = lab::compare(session.model, session.data, false);
     std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino.toml:\n%s",
                 lab::comparison_text(comparison).c_str());
     outcome.json["measured"] = {{"log", log.filename().string()}, {"error", comparison.error}, {"floor", comparison.floor}};
@@ -110,7 +110,7 @@ void demo(const DemoRequest &request, Outcome &outcome) {
 
     std::printf("2. Compare the baseline model with the log.\n");
     const lab::Session session = lab::open_session({.model = model_file, .log = log_file, .map = "", .repeat = ""});
-    const lab::Comparison before = lab::compare(session.model, session.data, true);
+    const lab::Comparison before = lab::compare(session.model, session.data, false);
     std::printf("%s\n3. Diagnose: what is missing?\n", lab::comparison_text(before).c_str());
     std::fflush(stdout);
     const lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, {});

@@ -29,7 +29,7 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, options);
     std::fputs(lab::diagnosis_text(diagnosis).c_str(), stdout);
     outcome.json = lab::head_json("diagnose", session.model, session.data);
-    lab::put_comparison(outcome.json, lab::compare(session.model, session.data, true));
+    lab::put_comparison(outcome.json, lab::compare(session.model, session.data, false));
     lab::put_diagnosis(outcome.json, diagnosis);
     outcome.json["next"] = lab::next_json(diagnosis, session.model);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
