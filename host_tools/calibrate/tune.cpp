@@ -1,0 +1,131 @@
+#include "tune.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace traction {
+
+namespace {
+
+constexpr double tick_s = 0.01;
+
+// Stops the motors when it goes out of scope, however that happens.
+class Stopper {
+  public:
+    explicit Stopper(const hal_t &hal) : hal_(hal) {}
+    ~Stopper() { hal_.safe_stop(hal_.context); }
+    Stopper(const Stopper &) = delete;
+    Stopper &operator=(const Stopper &) = delete;
+
+  private:
+    const hal_t &hal_;
+};
+
+// Normal equations of (1) for one wheel.
+struct Fit {
+    double A[3][3] = {}, y[3] = {};
+    int rows = 0;
+    void add(const std::array<double, 3> &x, double next) {
+        for (std::size_t i = 0; i < 3; i++) {
+            y[i] += x[i] * next;
+            for (std::size_t j = 0; j < 3; j++) A[i][j] += x[i] * x[j];
+        }
+        rows++;
+    }
+    std::array<double, 3> solve() const { // Cramer's rule
+        const auto det = [](const double (&m)[3][3]) {
+            return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+        };
+        std::array<double, 3> x{};
+        for (std::size_t k = 0; k < 3; k++) {
+            double m[3][3];
+            for (std::size_t i = 0; i < 3; i++)
+                for (std::size_t j = 0; j < 3; j++) m[i][j] = j == k ? y[i] : A[i][j];
+            x[k] = det(m) / det(A);
+        }
+        return x;
+    }
+};
+
+class Experiment {
+  public:
+    Experiment(const hal_t &hal, const control_config_t &config, const TuneLimits &limits) : hal_(hal), config_(config), limits_(limits) {}
+
+    // Drives all wheels with `duty` for `seconds`; a wheel at its torque limit coasts for the rest of the pulse.
+    void pulse(double duty, double seconds) {
+        std::array<bool, WHEEL_COUNT> over{};
+        for (double t = 0; t < seconds; t += tick_s) {
+            if (used_s_ >= limits_.time_s) throw std::runtime_error("tune: the time limit is over before the experiment is; give more --time-s");
+            if (hal_.wait_tick(hal_.context) != HAL_OK) throw std::runtime_error("tune: the rover's loop ended before the experiment did");
+            sensor_frame_t frame{};
+            if (hal_.read(hal_.context, &frame) < 0) throw std::runtime_error("tune: a device was lost");
+            if (frame.emergency_stop) throw std::runtime_error("tune: emergency stop");
+            const sense_output_t sense = sense_measure(&config_.sense, &sense_, &frame);
+            if ((sense.usable & 0x1ffu) != 0x1ffu) throw std::runtime_error("tune: an encoder, a current or the battery is silent or absurd");
+            used_s_ += tick_s;
+            battery_V_ = static_cast<double>(sense.battery_V);
+            actuator_frame_t out{};
+            for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+                const double w = static_cast<double>(sense.speed_rad_s[i]);
+                const double torque = static_cast<double>(config_.motor.torque_constant_Nm_A) * std::fabs(static_cast<double>(sense.current_A[i]));
+                largest_Nm_ = std::max(largest_Nm_, torque);
+                over[i] = over[i] || torque > limits_.torque_Nm;
+                // duty of the tick before last acts over the difference that the encoder shows now: half of each; only turning wheels obey (1)
+                const bool turning = std::fabs(w) > 0.5 && std::fabs(last_w_[i]) > 0.5 && last_duty_[i] * w > 0 && last_duty_[i] == older_duty_[i];
+                if (turning) fit_[i].add({last_w_[i], last_duty_[i] * battery_V_, last_duty_[i] > 0 ? 1.0 : -1.0}, w);
+                older_duty_[i] = last_duty_[i];
+                last_duty_[i] = over[i] ? 0 : duty;
+                last_w_[i] = w;
+                out.duty_q15[i] = static_cast<std::int16_t>(std::lround(last_duty_[i] * 32767));
+            }
+            out.motor_enable = true;
+            if (hal_.write(hal_.context, &out) < 0) throw std::runtime_error("tune: the bridges do not answer");
+        }
+    }
+
+    TuneResult result() const {
+        TuneResult r{.battery_V = battery_V_, .largest_torque_Nm = largest_Nm_, .used_s = used_s_};
+        double largest = 0;
+        for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+            if (fit_[i].rows < 50)
+                throw std::runtime_error("tune: wheel " + std::to_string(i) + " hardly turned; raise --duty or --torque-Nm, or free it");
+            const auto [a, b, c] = fit_[i].solve();
+            if (!(a > 0.2 && a < 0.9999 && b > 0)) throw std::runtime_error("tune: wheel " + std::to_string(i) + " does not answer like a motor; check its encoder's sign");
+            r.pole_1_s[i] = -std::log(a) / tick_s;
+            r.gain_rad_s2[i] = b * battery_V_ / tick_s;
+            if (r.gain_rad_s2[i] > largest) {
+                largest = r.gain_rad_s2[i];
+                const double crossover = (90 - limits_.margin_deg) * std::numbers::pi / 180 / (2 * tick_s);
+                r.kp_s = crossover / largest;
+                r.ki_1 = r.kp_s * r.pole_1_s[i]; // (2)
+            }
+        }
+        return r;
+    }
+
+  private:
+    const hal_t &hal_;
+    const control_config_t &config_;
+    const TuneLimits &limits_;
+    sense_state_t sense_{};
+    std::array<Fit, WHEEL_COUNT> fit_{};
+    std::array<double, WHEEL_COUNT> last_w_{}, last_duty_{}, older_duty_{};
+    double used_s_ = 0, battery_V_ = 0, largest_Nm_ = 0;
+};
+
+} // namespace
+
+TuneResult tune(const hal_t &hal, const control_config_t &config, const TuneLimits &limits) {
+    const Stopper stopper(hal);
+    Experiment experiment(hal, config, limits);
+    for (const double duty : {0.5, -0.5, 1.0, -1.0, 0.7, -0.7}) {
+        experiment.pulse(duty * limits.duty, 0.7);
+        experiment.pulse(0, 0.5);
+    }
+    return experiment.result();
+}
+
+} // namespace traction
