@@ -1,0 +1,13 @@
+#!/bin/sh
+# libFuzzer on control_step with address and undefined-behaviour sanitizers. usage: fuzz.sh [SECONDS] [BUILD_FOLDER]
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+seconds=${1:-60}
+out=${2:-$root/build/fuzz}
+clang=$(command -v clang || command -v clang-14) || { echo "fuzz: skipped, needs clang with libFuzzer (apt: clang)"; exit 0; }
+mkdir -p "$out/corpus"
+cc -std=c11 -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
+"$out/template_gen" mdu1130 "$out/template.c"
+"$clang" -std=c11 -O1 -g -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -I"$root" "$root"/firmware/core/*.c \
+  "$out/template.c" "$root/tests/fuzz/control_fuzz.c" -lm -o "$out/control_fuzz"
+"$out/control_fuzz" -max_total_time="$seconds" -max_len=8192 -seed=1 -print_final_stats=1 -artifact_prefix="$out/" "$out/corpus" 2>&1 | tail -12
