@@ -51,8 +51,9 @@ void expect_sound(const Log &log) {
     for (const Signal &signal : log.signals) {
         RC_ASSERT(signal.t_s.size() == signal.value.size());
         for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
-            RC_ASSERT(std::isfinite(signal.t_s[i]) && std::isfinite(signal.value[i]));
-            RC_ASSERT(i == 0 || signal.t_s[i] > signal.t_s[i - 1]);
+            // in parentheses: RC_ASSERT takes its expression apart, and then || no longer stops at its first true side
+            RC_ASSERT((std::isfinite(signal.t_s[i]) && std::isfinite(signal.value[i])));
+            RC_ASSERT((i == 0 || signal.t_s[i] > signal.t_s[i - 1]));
         }
     }
 }
