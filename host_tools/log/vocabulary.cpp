@@ -60,6 +60,7 @@ constexpr std::array table{
     Quantity{"command", "slip", "", Kind::command, "slip asked for"},
     Quantity{"frame", "present", "", Kind::raw, "which parts of the sensor frame were fresh, FRAME_* bits as one number"},
     Quantity{"frame", "radar_samples", "", Kind::raw, "radar samples in the frame"},
+    Quantity{"actuator", "motor_enable", "", Kind::command, "1 while the bridges drive the motors, 0 while they are released and no current flows"},
     // benches
     Quantity{"carriage", "speed", "m_s", Kind::measured, "speed of the carriage that leads a single wheel"},
     Quantity{"carriage", "x", "m", Kind::measured, "position of that carriage"},
