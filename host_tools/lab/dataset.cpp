@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace traction::lab {
@@ -120,10 +119,7 @@ struct Builder {
             WheelInput narrow;
             narrow.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
             slopes_of(narrow);
-            for (std::size_t k = 0; k < data.count; ++k) {
-                input.doubt_rad_s.push_back(narrow.speed_rad_s[k] - input.speed_rad_s[k]);
-                input.jerk_rad_s2.push_back(narrow.accel_rad_s2[k] - input.accel_rad_s2[k]);
-            }
+            for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow.accel_rad_s2[k] - input.accel_rad_s2[k]);
         } else if (data.independent_rows) {
             for (std::size_t k = 0; k < data.count; ++k) input.speed_rad_s.push_back(interpolate(s->t_s, s->value, data.time(k)));
             input.angle_rad.assign(data.count, 0);
@@ -133,11 +129,8 @@ struct Builder {
             input.speed_rad_s = std::move(smooth.value);
             input.accel_rad_s2 = std::move(smooth.slope);
             mark_gaps(smooth.distance_s, *s);
-            const Smooth narrow = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, 0.55 * half, 2);
-            for (std::size_t k = 0; k < data.count; ++k) {
-                input.doubt_rad_s.push_back(narrow.value[k] - input.speed_rad_s[k]);
-                input.jerk_rad_s2.push_back(narrow.slope[k] - input.accel_rad_s2[k]);
-            }
+            const std::vector<double> narrow = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
+            for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow[k] - input.accel_rad_s2[k]);
             input.angle_rad.assign(data.count, 0);
             for (std::size_t k = 1; k < data.count; ++k)
                 input.angle_rad[k] = input.angle_rad[k - 1] + 0.5 * data.step_s * (input.speed_rad_s[k] + input.speed_rad_s[k - 1]);
@@ -317,47 +310,29 @@ struct Builder {
         return true;
     }
 
-    // What the smoothing of a wheel's motion may have cost in a window: mean size of the difference between two widths, beyond
-    // what the encoder's own noise makes of it.
-    double smoothing_doubt(const std::vector<double> &difference, double t0, double t1) const {
-        if (difference.empty()) return 0;
+    // Current that the smoothing of the acceleration may have cost the torque balance in a window [A].
+    double smoothing_error(std::size_t i, double t0, double t1) const {
+        const std::vector<double> &jerk = data.wheel[i].jerk_rad_s2;
+        if (jerk.empty()) return 0;
         const auto a = static_cast<std::size_t>(std::max(0.0, (t0 - data.start_s) / data.step_s));
         const auto b = std::min(data.count - 1, static_cast<std::size_t>((t1 - data.start_s) / data.step_s) + 1);
         double sum = 0;
-        for (std::size_t k = a; k <= b; ++k) sum += std::fabs(difference[k]);
-        return std::max(0.0, sum / static_cast<double>(b - a + 1) - own_noise(difference));
+        for (std::size_t k = a; k <= b; ++k) sum += std::fabs(jerk[k]);
+        const double mean = std::max(0.0, sum / static_cast<double>(b - a + 1) - jerk_noise(i));
+        return mean * parameter(model.wheel[i].motor, "inertia_kg_m2") / parameter(model.wheel[i].motor, "torque_constant_Nm_A");
     }
 
-    // Twice the median of the same difference: what the encoder's noise alone makes.
-    double own_noise(const std::vector<double> &difference) const {
-        const auto known = own_noise_.find(difference.data());
-        if (known != own_noise_.end()) return known->second;
-        std::vector<double> size(difference);
-        for (double &x : size) x = std::fabs(x);
-        return own_noise_[difference.data()] = 2 * median(size);
+    // Median of the same difference: what the encoder's noise alone makes.
+    double jerk_noise(std::size_t i) const {
+        if (jerk_noise_.size() < data.wheel.size()) jerk_noise_.assign(data.wheel.size(), -1);
+        if (jerk_noise_[i] < 0) {
+            std::vector<double> size(data.wheel[i].jerk_rad_s2);
+            for (double &x : size) x = std::fabs(x);
+            jerk_noise_[i] = 2 * median(size);
+        }
+        return jerk_noise_[i];
     }
-    mutable std::map<const double *, double> own_noise_;
-
-    // The same for the body: mean over the wheels, as speed or acceleration of their rims.
-    double rim_doubt(std::vector<double> WheelInput::*difference, double t0, double t1) const {
-        double sum = 0;
-        for (std::size_t i = 0; i < data.wheel.size(); ++i)
-            sum += parameter(model.wheel[i].geometry, "radius_m") * smoothing_doubt(data.wheel[i].*difference, t0, t1);
-        return data.wheel.empty() ? 0 : sum / static_cast<double>(data.wheel.size());
-    }
-
-    // Current that it may have cost the torque balance of a wheel [A].
-    double smoothing_error(std::size_t i, double t0, double t1) const {
-        return smoothing_doubt(data.wheel[i].jerk_rad_s2, t0, t1) * parameter(model.wheel[i].motor, "inertia_kg_m2") /
-               parameter(model.wheel[i].motor, "torque_constant_Nm_A");
-    }
-
-    // Widens each row's noise by a doubt in the row's unit.
-    template <typename Doubt> static void widen(Balance &balance, Doubt &&doubt) {
-        if (balance.noise_factor.empty()) balance.noise_factor.assign(balance.measured.size(), 1);
-        for (std::size_t r = 0; r < balance.measured.size(); ++r)
-            balance.noise_factor[r] = std::hypot(balance.noise_factor[r], doubt(balance.t0_s[r], balance.t1_s[r]) / balance.noise);
-    }
+    mutable std::vector<double> jerk_noise_;
     std::size_t too_quick_ = 0;
 
     void currents(std::size_t i) {
@@ -405,8 +380,6 @@ struct Builder {
         all.kind = BalanceKind::current_voltage;
         all.name = "wheel" + std::to_string(i) + ".voltage_balance_A";
         all.title = "current of wheel " + std::to_string(i) + ", voltage balance";
-        const double per_speed = parameter(model.wheel[i].motor, "torque_constant_Nm_A") / parameter(model.wheel[i].motor, "resistance_ohm");
-        widen(all, [&](double t0, double t1) { return per_speed * smoothing_doubt(data.wheel[i].doubt_rad_s, t0, t1); });
         add(std::move(all));
     }
 
@@ -416,13 +389,6 @@ struct Builder {
         Balance balance{kind, wheel, name, title, unit, 0, "", {}, {}, {}, {}};
         const double noise = sample_noise(*s, noise_key, balance.noise_source);
         add_rows(balance, *s, noise);
-        const bool wide_apart = model.wheel.size() > 1;
-        if (kind == BalanceKind::accel) widen(balance, [this](double t0, double t1) { return rim_doubt(&WheelInput::jerk_rad_s2, t0, t1); });
-        if (kind == BalanceKind::yaw_rate && wide_apart) {
-            double sides = 0; // half the distance between the wheels' tracks
-            for (const WheelSpec &w : model.wheel) sides = std::max(sides, std::fabs(parameter(w.geometry, "y_m")));
-            widen(balance, [&](double t0, double t1) { return sides > 0 ? rim_doubt(&WheelInput::doubt_rad_s, t0, t1) / sides : 0; });
-        }
         add(std::move(balance));
     }
 
@@ -436,18 +402,6 @@ struct Builder {
         return n > 0 ? sum / n : 0;
     }
 
-    // How much the mean rim speed changes within a window.
-    double rim_change(double t0, double t1) const {
-        constexpr int parts = 4;
-        double low = 0, high = 0;
-        for (int part = 0; part < parts; ++part) {
-            const double from = t0 + (t1 - t0) * part / parts, speed = rim_speed(from, t0 + (t1 - t0) * (part + 1) / parts);
-            low = part == 0 ? speed : std::min(low, speed);
-            high = part == 0 ? speed : std::max(high, speed);
-        }
-        return high - low;
-    }
-
     void radar() {
         const log::Signal *s = signal("radar.speed_m_s");
         if (s == nullptr) {
@@ -458,9 +412,6 @@ struct Builder {
         balance.noise = sample_noise(*s, "radar.noise_m_s", balance.noise_source);
         const double relative = header("noise.radar.speed_m_s.relative");
         const double window = window_of(*s) > 0 ? window_of(*s) : parameter(model.sensors, "radar.window_s"), least = parameter(model.sensors, "radar.minimum_m_s");
-        // While the speed changes within its window, a Doppler value is some mean of it, weighted by the echo's chance strength:
-        // measured on the simulator's radar as a quarter of the change (docs/firmware.md has the same term in R).
-        constexpr double changing = 0.25;
         double last_value = std::nan("");
         for (std::size_t i = 0; i < s->t_s.size(); ++i) {
             const double t1 = s->t_s[i], t0 = t1 - window, y = s->value[i];
@@ -470,7 +421,7 @@ struct Builder {
             balance.t0_s.push_back(t0);
             balance.t1_s.push_back(t1);
             balance.measured.push_back(y);
-            balance.noise_factor.push_back(std::hypot(balance.noise, relative * rim_speed(t0, t1), changing * rim_change(t0, t1)) / balance.noise);
+            if (relative > 0) balance.noise_factor.push_back(std::hypot(balance.noise, relative * rim_speed(t0, t1)) / balance.noise);
         }
         add(std::move(balance));
     }

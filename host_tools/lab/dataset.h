@@ -42,7 +42,6 @@ struct Balance {
 
 struct WheelInput {
     std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
-    std::vector<double> doubt_rad_s; // what the smoothing does to the speed: a second, narrower one minus it
     std::vector<double> jerk_rad_s2; // what the smoothing does to the acceleration: a second, narrower one minus it
     std::vector<double> voltage_V;                            // at the motor; empty when unknown
 };
