@@ -1,6 +1,6 @@
 #include "forward.h"
 
-#include "motion.h"
+#include "wheel_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ Forward::Forward(const Dataset &data) : data_(&data) {
 }
 
 // Mean of a grid series over each row's window, through its running integral; a window of no width gives the value there.
-void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, Eigen::VectorXd &out) const {
+void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const {
     const Dataset &d = *data_;
     const Balance &b = d.balance[balance];
     const double last = static_cast<double>(d.count - 1);
@@ -46,8 +46,34 @@ void Forward::rows_of(std::size_t balance, const std::vector<double> &series, do
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const double x0 = std::clamp((b.t0_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
         const double x1 = std::clamp((b.t1_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
-        out[static_cast<Eigen::Index>(first_row_[balance] + r)] = x1 - x0 < 1e-6 ? value_at(x0) : (integral_to(x1) - integral_to(x0)) / (x1 - x0);
+        const double mean = x1 - x0 < 1e-6 ? value_at(x0) : (integral_to(x1) - integral_to(x0)) / (x1 - x0);
+        double &row = out[static_cast<Eigen::Index>(first_row_[balance] + r)];
+        row = adding ? row + mean : mean;
     }
+}
+
+std::size_t Forward::balance_of(BalanceKind kind, std::size_t wheel) const {
+    std::size_t b = 0;
+    while (b < data_->balance.size() && (data_->balance[b].kind != kind || data_->balance[b].wheel != static_cast<int>(wheel))) ++b;
+    return b;
+}
+
+// The torque balance's change where only the traction differs from the base motion's: (17) is linear in it.
+void Forward::torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const {
+    const std::size_t balance = balance_of(BalanceKind::current_torque, wheel);
+    if (balance == data_->balance.size()) return;
+    const WheelPhysics &p = physics.wheel[wheel];
+    const double radius = p.radius * (1 + p.radius_change), KG = p.KG * (1 + p.constant_change);
+    if (!(KG > 0)) return;
+    const double per_N = (1 + p.current_gain) * radius / KG;
+    const std::vector<double> &now = motion.wheel[wheel].traction_N, &before = base_motion_.wheel[wheel].traction_N;
+    series_.resize(data_->count);
+    for (std::size_t k = 0; k < data_->count; ++k) {
+        series_[k] = per_N * (now[k] - before[k]);
+        if (p.mesh != 0) series_[k] += per_N * p.mesh * (std::fabs(now[k]) - std::fabs(before[k])) * soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
+        if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
+    }
+    rows_of(balance, series_, 0, true, out);
 }
 
 void Forward::electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
@@ -57,13 +83,8 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
     const BodyPhysics &body = physics.body;
     const WheelInput &in = d.wheel[wheel];
     const Motion::Wheel &m = motion.wheel[wheel];
-    std::size_t torque_balance = d.balance.size(), voltage_balance = torque_balance, bench_balance = torque_balance;
-    for (std::size_t b = 0; b < d.balance.size(); ++b) {
-        if (d.balance[b].wheel != static_cast<int>(wheel)) continue;
-        if (d.balance[b].kind == BalanceKind::current_torque) torque_balance = b;
-        if (d.balance[b].kind == BalanceKind::current_voltage) voltage_balance = b;
-        if (d.balance[b].kind == BalanceKind::torque) bench_balance = b;
-    }
+    const std::size_t torque_balance = balance_of(BalanceKind::current_torque, wheel), voltage_balance = balance_of(BalanceKind::current_voltage, wheel),
+                      bench_balance = balance_of(BalanceKind::torque, wheel);
     const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(), with_bench = bench_balance < d.balance.size();
     if (!with_torque && !with_voltage && !with_bench) return;
     const double gain = 1 / (1 - std::min(0.9, p.encoder_missed)), radius = p.radius * (1 + p.radius_change);
@@ -125,9 +146,9 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
         }
         if (p.heating != 0) heat_K += d.step_s / p.heating_time * (p.heating * I * I * p.Ra - heat_K);
     }
-    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, 0, out);
-    if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) rows_of(voltage_balance, series_, 0, out);
-    if (with_bench) rows_of(bench_balance, torque_series, 0, out);
+    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, 0, false, out);
+    if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) rows_of(voltage_balance, series_, 0, false, out);
+    if (with_bench) rows_of(bench_balance, torque_series, 0, false, out);
 }
 
 void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const {
@@ -172,7 +193,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         } else {
             continue;
         }
-        rows_of(i, x, delay, out);
+        rows_of(i, x, delay, false, out);
         if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw)
             for (std::size_t r = 0; r < d.balance[i].measured.size(); ++r)
                 out[static_cast<Eigen::Index>(first_row_[i] + r)] *= d.balance[i].t1_s[r] - d.balance[i].t0_s[r]; // a displacement, not a speed
@@ -198,18 +219,27 @@ void Forward::set_base(const Physics &physics) {
     integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr, true);
     std::swap(base_motion_, scratch_);
     have_base_ = true;
+    linear_base_ = !base_motion_.tangent.empty() && has_neighbours(*data_, physics);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
     sensors(physics, base_motion_, base_prediction_);
 }
 
 Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {
     if (data_->count < 3) return base_prediction_;
-    if ((touched & stage_motion) != 0) return predict(physics);
+    const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0;
+    if (moves && !(linear_base_ && has_neighbours(*data_, physics))) return predict(physics);
+    const bool terms = std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
+    if (moves) neighbour(*data_, physics, base_motion_, wheel, terms, scratch_);
+    const Motion &motion = moves ? scratch_ : base_motion_;
+    const unsigned stages = moves ? stage_torque | stage_voltage : touched;
     Eigen::VectorXd out = base_prediction_;
-    if ((touched & (stage_torque | stage_voltage)) != 0)
-        for (std::size_t i = 0; i < physics.wheel.size(); ++i)
-            if (wheel < 0 || static_cast<std::size_t>(wheel) == i) electrical(physics, base_motion_, i, touched, current_, out);
-    if ((touched & stage_sensors) != 0) sensors(physics, base_motion_, out);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
+        const WheelPhysics &p = physics.wheel[i];
+        const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
+        if (whole || (moves && (terms || p.dead_voltage != 0 || p.heating != 0))) electrical(physics, motion, i, stages, current_, out);
+        else if (moves) torque_of_traction(physics, motion, i, out);
+    }
+    if (moves || (touched & stage_sensors) != 0) sensors(physics, motion, out);
     return out;
 }
 

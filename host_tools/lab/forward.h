@@ -1,30 +1,20 @@
 // forward.h - what the model says the sensors should have read: semi-inverse output error.
 //
 // The encoder speeds (and motor voltage, yaw rate) are given; the body's speed is integrated from the model's forces:
-//   M dv/dt = sum_i (Ft_i - Rr_i) + F_body, implicit Euler, root bracketed (stiff: dF/dv * dt / M is 20 on concrete)     (1)
+//   M dv/dt = sum_i (Ft_i - Rr_i) + F_body, motion.h                                                                      (1)
 //   torque balance:  KG*I = Gr(w) + J*dw/dt + R*Ft                                               (17) Lhomme-Desages
 //   voltage balance: I = (duty*V - ke*w)/Ra, from clean voltage and speed, never from the noisy current              (2)
-// Stages are cached: a parameter that leaves the motion alone costs only the balances it touches.
+// Stages are cached: a parameter that leaves the motion alone costs only the balances it touches; one that does not costs a linear
+// recursion beside the base motion (tangent.cpp), unless wheels carry a memory (backlash, relaxation length).
 #pragma once
 
-#include "dataset.h"
-#include "physics.h"
+#include "motion.h"
 
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace traction::lab {
-
-// Trajectory of one pass, on the grid.
-struct Motion {
-    std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, accel_m_s2, path_m, body_force_N; // accel: specific force along x
-    struct Wheel {
-        std::vector<double> traction_N, rolling_N, slip, load_N, ground_speed_m_s;
-    };
-    std::vector<Wheel> wheel;
-    std::vector<Eigen::Matrix2d> inverse; // of the step's Jacobian in (v, yaw rate), where asked for: neighbours are found with it
-};
 
 class Forward {
   public:
@@ -48,7 +38,10 @@ class Forward {
     void electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
                     Eigen::VectorXd &out) const;
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
-    void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, Eigen::VectorXd &out) const;
+    void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;
+    // out = (or, adding, +=) the series' mean over each row's window
+    void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const;
+    std::size_t balance_of(BalanceKind kind, std::size_t wheel) const; // balance.size() when there is none
 
     const Dataset *data_;
     std::size_t row_count_ = 0;
@@ -57,7 +50,7 @@ class Forward {
     mutable std::vector<double> series_, sum_, current_;
     std::vector<std::vector<double>> base_current_;
     Eigen::VectorXd base_prediction_;
-    bool have_base_ = false;
+    bool have_base_ = false, linear_base_ = false; // linear: its neighbours follow from its tangents
 };
 
 } // namespace traction::lab

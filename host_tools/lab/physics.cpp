@@ -22,7 +22,7 @@ struct Key {
     unsigned touched;
 };
 constexpr Key keys[] = {
-    {"wheel", "radius_m", &W::radius, nullptr, stage_motion},
+    {"wheel", "radius_m", &W::radius, nullptr, stage_motion | stage_torque},
     {"motor", "torque_constant_Nm_A", &W::KG, nullptr, stage_torque | stage_voltage},
     {"motor", "back_emf_Vs_rad", &W::ke, nullptr, stage_voltage},
     {"motor", "resistance_ohm", &W::Ra, nullptr, stage_voltage},
@@ -98,7 +98,7 @@ std::vector<EffectHandle> make_handles() {
         {"relaxation_length", {{"length_m", nullptr, &B::relaxation}}, {}, stage_motion},
         {"sliding_speed_loss", {{"coefficient_s_m", nullptr, &B::sliding_loss}}, {}, stage_motion},
         {"shear_stiffness", {{"change", nullptr, &B::shear_change}}, {}, stage_motion},
-        {"wheel_radius", {{"change", &W::radius_change, nullptr}}, {}, stage_motion},
+        {"wheel_radius", {{"change", &W::radius_change, nullptr}}, {}, stage_motion | stage_torque},
         {"lateral_scrub", {{"coefficient", nullptr, &B::scrub}}, {}, stage_motion},
         {"grade", {{"slope_rad", nullptr, &B::grade}}, {{"direction_rad", nullptr, &B::grade_direction}}, stage_motion},
         {"tether_drag", {{"stiffness_N_m", nullptr, &B::tether}}, {}, stage_motion},
@@ -112,7 +112,7 @@ std::vector<EffectHandle> make_handles() {
         {"current_gain", {{"change", &W::current_gain, nullptr}}, {}, electric},
         {"current_offset", {{"offset_A", &W::current_extra, nullptr}}, {}, electric},
         {"voltage_gain", {{"change", nullptr, &B::voltage_gain}}, {}, stage_voltage},
-        {"encoder_missed", {{"fraction", &W::encoder_missed, nullptr}}, {}, stage_motion},
+        {"encoder_missed", {{"fraction", &W::encoder_missed, nullptr}}, {}, stage_motion | electric},
         {"camera_delay", {{"delay_s", nullptr, &B::camera_delay}}, {}, stage_sensors},
         {"camera_scale", {{"change", nullptr, &B::camera_scale}}, {}, stage_sensors},
         {"actuation_delay", {{"delay_s", nullptr, &B::actuation_delay}}, {}, stage_voltage},

@@ -1,0 +1,76 @@
+// wheel_step.h - the wheels of one time step: loads, slip, traction, resistance of each, at a body velocity that is being sought.
+//
+// Slip (1), traction (20) janosi or (21) burckhardt, combined slip sideways; the catalogue's ground and wheel effects and the user's
+// terms act here. Loads: the least-norm solution of sum Fn = W, sum Fn x = W ox - M a h, sum Fn y = W oy.
+#pragma once
+
+#include "dataset.h"
+#include "physics.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace traction::lab {
+
+inline constexpr std::size_t most_wheels = 32;
+
+// Slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest. rim = R w.
+inline double slip_of(double rim, double v) {
+    const double larger = std::max(std::fabs(rim), std::fabs(v));
+    if (larger < 1e-4) return (rim - v) / 1e-4; // continuous through rest
+    const double s = (rim - v) / larger;
+    return s > 1 ? 1 : s < -1 ? -1 : s;
+}
+
+// Ft / Fm at slip s: (20) janosi or (21) burckhardt, odd.
+double traction_shape(SoilLaw law, double s, double sc);
+
+// x / sqrt(x^2 + e^2): sign without the jump.
+inline double soft_sign(double x, double e) { return x / std::sqrt(x * x + e * e); }
+
+class WheelStep {
+  public:
+    WheelStep(const Dataset &data, const Physics &physics);
+
+    // Prepares time index k from the state at the step before: wheels first to last - 1, the others are left as they are.
+    void prepare(std::size_t k, double v_before, double accel_before, double path_m, std::size_t first = 0, std::size_t last = most_wheels);
+
+    // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
+    Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
+    double body_force(double v) const;  // along the velocity: drag, tether, the user's
+    double grade_accel() const;         // of the slope, along x
+    void commit();                      // the step is found: slip and play become the next step's memory
+
+    struct State {
+        double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0;
+        double rim = 0, w = 0, theta = 0, load = 0, Fm = 0, sc = 0.1;
+        double slip_before = 0, play_before = 0;
+        double v = 0, slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
+    };
+    const State &state(std::size_t i) const { return state_[i]; }
+    std::size_t wheels() const { return n_; }
+    double load(std::size_t i, double accel_m_s2) const; // without a measured load
+    bool has_memory() const { return memory_; }      // slip or play is carried from step to step
+    bool feels_path() const { return feels_path_; }  // some force depends on the path travelled
+
+  private:
+    void prepare_wheel(std::size_t i, std::size_t k, double v_before);
+    double pull(std::size_t i, double v, double body_v, double side_v);
+    double contact(std::size_t i, double v);
+    void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
+    void loads();
+    void followers();
+
+    const Dataset &data_;
+    const Physics &p_;
+    std::size_t n_;
+    std::array<State, most_wheels> state_{};
+    std::array<double, most_wheels> ahead_{}, behind_{};
+    double t_ = 0, path_ = 0, accel_ = 0, yaw_ = 0;
+    bool motion_terms_ = false, memory_ = false, feels_path_ = false;
+};
+
+} // namespace traction::lab
