@@ -1,8 +1,8 @@
 // verb_add.cpp - traction add EFFECT: a new model file with that effect, fitted; the old file is untouched.
 #include "verbs.h"
 
+#include "host_tools/lab/addition.h"
 #include "host_tools/lab/compare.h"
-#include "host_tools/lab/next.h"
 #include "host_tools/lab/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"

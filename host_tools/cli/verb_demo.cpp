@@ -1,8 +1,10 @@
 // verb_demo.cpp - traction demo: hides an effect by seed, simulates, lets the lab find it, opens the seal.
 //
 // The lab gets what any user's lab gets: the log file and the baseline model file. The seal is written first and read last, here.
+#include "trial.h"
 #include "verbs.h"
 
+#include "host_tools/lab/addition.h"
 #include "host_tools/lab/compare.h"
 #include "host_tools/lab/next.h"
 #include "host_tools/lab/result.h"
@@ -119,7 +121,12 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     outcome.json = lab::head_json("diagnose", session.model, session.data);
     lab::put_comparison(outcome.json, before);
     lab::put_diagnosis(outcome.json, diagnosis);
-    outcome.json["next"] = lab::next_json(diagnosis, session.model);
+    outcome.json["next"] = nullptr;
+    if (!diagnosis.classes.empty()) {
+        const lab::NextExperiment next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
+        std::printf("   What would tell them apart:\n%s", lab::next_text(next).c_str());
+        outcome.json["next"] = lab::next_json(next);
+    }
     report::write_html(outcome.json, report_file);
 
     std::printf("4. Add what was named, refit, and watch the error.\n%s", lab::ladder_text(diagnosis.ladder).c_str());

@@ -1,7 +1,9 @@
 // verb_diagnose.cpp - traction diagnose: which physics the model lacks, how sure that is, and what this log cannot say.
 #include "progress.h"
+#include "trial.h"
 #include "verbs.h"
 
+#include "host_tools/lab/addition.h"
 #include "host_tools/lab/compare.h"
 #include "host_tools/lab/next.h"
 #include "host_tools/lab/result.h"
@@ -31,7 +33,13 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     outcome.json = lab::head_json("diagnose", session.model, session.data);
     lab::put_comparison(outcome.json, lab::compare(session.model, session.data, false));
     lab::put_diagnosis(outcome.json, diagnosis);
-    outcome.json["next"] = lab::next_json(diagnosis, session.model);
+    outcome.json["next"] = nullptr;
+    if (!diagnosis.classes.empty()) { // what was not excited alone: `traction next --log`
+        const lab::NextExperiment next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
+        std::printf("\n%s", lab::next_text(next).c_str());
+        if (!next.scenario_toml.empty()) std::printf("(traction next --model MODEL --log LOG --out next.toml writes the scenario)\n");
+        outcome.json["next"] = lab::next_json(next);
+    }
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (!request.apply) return;
     if (diagnosis.accepted.empty()) {

@@ -1,51 +1,66 @@
-// verb_next.cpp - traction next: the manoeuvre that best separates what a log left open, as a scenario file.
+// verb_next.cpp - traction next: the drive that answers what a log left open, with the predicted d' of every question.
+#include "trial.h"
 #include "verbs.h"
 
 #include "host_tools/lab/next.h"
+#include "host_tools/lab/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace traction::cli {
 
+namespace {
+
+struct NextRequest {
+    lab::Request input;
+    std::string out;
+    std::vector<std::string> effects;
+    bool all = false;
+};
+
+void next(const NextRequest &request, Outcome &outcome) {
+    if (request.input.log.empty() && request.effects.empty()) throw CLI::ValidationError("next", "give --log LOG, or --effects NAME..., or both");
+    std::optional<lab::Session> session;
+    if (!request.input.log.empty()) session = lab::open_session(request.input);
+    lab::NextExperiment answer;
+    if (request.effects.empty()) {
+        answer = lab::next_experiment(lab::diagnose(session->model, session->data, {}), session->model, session->data, request.all, simulated_rover());
+    } else {
+        const lab::Model model = session ? session->model : lab::read_model(request.input.model);
+        answer = lab::next_experiment(request.effects, model, session ? &session->data : nullptr, simulated_rover());
+    }
+    if (session) outcome.json = lab::head_json("next", session->model, session->data);
+    else outcome.json = {{"schema", "traction.lab/1"}, {"verb", "next"}};
+    outcome.json["next"] = lab::next_json(answer);
+    std::fputs(lab::next_text(answer).c_str(), stdout);
+    bool stuck = false;
+    for (const lab::Question &q : answer.questions) stuck = stuck || q.status == "never";
+    if (answer.scenario_toml.empty()) {
+        if (!request.out.empty()) std::printf("%s is not written: there is no drive to write\n", request.out.c_str());
+        if (stuck || (!answer.questions.empty() && !answer.predicted)) outcome.exit_code = exit_negative;
+        return;
+    }
+    if (request.out.empty()) std::fputs(("\n" + answer.scenario_toml).c_str(), stdout);
+    else report::write_text(answer.scenario_toml, request.out);
+}
+
+} // namespace
+
 void add_next(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = app.add_subcommand("next", "the manoeuvre that separates what a log left open, as a scenario");
-    struct NextRequest {
-        lab::Request input;
-        std::string out;
-        std::vector<std::string> effects;
-    };
+    CLI::App *verb = app.add_subcommand("next", "the drive that answers what a log left open, by predicted difference");
     auto request = std::make_shared<NextRequest>();
     verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
     CLI::Option *log = verb->add_option("--log", request->input.log, "log (CSV) that was not enough")->type_name("FILE");
-    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
-    verb->add_option("--effects", request->effects, "separate these, instead of what the log left open")->excludes(log);
+    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE")->needs(log);
+    CLI::Option *effects = verb->add_option("--effects", request->effects, "tell these apart (or, one alone: show it), instead of what a diagnosis leaves open; NAME or NAME:WHEEL");
+    verb->add_flag("--all", request->all, "also ask for every effect that the log could not have shown, beside classes")->excludes(effects)->needs(log);
     verb->add_option("--out", request->out, "write the scenario to this file")->type_name("FILE");
     add_json_option(verb, outcome);
-    verb->callback([=, &outcome] {
-        nlohmann::json next;
-        if (!request->effects.empty()) {
-            std::string title;
-            const std::string scenario = lab::next_scenario(request->effects, lab::read_model(request->input.model), title);
-            next = {{"title", title}, {"scenario_toml", scenario}, {"separates", request->effects}};
-        } else {
-            if (request->input.log.empty()) throw CLI::ValidationError("next", "give --log LOG or --effects NAME...");
-            const lab::Session session = lab::open_session(request->input);
-            next = lab::next_json(lab::diagnose(session.model, session.data, {}), session.model);
-        }
-        outcome.json = {{"schema", "traction.lab/1"}, {"verb", "next"}, {"next", next}};
-        if (next.is_null()) {
-            std::printf("nothing is left open: no manoeuvre is needed\n");
-            return;
-        }
-        std::printf("next: %s\nseparates:", next["title"].get<std::string>().c_str());
-        for (const auto &effect : next["separates"]) std::printf(" %s", effect.get<std::string>().c_str());
-        std::printf("\n");
-        if (request->out.empty()) std::fputs(next["scenario_toml"].get<std::string>().c_str(), stdout);
-        else report::write_text(next["scenario_toml"].get<std::string>(), request->out);
-    });
+    verb->callback([=, &outcome] { next(*request, outcome); });
 }
 
 } // namespace traction::cli

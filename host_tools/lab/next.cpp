@@ -1,183 +1,334 @@
 #include "next.h"
 
-#include "result.h"
-#include "screen.h"
+#include "information.h"
+#include "manoeuvre.h"
 
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
+#include <optional>
 #include <set>
-#include <sstream>
 
 namespace traction::lab {
 
 namespace {
 
-// Manoeuvres and the effects they tell apart (LAB.md section 3; the catalogue's `reveals` says the same in words).
-struct Manoeuvre {
-    const char *title;
-    std::vector<std::string> effects;
-    const char *segments;
+constexpr double answered_at = 2; // d' from which 85 to 93 % are named right (LAB.md section 3)
+constexpr double sizes_of_interest = 3;
+constexpr double noticed_at = 4.588; // 2/sqrt(1 - 0.9^2): at this size |cos| = 0.9, the lab's limit of a class, means d' = 2
+constexpr int most_manoeuvres = 3;
+
+struct Asked {
+    std::vector<int> members; // of the plan's candidates
 };
 
-const std::vector<Manoeuvre> &manoeuvres() {
-    static const std::vector<Manoeuvre> list = {
-        {"there and back over the same ground",
-         {"grade", "multi_pass", "mass_offset_x", "soil_patch", "soil_gradient", "tether_drag", "accel_bias", "rolling_resistance", "body_drag"},
-         "[[drive]]\nfor_s = 2.0\nmode = \"stop\"\n\n[[drive]]\nfor_s = 14.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n\n[[drive]]\nfor_s = 2.0\nmode = \"platform_speed\"\nspeed_m_s = 0.0\n\n"
-         "[[drive]]\nfor_s = 14.0\nmode = \"platform_speed\"\nspeed_m_s = -0.3\n\n[[drive]]\nfor_s = 2.0\nmode = \"platform_speed\"\nspeed_m_s = 0.0\n\n"},
-        {"three wheels push, one drags",
-         {"mesh_loss", "slip_sinkage", "torque_constant", "current_gain", "wheel_radius", "encoder_missed", "sliding_speed_loss", "shear_stiffness", "mass_offset_y"},
-         "[[drive]]\nfor_s = 6.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = [6.0, 6.0, 6.0, 1.0]\n\n[[drive]]\nfor_s = 6.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = [1.0, 6.0, 6.0, 6.0]\n\n"
-         "[[drive]]\nfor_s = 6.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = [6.0, 1.0, 6.0, 6.0]\n\n[[drive]]\nfor_s = 6.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = [6.0, 6.0, 1.0, 6.0]\n\n"},
-        {"slip sweep of the front wheels",
-         {"slip_sinkage", "shear_stiffness", "sliding_speed_loss", "relaxation_length", "mesh_loss", "speed_resistance"},
-         "[[drive]]\nfor_s = 20.0\nmode = \"soil_sweep\"\nspeed_m_s = 0.3\n\n[[drive]]\nfor_s = 20.0\nmode = \"soil_sweep\"\nspeed_m_s = 0.15\n\n"},
-        {"hard starts and stops",
-         {"load_transfer", "accel_scale", "accel_tilt", "radar_pitch", "camera_delay", "actuation_delay", "relaxation_length", "backlash", "radar_scale", "camera_scale"},
-         "[[drive]]\nfor_s = 4.0\nmode = \"platform_speed\"\nspeed_m_s = 0.8\n\n[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = -0.8\n\n[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = 0.8\n\n"
-         "[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = 0.0\n\n[[drive]]\nfor_s = 8.0\nmode = \"open_loop\"\nduty = { amplitude = 0.9, period_s = 1.5 }\n\n"},
-        {"stairs of speed, both ways",
-         {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_ripple", "speed_resistance", "bridge_dead_time", "voltage_gain", "wiring_resistance", "current_offset", "accel_drift", "winding_heating"},
-         "[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = 0.05\n\n[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = 0.2\n\n[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = 0.6\n\n"
-         "[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = -0.1\n\n[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = -0.5\n\n"},
-        {"turns on the spot and on the move",
-         {"lateral_scrub", "wheel_radius", "mass_offset_y"},
-         "[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = 0.2\nyaw_rate_rad_s = 0.8\n\n[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = 0.2\nyaw_rate_rad_s = -0.8\n\n"
-         "[[drive]]\nfor_s = 6.0\nmode = \"platform_speed\"\nspeed_m_s = 0.0\nyaw_rate_rad_s = 0.9\n\n"},
-    };
-    return list;
+// What is asked, of which model, on top of which log.
+struct Plan {
+    Model base;                      // without the members in question
+    std::vector<Sized> candidates;
+    std::vector<Asked> asked;
+    const Dataset *data = nullptr;
+    std::map<std::string, double> scale; // of the present log's rows
+    bool sizes_free = false;             // no log has told the sizes: at least large enough to be noticed
+    bool undecided = false;              // the log was judged and did not decide, whatever d' it should have had
+};
+
+Sized of_interest(const Candidate &c) {
+    Sized s{c, {}};
+    for (std::size_t j = 0; j < c.strengths.size(); ++j) s.size.push_back(sizes_of_interest * (j < c.of_interest.size() ? c.of_interest[j] : c.step[j]));
+    return s;
 }
 
-std::string plain(const std::string &label) { return label.substr(0, label.find(" on wheel")); }
+// The fitted size where it is one to speak of and has the sign physics allows, else three sizes of interest.
+Sized as_found(const CandidateResult &r) {
+    Sized s = of_interest(r.candidate);
+    for (std::size_t j = 0; j < r.value.size() && j < s.size.size(); ++j) {
+        const double least = s.size[j] / sizes_of_interest, sign = r.candidate.minimum[j] >= 0 ? 1.0 : (r.value[j] < 0 ? -1.0 : 1.0);
+        if (std::fabs(r.value[j]) > least && r.value[j] * sign > 0) s.size[j] = std::clamp(r.value[j], r.candidate.minimum[j], r.candidate.maximum[j]);
+        else s.size[j] *= sign;
+    }
+    return s;
+}
 
-// The effects in question: every class's members, else what was not excited.
-std::vector<std::string> open_questions(const Diagnosis &d) {
-    std::vector<std::string> list;
-    for (const ConfoundedClass &c : d.classes)
-        for (const std::string &m : c.members) list.push_back(plain(m));
-    if (list.empty())
-        for (const auto &[effect, why] : d.not_excited) list.push_back(effect);
-    return list;
+// How far a variant's shape is from the catalogue's typical one.
+double unusual(const Candidate &c) {
+    double distance = 0;
+    const sim::Effect *effect = sim::find_effect(c.effect);
+    for (const auto &[key, value] : c.variant)
+        for (const sim::EffectParameter &p : effect->parameters)
+            if (p.name == key) distance += std::fabs(value - p.typical) / std::max(1e-9, std::fabs(p.maximum - p.minimum));
+    return distance;
+}
+
+std::optional<Candidate> catalogue_candidate(const std::string &effect, int wheel, const Model &base) {
+    Motion motion; // patches are cut along a path: one of half a metre, half a metre on
+    for (int k = 0; k <= 200; ++k) motion.path_m.push_back(0.01 * k);
+    std::optional<Candidate> best;
+    for (Candidate &c : catalogue_candidates(base, Dataset{}, motion))
+        if (c.effect == effect && c.wheel == wheel && (!best || unusual(c) < unusual(*best))) best = std::move(c);
+    return best;
+}
+
+int place_of(Plan &plan, Sized sized) {
+    for (std::size_t i = 0; i < plan.candidates.size(); ++i)
+        if (plan.candidates[i].candidate.label() == sized.candidate.label()) return static_cast<int>(i);
+    plan.candidates.push_back(std::move(sized));
+    return static_cast<int>(plan.candidates.size()) - 1;
+}
+
+const CandidateResult *find_result(const Diagnosis &d, const std::string &label) {
+    for (const auto *list : {&d.accepted, &d.ranking})
+        for (const CandidateResult &r : *list)
+            if (r.candidate.label() == label) return &r;
+    return nullptr;
+}
+
+// The least of "A is true, B stands in" and the other way round; whether A shows at all when it is alone.
+double distance(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const Asked &asked) {
+    if (asked.members.size() == 1) return detectability(gram, precision, plan.candidates, asked.members[0], -1);
+    return std::min(detectability(gram, precision, plan.candidates, asked.members[0], asked.members[1]),
+                    detectability(gram, precision, plan.candidates, asked.members[1], asked.members[0]));
+}
+
+bool answers(const Plan &plan, double before, double after) {
+    if (before < answered_at) return after >= answered_at;
+    return plan.undecided && after * after - before * before >= answered_at * answered_at;
+}
+
+// Gram of what a drive of this scenario would tell.
+Eigen::MatrixXd told_by(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
+    Dataset trial = make_dataset(plan.base, drive(scenario));
+    if (plan.data != nullptr) { // sensors that this rover's log lacks will be lacking again, and be as noisy
+        std::erase_if(trial.balance, [&](const Balance &b) { return std::none_of(plan.data->balance.begin(), plan.data->balance.end(), [&](const Balance &a) { return a.name == b.name; }); });
+        for (Balance &b : trial.balance)
+            for (const Balance &a : plan.data->balance)
+                if (a.name == b.name) b.noise = std::max(a.noise, 1e-12);
+    }
+    const Physics physics = make_physics(plan.base);
+    Problem problem(trial, physics, free_parameters(plan.base, physics));
+    problem.linearise();
+    std::map<std::string, double> scale = scale_over_noise(problem);
+    for (auto &[name, value] : scale)
+        if (const auto found = plan.scale.find(name); found != plan.scale.end()) value = std::max(value, found->second);
+    return information(problem, scale, plan.candidates);
+}
+
+struct Choice {
+    std::vector<std::size_t> manoeuvres;
+    int answered = 0;
+    double least = 0, rate = 0; // least d' over answerable questions, and per second
+};
+
+void name_kinds(const Plan &plan, NextExperiment &next) {
+    for (const Manoeuvre &m : manoeuvres()) {
+        const bool fits = std::any_of(plan.candidates.begin(), plan.candidates.end(), [&](const Sized &s) { return std::find(m.good_for.begin(), m.good_for.end(), s.candidate.effect) != m.good_for.end(); });
+        if (fits) next.tried.push_back({m.title, 0, 0, 0});
+    }
+    for (Question &q : next.questions) q.status = "later";
+}
+
+// Fills base, its fit to the log and the rows' scales from the model that explains the log best.
+void learn_from_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen::VectorXd &precision) {
+    const auto count = [&] {
+        Eigen::Index n = 0;
+        for (const Sized &s : plan.candidates) n += static_cast<Eigen::Index>(s.size.size());
+        return n;
+    }();
+    if (plan.data == nullptr || plan.data->balance.empty() || plan.data->count < 3) {
+        const Physics physics = make_physics(plan.base);
+        const std::vector<FreeParameter> parameters = free_parameters(plan.base, physics);
+        const auto n = static_cast<Eigen::Index>(parameters.size());
+        precision = Eigen::VectorXd::Zero(n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            if (const double prior = parameters[static_cast<std::size_t>(i)].prior; prior > 0) precision[i] = 1 / (prior * prior);
+        gram = Eigen::MatrixXd::Zero(n + count, n + count);
+        plan.data = nullptr;
+        return;
+    }
+    Model explained = best;
+    fit_model(explained, *plan.data, "");
+    Problem last(*plan.data, make_physics(explained), free_parameters(explained, make_physics(explained)));
+    last.linearise();
+    plan.scale = scale_over_noise(last);
+    fit_model(plan.base, *plan.data, "");
+    Problem problem(*plan.data, make_physics(plan.base), free_parameters(plan.base, make_physics(plan.base)));
+    problem.linearise();
+    gram = information(problem, plan.scale, plan.candidates);
+    precision = problem.prior_precision();
+}
+
+// The distances of one plan: of its questions, with the Gram matrices of the log and of every manoeuvre.
+struct Table {
+    const Plan &plan;
+    Eigen::VectorXd precision;
+    Eigen::MatrixXd log;
+    std::vector<Eigen::MatrixXd> grams; // per manoeuvre
+    std::vector<double> before;
+    std::vector<bool> answerable;       // by all manoeuvres together
+
+    double at(const Eigen::MatrixXd &gram, std::size_t q) const { return distance(plan, gram, precision, plan.asked[q]); }
+};
+
+// Effects that the model's own parameters would hide at three sizes of interest are asked for at the size that stands out.
+void enlarge(Plan &plan, const Eigen::MatrixXd &everything, const Eigen::VectorXd &precision) {
+    for (std::size_t i = 0; i < plan.candidates.size(); ++i) {
+        Sized &s = plan.candidates[i];
+        const double alone = detectability(everything, precision, plan.candidates, static_cast<int>(i), -1);
+        if (!(alone > 0)) continue;
+        for (std::size_t j = 0; j < s.size.size(); ++j)
+            s.size[j] = std::max(s.size[j], std::min(s.candidate.maximum[j], s.size[j] * noticed_at / alone));
+    }
+}
+
+void judge_alone(Table &table, const Eigen::MatrixXd &everything, NextExperiment &next) {
+    const std::vector<Manoeuvre> &list = manoeuvres();
+    for (std::size_t q = 0; q < next.questions.size(); ++q) {
+        Question &one = next.questions[q];
+        table.before.push_back(one.before = table.at(table.log, q));
+        for (const Eigen::MatrixXd &gram : table.grams) one.best = std::max(one.best, table.at(table.log + gram, q));
+        table.answerable.push_back(answers(table.plan, one.before, table.at(everything, q)));
+        one.status = one.before >= answered_at && !table.plan.undecided ? "told" : table.answerable.back() ? "later" : "never";
+    }
+    for (std::size_t m = 0; m < list.size(); ++m) {
+        Tried t{list[m].title, list[m].duration_s, 1e300, 0};
+        for (std::size_t q = 0; q < table.before.size(); ++q) {
+            if (!table.answerable[q]) continue;
+            const double after = table.at(table.log + table.grams[m], q);
+            t.least = std::min(t.least, after);
+            t.answered += answers(table.plan, table.before[q], after);
+        }
+        if (t.least < 1e300) next.tried.push_back(t);
+    }
+}
+
+void conclude(const Table &table, const Eigen::MatrixXd &after, NextExperiment &next) {
+    for (std::size_t q = 0; q < next.questions.size(); ++q) {
+        Question &one = next.questions[q];
+        one.after = table.at(after, q);
+        if (answers(table.plan, one.before, one.after)) one.status = "answered";
+        if (one.status != "never") continue;
+        for (const int m : table.plan.asked[q].members) {
+            const std::string words = measure_instead(table.plan.candidates[static_cast<std::size_t>(m)].candidate.effect);
+            if (one.measure.find(words) == std::string::npos) one.measure += (one.measure.empty() ? "" : "; ") + words;
+        }
+    }
+}
+
+// Best set of up to three manoeuvres: most answers, then the largest least d' per second.
+Choice choose(const Table &table) {
+    const std::size_t n = table.grams.size();
+    Choice best;
+    const auto consider = [&](const std::vector<std::size_t> &set) {
+        Eigen::MatrixXd gram = table.log;
+        double seconds = 0;
+        for (const std::size_t m : set) gram += table.grams[m], seconds += manoeuvres()[m].duration_s;
+        Choice c{set, 0, 1e300, 0};
+        for (std::size_t q = 0; q < table.before.size(); ++q) {
+            if (!table.answerable[q]) continue;
+            const double after = table.at(gram, q);
+            c.answered += answers(table.plan, table.before[q], after);
+            c.least = std::min(c.least, after);
+        }
+        c.rate = c.least / seconds;
+        if (c.answered > best.answered || (c.answered == best.answered && c.answered > 0 && c.rate > best.rate)) best = c;
+    };
+    const int all = static_cast<int>(std::count(table.answerable.begin(), table.answerable.end(), true));
+    for (int size = 1; size <= most_manoeuvres && best.answered < all; ++size) // a longer drive only where a shorter one leaves something
+        for (std::size_t i = 0; i < n; ++i) {
+            if (size == 1) consider({i});
+            for (std::size_t j = i + 1; size > 1 && j < n; ++j) {
+                if (size == 2) consider({i, j});
+                for (std::size_t k = j + 1; size > 2 && k < n; ++k) consider({i, j, k});
+            }
+        }
+    return best;
+}
+
+NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
+    NextExperiment next;
+    for (const Asked &a : plan.asked) {
+        Question q;
+        for (const int m : a.members) q.members.push_back(plan.candidates[static_cast<std::size_t>(m)].candidate.label());
+        next.questions.push_back(q);
+    }
+    if (plan.asked.empty()) return next;
+    next.why_not = cannot_drive(plan.base);
+    next.predicted = next.why_not.empty();
+    if (!next.predicted) {
+        name_kinds(plan, next);
+        return next;
+    }
+    Table table{plan, {}, {}, {}, {}, {}};
+    learn_from_log(plan, best, table.log, table.precision);
+    for (const Manoeuvre &m : manoeuvres()) {
+        next.notes.clear(); // the same for each
+        table.grams.push_back(told_by(plan, scenario_of(plan.base, {&m}, next.notes), drive));
+    }
+    Eigen::MatrixXd everything = table.log;
+    for (const Eigen::MatrixXd &gram : table.grams) everything += gram;
+    if (plan.sizes_free) enlarge(plan, everything, table.precision);
+    judge_alone(table, everything, next);
+    const Choice choice = choose(table);
+    Eigen::MatrixXd after = table.log;
+    if (!choice.manoeuvres.empty()) {
+        std::vector<const Manoeuvre *> list;
+        for (const std::size_t m : choice.manoeuvres) list.push_back(&manoeuvres()[m]);
+        next.notes.clear();
+        next.scenario_toml = scenario_of(plan.base, list, next.notes);
+        for (const Manoeuvre *m : list) next.title += (next.title.empty() ? "" : ", then ") + m->title, next.duration_s += m->duration_s;
+        after += list.size() > 1 ? told_by(plan, next.scenario_toml, drive) : table.grams[choice.manoeuvres[0]]; // in one go, as it will be driven
+    }
+    conclude(table, after, next);
+    return next;
 }
 
 } // namespace
 
-std::string next_scenario(const std::vector<std::string> &effects, const Model &model, std::string &title) {
-    const std::set<std::string> wanted(effects.begin(), effects.end());
-    const auto hits = [&](const Manoeuvre &m) { return std::count_if(m.effects.begin(), m.effects.end(), [&](const std::string &e) { return wanted.count(e) != 0; }); };
-    std::vector<const Manoeuvre *> order;
-    for (const Manoeuvre &m : manoeuvres())
-        if (hits(m) > 0) order.push_back(&m);
-    std::stable_sort(order.begin(), order.end(), [&](const Manoeuvre *a, const Manoeuvre *b) { return hits(*a) > hits(*b); });
-    if (order.empty()) order.push_back(&manoeuvres().front());
-    if (order.size() > 3) order.resize(3);
-    std::string soil = "sand", drives;
-    if (model.soil_law == SoilLaw::burckhardt) soil = "concrete";
-    else if (!model.wheel.empty() && model.wheel[0].soil.at("shear_slip").value < 0.15) soil = "gravel";
-    double duration_s = 4;
-    title.clear();
-    for (const Manoeuvre *m : order) {
-        title += (title.empty() ? "" : ", then ") + std::string(m->title);
-        drives += m->segments;
-        for (std::size_t at = drives.size() - std::string(m->segments).size(); (at = drives.find("for_s = ", at)) != std::string::npos; ++at) duration_s += std::atof(drives.c_str() + at + 8);
+NextExperiment next_experiment(const Diagnosis &d, const Model &model, const Dataset &data, bool all, const DriveScenario &drive) {
+    Plan plan;
+    plan.data = &data;
+    plan.base = model;
+    std::set<std::string> in_class;
+    for (const ConfoundedClass &c : d.classes) in_class.insert(c.members.begin(), c.members.end());
+    for (const CandidateResult &a : d.accepted) // what was named for sure belongs to the machine
+        if (in_class.count(a.candidate.label()) == 0) plan.base.effects.push_back(effect_of(a.candidate, a.value));
+    plan.undecided = !d.classes.empty();
+    for (const ConfoundedClass &c : d.classes) {
+        std::vector<int> places;
+        for (const std::string &label : c.members)
+            if (const CandidateResult *r = find_result(d, label)) places.push_back(place_of(plan, as_found(*r)));
+        for (std::size_t i = 0; i < places.size(); ++i)
+            for (std::size_t j = i + 1; j < places.size(); ++j) plan.asked.push_back({{places[i], places[j]}});
     }
-    std::ostringstream out;
-    out << "title = \"Next: " << title << "\"\nduration_s = " << duration_s << "\nseed = 1\n\n[ground]\nsoil = \"" << soil << "\"\n\n[[drive]]\nfor_s = 2.0\nmode = \"stop\"\n\n"
-        << drives << "[[drive]]\nfor_s = 2.0\nmode = \"stop\"\n";
-    return out.str();
+    if (plan.asked.empty() || all)
+        for (const auto &[effect, why] : d.not_excited)
+            if (const auto c = catalogue_candidate(effect, -1, plan.base)) plan.asked.push_back({{place_of(plan, of_interest(*c))}});
+    return solve(plan, d.model, drive);
 }
 
-nlohmann::json next_json(const Diagnosis &d, const Model &model) {
-    const std::vector<std::string> effects = open_questions(d);
-    if (effects.empty()) return nullptr;
-    std::string title;
-    const std::string scenario = next_scenario(effects, model, title);
-    return {{"title", title}, {"scenario_toml", scenario}, {"separates", effects}};
-}
-
-void append_lineage(Model &model, const Dataset &data, const std::vector<Rung> &ladder, const Rung &final_rung) {
-    for (std::size_t i = 0; i < ladder.size(); ++i) {
-        if (i == 0 && !model.lineage.empty()) continue; // the baseline is the last entry already
-        const bool last = i + 1 == ladder.size();
-        const Rung &r = last && std::isfinite(final_rung.train) ? final_rung : ladder[i];
-        model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor});
+NextExperiment next_experiment(const std::vector<std::string> &effects, const Model &model, const Dataset *data, const DriveScenario &drive) {
+    Plan plan;
+    plan.data = data;
+    plan.base = model;
+    std::vector<int> places;
+    for (const std::string &text : effects) {
+        const std::size_t colon = text.find(':');
+        const std::string name = text.substr(0, colon);
+        int wheel = -1;
+        if (colon != std::string::npos) wheel = text.size() == colon + 2 && text[colon + 1] >= '0' && text[colon + 1] <= '9' ? text[colon + 1] - '0' : 1000;
+        if (sim::find_effect(name) == nullptr) throw ModelError("--effects", 0, text, "is no effect of the catalogue", "`traction effects` lists them; NAME, or NAME:WHEEL");
+        const auto c = catalogue_candidate(name, wheel, model);
+        if (!c) throw ModelError("--effects", 0, text, model.find_effect(name, -1) != nullptr ? "is in the model already" : "cannot be had on that wheel", "name another effect, or NAME alone for all wheels");
+        places.push_back(place_of(plan, of_interest(*c)));
     }
-}
-
-Added add_effect(const Model &model, const Dataset &data, const std::string &effect, int wheel, const std::string &file) {
-    Added added;
-    added.model = model;
-    if (wheel < -1 || wheel >= static_cast<int>(model.wheel.size()))
-        throw ModelError(model.file, 0, "--wheel", "is " + std::to_string(wheel), "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
-    if (model.find_effect(effect, wheel) != nullptr) throw ModelError(model.file, 0, effect, "is in the model already", "use `traction fit` to fit it, `traction drop` to take it out");
-    if (!file.empty()) {
-        std::ifstream stream(file, std::ios::binary);
-        if (!stream.is_open()) throw std::ios_base::failure("cannot open " + file, std::make_error_code(std::errc::no_such_file_or_directory));
-        std::ostringstream text;
-        text << stream.rdbuf();
-        Model bare = model;
-        bare.effects.clear();
-        bare.lineage.clear();
-        const Model with = parse_model(model_text(bare) + "\n" + text.str(), file);
-        const auto found = std::find_if(with.effects.begin(), with.effects.end(), [&](const EffectUse &use) { return use.name == effect; });
-        if (found == with.effects.end()) throw ModelError(file, 0, "effect.name", "there is no effect \"" + effect + "\" in it", "give the name of one of its [[effect]] tables");
-        added.model.effects.push_back(*found);
-        added.model.effects.back().wheel = wheel >= 0 ? wheel : found->wheel;
-    } else {
-        const sim::Effect *known = sim::find_effect(effect);
-        if (known == nullptr) throw ModelError(model.file, 0, effect, "is no effect of the catalogue", "`traction effects` lists them; for your own use --effect-file");
-        if (wheel >= 0 && !known->per_wheel) throw ModelError(model.file, 0, effect, "cannot be confined to a wheel", "leave --wheel out");
-        Problem problem(data, make_physics(model), free_parameters(model, make_physics(model)));
-        problem.fit({.iterations = 6, .reweight = true});
-        const Screen screen(problem);
-        double best = -1e300;
-        EffectUse use;
-        for (const Candidate &c : catalogue_candidates(model, data, problem.forward().motion())) {
-            if (c.effect != effect || c.wheel != wheel) continue;
-            Physics at = problem.physics();
-            c.prepare(at);
-            Eigen::MatrixXd columns(problem.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
-            for (std::size_t j = 0; j < c.strengths.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = problem.column(at, c.strengths[j], c.step[j]);
-            const Assessment a = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
-            if (a.gain <= best) continue;
-            best = a.gain;
-            std::vector<double> start;
-            for (std::size_t j = 0; j < c.strengths.size(); ++j) {
-                double v = std::clamp(a.strength[static_cast<Eigen::Index>(j)], c.minimum[j], c.maximum[j]);
-                if (std::fabs(v) < 1e-3 * (c.maximum[j] - c.minimum[j])) v = c.of_interest[j];
-                start.push_back(v);
-            }
-            use = effect_of(c, start);
-        }
-        if (use.name.empty()) throw ModelError(model.file, 0, effect, "has no variant that this log can carry", "drive further, or give its parameters in the model file");
-        added.model.effects.push_back(use);
-    }
-    Model baseline = model;
-    added.ladder.push_back(fit_model(baseline, data, "baseline"));
-    const std::string label = "+ " + effect + (wheel >= 0 ? " on wheel " + std::to_string(wheel) : "");
-    added.ladder.push_back(fit_model(added.model, data, label));
-    added.helps = added.ladder[1].heldout < added.ladder[0].heldout;
-    char buffer[200];
-    std::snprintf(buffer, sizeof buffer, "held-out error %.3f -> %.3f x noise: %s", added.ladder[0].heldout, added.ladder[1].heldout, added.helps ? "it helps" : "it does not help");
-    added.text = buffer;
-    append_lineage(added.model, data, added.ladder, {label, std::nan(""), std::nan(""), 1});
-    added.model.name = model.name;
-    return added;
-}
-
-std::string added_text(const Added &added) {
-    std::string text;
-    const EffectUse &use = added.model.effects.back();
-    for (const auto &[key, p] : use.parameters) {
-        char buffer[200];
-        std::snprintf(buffer, sizeof buffer, "%s.%s = %.5g [%.5g, %.5g] %s%s\n", use.name.c_str(), key.c_str(), p.value, p.low, p.high, p.unit.c_str(), p.fixed ? " (shape)" : "");
-        text += buffer;
-    }
-    return text + ladder_text(added.ladder) + added.text + "\n";
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        for (std::size_t j = i + 1; j < places.size(); ++j) plan.asked.push_back({{places[i], places[j]}});
+    plan.sizes_free = places.size() > 1;
+    if (places.size() == 1) plan.asked.push_back({{places[0]}});
+    return solve(plan, model, drive);
 }
 
 } // namespace traction::lab

@@ -1,7 +1,7 @@
 // The lab's decisions on logs of the independent generator (tests/lab/generator), where the answer is known.
+#include "host_tools/lab/addition.h"
 #include "host_tools/lab/compare.h"
 #include "host_tools/lab/diagnose.h"
-#include "host_tools/lab/next.h"
 #include "host_tools/lab/result.h"
 #include "tests/lab/generator/generator.h"
 
