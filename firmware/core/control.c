@@ -38,7 +38,8 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
 {
     doppler_output_t doppler = {0};
     if ((sense->usable & FRAME_RADAR) != 0u) {
-        doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, frame->radar_samples);
+        const int32_t count = frame->radar_samples < RADAR_SAMPLES_PER_TICK_MAX ? frame->radar_samples : RADAR_SAMPLES_PER_TICK_MAX;
+        doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, count);
     }
     if (doppler.fresh) {
         state->doppler_m_s = doppler.speed_m_s;

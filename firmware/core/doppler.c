@@ -19,36 +19,40 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 
 // --- (2)
 
-enum { COARSE = 4 };
+enum { COARSE = 4, POWER_SUM_MAX = 128 * 256 + DOPPLER_BINS_MAX * 256 };
 
-// J of one grid speed.
+// J of one grid speed. It never wraps: J is linear in the powers, so its extremes have all power in one bin, and doppler_test
+// tries every bin of every speed of every radar.
 static int32_t cost(const doppler_template_t *beam, const int16_t *power, int32_t total, int32_t speed)
 {
     const int16_t *inverse = beam->inverse + speed * beam->bins;
     return fixed_dot_product(total * beam->volume[speed], power, inverse, beam->bins);
 }
 
-// Powers of the template's bins, reduced so that their sum has at most 15 bits; returns the reduced sum. *energy is the sum of
+// Powers of the template's bins, reduced so that each has at most 15 bits and their sum 16; returns the reduced sum. *energy is the sum of
 // the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of the transform, 2^10 of the gain,
 // 256 * 96 / 2 of the window).
 static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int16_t *reduced, uint64_t *energy)
 {
-    uint64_t sum = 0; // at most 120 * 2^61 / 2^8
+    uint64_t sum = 0; // at most 120 * 2^63 / 2^8
     const uint64_t *in = power + beam->first_bin;
+    //@ loop unroll 120;
     for (int32_t k = 0; k < beam->bins; k++) {
         sum += in[k] >> 8;
     }
     *energy = sum >> 14;
-    const int32_t shift = sum <= 127u ? 0 : 57 - __builtin_clzll(sum); // sum >> shift is 64..127
-    int32_t total = 0;
+    const uint32_t shift = (57u - (uint32_t)__builtin_clzll(sum | 127u)) & 63u; // sum >> shift is 64..127, or 0..127 unshifted
+    uint32_t total = 0;
+    //@ loop unroll 120;
     for (int32_t k = 0; k < beam->bins; k++) {
         const uint32_t low = (uint32_t)in[k];
         const uint32_t high = (uint32_t)(in[k] >> 32);
-        const uint32_t value = shift >= 32 ? high >> (shift - 32) : shift == 0 ? low : (low >> shift) | high << (32 - shift);
-        reduced[k] = (int16_t)value; // sum < 128 * 2^8 = 2^15
-        total += (int16_t)value;
+        const uint32_t whole = shift >= 32u ? high >> (shift - 32u) : shift == 0u ? low : (low >> shift) | high << (32u - shift);
+        const uint32_t value = whole & 0x7fffu; // takes nothing away: sum < 128 * 2^shift, so whole < 128 * 2^8
+        reduced[k] = (int16_t)value;
+        total += value;
     }
-    return total;
+    return total < POWER_SUM_MAX ? (int32_t)total : POWER_SUM_MAX; // nor does this: 128 * 2^8 and 2^8 that >> 8 dropped per bin
 }
 
 // exp(x) for |x| <= 0.05: error below 3e-7.
@@ -65,10 +69,12 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
             best = i;
         }
     }
+    //@ split best;
     int32_t around[2 * COARSE + 1]; // J at best - COARSE .. best + COARSE
     const int32_t low = best - COARSE;
     int32_t fine = COARSE;
     around[fine] = least;
+    //@ loop unroll 9;
     for (int32_t j = 0; j <= 2 * COARSE; j++) {
         const int32_t i = low + j;
         if (j == COARSE) {
@@ -107,7 +113,7 @@ static void slide(doppler_state_t *state, int32_t hop)
 {
     if (hop % 4 == 0) {
         for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
-            state->window.word[j - hop / 4] = state->window.word[j];
+            state->window.four[j - hop / 4] = state->window.four[j];
         }
     } else {
         for (int32_t j = hop; j < FFT_LENGTH; j++) {

@@ -7,7 +7,7 @@
 // sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
 // geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
 // ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
-// below a stated one. Powers are reduced to 15 bits of their sum: J is exact in 32 bits. Until 256 samples have come, 128 and
+// below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 and
 // then 192 of them with their mirror image make two early values (ours alone).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
@@ -52,7 +52,9 @@ typedef struct {
 typedef struct {
     union {
         int16_t sample[FFT_LENGTH]; // oldest first
-        uint64_t word[FFT_LENGTH / 4];
+        struct {
+            int16_t sample[4];
+        } __attribute__((aligned(8))) four[FFT_LENGTH / 4];
     } window;
     int32_t filled;             // valid samples so far
     uint64_t power[FFT_BINS];   // of the last full window

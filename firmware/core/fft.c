@@ -5,14 +5,12 @@
 
 enum { STRIDE = 32, COS_45_Q15 = 23170 }; // distance of the four sub-transforms of any stage [complex words]; cos(pi/4), Q15
 
-// Two 32-bit numbers in one 64-bit word, the first in the low half: one load or store on ARMv5TE. A transform of length m has
+// Two 32-bit numbers, on ARMv5TE in a 64-bit word, the first in the low half: one load or store. A transform of length m has
 // m/2 words: (X[0], X[m/2]), then (Re X[k], Im X[k]) for k = 1..m/2-1.
+#if FIXED_ARM_DSP
 typedef uint64_t word_t;
-
 static inline int32_t first_of(word_t word) { return (int32_t)(uint32_t)word; }
 static inline int32_t second_of(word_t word) { return (int32_t)(uint32_t)(word >> 32); }
-
-#if FIXED_ARM_DSP
 // One LDRD or STRD, and two sums made in the register pair that is stored. The compiler would use two single moves each.
 static inline word_t load(const word_t *from)
 {
@@ -21,6 +19,7 @@ static inline word_t load(const word_t *from)
     return word;
 }
 static inline void store(word_t *to, word_t word) { __asm__("strd %1, %H1, [%2]" : "=m"(*to) : "r"(word), "r"(to)); }
+static inline void store_power(uint64_t *to, uint64_t power) { store(to, power); }
 #define WORD_OF(name, first, second)                                                                                   \
     static inline word_t name(int32_t a, int32_t b, int32_t c, int32_t d)                                              \
     {                                                                                                                  \
@@ -39,11 +38,18 @@ static inline uint64_t square_sum(int32_t re, int32_t im)
     return sum;
 }
 #else
+typedef struct {
+    int32_t first, second;
+} word_t;
+static inline int32_t first_of(word_t word) { return word.first; }
+static inline int32_t second_of(word_t word) { return word.second; }
 static inline word_t load(const word_t *from) { return *from; }
 static inline void store(word_t *to, word_t word) { *to = word; }
+static inline void store_power(uint64_t *to, uint64_t power) { *to = power; }
 static inline word_t word_of(int32_t first, int32_t second)
 {
-    return (word_t)(uint32_t)first | (word_t)(uint32_t)second << 32;
+    const word_t word = {first, second};
+    return word;
 }
 static inline word_t add_add(int32_t a, int32_t b, int32_t c, int32_t d) { return word_of(a + b, c + d); }
 static inline word_t add_sub(int32_t a, int32_t b, int32_t c, int32_t d) { return word_of(a + b, c - d); }
@@ -60,13 +66,14 @@ static void window_and_first_stage(const int16_t *sample, word_t *out)
 {
     const int32_t one_q28 = 1 << 28;
     const int32_t *hann = fft_hann_q28;
+    //@ loop unroll 64;
     for (const int16_t *end = sample + 64; sample != end; sample++, out += 2, hann += 2) {
         const int32_t h0 = hann[0];
         const int32_t h1 = hann[1];
-        const int32_t x0 = fixed_mul_low(h0, (uint32_t)(int32_t)sample[0]);
-        const int32_t x1 = fixed_mul_low(h1, (uint32_t)(int32_t)sample[64]);
-        const int32_t x2 = fixed_mul_low(one_q28 - h0, (uint32_t)(int32_t)sample[128]);
-        const int32_t x3 = fixed_mul_low(one_q28 - h1, (uint32_t)(int32_t)sample[192]);
+        const int32_t x0 = fixed_mul(h0, sample[0]);
+        const int32_t x1 = fixed_mul(h1, sample[64]);
+        const int32_t x2 = fixed_mul(one_q28 - h0, sample[128]);
+        const int32_t x3 = fixed_mul(one_q28 - h1, sample[192]);
         const int32_t a = x0 + x2;
         const int32_t c = x1 + x3;
         store(out, add_sub(a, c, a, c));
@@ -137,6 +144,7 @@ static inline void combine(const word_t *in, word_t *out, int m, const uint32_t 
     store(out + m + m / 2, sub_sub(e.q0, e.u, e.q2, e.v));
     word_t *up = out + 1;
     word_t *down = out + m - 1;
+    //@ loop unroll 7;
     do {
         in++;
         const butterfly_t b = twiddle(in, w);
@@ -161,13 +169,14 @@ static void combine_to_power(const word_t *in, uint64_t *power)
     const uint32_t *w = fft_twiddle_64_q15;
     uint64_t *up = power + 1;
     uint64_t *down = power + 63;
+    //@ loop unroll 31;
     do {
         in++;
         const butterfly_t b = twiddle(in, w);
-        store(up, square_sum(b.ar + b.cr, b.ai + b.ci));
-        store(down + 64, square_sum(b.ar - b.cr, b.ci - b.ai));
-        store(up + 64, square_sum(b.br - b.di, b.bi + b.dr));
-        store(down, square_sum(b.br + b.di, b.dr - b.bi));
+        store_power(up, square_sum(b.ar + b.cr, b.ai + b.ci));
+        store_power(down + 64, square_sum(b.ar - b.cr, b.ci - b.ai));
+        store_power(up + 64, square_sum(b.br - b.di, b.bi + b.dr));
+        store_power(down, square_sum(b.br + b.di, b.dr - b.bi));
         w += 3;
         up++;
         down--;
@@ -179,9 +188,11 @@ void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS])
     word_t even[FFT_LENGTH / 2];
     word_t odd[FFT_LENGTH / 2];
     window_and_first_stage(sample, even);
+    //@ loop unroll 16;
     for (int group = 0; group < 16; group++) {
         combine(even + 2 * group, odd + 8 * group, 4, fft_twiddle_4_q15);
     }
+    //@ loop unroll 4;
     for (int group = 0; group < 4; group++) {
         combine(odd + 8 * group, even + 32 * group, 16, fft_twiddle_16_q15);
     }

@@ -52,8 +52,17 @@ static inline int32_t fixed_mac_high(int32_t sum, int32_t value, uint32_t q15)
 }
 #endif
 
-// The bits of a float; and, as a whole number, its place among all floats but NaN (-0 just below +0). Without a floating-point
-// unit a comparison of two floats costs 40 instructions, of two whole numbers one.
+// 1: compare floats as whole numbers, as a machine without a floating-point unit must: one instruction, not 40. 0: plain C.
+// Same bits either way (fixed_test).
+#ifndef FIXED_SOFT_FLOAT
+#if defined(__SOFTFP__)
+#define FIXED_SOFT_FLOAT 1
+#else
+#define FIXED_SOFT_FLOAT 0
+#endif
+#endif
+
+// The bits of a float; and, as a whole number, its place among all floats but NaN.
 static inline uint32_t fixed_bits(float value)
 {
     const union {
@@ -65,7 +74,7 @@ static inline uint32_t fixed_bits(float value)
 static inline int32_t fixed_order(float value)
 {
     const uint32_t bits = fixed_bits(value);
-    return (bits & 0x80000000u) == 0u ? (int32_t)bits : -(int32_t)(bits & 0x7fffffffu) - 1;
+    return (bits & 0x80000000u) == 0u ? (int32_t)bits : -(int32_t)(bits & 0x7fffffffu);
 }
 
 // a > b; a NaN is above every number when positive, below when negative.
@@ -80,7 +89,9 @@ static inline int fixed_is_finite(float value)
     return (fixed_bits(value) & 0x7f800000u) != 0x7f800000u;
 }
 
-// Value limited to [low, high]; NaN gives low. Requires low <= high.
+// fixed_clamp: value limited to [low, high]; NaN gives low. Requires low <= high.
+// fixed_finite: the value, or 0 when it is NaN or infinite.
+#if FIXED_SOFT_FLOAT
 static inline float fixed_clamp(float value, float low, float high)
 {
     const int is_nan = (fixed_bits(value) & 0x7fffffffu) > 0x7f800000u;
@@ -89,14 +100,23 @@ static inline float fixed_clamp(float value, float low, float high)
     }
     return fixed_order(value) < fixed_order(high) ? value : high;
 }
-
-// The value, or 0 when it is NaN or infinite.
+static inline float fixed_finite(float value) { return fixed_is_finite(value) ? value : 0.0f; }
+#else
+static inline float fixed_clamp(float value, float low, float high)
+{
+    if (value != value || value <= low) {
+        return low;
+    }
+    return value < high ? value : high;
+}
 static inline float fixed_finite(float value)
 {
-    return fixed_is_finite(value) ? value : 0.0f;
+    const float largest = 3.40282347e38f;
+    return value >= -largest && value <= largest ? value : 0.0f;
 }
+#endif
 
-// sum + a . b; length a multiple of 8, both arrays on 8 bytes. The sum must not overflow.
+// sum + a . b, modulo 2^32; length a multiple of 8, both arrays on 8 bytes.
 #if FIXED_ARM_DSP
 static inline int32_t fixed_dot_product(int32_t sum, const int16_t *a, const int16_t *b, int32_t length)
 {
@@ -117,10 +137,11 @@ static inline int32_t fixed_dot_product(int32_t sum, const int16_t *a, const int
 #else
 static inline int32_t fixed_dot_product(int32_t sum, const int16_t *a, const int16_t *b, int32_t length)
 {
+    uint32_t total = (uint32_t)sum;
     for (int32_t k = 0; k < length; k++) {
-        sum += a[k] * b[k];
+        total += (uint32_t)(a[k] * b[k]);
     }
-    return sum;
+    return (int32_t)total;
 }
 #endif
 
@@ -132,6 +153,16 @@ static inline int16_t fixed_q15_from_float(float value)
     }
     const float scaled = fixed_clamp(value, -1.0f, 1.0f) * 32767.0f;
     return (int16_t)(scaled + (fixed_bits(scaled) >> 31 == 0u ? 0.5f : -0.5f));
+}
+
+// (value * q15) >> 16.
+static inline int32_t fixed_mul(int32_t value, int16_t q15)
+{
+#if FIXED_ARM_DSP
+    return fixed_mul_low(value, (uint32_t)(int32_t)q15);
+#else
+    return (int32_t)(((int64_t)value * q15) >> 16);
+#endif
 }
 
 // new - old of counters that wrap at 2^32.

@@ -37,8 +37,8 @@ static void predict(const ground_speed_config_t *config, ground_speed_state_t *s
 // Running integral of the raw accelerometer.
 static void integrate(const ground_speed_config_t *config, ground_speed_state_t *state, float accel_m_s2)
 {
-    const float step = fixed_clamp(accel_m_s2 * config->tick_s, -100.0f, 100.0f) * 1048576.0f + state->integral_rest_m_s;
-    const int32_t whole = (int32_t)step; // |step| < 2^27
+    const float step = fixed_clamp(accel_m_s2 * config->tick_s * 1048576.0f + state->integral_rest_m_s, -1e8f, 1e8f); // 95 m/s
+    const int32_t whole = (int32_t)step;
     state->integral_rest_m_s = step - (float)whole;
     const int32_t last = state->integral_q20[state->head];
     state->head = (state->head + 1) % GROUND_SPEED_HISTORY;
@@ -136,7 +136,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + noise;
     watch_bias(config, state, innovation, spread);
     if (innovation * innovation > config->gate_sigma * config->gate_sigma * spread) {
-        if (!lost) {
+        if (state->refused < config->gate_patience) {
             state->refused++;
             return;
         }

@@ -73,6 +73,25 @@ TEST(Doppler, argmax_finds_a_pure_tone_to_half_a_bin)
 
 class OfRadar : public ::testing::TestWithParam<const doppler_template_t *> {};
 
+// J of doppler.c is linear in the powers, and what it adds to the first term is not negative: its extremes over all powers with a sum
+// of at most `total` have all of it in one bin. So these cases are all cases.
+TEST_P(OfRadar, likelihood_never_leaves_32_bits)
+{
+    const doppler_template_t &beam = *GetParam();
+    const int64_t total = 128 * 256 + 120 * 256; // the sum is below 128 * 2^8, and >> 8 dropped less than 2^8 in each of 120 bins
+    for (int i = 0; i < beam.speeds; ++i) {
+        ASSERT_GE(total * beam.volume[i], INT32_MIN);
+        ASSERT_LE(total * beam.volume[i], INT32_MAX);
+        ASSERT_GE(total * beam.quiet[i], INT32_MIN);
+        ASSERT_LE(total * beam.quiet[i], INT32_MAX);
+        for (int k = 0; k < beam.bins; ++k) {
+            const int64_t inverse = beam.inverse[i * beam.bins + k];
+            ASSERT_GE(inverse, 0);
+            ASSERT_LE(total * (beam.volume[i] + inverse), INT32_MAX) << beam.speed_m_s[i] << " m/s, bin " << k;
+        }
+    }
+}
+
 TEST_P(OfRadar, template_is_a_normalised_spectrum_with_rising_speeds)
 {
     const doppler_template_t &beam = *GetParam();
