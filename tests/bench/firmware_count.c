@@ -6,6 +6,7 @@
 
 #if WITH_KISSFFT
 #include "kiss_fftr.h"
+#include <math.h>
 #include <stdlib.h>
 #endif
 
@@ -40,8 +41,23 @@ static sensor_frame_t frame_at(uint32_t tick)
     return frame;
 }
 
-static void tick_table(void)
+// Stack below this function: painted before a tick, looked at after it. The program has no signal handler that could write there.
+enum { PAINT_BYTES = 8192, PAINT = 0xa5 };
+
+static inline __attribute__((always_inline)) volatile uint8_t *stack_pointer(void)
 {
+    volatile uint8_t *pointer;
+    __asm__ volatile("mov %0, sp" : "=r"(pointer));
+    return pointer;
+}
+#define PAINT_STACK()                                                                                                  \
+    for (volatile uint8_t *at = stack_pointer() - PAINT_BYTES; at != stack_pointer(); at++) {                          \
+        *at = PAINT;                                                                                                   \
+    }
+
+static int tick_table(void)
+{
+    int deepest = 0;
     static const char *const names[] = {"tick stop", "tick open_loop", "tick wheel_speed", "tick platform_speed", "tick slip", "tick soil_sweep"};
     for (int mode = 0; mode < MODE_COUNT; mode++) {
         static control_state_t state;
@@ -54,13 +70,20 @@ static void tick_table(void)
         }
         for (uint32_t tick = 0; tick < 1000; tick++) {
             const sensor_frame_t frame = frame_at(tick);
+            PAINT_STACK();
             count_begin();
             const trace_t trace = control_step(&config, &state, &command, &frame);
             count_end();
+            int depth = PAINT_BYTES;
+            for (volatile uint8_t *at = stack_pointer() - PAINT_BYTES; depth > 0 && *at == PAINT; at++) {
+                depth--;
+            }
+            deepest = depth > deepest ? depth : deepest;
             puts(trace.radar_fresh ? "tick with a radar value" : "tick without");
             puts(names[mode]);
         }
     }
+    return deepest;
 }
 
 int main(void)
@@ -80,18 +103,29 @@ int main(void)
     puts("fft: Hann, FFT, 127 powers");
     puts("fft: Hann, FFT, 127 powers");
 #if WITH_KISSFFT
+    static int16_t hann_q15[FFT_LENGTH];
+    for (int n = 0; n < FFT_LENGTH; n++) {
+        hann_q15[n] = (int16_t)(16383.5 * (1 - cos(2 * 3.14159265358979323846 * n / FFT_LENGTH)));
+    }
     static kiss_fft_cpx out[FFT_LENGTH / 2 + 1];
     static int32_t plain[FFT_LENGTH / 2];
     kiss_fftr_cfg cfg = kiss_fftr_alloc(FFT_LENGTH, 0, NULL, NULL);
-    count_begin();
-    kiss_fftr(cfg, sample, out);
-    for (int k = 1; k < FFT_LENGTH / 2; k++) {
-        plain[k] = out[k].r * out[k].r + out[k].i * out[k].i;
+    for (int windowed = 0; windowed < 2; windowed++) {
+        const char *const name = windowed != 0 ? "KissFFT int16: Q15 Hann, FFT, 127 powers" : "KissFFT int16: FFT, 127 powers";
+        int16_t input[FFT_LENGTH];
+        count_begin();
+        for (int n = 0; windowed != 0 && n < FFT_LENGTH; n++) {
+            input[n] = (int16_t)((sample[n] * hann_q15[n] + (1 << 14)) >> 15);
+        }
+        kiss_fftr(cfg, windowed != 0 ? input : sample, out);
+        for (int k = 1; k < FFT_LENGTH / 2; k++) {
+            plain[k] = out[k].r * out[k].r + out[k].i * out[k].i;
+        }
+        count_end();
+        puts(name);
+        puts(plain[5] == 12345 ? "" : name); // the powers are used
     }
-    count_end();
-    puts("KissFFT int16: FFT, 127 powers, no window");
-    puts(plain[5] == 12345 ? "" : "KissFFT int16: FFT, 127 powers, no window");
 #endif
-    tick_table();
+    printf("%d\n", tick_table()); // the last label: bytes of stack
     return 0;
 }
