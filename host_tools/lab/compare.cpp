@@ -165,7 +165,7 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     problem.linearise();
     out.error = overall_error(problem);
     Problem adjusted(data, physics, problem.parameters);
-    adjusted.fit({.iterations = 8, .reweight = true});
+    adjusted.fit({.iterations = 4});
     out.adjusted = overall_error(adjusted);
     Problem &shown = as_is ? problem : adjusted;
     for (std::size_t b = 0; b < data.balance.size(); ++b) out.balances.push_back(compare_balance(shown, b));

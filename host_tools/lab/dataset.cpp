@@ -91,7 +91,7 @@ struct Builder {
         }
         data.independent_rows = model.motion == BodyMotion::imposed && period >= 0.5;
         data.start_s = first;
-        data.step_s = data.independent_rows ? period : std::max(0.01, (last - first) / 30000);
+        data.step_s = data.independent_rows ? period : std::max(0.02, (last - first) / 30000);
         data.count = static_cast<std::size_t>((last - first) / data.step_s + 1e-6) + 1;
         data.gap.assign(data.count, 0);
         return data.count >= 3;
@@ -142,9 +142,9 @@ struct Builder {
         std::vector<double> &dw = input.accel_rad_s2;
         const std::vector<double> &w = input.speed_rad_s;
         dw.assign(data.count, 0);
-        const auto n = static_cast<std::ptrdiff_t>(data.count);
+        const auto n = static_cast<std::ptrdiff_t>(data.count), reach = std::max<std::ptrdiff_t>(1, std::lround(0.02 / data.step_s));
         for (std::ptrdiff_t k = 0; k < n; ++k) {
-            const std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, k - 2), b = std::min(n - 1, k + 2);
+            const std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, k - reach), b = std::min(n - 1, k + reach);
             dw[static_cast<std::size_t>(k)] = (w[static_cast<std::size_t>(b)] - w[static_cast<std::size_t>(a)]) / (static_cast<double>(b - a) * data.step_s);
         }
     }
@@ -167,9 +167,10 @@ struct Builder {
                 for (std::size_t k = 0; k < data.count; ++k) data.wheel[i].voltage_V.push_back(interpolate(voltage->t_s, voltage->value, data.time(k)));
             } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !battery_V.empty()) {
                 for (std::size_t k = 0; k < data.count; ++k) { // mean over the grid step of a duty held from its time on
-                    const double quarter = 0.25 * data.step_s, t = data.time(k);
-                    const double mean = 0.5 * (hold(duty->t_s, duty->value, t - quarter) + hold(duty->t_s, duty->value, t + quarter));
-                    data.wheel[i].voltage_V.push_back(mean * battery_V[k]);
+                    const double eighth = 0.125 * data.step_s, t = data.time(k);
+                    double sum = 0;
+                    for (int part = -3; part <= 3; part += 2) sum += hold(duty->t_s, duty->value, t + part * eighth);
+                    data.wheel[i].voltage_V.push_back(0.25 * sum * battery_V[k]);
                 }
             } else if (!told && model.wheel[i].driven) {
                 say("no motor voltage (duty and battery.voltage_V, or wheel<i>.voltage_V): the voltage balance is left out");

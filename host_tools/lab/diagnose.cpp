@@ -144,7 +144,7 @@ bool nonlinear(const std::string &effect) { return effect == "backlash" || effec
 double best_start(Problem &problem, const Candidate &candidate, Eigen::Index place, double linear) {
     double best = linear, least = 1e300;
     const double largest = candidate.maximum[0];
-    for (const double size : {linear, candidate.of_interest[0], 0.1 * largest, 0.25 * largest, 0.5 * largest, 0.8 * largest}) {
+    for (const double size : {0.0, linear, candidate.of_interest[0], 0.1 * largest, 0.25 * largest, 0.5 * largest, 0.8 * largest}) {
         problem.theta[place] = size;
         const double cost = problem.cost();
         if (cost < least) least = cost, best = size;
@@ -171,9 +171,12 @@ void refit(Scored &s, const Problem &base, const Screen &base_screen, const Mode
         if (limited && std::fabs(start) < 1e-3 * span) start = s.candidate.of_interest[static_cast<std::size_t>(j)];
         problem.theta[n + j] = start;
     }
-    if (nonlinear(s.candidate.effect)) problem.theta[n] = best_start(problem, s.candidate, n, problem.theta[n]);
-    problem.quick_fit(base, nonlinear(s.candidate.effect) ? 12 : 4);
-    if ((s.candidate.touched & stage_motion) != 0) problem.fit({.iterations = 6, .reweight = false}); // the soil's curve is strongly nonlinear: fresh sensitivities until it stands
+    if (nonlinear(s.candidate.effect)) {
+        problem.theta[n] = best_start(problem, s.candidate, n, problem.theta[n]);
+        if (problem.theta[n] < 0.5 * s.candidate.of_interest[0]) return; // no size of it beats its absence
+    }
+    problem.quick_fit(base, nonlinear(s.candidate.effect) ? 8 : 4);
+    if ((s.candidate.touched & stage_motion) != 0) problem.jacobian.resize(0, 0), problem.polish(2); // the soil's curve is strongly nonlinear: fresh sensitivities
     const Screen screen(problem, n);
     const Eigen::VectorXd present = problem.theta.tail(k);
     s.assessment = screen.assess(problem.jacobian.rightCols(k), present, true);
@@ -267,15 +270,17 @@ Round run_round(Problem &problem, const Screen &screen, const Model &model, cons
     std::stable_sort(round.scored.begin(), round.scored.end(), [](const Scored &a, const Scored &b) { return a.gain > b.gain; });
     // full refits: the best distinct effects that stand a chance, and the strongly nonlinear ones
     int done = 0, specials = 0;
+    double best_gain = 0; // of what was refitted: what explains less than half of it can be neither the winner nor of its class
     for (Scored &s : round.scored) {
         judge(s, round.base_error, options);
         const bool anyway = nonlinear(s.candidate.effect) && s.candidate.wheel < 0;
         const bool worth = anyway || s.gain > 0.002 * round.base_error || s.assessment.relief > 0.5 * options.least_relief;
         const bool special = nonlinear(s.candidate.effect);
-        if (!worth || !(anyway || special ? anyway || specials < 2 : done < options.refits && s.p_value < 0.2)) continue;
+        if (!worth || !(anyway || special ? anyway || specials < 2 : done < options.refits && s.p_value < 0.2 && s.gain > 0.5 * best_gain)) continue;
         refit(s, problem, screen, model, data);
         judge(s, round.base_error, options);
         ++(special ? specials : done);
+        if (s.verdict == "passes") best_gain = std::max(best_gain, s.gain);
         tick();
     }
     for (Scored &s : round.scored)
@@ -295,7 +300,7 @@ bool holds_up(const Scored &s, const Model &model, const Dataset &data, const Pr
     const Physics physics = make_physics(with);
     Problem problem(data, physics, free_parameters(with, physics));
     problem.theta.head(before.theta.size()) = before.theta;
-    problem.fit({.iterations = 3, .reweight = true});
+    problem.fit({});
     std::vector<double> value;
     for (Eigen::Index i = problem.theta.size() - static_cast<Eigen::Index>(s.value.size()); i < problem.theta.size(); ++i)
         value.push_back(problem.parameters[static_cast<std::size_t>(i)].base + problem.theta[i]);
@@ -342,7 +347,7 @@ double overall_heldout(const Problem &problem) {
 Rung fit_model(Model &model, const Dataset &data, const std::string &label) {
     const Physics physics = make_physics(model);
     Problem problem(data, physics, free_parameters(model, physics));
-    problem.fit({.iterations = 10, .reweight = true});
+    problem.fit({.iterations = 10, .thorough = true});
     Rung rung{label, overall_error(problem), overall_heldout(problem), 1};
     const Screen screen(problem);
     const Eigen::VectorXd errors = screen.parameter_errors();
@@ -375,7 +380,7 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         const Physics physics = make_physics(d.model);
         Problem problem(data, physics, free_parameters(d.model, physics));
         for (Eigen::Index i = 0; i < std::min(warm.size(), problem.theta.size()); ++i) problem.theta[i] = warm[i];
-        problem.fit({.iterations = round_index == 0 ? 6 : 3, .reweight = true});
+        problem.fit({});
         warm = problem.theta;
         const std::string label = d.accepted.empty() ? "baseline" : "+ " + d.accepted.back().candidate.label();
         d.ladder.push_back({label, overall_error(problem), overall_heldout(problem), 1});
@@ -453,7 +458,7 @@ Diagnosis diagnose(const Model &original, const Dataset &data, const DiagnoseOpt
         Problem problem(data, physics, free_parameters(without, physics));
         for (Eigen::Index j = 0; j < std::min(warm.size(), problem.theta.size()); ++j)
             if (problem.parameters[static_cast<std::size_t>(j)].prior > 0) problem.theta[j] = warm[j];
-        problem.fit({.iterations = 6, .reweight = true});
+        problem.fit({});
         const Screen screen(problem);
         Scored s;
         s.candidate = c;

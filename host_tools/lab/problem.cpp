@@ -180,7 +180,7 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
 }
 
 void Problem::set_scales() {
-    const Eigen::VectorXd noise = noise_rows();
+    const Eigen::VectorXd noise = noise_rows(), before = row_scale;
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
         const auto first = static_cast<Eigen::Index>(forward_.first_row(b)), n = static_cast<Eigen::Index>(data_->balance[b].measured.size());
         Eigen::VectorXd e = residual.segment(first, n).cwiseQuotient(noise.segment(first, n)); // in units of the row's noise
@@ -195,6 +195,7 @@ void Problem::set_scales() {
             row_scale[first + r] = std::sqrt(ratio > huber ? huber / ratio : 1.0) / (scale * noise[first + r]);
         }
     }
+    if (jacobian.rows() == row_scale.size()) jacobian = row_scale.cwiseQuotient(before).asDiagonal() * jacobian;
 }
 
 void Problem::keep_scales(const Problem &other) {
@@ -203,8 +204,8 @@ void Problem::keep_scales(const Problem &other) {
 }
 
 double Problem::cost() {
-    const Eigen::VectorXd error = (measured_ - forward_.predict(physics())).cwiseProduct(row_scale);
-    return error.squaredNorm() + theta.cwiseAbs2().dot(prior_precision());
+    residual = measured_ - forward_.predict(physics());
+    return residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(prior_precision());
 }
 
 void Problem::quick_fit(const Problem &base, int iterations) {
@@ -250,24 +251,68 @@ void Problem::quick_fit(const Problem &base, int iterations) {
         system.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(all, 1e-12);
         const Eigen::VectorXd moment = jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta);
         theta += system.ldlt().solve(moment);
-        for (Eigen::Index c = 0; c < all; ++c) {
-            double low = 0, high = 0;
-            bounds(static_cast<std::size_t>(c), low, high);
-            theta[c] = std::clamp(theta[c], low, high);
+        clamp();
+    }
+}
+
+void Problem::clamp() {
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+        double low = 0, high = 0;
+        bounds(static_cast<std::size_t>(i), low, high);
+        theta[i] = std::clamp(theta[i], low, high);
+    }
+}
+
+void Problem::settle() {
+    forward_.set_base(physics());
+    residual = measured_ - forward_.base();
+}
+
+void Problem::polish(int fresh) {
+    constexpr int steps = 4;       // with the same sensitivities
+    constexpr double worth = 2e-4; // relative fall of the cost below which a step is the last
+    const Eigen::VectorXd precision = prior_precision();
+    if (jacobian.rows() != measured_.size() || jacobian.cols() != theta.size()) linearise(), --fresh;
+    for (;; --fresh) {
+        Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+        normal.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(theta.size(), 1e-12);
+        const Eigen::LDLT<Eigen::MatrixXd> factor(normal);
+        const Eigen::VectorXd start = theta;
+        const double first = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
+        double best = first;
+        for (int i = 0; i < steps; ++i) {
+            const Eigen::VectorXd before = theta, residual_before = residual;
+            theta += factor.solve(jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta));
+            clamp();
+            double now = cost();
+            for (int halving = 0; halving < 3 && !(now < best); ++halving) theta = 0.5 * (theta + before), now = cost();
+            if (!(now < best)) {
+                theta = before, residual = residual_before;
+                break;
+            }
+            const double fall = best - now;
+            best = now;
+            if (fall < worth * best) break;
         }
+        const Eigen::VectorXd moved = theta - start;
+        if (fresh <= 0 || moved.dot(normal * moved) < 1e-2) return settle(); // a tenth of a standard deviation: the sensitivities serve there too
+        linearise();
+        if (first - best < worth * best) return;
     }
 }
 
 void Problem::fit(const FitOptions &options) {
     if (data_->count < 3 || measured_.size() == 0) return;
+    jacobian.resize(0, 0);
     if (options.reweight) {
-        forward_.set_base(physics());
-        residual = measured_ - forward_.base();
+        settle();
         set_scales();
-        solve(std::max(1, options.iterations / 2));
+        if (options.thorough) solve(std::max(1, options.iterations / 2));
+        else polish(1);
         set_scales();
     }
-    solve(options.iterations);
+    if (options.thorough) solve(options.iterations);
+    else polish(options.iterations);
 }
 
 double Problem::balance_rms(std::size_t b, bool in_noise) const {

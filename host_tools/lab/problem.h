@@ -15,8 +15,9 @@
 namespace traction::lab {
 
 struct FitOptions {
-    int iterations = 6;
+    int iterations = 2;     // linearisations (Ceres: iterations) after the last reweighting
     bool reweight = true; // set the scale of each balance from its residual and Huber weights, then fit again
+    bool thorough = false; // Ceres to its own convergence; else Gauss-Newton that keeps its sensitivities while they serve
 };
 
 class Problem {
@@ -45,21 +46,27 @@ class Problem {
     Eigen::VectorXd noise_rows() const; // measurement noise of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
-    double cost(); // squares of all rows and priors at the present increments
+    double cost(); // squares of all rows and priors at the present increments, where `residual` is then
 
     // Gauss-Newton on baseline plus candidate where the baseline's sensitivities are kept from `base` (the first columns here, same
     // scales): a candidate moves them little, and a pass for each is saved. Leaves the problem linearised.
     void quick_fit(const Problem &base, int iterations);
+
+    // Gauss-Newton with the scales as they are: sensitivities are computed afresh at most `fresh` times, and serve for several steps
+    // each. Leaves the problem linearised at its optimum.
+    void polish(int fresh);
 
     // Keeps the scales of another problem on the same data, so that their errors compare.
     void keep_scales(const Problem &other);
 
   private:
     friend class RowsCost;
-    void set_scales();
+    void set_scales(); // the Jacobian, if there is one, is scaled anew
+    void settle();     // prediction and residual at the present increments; the Jacobian stays
     Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
+    void clamp();
 
     const Dataset *data_;
     Physics base_;
