@@ -3,9 +3,11 @@
 
 #include "host_tools/lab/addition.h"
 #include "host_tools/lab/compare.h"
+#include "host_tools/lab/profile.h"
 #include "host_tools/lab/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
+#include "host_tools/report/svg.h"
 
 #include <cmath>
 #include <cstdio>
@@ -22,8 +24,32 @@ void print_table(const char *title, const lab::Parameters &table) {
 
 struct FitRequest {
     lab::Request input;
-    std::string out, report;
+    std::string out, report, figure;
+    bool profiled = false;
+    std::vector<std::string> profile;
 };
+
+// One panel per parameter over the distance from the best value in Wald standard errors, so that a parabola looks the same everywhere.
+report::Figure profile_figure(const std::vector<lab::Profile> &profiles) {
+    report::Figure figure{.title = "Profile likelihood", .x_label = "distance from the best value [robust standard errors]"};
+    for (const lab::Profile &p : profiles) {
+        report::Series curve{.name = "profile", .x = {}, .y = {}}, parabola{.name = "Wald", .x = {}, .y = {}};
+        for (std::size_t i = 0; i < p.x.size(); ++i) {
+            const double z = (p.x[i] - p.value) / p.standard_error;
+            curve.x.push_back(z), curve.y.push_back(p.rise[i]);
+            if (std::fabs(z) < 3) parabola.x.push_back(z), parabola.y.push_back(z * z);
+        }
+        figure.panels.push_back({.title = p.parameter + ": " + p.verdict, .y_label = "rise [1]", .series = {curve, parabola}, .rules = {{.value = 3.84, .name = "95 %"}}, .from_zero = true});
+    }
+    return figure;
+}
+
+void print_profiles(const FitRequest &request, const lab::Session &session, Outcome &outcome) {
+    const std::vector<lab::Profile> profiles = lab::profile_likelihood(session.model, session.data, request.profile);
+    std::fputs(lab::profile_text(profiles).c_str(), stdout);
+    outcome.json["profiles"] = lab::profile_json(profiles);
+    if (!request.figure.empty()) report::write_text(report::to_svg(profile_figure(profiles)), request.figure);
+}
 
 void fit(const FitRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
@@ -56,6 +82,7 @@ void fit(const FitRequest &request, Outcome &outcome) {
     put("rover", model.rover), put("wheel", model.wheel.front().geometry), put("motor", model.wheel.front().motor);
     put("soil", model.wheel.front().soil), put("sensors", model.sensors);
     outcome.json["fitted"] = fitted;
+    if (request.profiled) print_profiles(request, session, outcome);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (request.out.empty()) return;
     lab::append_lineage(model, session.data, {{"fitted", rung.train, rung.heldout, rung.floor}}, rung);
@@ -76,8 +103,15 @@ void add_fit(CLI::App &app, Outcome &outcome) {
     verb->add_option("--to", request->input.to_s, "use the log up to this time [s]");
     verb->add_option("--out", request->out, "write the fitted model to this file")->type_name("FILE");
     verb->add_option("--report", request->report, "write a report page (HTML)")->type_name("FILE");
+    CLI::Option *profile = verb->add_option("--profile", request->profile, "profile likelihood of these, such as motor.resistance_ohm; of every effect's strength when none is named")
+                               ->expected(0, 100)->type_name("PARAM...");
+    verb->add_option("--profile-figure", request->figure, "draw the profiles (SVG)")->type_name("FILE")->needs(profile);
     add_json_option(verb, outcome);
-    verb->callback([=, &outcome] { fit(*request, outcome); });
+    verb->callback([=, &outcome] {
+        request->profiled = profile->count() > 0;
+        std::erase(request->profile, ""); // --profile alone: every effect's strength
+        fit(*request, outcome);
+    });
 }
 
 } // namespace traction::cli
