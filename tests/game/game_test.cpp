@@ -1,0 +1,154 @@
+// The game from the first look to the seal: what is told when, what is scored, what happens to a folder that is not as it was left.
+#include "host_tools/game/game.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include <unistd.h>
+
+namespace traction::game {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path &path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+// One game for all tests: each plays a copy.
+class Game : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        fs::remove_all(home());
+        first_ = new Turn(start({.root = ".", .folder = home().string(), .seed = 3, .duration_s = 45}));
+        seal_ = new nlohmann::json(nlohmann::json::parse(content(home() / "sealed.json")));
+    }
+    static void TearDownTestSuite() {
+        fs::remove_all(home());
+        delete first_;
+        delete seal_;
+    }
+    static fs::path home() { return fs::temp_directory_path() / ("traction_game_" + std::to_string(::getpid())); }
+    // A copy that a test may play.
+    static std::string copy(const std::string &name) {
+        const fs::path to = home() / name;
+        fs::create_directories(to);
+        for (const char *file : {"run.csv", "baseline.toml", "model.toml", "sealed.json", "game.json"}) fs::copy_file(home() / file, to / file, fs::copy_options::overwrite_existing);
+        return to.string();
+    }
+    static nlohmann::json state(const std::string &folder) { return nlohmann::json::parse(content(fs::path(folder) / "game.json")); }
+    static std::string hidden() { return (*seal_)["effects"][0]["name"]; }
+    static int wheel() { return (*seal_)["effects"][0].value("wheel", -1); }
+    static Turn *first_;
+    static nlohmann::json *seal_;
+};
+Turn *Game::first_ = nullptr;
+nlohmann::json *Game::seal_ = nullptr;
+
+void expect_error(const std::function<void()> &act, const std::string &part) {
+    try {
+        act();
+        FAIL() << "no error about " << part;
+    } catch (const GameError &error) {
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(Game, the_right_guess_at_once_scores_full_and_the_seal_tells_it) {
+    const std::string folder = copy("right");
+    const Turn kept = guess(folder, hidden(), wheel(), true);
+    EXPECT_TRUE(kept.json["helps"]) << kept.text;
+    ASSERT_EQ(kept.json["ladder"].size(), 2U);
+    EXPECT_LT(kept.json["ladder"][1]["heldout"], kept.json["ladder"][0]["heldout"]);
+    const Turn end = open(folder);
+    EXPECT_EQ(end.json["wrong_guesses"], 0);
+    EXPECT_TRUE(end.json["named"]);
+    EXPECT_NEAR(end.json["error_over_floor"].get<double>(), 1, 0.02); // the same model, fitted from another start
+    EXPECT_GE(end.json["points"].get<int>(), 98);
+    EXPECT_NE(end.text.find(hidden()), std::string::npos);
+    expect_error([&] { guess(folder, "grade", -1, false); }, "over");
+    expect_error([&] { open(folder); }, "open already");
+}
+
+TEST_F(Game, nothing_tells_the_effect_before_the_seal_is_open) {
+    const std::string folder = copy("silent");
+    const Turn tried = guess(folder, hidden() == "grade" ? "body_drag" : "grade", -1, false);
+    const std::string listed = hidden(); // the list of what may be hidden names every effect alike
+    for (const std::string &text : {tried.text, tried.json.dump(), look(folder).text, content(fs::path(folder) / "game.json")})
+        EXPECT_EQ(text.find(listed), std::string::npos) << text;
+    EXPECT_EQ(content(fs::path(folder) / "model.toml"), content(fs::path(folder) / "baseline.toml"));
+    EXPECT_EQ(first_->json.dump().find(listed), std::string::npos);
+    std::string header = content(fs::path(folder) / "run.csv").substr(0, 4000);
+    EXPECT_EQ(header.find(listed), std::string::npos);
+}
+
+TEST_F(Game, wrong_guesses_cost_and_leave_the_model_alone_unless_they_are_kept) {
+    const std::string folder = copy("wrong"), before = content(fs::path(folder) / "model.toml");
+    const std::string other = hidden() == "body_drag" ? "grade" : "body_drag";
+    guess(folder, other, -1, false);
+    guess(folder, other, -1, false); // the same twice is one guess
+    EXPECT_EQ(content(fs::path(folder) / "model.toml"), before);
+    EXPECT_EQ(look(folder).json["guesses"].size(), 1U); // a game that was left is taken up
+    expect_error([&] { guess(folder, "gremlin", -1, false); }, "no effect");
+    EXPECT_EQ(state(folder)["guesses"].size(), 1U); // a slip of the pen costs nothing
+    const Turn end = open(folder);
+    EXPECT_EQ(end.json["wrong_guesses"], 1);
+    EXPECT_FALSE(end.json["named"]);
+    EXPECT_LE(end.json["points"].get<int>(), 0);
+}
+
+TEST_F(Game, the_same_seed_hides_the_same_thing) {
+    const fs::path again = home() / "again";
+    start({.root = ".", .folder = again.string(), .seed = 3, .duration_s = 45});
+    EXPECT_EQ(content(again / "sealed.json"), content(home() / "sealed.json"));
+    EXPECT_EQ(content(again / "run.csv"), content(home() / "run.csv"));
+    expect_error([&] { start({.root = ".", .folder = again.string(), .seed = 4, .duration_s = 45}); }, "--replace");
+    expect_error([&] { start({.root = ".", .folder = (home() / "moon").string(), .soil = "moon", .seed = 4, .duration_s = 45}); }, "sand, gravel or concrete");
+    EXPECT_FALSE(fs::exists(home() / "moon")); // nothing half made
+}
+
+TEST_F(Game, a_folder_that_was_tampered_with_is_told) {
+    expect_error([] { look("/nonexistent/game"); }, "no game");
+    const std::string folder = copy("torn");
+    std::ofstream(fs::path(folder) / "game.json") << "{\"schema\": ";
+    expect_error([&] { look(folder); }, "game.json");
+    std::ofstream(fs::path(folder) / "game.json") << "{}";
+    expect_error([&] { look(folder); }, "is not the state of a game");
+    const std::string opened = copy("opened");
+    std::ofstream(fs::path(opened) / "sealed.json") << "{}";
+    expect_error([&] { open(opened); }, "sealed.json");
+    fs::remove(fs::path(opened) / "sealed.json");
+    EXPECT_NO_THROW(look(opened)); // playing needs no seal
+    expect_error([&] { open(opened); }, "sealed.json");
+    EXPECT_FALSE(state(opened)["opened"]); // and the game goes on
+}
+
+TEST(Points, are_those_of_the_rules) {
+    const Played perfect{.named = true, .wheel_right = true, .error_before = 4, .error_after = 2, .floor = 2, .wrong_guesses = 0};
+    EXPECT_EQ(points(perfect), 100);
+    Played p = perfect;
+    p.wrong_guesses = 3;
+    EXPECT_EQ(points(p), 70);
+    p = perfect, p.wheel_right = false;
+    EXPECT_EQ(points(p), 70);
+    p = perfect, p.named = false; // as good as the truth by another name
+    EXPECT_EQ(points(p), 70);
+    p = perfect, p.error_after = 3; // half the way
+    EXPECT_EQ(points(p), 80);
+    p = {.named = false, .wheel_right = false, .error_before = 4, .error_after = 4, .floor = 2, .wrong_guesses = 9};
+    EXPECT_EQ(points(p), 0);
+    p = {.named = true, .wheel_right = true, .error_before = 2, .error_after = 2, .floor = 2, .wrong_guesses = 0}; // nothing to gain in this log
+    EXPECT_EQ(points(p), 100);
+    p.named = false;
+    EXPECT_EQ(points(p), 0);
+}
+
+} // namespace
+} // namespace traction::game
