@@ -127,7 +127,7 @@ static void slide(doppler_state_t *state, int32_t hop)
 // influence of the offset. Returns true when a value is due, and by how many samples its mean age is less than a full window's.
 static bool mirror_early(doppler_state_t *state, int32_t *younger)
 {
-    static const int16_t less[2] = {98, 63}; // mean of |m - n| over the square of the Hann window, m = 128 and 192: 29.1, 65.3 of 127.5
+    static const int16_t less[2] = {99, 64}; // mean age over the square of the Hann window, m = 128 and 192: 28.9, 63.9 of 127.5
     const int32_t m = state->filled;
     if (state->full || (m != 128 && m != 192)) {
         return false;

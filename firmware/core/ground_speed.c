@@ -14,6 +14,7 @@ static const int16_t weight_q15[WINDOW_TICKS] = {
     0,
 };
 static const float window_tau_s = 0.249f; // [s] mean age: 127.5 samples at 512 Hz, the newest half a sample old on average
+static const float window_tau_ticks = 24.9f;
 
 static const float early_accel_m_s2 = 0.2f; // [m/s^2] assumed: the speed changes by 0.05 m/s at most in the first half window
 
@@ -190,7 +191,10 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     state->speed_m_s = fixed_clamp(state->speed_m_s, -10.0f, 10.0f);
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || state->std_m_s == 0.0f) { // between, the filter forgets little: a root is dear
-        state->std_m_s = sqrtf(state->p_vv > 0.0f ? state->p_vv : 0.0f);
+        // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
+        const float unseen = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->speed_noise_m2_s2 * window_tau_ticks;
+        const float variance = state->p_vv + unseen;
+        state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
     }
     const ground_speed_output_t out = {
         .speed_m_s = state->speed_m_s,

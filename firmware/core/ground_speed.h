@@ -49,8 +49,8 @@ typedef struct {
 typedef struct {
     float speed_m_s;
     float bias_m_s2;
-    float p_vv, p_vb, p_bb;
-    float std_m_s;                 // root of p_vv at the last measurement
+    float p_vv, p_vb, p_bb;        // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
+    float std_m_s;                 // of the speed, at the last measurement
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
     float integral_rest_m_s;       // part of V below one unit

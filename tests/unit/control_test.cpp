@@ -143,4 +143,157 @@ TEST(Control, is_bounded_for_arbitrary_frames_and_commands)
     }
 }
 
+// A rover that rolls without slip at 0.3 m/s as far as its estimate goes: the radar is silent, the wheels' counts are the test's.
+class Rolling : public ::testing::Test {
+  protected:
+    control_config_t config = rover_config_default();
+    control_state_t state = {};
+    command_t command = {};
+    sensor_frame_t frame = {};
+    trace_t trace = {};
+
+    void SetUp() override
+    {
+        config.safety.required = 0;
+        control_reset(&config, &state);
+        state.ground_speed.speed_m_s = 0.3f;
+        frame.battery_count = 1800;
+        frame.present = 0xffu | FRAME_BATTERY;
+        for (auto &count : frame.current_count) {
+            count = 2048;
+        }
+    }
+    void run(int ticks)
+    {
+        for (int k = 0; k < ticks; ++k) {
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                frame.encoder_count[i] += pulses[i];
+            }
+            trace = control_step(&config, &state, &command, &frame);
+            frame.tick++;
+        }
+    }
+    int pulses[WHEEL_COUNT] = {50, 50, 50, 50}; // 5.24 rad/s, 0.298 m/s
+};
+
+TEST_F(Rolling, every_wheel_of_the_slip_servo_is_driven_by_its_own_slip_loop_and_says_when_it_is_saturated)
+{
+    command.mode = MODE_SLIP;
+    command.slip_wheels = 15;
+    command.slip_ref = 0.9f;
+    pulses[2] = 40;
+    run(300);
+    for (int i = 0; i < WHEEL_COUNT; ++i) {
+        EXPECT_TRUE(trace.wheel[i].slip_valid);
+        EXPECT_EQ(trace.wheel[i].duty, 1.0f) << i; // 2 * 1.5 * 0.9 at least: far beyond the limit
+        EXPECT_TRUE(trace.wheel[i].saturated) << i;
+        EXPECT_EQ(trace.wheel[i].set_speed_rad_s, 0.0f) << i; // no speed loop beside it
+    }
+    command.slip_ref = 0.0f;
+    command.slip_wheels = 5;
+    run(1);
+    for (int i = 0; i < WHEEL_COUNT; ++i) {
+        EXPECT_EQ(trace.wheel[i].set_speed_rad_s != 0.0f, i == 1 || i == 3) << i;
+    }
+}
+
+TEST_F(Rolling, full_slip_is_asked_for_by_a_bounded_wheel_speed_while_slip_means_nothing)
+{
+    state.ground_speed.speed_m_s = 0;
+    command.mode = MODE_SLIP;
+    command.slip_wheels = 15;
+    command.slip_ref = 1.0f;
+    command.platform_speed_m_s = 0.04f;
+    for (int &p : pulses) {
+        p = 0;
+    }
+    run(200);
+    for (int i = 0; i < WHEEL_COUNT; ++i) {
+        // w(1) would be infinite: ten times the rolling speed at most, and never beyond wheel_max; rolling: (22) with an error of 0.04 m/s
+        EXPECT_GE(trace.wheel[i].set_speed_rad_s, 10 * 0.04f / 0.057f);
+        EXPECT_LE(trace.wheel[i].set_speed_rad_s, 25.0f);
+    }
+}
+
+TEST_F(Rolling, turning_left_slows_both_left_wheels_and_speeds_both_right_ones)
+{
+    command.mode = MODE_PLATFORM_SPEED;
+    command.platform_speed_m_s = 0.3f;
+    command.yaw_rate_rad_s = 0.5f;
+    run(100);
+    const float set[] = {trace.wheel[0].set_speed_rad_s, trace.wheel[1].set_speed_rad_s, trace.wheel[2].set_speed_rad_s, trace.wheel[3].set_speed_rad_s};
+    EXPECT_EQ(set[WHEEL_REAR_LEFT], set[WHEEL_FRONT_LEFT]);
+    EXPECT_EQ(set[WHEEL_REAR_RIGHT], set[WHEEL_FRONT_RIGHT]);
+    EXPECT_NEAR(set[WHEEL_REAR_RIGHT] - set[WHEEL_REAR_LEFT], 2 * 0.12 * 0.5 / 0.057, 1e-3); // 2 b psi / R
+}
+
+TEST_F(Rolling, soil_sweep_ramps_both_front_wheels_and_rolls_both_rear_ones)
+{
+    command.mode = MODE_SOIL_SWEEP;
+    command.platform_speed_m_s = 0.3f;
+    run(501);
+    for (const int i : {WHEEL_FRONT_LEFT, WHEEL_FRONT_RIGHT}) {
+        EXPECT_NEAR(trace.wheel[i].set_speed_rad_s, 0.5 * 0.3 / 0.057, 0.02) << i; // (15): half of t_zero; one tick is 0.005
+    }
+    for (const int i : {WHEEL_REAR_LEFT, WHEEL_REAR_RIGHT}) {
+        EXPECT_NEAR(trace.wheel[i].set_speed_rad_s, 0.3 / 0.057, 0.1) << i; // (16), and what its integral made of an error of 0.002 m/s
+    }
+}
+
+TEST_F(Rolling, any_one_saturated_wheel_freezes_the_integral_of_the_platform)
+{
+    command.mode = MODE_WHEEL_SPEED;
+    for (int wheel = 0; wheel < WHEEL_COUNT; ++wheel) {
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            command.wheel_speed_rad_s[i] = i == wheel ? 25.0f : 5.236f;
+        }
+        run(200);
+        EXPECT_TRUE(state.saturated) << wheel;
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            EXPECT_EQ(trace.wheel[i].saturated, i == wheel) << wheel << " " << i;
+        }
+        command.mode = MODE_STOP;
+        run(1);
+        command.mode = MODE_WHEEL_SPEED;
+    }
+}
+
+TEST_F(Rolling, one_turning_wheel_is_enough_not_to_be_at_rest)
+{
+    for (int wheel = 0; wheel < WHEEL_COUNT; ++wheel) {
+        control_reset(&config, &state);
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            pulses[i] = i == wheel ? 10 : 0; // 1 rad/s: a quarter of 0.06 m/s is above 0.006 m/s
+        }
+        run(100);
+        EXPECT_FALSE(trace.standstill) << wheel;
+    }
+    for (int &p : pulses) {
+        p = 0;
+    }
+    run(100);
+    EXPECT_TRUE(trace.standstill);
+}
+
+TEST(Control, a_rover_that_hears_nothing_reports_nothing)
+{
+    const control_config_t config = rover_config_default();
+    control_state_t state;
+    control_reset(&config, &state);
+    command_t command = {};
+    for (uint32_t tick = 0; tick < 7; ++tick) {
+        sensor_frame_t frame = {};
+        frame.tick = tick;
+        const trace_t trace = control_step(&config, &state, &command, &frame);
+        EXPECT_EQ(trace.faults, 0u); // before any patience is over
+        EXPECT_EQ(trace.speed_m_s, 0);
+        EXPECT_EQ(trace.radar_speed_m_s, 0);
+        for (const wheel_trace_t &wheel : trace.wheel) {
+            EXPECT_EQ(wheel.speed_rad_s, 0);
+            EXPECT_EQ(wheel.accel_rad_s2, 0);
+            EXPECT_EQ(wheel.current_A, 0);
+        }
+    }
+}
+
 } // namespace

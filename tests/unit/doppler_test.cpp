@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace {
 
@@ -69,6 +71,177 @@ TEST(Doppler, argmax_finds_a_pure_tone_to_half_a_bin)
         ASSERT_TRUE(out.fresh);
         EXPECT_NEAR(out.speed_m_s, v, 1.001 * 0.5 * 512 / 256 * 0.016113); // half a bin of 2 Hz through (11)
     }
+}
+
+// A window of noise with the spectrum that the template gives a grid speed, and white noise; 256 samples. No trigonometry but a table: this runs
+// on the target too.
+std::vector<uint16_t> echo_of(const doppler_template_t &beam, int speed, double rms_count, double white_count, clutter::Random &random)
+{
+    static const std::vector<double> cosine = [] {
+        std::vector<double> table;
+        for (int n = 0; n < 256; ++n) {
+            table.push_back(std::cos(2 * clutter::pi * n / 256));
+        }
+        return table;
+    }();
+    double sum = 0;
+    std::vector<double> x(256, 0.0);
+    for (int k = 0; k < beam.bins; ++k) {
+        const double power = 1.0 / beam.inverse[speed * beam.bins + k], re = random.normal(), im = random.normal();
+        sum += power;
+        for (int n = 0; n < 256; ++n) {
+            const int turn = n * (k + beam.first_bin);
+            x[static_cast<std::size_t>(n)] += std::sqrt(power) * (re * cosine[static_cast<std::size_t>(turn % 256)] + im * cosine[static_cast<std::size_t>((turn + 192) % 256)]);
+        }
+    }
+    std::vector<uint16_t> out;
+    for (const double value : x) {
+        const double count = 512 + rms_count * value / std::sqrt(sum) + white_count * random.normal();
+        out.push_back(static_cast<uint16_t>(std::fmax(0, std::fmin(1023, std::floor(count + 0.5)))));
+    }
+    return out;
+}
+
+// Equation (2) in double over the whole grid, from the powers of the window: the reference that the integers and the coarse search are held to.
+TEST(Doppler, speed_is_the_vertex_of_the_likelihood_over_the_whole_grid)
+{
+    doppler_config_t config = rover_config_default().doppler;
+    const doppler_template_t &beam = *config.beam;
+    clutter::Random random{17};
+    int elsewhere = 0, windows = 0;
+    for (int speed = 20; speed < 94; ++speed) { // 0.08 m/s and more: the grid's ends have no neighbours
+        doppler_state_t state = {};
+        state.full = true; // no early values
+        for (const uint16_t sample : echo_of(beam, speed, 100, 3, random)) {
+            doppler_step(&config, &state, &sample, 1);
+        }
+        const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+        ASSERT_TRUE(out.fresh);
+        EXPECT_FALSE(out.quiet);
+        std::vector<double> J;
+        for (int i = 0; i < beam.speeds; ++i) {
+            double sum = 0;
+            for (int k = 0; k < beam.bins; ++k) {
+                sum += static_cast<double>(state.power[beam.first_bin + k]) * (beam.inverse[i * beam.bins + k] + beam.volume[i]);
+            }
+            J.push_back(sum);
+        }
+        const auto best = static_cast<std::size_t>(std::min_element(J.begin(), J.end()) - J.begin());
+        if (best == 0 || best + 1 == J.size()) {
+            continue;
+        }
+        const double left = J[best - 1] - J[best], right = J[best + 1] - J[best];
+        const auto step = static_cast<double>(beam.log_step);
+        const double expected = static_cast<double>(beam.speed_m_s[best]) * std::exp(0.5 * (left - right) / (left + right) * step);
+        ++windows;
+        if (std::fabs(std::log(static_cast<double>(out.speed_m_s) / expected)) > 0.05 * step) { // 15 bits: the reference itself is flat to this
+            ++elsewhere;
+        }
+    }
+    EXPECT_GE(windows, 70);
+    EXPECT_LE(elsewhere, windows / 20); // a window with two valleys: the coarse grid may see the other one
+}
+
+TEST(Doppler, an_echo_below_the_stated_power_is_quiet)
+{
+    doppler_config_t config = rover_config_default().doppler;
+    const doppler_template_t &beam = *config.beam;
+    config.quiet_power_count2 = 400;
+    clutter::Random random{23};
+    for (const double share : {0.7, 1.4}) { // of the stated variance, realised in this very window
+        std::vector<uint16_t> window = echo_of(beam, 60, 100, 0, random);
+        double square = 0; // through the window that the power is measured with
+        for (std::size_t n = 0; n < 256; ++n) {
+            square += std::pow((window[n] - 512.0) * (1 - std::cos(2 * clutter::pi * static_cast<double>(n) / 256)) / 2, 2) / 96;
+        }
+        for (uint16_t &value : window) {
+            value = static_cast<uint16_t>(std::lround(512 + (value - 512.0) * std::sqrt(share * 400 / square)));
+        }
+        doppler_state_t state = {};
+        state.full = true;
+        for (const uint16_t sample : window) {
+            doppler_step(&config, &state, &sample, 1);
+        }
+        EXPECT_EQ(doppler_step(&config, &state, nullptr, 0).quiet, share < 1) << share;
+    }
+}
+
+TEST(Doppler, every_hop_gives_what_a_fresh_window_of_the_same_samples_gives)
+{
+    doppler_config_t config = rover_config_paper().doppler;
+    clutter::Random random{29};
+    for (const int hop : {64, 30, 63, 1, 256, 0, -4, 300}) {
+        config.hop = hop;
+        const int real = hop >= 1 && hop <= 256 ? hop : 256; // no other hop makes sense
+        std::vector<uint16_t> samples;
+        for (int n = 0; n < 800; ++n) {
+            samples.push_back(static_cast<uint16_t>(random.next() % 1024));
+        }
+        doppler_state_t state = {};
+        int values = 0;
+        for (std::size_t n = 0; n < samples.size(); ++n) {
+            const doppler_output_t out = doppler_step(&config, &state, &samples[n], 1);
+            ASSERT_EQ(out.fresh, n >= 256 && (static_cast<int>(n) - 256) % real == 0) << hop << " " << n;
+            if (out.fresh) {
+                int16_t window[256];
+                uint64_t power[FFT_BINS];
+                for (std::size_t j = 0; j < 256; ++j) {
+                    window[j] = static_cast<int16_t>((samples[n - 256 + j] - 512) * 32);
+                }
+                fft_power(window, power);
+                if (real > 1) { // at hop 1 the powers are already the next window's
+                    ASSERT_TRUE(std::equal(power, power + FFT_BINS, state.power)) << hop << " " << n;
+                }
+                ++values;
+            }
+        }
+        EXPECT_EQ(values, (800 - 257) / real + 1);
+    }
+}
+
+TEST(Doppler, counts_beyond_the_converter_are_its_largest)
+{
+    const doppler_config_t config = rover_config_paper().doppler;
+    doppler_state_t rail = {}, beyond = {};
+    for (int n = 0; n < 256; ++n) {
+        const bool high = n % 25 < 12;
+        const uint16_t at = high ? 1023 : 0, above = high ? static_cast<uint16_t>(1024 + 300 * n) : 0;
+        doppler_step(&config, &rail, &at, 1);
+        doppler_step(&config, &beyond, &above, 1);
+    }
+    EXPECT_TRUE(std::equal(rail.power, rail.power + FFT_BINS, beyond.power));
+}
+
+TEST(Doppler, a_value_says_how_many_samples_came_after_its_window)
+{
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = {};
+    const uint16_t sample[8] = {512, 600, 512, 400, 512, 600, 512, 400};
+    int total = 0, values = 0;
+    const double hann_age[] = {128, 192}; // lengths of the early windows
+    for (int call = 0; total < 700; ++call) {
+        const int count = call % 3 == 0 ? 6 : 5;
+        const doppler_output_t out = doppler_step(&config, &state, sample, count);
+        total += count;
+        if (!out.fresh) {
+            continue;
+        }
+        const int end = 128 + 64 * values; // samples in when the window was full
+        double younger = 0;
+        if (values < 2) { // mean age of the samples by the square of the Hann window, the missing ones taken from the mirror
+            const double m = hann_age[values];
+            double weight = 0, age = 0;
+            for (int n = 0; n < 256; ++n) {
+                const double h = std::pow((1 - std::cos(2 * clutter::pi * n / 256)) / 2, 2);
+                weight += h;
+                age += h * (n < m ? m - 1 - n : n - m);
+            }
+            younger = 127.5 - age / weight;
+        }
+        EXPECT_NEAR(out.late_samples, total - end - younger, 0.5) << values; // whole samples
+        ++values;
+    }
+    EXPECT_EQ(values, 9); // 128, 192, ... 640
 }
 
 class OfRadar : public ::testing::TestWithParam<const doppler_template_t *> {};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 namespace {
 
@@ -183,6 +184,139 @@ TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag)
         // delay of the window against its compensation: half a sample and a rounding of 2^-15 per weight, within 2 ms
         EXPECT_LT(error, 0.002 * std::fabs(a) + 1e-4) << a;
     }
+}
+
+// --- the filter alone: measurements made from its own model
+
+// One tick without a radar value; the wheels turn at `wheel_m_s`.
+ground_speed_input_t only_accel(double accel, double wheel_m_s = 0.3)
+{
+    return {.accel_x_m_s2 = static_cast<float>(accel), .doppler_m_s = 0, .doppler_late_s = 0, .wheel_m_s = static_cast<float>(wheel_m_s),
+            .accel_valid = true, .doppler_fresh = false, .doppler_quiet = false};
+}
+
+ground_speed_input_t with_radar(double accel, double doppler_m_s, bool quiet = false, double wheel_m_s = 0.3)
+{
+    ground_speed_input_t input = only_accel(accel, wheel_m_s);
+    input.doppler_m_s = static_cast<float>(doppler_m_s);
+    input.doppler_fresh = true;
+    input.doppler_quiet = quiet;
+    return input;
+}
+
+// At `v` with exact sensors for five seconds.
+ground_speed_state_t settled(const ground_speed_config_t &config, double v)
+{
+    ground_speed_state_t state;
+    ground_speed_reset(&config, &state);
+    for (int k = 0; k < 500; ++k) {
+        const ground_speed_input_t input = k % 12 == 0 ? with_radar(0, v) : only_accel(0);
+        ground_speed_step(&config, &state, &input);
+    }
+    EXPECT_NEAR(state.speed_m_s, v, 1e-3);
+    return state;
+}
+
+// Variance with which the filter expects a radar value now: P of v + tau b, and R by ground_speed.h; no acceleration.
+double expected_variance(const ground_speed_config_t &config, const ground_speed_state_t &state, double v)
+{
+    const double tau = 0.249; // (256 - 1)/2 samples at 512 Hz
+    return static_cast<double>(state.p_vv) + 2 * tau * static_cast<double>(state.p_vb) + tau * tau * static_cast<double>(state.p_bb) +
+           static_cast<double>(config.doppler_noise_m2_s2) + static_cast<double>(config.doppler_noise_m_s) * v;
+}
+
+TEST(GroundSpeed, gate_refuses_beyond_three_and_a_half_sigma_and_weighs_what_it_accepts)
+{
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    const double v = 0.4;
+    for (const double sigmas : {-3.7, -3.3, -1.0, 1.0, 3.3, 3.7}) {
+        ground_speed_state_t state = settled(config, v);
+        const ground_speed_input_t quiet_tick = only_accel(0);
+        ground_speed_step(&config, &state, &quiet_tick);
+        const double before = static_cast<double>(state.speed_m_s);
+        // what predict() adds in the tick of the value is 4e-6 of 3e-4 m^2/s^2: 0.7 % of a sigma
+        const double S = expected_variance(config, state, v + sigmas * 0.017), tau = 0.249;
+        const double innovation = sigmas * std::sqrt(S);
+        const double gain = (static_cast<double>(state.p_vv) + tau * static_cast<double>(state.p_vb)) / S;
+        const ground_speed_input_t input = with_radar(0, v + innovation);
+        ground_speed_step(&config, &state, &input);
+        const double moved = static_cast<double>(state.speed_m_s) - before;
+        EXPECT_NEAR(moved, std::fabs(sigmas) > 3.5 ? 0 : gain * innovation, 0.03 * std::fabs(gain * innovation) + 2e-4) << sigmas;
+    }
+}
+
+TEST(GroundSpeed, believes_a_new_speed_after_as_many_refusals_as_configured)
+{
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    ground_speed_state_t state = settled(config, 0.3);
+    for (int value = 1; value <= config.gate_patience + 1; ++value) {
+        const ground_speed_input_t input = with_radar(0, 0.9);
+        ground_speed_step(&config, &state, &input);
+        if (value <= config.gate_patience) {
+            EXPECT_NEAR(state.speed_m_s, 0.3, 0.01) << value;
+        } else {
+            EXPECT_NEAR(state.speed_m_s, 0.9, 0.01); // nothing is known any more: the value is the estimate
+        }
+    }
+}
+
+TEST(GroundSpeed, three_quiet_echoes_mean_a_low_speed_when_the_prediction_allows_it_and_a_fade_when_it_does_not)
+{
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    for (const double v : {0.06, 0.5}) {
+        ground_speed_state_t state = settled(config, v);
+        for (int value = 1; value <= 4; ++value) {
+            const double before = static_cast<double>(state.speed_m_s);
+            const ground_speed_input_t input = with_radar(0, 0.2, true);
+            ground_speed_step(&config, &state, &input);
+            const double after = static_cast<double>(state.speed_m_s);
+            if (value < config.quiet_needed || v > 0.4) {
+                EXPECT_NEAR(after, before, 1e-4) << v << " " << value;
+            } else {
+                EXPECT_LT(after, 0.95 * before) << value; // towards 0, by the share of P in P + (0.03 m/s)^2
+                EXPECT_GT(after, 0.5 * before) << value;
+            }
+        }
+    }
+}
+
+TEST(GroundSpeed, stands_from_the_third_quiet_echo_on_and_slides_while_the_echo_is_loud)
+{
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    ground_speed_state_t state = settled(config, 0.5);
+    for (int k = 0; k < 60; ++k) { // four blocked wheels on a slope: 0.5 m/s and a loud echo
+        const ground_speed_input_t input = k % 12 == 0 ? with_radar(0, 0.5, false, 0) : only_accel(0, 0);
+        EXPECT_FALSE(ground_speed_step(&config, &state, &input).standstill) << k;
+    }
+    for (int value = 1; value <= 3; ++value) {
+        const ground_speed_input_t input = with_radar(0, 0.2, true, 0);
+        EXPECT_EQ(ground_speed_step(&config, &state, &input).standstill, value == 3) << value;
+    }
+}
+
+// Values drawn from the model that the filter has: independent errors of variance R, windows of the Hann window's square.
+TEST(GroundSpeed, knows_its_own_uncertainty)
+{
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    clutter::Random random{41};
+    ground_speed_state_t state;
+    ground_speed_reset(&config, &state);
+    const double v = 0.4, R = 3e-5 + 5.8e-4 * v;
+    double square = 0, claimed = 0;
+    int n = 0;
+    for (int k = 0; k < 200000; ++k) {
+        const double accel = 0.05 + 0.2 * random.normal(); // constant speed, a bias, 0.2 m/s^2 of noise
+        const bool value = k % 12 == 0;
+        const ground_speed_input_t input = value ? with_radar(accel, v + std::sqrt(R) * random.normal()) : only_accel(accel);
+        const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
+        if (k > 1000) {
+            square += std::pow(static_cast<double>(out.speed_m_s) - v, 2);
+            claimed += std::pow(static_cast<double>(out.std_m_s), 2);
+            ++n;
+        }
+    }
+    std::printf("rms error %.2f cm/s, claimed %.2f cm/s\n", 100 * std::sqrt(square / n), 100 * std::sqrt(claimed / n));
+    EXPECT_NEAR(std::sqrt(square / claimed), 1, 0.1); // the claim is made at the values; between them noise adds up to 12 * 4e-6 of 2.3e-4 m^2/s^2
 }
 
 } // namespace

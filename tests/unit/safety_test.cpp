@@ -256,4 +256,93 @@ TEST_F(DrivingRover, a_radar_that_repeats_one_value_while_the_wheels_turn_is_los
     EXPECT_EQ(trace.faults, FAULT_RADAR_LOST);
 }
 
+TEST_F(DrivingRover, one_missed_tick_in_150_is_forgiven_for_ever_and_one_in_50_is_not)
+{
+    for (int i = 0; i < 20; ++i) {
+        tick += 1;
+        run(149);
+        EXPECT_EQ(trace.faults, 0u) << i; // one is forgotten per 100 good ticks
+    }
+    int rounds = 0;
+    while (trace.faults == 0u && rounds < 30) {
+        tick += 1;
+        run(49);
+        ++rounds;
+    }
+    EXPECT_EQ(trace.faults, FAULT_MISSED_TICKS);
+    EXPECT_GE(rounds, 6);  // five are tolerated
+    EXPECT_LE(rounds, 7);  // 49 good ticks forget none before the count starts again
+}
+
+TEST_F(DrivingRover, a_rising_radar_signal_is_not_a_frozen_one_and_a_radar_that_is_not_there_cannot_freeze)
+{
+    frozen = true; // the fixture leaves the samples alone
+    for (int i = 0; i < 150; ++i) {
+        for (int n = 0; n < 6; ++n) {
+            frame.radar_count[n] = static_cast<uint16_t>(100 + (5 * i + n) % 800); // rises for 160 ticks
+        }
+        run(1);
+        ASSERT_EQ(trace.faults, 0u) << i;
+    }
+    config.safety.required &= ~static_cast<uint32_t>(FRAME_RADAR);
+    frame.present &= ~static_cast<uint32_t>(FRAME_RADAR);
+    for (auto &count : frame.radar_count) {
+        count = 512;
+    }
+    run(300);
+    EXPECT_EQ(trace.faults, 0u);
+}
+
+TEST_F(DrivingRover, a_radar_may_repeat_itself_while_one_wheel_hardly_turns)
+{
+    frozen = true;
+    for (auto &count : frame.radar_count) {
+        count = 512;
+    }
+    for (int wheel = 0; wheel < WHEEL_COUNT; ++wheel) {
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            turn[i] = i == wheel ? 20 : 29; // 2.1 rad/s is 0.12 m/s, below 0.15 m/s; 3 rad/s is 0.17 m/s
+        }
+        run(130);
+        EXPECT_EQ(trace.faults & FAULT_RADAR_LOST, 0u) << wheel;
+    }
+}
+
+TEST_F(DrivingRover, the_lamp_is_lit_while_a_fault_is_latched)
+{
+    EXPECT_FALSE(trace.actuator.status_led);
+    frame.emergency_stop = true;
+    run(1);
+    EXPECT_TRUE(trace.actuator.status_led);
+}
+
+// SPEED_DISAGREE through the whole tick: 0.5 m/s that only the accelerometer's integral knows of, 0.057 m wheels.
+TEST(Disagreement, is_measured_against_the_fastest_wheel)
+{
+    for (int fastest = 0; fastest < WHEEL_COUNT; ++fastest) {
+        for (const int pulses : {43, 36}) { // 4.5 and 3.8 rad/s: 1.5 R w + 0.15 is 0.535 and 0.472 m/s
+            control_config_t config = rover_config_default();
+            config.safety.required = 0;
+            control_state_t state;
+            control_reset(&config, &state);
+            state.ground_speed.speed_m_s = 0.5f;
+            command_t command = {};
+            command.mode = MODE_OPEN_LOOP;
+            sensor_frame_t frame = {};
+            frame.battery_count = 1800;
+            frame.present = 0xfu | FRAME_BATTERY;
+            trace_t trace = {};
+            for (uint32_t tick = 0; tick < 200; ++tick) {
+                frame.tick = tick;
+                for (int i = 0; i < WHEEL_COUNT; ++i) {
+                    frame.encoder_count[i] += i == fastest ? pulses : 10;
+                }
+                trace = control_step(&config, &state, &command, &frame);
+            }
+            ASSERT_NEAR(trace.speed_m_s, 0.5f, 1e-5f);
+            EXPECT_EQ(trace.faults, pulses == 43 ? 0u : static_cast<uint32_t>(FAULT_SPEED_DISAGREE)) << fastest << " " << pulses;
+        }
+    }
+}
+
 } // namespace

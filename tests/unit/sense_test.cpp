@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace {
 
@@ -115,6 +116,45 @@ TEST(Sense, scales_every_raw_count)
     EXPECT_FLOAT_EQ(out.accel_x_m_s2, -1.0f);
     EXPECT_FLOAT_EQ(out.gyro_z_rad_s, 1.0f);
     EXPECT_FLOAT_EQ(out.battery_V, 7.2f);
+}
+
+TEST(Sense, derivative_is_its_formula_for_a_wheel_that_jumps)
+{
+    const sense_config_t config = rover_config_default().sense;
+    sense_state_t state = {};
+    sensor_frame_t frame = quiet_frame();
+    std::vector<int> counts;
+    for (int k = 0; k < 40; ++k) {
+        counts.push_back(k < 20 ? 100 : counts.back() + 300); // 31 rad/s from one tick to the next, as no grip holds it
+        for (auto &count : frame.encoder_count) {
+            count = counts.back();
+        }
+        const sense_output_t out = sense_measure(&config, &state, &frame);
+        if (k >= 8) {
+            const std::size_t n = static_cast<std::size_t>(k);
+            const double bend = counts[n] - 2 * counts[n - 4] + counts[n - 8];
+            EXPECT_NEAR(out.accel_rad_s2[2], bend * (2 * M_PI / 6000) / (0.04 * 0.04), 1e-3) << k; // (2); float roundings of 800
+        }
+    }
+}
+
+TEST(Sense, an_encoder_that_falls_silent_after_its_first_count_is_at_rest)
+{
+    const sense_config_t config = rover_config_default().sense;
+    sense_state_t state = {};
+    sensor_frame_t frame = quiet_frame();
+    for (auto &count : frame.encoder_count) {
+        count = 1234567;
+    }
+    sense_measure(&config, &state, &frame);
+    frame.present &= ~15u;
+    for (int k = 0; k < 30; ++k) {
+        const sense_output_t out = sense_measure(&config, &state, &frame);
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            EXPECT_EQ(out.speed_rad_s[i], 0);
+            EXPECT_EQ(out.accel_rad_s2[i], 0);
+        }
+    }
 }
 
 } // namespace

@@ -114,4 +114,15 @@ TEST(WheelPid, never_exceeds_the_limit_for_any_input)
     }
 }
 
+TEST(WheelPid, derivative_brakes_by_the_measured_acceleration)
+{
+    wheel_pid_config_t config = rover_config_default().wheel_pid;
+    config.kd_s2 = 0.01f;
+    for (const float accel : {-3.0f, 0.0f, 5.0f}) {
+        wheel_pid_state_t state = {.integral = 0.1f, .reference_rad_s = 2.0f};
+        const wheel_pid_input_t input = {.speed_rad_s = 2.0f, .accel_rad_s2 = accel, .feed_forward = 0.2f};
+        EXPECT_NEAR(wheel_pid_step(&config, &state, &input).duty, 0.3f - 0.01f * accel, 1e-6f); // (2): three roundings below 1
+    }
+}
+
 } // namespace
