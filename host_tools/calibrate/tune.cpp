@@ -11,6 +11,7 @@ namespace traction {
 namespace {
 
 constexpr double tick_s = 0.01;
+constexpr double probe_duty = 0.1;
 
 // Stops the motors when it goes out of scope, however that happens.
 class Stopper {
@@ -54,9 +55,8 @@ class Experiment {
   public:
     Experiment(const hal_t &hal, const control_config_t &config, const TuneLimits &limits) : hal_(hal), config_(config), limits_(limits) {}
 
-    // Drives all wheels with `duty` for `seconds`; a wheel at its torque limit coasts for the rest of the pulse.
+    // Drives all wheels with `duty` for `seconds`, less where (3) would pass the torque limit. Without (3), the probe: as it is.
     void pulse(double duty, double seconds) {
-        std::array<bool, WHEEL_COUNT> over{};
         for (double t = 0; t < seconds; t += tick_s) {
             if (used_s_ >= limits_.time_s) throw std::runtime_error("tune: the time limit is over before the experiment is; give more --time-s");
             if (hal_.wait_tick(hal_.context) != HAL_OK) throw std::runtime_error("tune: the rover's loop ended before the experiment did");
@@ -72,12 +72,14 @@ class Experiment {
                 const double w = static_cast<double>(sense.speed_rad_s[i]);
                 const double torque = static_cast<double>(config_.motor.torque_constant_Nm_A) * std::fabs(static_cast<double>(sense.current_A[i]));
                 largest_Nm_ = std::max(largest_Nm_, torque);
-                over[i] = over[i] || torque > limits_.torque_Nm;
+                if (torque > limits_.torque_Nm * largest_excess)
+                    throw std::runtime_error("tune: wheel " + std::to_string(i) + " took more torque than allowed; check its current sensor, or raise --torque-Nm");
+                learn_circuit(i, w, static_cast<double>(sense.current_A[i]));
                 // duty of the tick before last acts over the difference that the encoder shows now: half of each; only turning wheels obey (1)
                 const bool turning = std::fabs(w) > 0.5 && std::fabs(last_w_[i]) > 0.5 && last_duty_[i] * w > 0 && last_duty_[i] == older_duty_[i];
                 if (turning) fit_[i].add({last_w_[i], last_duty_[i] * battery_V_, last_duty_[i] > 0 ? 1.0 : -1.0}, w);
                 older_duty_[i] = last_duty_[i];
-                last_duty_[i] = over[i] ? 0 : duty;
+                last_duty_[i] = within_torque(i, duty, w);
                 last_w_[i] = w;
                 out.duty_q15[i] = static_cast<std::int16_t>(std::lround(last_duty_[i] * 32767));
             }
@@ -107,10 +109,30 @@ class Experiment {
     }
 
   private:
+    // (3) for the duty written last, whose current is read now: R from the probe at rest, ke from what turns.
+    void learn_circuit(std::size_t i, double w, double current_A) {
+        const double volt = last_duty_[i] * battery_V_;
+        if (std::fabs(w) < 0.3 && std::fabs(current_A) > 0.02 && volt * current_A > 0) { // 10 steps of the converter
+            ohm_[i] = ohm_[i] > 0 ? std::min(ohm_[i], volt / current_A) : volt / current_A;
+        } else if (std::fabs(w) > 1 && ohm_[i] > 0) {
+            emf_Vs_[i] += 0.3 * (std::max(0.0, (volt - ohm_[i] * current_A) / w) - emf_Vs_[i]);
+        }
+    }
+    double within_torque(std::size_t i, double duty, double w) const {
+        if (!(ohm_[i] > 0)) return std::clamp(duty, -probe_duty, probe_duty);
+        const double most_A = margin * limits_.torque_Nm / static_cast<double>(config_.motor.torque_constant_Nm_A);
+        const double emf = emf_Vs_[i] * w / battery_V_, swing = ohm_[i] * most_A / battery_V_;
+        return std::clamp(std::clamp(duty, emf - swing, emf + swing), -1.0, 1.0);
+    }
+
+    static constexpr double margin = 0.9;         // what the wheel's speed changes in a tick, and the error of ke
+    static constexpr double largest_excess = 1.2; // beyond, (3) does not hold
+
     const hal_t &hal_;
     const control_config_t &config_;
     const TuneLimits &limits_;
     sense_state_t sense_{};
+    std::array<double, WHEEL_COUNT> ohm_{}, emf_Vs_{};
     std::array<Fit, WHEEL_COUNT> fit_{};
     std::array<double, WHEEL_COUNT> last_w_{}, last_duty_{}, older_duty_{};
     double used_s_ = 0, battery_V_ = 0, largest_Nm_ = 0;
@@ -121,6 +143,8 @@ class Experiment {
 TuneResult tune(const hal_t &hal, const control_config_t &config, const TuneLimits &limits) {
     const Stopper stopper(hal);
     Experiment experiment(hal, config, limits);
+    experiment.pulse(probe_duty, 0.03); // the current of a wheel at rest tells its circuit
+    experiment.pulse(0, 0.1);
     for (const double duty : {0.5, -0.5, 1.0, -1.0, 0.7, -0.7}) {
         experiment.pulse(duty * limits.duty, 0.7);
         experiment.pulse(0, 0.5);

@@ -2,6 +2,7 @@
 //
 //   w[k+1] = a w[k] + b duty[k] V[k] + c sgn(duty[k])                               (1)  least squares, each wheel; a = exp(-p T)
 //   Kp = x/g, g = b V/T, Ki = p Kp                                                (2)  zero on the pole
+//   |duty V - ke w| <= Ra Gamma_max/KG                                            (3)  the torque limit, before a duty is written
 //
 // With the zero on the pole the open loop is an integrator with a delay of 2 T (half a tick of hold, half of the encoder's
 // difference, one of computation): crossover x = (90 deg - margin)/(2 T) in radians (derived here).
@@ -17,7 +18,7 @@
 namespace traction {
 
 struct TuneLimits {
-    double torque_Nm = 0.3;     // at the wheel; a pulse ends where the measured current makes it
+    double torque_Nm = 0.3;     // at the wheel, driving or braking, by (3) with Ra and ke found in the experiment itself
     double duty = 0.6;          // largest pulse
     double time_s = 20;         // of the whole experiment
     double margin_deg = 62;     // phase margin asked for

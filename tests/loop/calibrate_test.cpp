@@ -114,7 +114,8 @@ TEST(Tune, finds_the_gripping_motor_within_its_limits_and_stops_it) {
     EXPECT_GT(r.kp_s, 0.24 * 0.2 / 0.24 * 0.9);  // 24.4/118 = 0.207
     EXPECT_LT(r.kp_s, 24.4 / 80 * 1.15);         // 0.305, and the rover's body counts less while its wheels slip
     EXPECT_LT(r.used_s, limits.time_s);
-    EXPECT_LT(r.largest_torque_Nm, 0.25 + 0.265 * 7.2 * 0.6 / 3.24); // seen at the end of the tick in which it is passed
+    EXPECT_LE(r.largest_torque_Nm, 0.25);
+    EXPECT_GT(r.largest_torque_Nm, 0.15); // and it is made use of
 }
 
 TEST(Tune, stops_the_motors_whatever_ends_it) {
