@@ -76,7 +76,8 @@ Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double
     }
     problem.jacobian = problem.row_scale.cwiseQuotient(before).asDiagonal() * problem.jacobian;
     const Eigen::Index parameters = problem.theta.size(), all = first_column(candidates, parameters, static_cast<int>(candidates.size()));
-    Eigen::MatrixXd X(problem.row_scale.size(), all);
+    Eigen::MatrixXd X(problem.row_scale.size(), all + 1);
+    X.col(all) = problem.residual.cwiseProduct(problem.row_scale);
     X.leftCols(parameters) = problem.jacobian;
     Eigen::Index column = parameters;
     for (const Sized &s : candidates)
@@ -88,7 +89,15 @@ Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double
     return X.transpose() * X;
 }
 
-double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival) {
+namespace {
+
+// A at its size, and any column, with all that the parameters and the rival can take from them.
+struct Unabsorbed {
+    double own = 0;   // square of A
+    double with = 0;  // A times the column
+};
+
+Unabsorbed unabsorbed(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival, Eigen::Index column) {
     const Eigen::Index parameters = precision.size();
     std::vector<Eigen::Index> rest;
     for (Eigen::Index i = 0; i < parameters; ++i) rest.push_back(i);
@@ -103,9 +112,22 @@ double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precisi
     const Eigen::VectorXd unit = R.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(); // parameters' units differ by decades
     R = unit.asDiagonal() * R * unit.asDiagonal();
     R.diagonal().array() += 1e-9; // a parameter that nothing sees stays where it is
-    const Eigen::VectorXd cross = unit.cwiseProduct(gram(rest, Eigen::seqN(at, k)) * g);
-    const double whole = g.dot(gram.block(at, at, k, k) * g), absorbed = cross.dot(R.ldlt().solve(cross));
-    return std::sqrt(std::max(0.0, whole - absorbed));
+    const Eigen::LDLT<Eigen::MatrixXd> factor(R);
+    const Eigen::VectorXd cross = unit.cwiseProduct(gram(rest, Eigen::seqN(at, k)) * g), absorbed = factor.solve(cross);
+    Unabsorbed out{std::max(0.0, g.dot(gram.block(at, at, k, k) * g) - cross.dot(absorbed)), 0};
+    if (column >= 0) out.with = g.dot(gram.block(at, column, k, 1).col(0)) - absorbed.dot(unit.cwiseProduct(gram(rest, column)));
+    return out;
+}
+
+} // namespace
+
+double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival) {
+    return std::sqrt(unabsorbed(gram, precision, candidates, truth, rival, -1).own);
+}
+
+double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival) {
+    const Unabsorbed u = unabsorbed(gram, precision, candidates, truth, rival, gram.cols() - 1);
+    return u.own > 0 ? std::fabs(u.with) / std::sqrt(u.own) : 0;
 }
 
 } // namespace traction::lab

@@ -1,7 +1,7 @@
 // information.h - what a log, made or planned, tells of a model's parameters and of effects that it lacks; and how far two of these
 // stay apart when everything else may give way.
 //
-//   G = sum over rows of x x' / s^2,  x = sensitivities to [the model's free parameters | strengths of the candidates]            (1)
+//   G = sum over rows of x x' / s^2,  x = [sensitivities to the model's free parameters | to the candidates' strengths | residual] (1)
 //   d'^2 = g' (G_AA - G_AR (G_RR + P)^-1 G_RA) g,  A the true effect of size g, R all free parameters and the rival, P priors     (2)
 // (2) is the squared difference between what A does and the nearest that the rival and the parameters can do (T-optimality, Atkinson
 // and Fedorov 1975, linearised). Gram matrices of several drives add: what a log told tightens what the next may give way.
@@ -37,5 +37,8 @@ Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double
 // (2) as d', the sum of G over drives given. `truth` and `rival` index the candidates, in the order given to information(); rival -1:
 // none. precision: of the parameters' priors.
 double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival);
+
+// What the residual shows of A, beside R, in standard deviations: about 1 where it is noise.
+double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival);
 
 } // namespace traction::lab

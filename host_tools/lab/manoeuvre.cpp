@@ -71,8 +71,8 @@ std::vector<Manoeuvre> make_manoeuvres() {
             .speed(6, "0.05").speed(6, "0.2").speed(6, "0.6").speed(6, "-0.1").speed(6, "-0.5").made(),
         Drive("creep back and forth", {"stribeck_friction", "coulomb_friction", "backlash", "current_offset", "torque_ripple", "bridge_dead_time"})
             .wheels(24, "{ amplitude = 1.5, period_s = 6.0 }").made(),
-        Drive("push and brake by duty, quickly", {"backlash", "bridge_dead_time", "actuation_delay", "accel_scale"})
-            .duty(12, "{ amplitude = 0.8, period_s = 0.8 }").made(),
+        Drive("push and brake by duty", {"backlash", "bridge_dead_time", "actuation_delay", "accel_scale"})
+            .duty(12, "{ amplitude = 0.6, period_s = 2.0 }").made(),
         Drive("turns on the spot and on the move", {"lateral_scrub", "wheel_radius", "mass_offset_y"})
             .speed(6, "0.2", "0.8").speed(6, "0.2", "-0.8").speed(6, "0.0", "0.9").made(),
         Drive("a square: along, across, back", {"grade", "soil_gradient", "accel_bias"})

@@ -84,11 +84,15 @@ const CandidateResult *find_result(const Diagnosis &d, const std::string &label)
     return nullptr;
 }
 
+// d' of one role, less where the forward model's own error on these drives looks like the effect: it must not be taken for it.
+double trusted(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, int truth, int rival) {
+    return detectability(gram, precision, plan.candidates, truth, rival) / std::max(1.0, imitation(gram, precision, plan.candidates, truth, rival));
+}
+
 // The least of "A is true, B stands in" and the other way round; whether A shows at all when it is alone.
 double distance(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const Asked &asked) {
-    if (asked.members.size() == 1) return detectability(gram, precision, plan.candidates, asked.members[0], -1);
-    return std::min(detectability(gram, precision, plan.candidates, asked.members[0], asked.members[1]),
-                    detectability(gram, precision, plan.candidates, asked.members[1], asked.members[0]));
+    if (asked.members.size() == 1) return trusted(plan, gram, precision, asked.members[0], -1);
+    return std::min(trusted(plan, gram, precision, asked.members[0], asked.members[1]), trusted(plan, gram, precision, asked.members[1], asked.members[0]));
 }
 
 bool answers(const Plan &plan, double before, double after) {
@@ -142,7 +146,7 @@ void learn_from_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen:
         precision = Eigen::VectorXd::Zero(n);
         for (Eigen::Index i = 0; i < n; ++i)
             if (const double prior = parameters[static_cast<std::size_t>(i)].prior; prior > 0) precision[i] = 1 / (prior * prior);
-        gram = Eigen::MatrixXd::Zero(n + count, n + count);
+        gram = Eigen::MatrixXd::Zero(n + count + 1, n + count + 1);
         plan.data = nullptr;
         return;
     }
@@ -155,6 +159,8 @@ void learn_from_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen:
     Problem problem(*plan.data, make_physics(plan.base), free_parameters(plan.base, make_physics(plan.base)));
     problem.linearise();
     gram = information(problem, plan.scale, plan.candidates);
+    gram.rightCols(1).setZero(); // its residual holds what is hidden
+    gram.bottomRows(1).setZero();
     precision = problem.prior_precision();
 }
 
@@ -187,7 +193,7 @@ void judge_alone(Table &table, const Eigen::MatrixXd &everything, NextExperiment
         Question &one = next.questions[q];
         table.before.push_back(one.before = table.at(table.log, q));
         for (const Eigen::MatrixXd &gram : table.grams) one.best = std::max(one.best, table.at(table.log + gram, q));
-        table.answerable.push_back(answers(table.plan, one.before, table.at(everything, q)));
+        table.answerable.push_back(answers(table.plan, one.before, std::max(one.best, table.at(everything, q))));
         one.status = one.before >= answered_at && !table.plan.undecided ? "told" : table.answerable.back() ? "later" : "never";
     }
     for (std::size_t m = 0; m < list.size(); ++m) {
