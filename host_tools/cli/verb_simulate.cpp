@@ -2,6 +2,7 @@
 #include "progress.h"
 #include "verbs.h"
 
+#include "host_tools/lab/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
 #include "host_tools/simulate/batch.h"
@@ -19,7 +20,7 @@ namespace traction::cli {
 namespace {
 
 struct Arguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware;
+    std::string scenario, out, truth, frames, seal, seeds, firmware, model;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     std::vector<std::string> effects;
@@ -54,8 +55,22 @@ nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
     return {{"seed", seed}, {"ticks", result.ticks}, {"simulated_s", static_cast<double>(result.ticks) / 100}, {"faults", result.faults}, {"trace_hash", hash}};
 }
 
+// The scenario's drive, sensors and faults with a lab's model for rover, ground and effects.
+void drive_as(const std::string &file, sim::Scenario &scenario) {
+    const lab::Model model = lab::read_model(file);
+    if (const std::string why = lab::cannot_drive(model); !why.empty()) throw lab::ModelError(file, 0, "--model", "cannot be driven: " + why, "give the model of a four-wheeled rover");
+    std::vector<std::string> notes;
+    const sim::Scenario machine = sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
+    scenario.plant.rover = machine.plant.rover;
+    scenario.plant.ground.soil = machine.plant.ground.soil;
+    scenario.plant.ground.grip_noise = machine.plant.ground.grip_noise;
+    scenario.effects = machine.effects;
+    for (const std::string &note : notes) std::printf("note: %s\n", note.c_str());
+}
+
 void run(const Arguments &arguments, Outcome &outcome) {
-    const sim::Scenario scenario = sim::read_scenario(arguments.scenario);
+    sim::Scenario scenario = sim::read_scenario(arguments.scenario);
+    if (!arguments.model.empty()) drive_as(arguments.model, scenario);
     SimulateOptions options;
     options.truth = !arguments.truth.empty();
     options.realtime = arguments.realtime;
@@ -98,6 +113,7 @@ void add_simulate(CLI::App &app, Outcome &outcome) {
     verb->add_option("--truth", arguments->truth, "what really happened, in a file of its own")->type_name("FILE");
     verb->add_option("--seed", arguments->seed, "instead of the scenario's seed")->check(CLI::NonNegativeNumber);
     verb->add_option("--effect", arguments->effects, "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)")->type_name("EFFECT");
+    verb->add_option("--model", arguments->model, "rover, ground and effects of a lab's model (TOML) instead of the scenario's")->type_name("FILE");
     CLI::Option *hide = verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
     verb->add_option("--hide-count", arguments->hide_count, "how many effects to hide")->check(CLI::Range(1, 5))->needs(hide);
     verb->add_option("--seal", arguments->seal, "write what was hidden to this file")->type_name("FILE");

@@ -1,0 +1,37 @@
+// round_trip.h - simulate with known numbers, fit, and count how many of them lie inside the fit's 95 % intervals.
+//
+// Two sources of logs: the independent rover (tests/lab/generator, its machine drawn off its data sheet) and the ODE plant (the model's
+// own numbers moved by their priors). One effect of known size is hidden in each and its place in the model is given to the fit: what is judged
+// is the interval, not the search.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace traction::round_trip {
+
+enum class Source { independent, plant };
+
+struct Estimate {
+    std::string key;  // "motor.resistance_ohm"; "effect: slip_sinkage" for the hidden effect's strength
+    double truth = 0, value = 0, low = 0, high = 0;
+    bool inside() const { return low <= truth && truth <= high; }
+    double standard_errors() const { return (value - truth) / ((high - low) / (2 * 1.96)); }
+};
+
+// One log: simulated, fitted, compared. Throws what the lab throws.
+std::vector<Estimate> run(Source source, std::uint64_t seed, double duration_s);
+
+struct Tally {
+    int inside = 0, count = 0;
+    double sum = 0, squares = 0; // of the distance, estimate minus truth, in standard errors
+};
+
+// By key, and "all effects", "all parameters".
+std::map<std::string, Tally> tally(const std::vector<Estimate> &estimates);
+
+std::string table(const std::map<std::string, Tally> &tallies);
+
+} // namespace traction::round_trip
