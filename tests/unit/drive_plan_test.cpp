@@ -78,4 +78,15 @@ TEST(SoilSweep, passes_zero_slip_at_ten_seconds)
     EXPECT_NEAR(soil_sweep_step(&config, &state, 0.3f).front_rad_s, 2 * 0.3 / 0.057, 1e-5);
 }
 
+TEST(SpeedControl, integral_shrinks_although_saturated)
+{
+    const speed_control_config_t config = rover_config_default().speed_control;
+    for (const float sign : {1.0f, -1.0f}) {
+        speed_control_state_t state = {.integral_rad_s = 2.0f * sign};
+        const speed_control_input_t input = {.speed_ref_m_s = 0.3f * sign, .yaw_rate_ref_rad_s = 0, .speed_m_s = 0.35f * sign, .saturated = true};
+        speed_control_step(&config, &state, &input);
+        EXPECT_NEAR(state.integral_rad_s, (2.0f - 0.05f * config.ki_T_rad_m) * sign, 1e-6f); // (1)
+    }
+}
+
 } // namespace

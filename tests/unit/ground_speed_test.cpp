@@ -319,4 +319,35 @@ TEST(GroundSpeed, knows_its_own_uncertainty)
     EXPECT_NEAR(std::sqrt(square / claimed), 1, 0.1); // the claim is made at the values; between them noise adds up to 12 * 4e-6 of 2.3e-4 m^2/s^2
 }
 
+TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels)
+{
+    for (const bool paper : {false, true}) {
+        const ground_speed_config_t config = (paper ? rover_config_paper() : rover_config_default()).ground_speed;
+        for (const double wheel : {-0.4, 0.4}) {
+            ground_speed_state_t state;
+            ground_speed_reset(&config, &state);
+            const ground_speed_input_t input = with_radar(0, 0.35, false, wheel);
+            EXPECT_NEAR(ground_speed_step(&config, &state, &input).speed_m_s, wheel < 0 ? -0.35 : 0.35, 0.35 * 0.01) << paper; // P = (1 m/s)^2, so the gain is 1 but for 4e-4
+        }
+    }
+}
+
+TEST(GroundSpeed, takes_a_value_of_a_short_window_only_while_the_speed_is_steady)
+{
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    for (const double accel : {0.1, 0.3}) { // 0.2 m/s^2 is the limit
+        ground_speed_state_t state;
+        ground_speed_reset(&config, &state);
+        for (int k = 0; k < 60; ++k) {
+            const ground_speed_input_t input = only_accel(accel);
+            ground_speed_step(&config, &state, &input);
+        }
+        const double before = static_cast<double>(state.speed_m_s);
+        ground_speed_input_t input = with_radar(accel, 0.8);
+        input.doppler_late_s = -0.1f;
+        const double moved = static_cast<double>(ground_speed_step(&config, &state, &input).speed_m_s) - before;
+        EXPECT_EQ(std::fabs(moved) > 0.1, accel < 0.2) << accel;
+    }
+}
+
 } // namespace

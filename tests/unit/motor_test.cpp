@@ -72,4 +72,12 @@ TEST(Motor, every_extreme_gives_a_bounded_duty)
     }
 }
 
+TEST(Motor, a_supply_below_a_volt_is_a_broken_wire)
+{
+    EXPECT_NEAR(motor_per_supply(7.2f), 1 / 7.2, 1e-7);
+    for (const float bad : {0.0f, 0.5f, -7.2f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        EXPECT_EQ(motor_per_supply(bad), 0.0f) << bad;
+    }
+}
+
 } // namespace

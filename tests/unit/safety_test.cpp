@@ -345,4 +345,29 @@ TEST(Disagreement, is_measured_against_the_fastest_wheel)
     }
 }
 
+TEST_F(DrivingRover, windings_warm_up_by_their_thermal_model)
+{
+    for (float &rise : state.safety.rise_K) {
+        rise = 0;
+    }
+    for (auto &count : frame.current_count) {
+        count = 2048 + 600; // 1.2 A: below every limit
+    }
+    run(3000);
+    EXPECT_EQ(trace.faults, 0u);
+    for (const float rise : state.safety.rise_K) {
+        EXPECT_NEAR(rise, 1.44 * 3.24 * 12 * (1 - std::exp(-30.0 / 60)), 0.05); // I^2 Ra R_th (1 - exp(-t/tau)); a step of 40 ms of 60 s
+    }
+}
+
+TEST_F(DrivingRover, a_battery_that_is_not_measured_is_not_low)
+{
+    config.safety.required &= ~static_cast<uint32_t>(FRAME_BATTERY);
+    control_reset(&config, &state);
+    frame.present &= ~static_cast<uint32_t>(FRAME_BATTERY);
+    run(200);
+    EXPECT_EQ(trace.battery_voltage_V, 0.0f);
+    EXPECT_EQ(trace.faults, 0u);
+}
+
 } // namespace

@@ -119,4 +119,17 @@ TEST(SlipPi, integral_stands_still_beyond_the_limit_and_comes_back_at_once)
     }
 }
 
+TEST(SlipPi, integrates_both_ways_within_the_limit)
+{
+    const slip_pi_config_t config = {.kp = 0.5f, .ki_T = 0.01f, .duty_max = 1, .per_speed_s_m = 0, .gain_min = 1, .gain_max = 1};
+    for (const float error : {-0.3f, 0.3f}) {
+        slip_pi_state_t state = {};
+        const slip_pi_input_t input = {.slip_ref = error, .slip = 0, .speed_m_s = 0.3f};
+        for (int k = 0; k < 10; ++k) {
+            slip_pi_step(&config, &state, &input);
+        }
+        EXPECT_NEAR(state.integral, 0.1f * error, 1e-7f); // ten steps of Ki T e
+    }
+}
+
 } // namespace

@@ -125,4 +125,21 @@ TEST(WheelPid, derivative_brakes_by_the_measured_acceleration)
     }
 }
 
+TEST(WheelPid, integral_stands_still_beyond_either_limit_and_comes_back_at_once)
+{
+    const wheel_pid_config_t config = rover_config_default().wheel_pid;
+    for (const float sign : {1.0f, -1.0f}) {
+        wheel_pid_state_t state = {.integral = 0.5f * sign, .reference_rad_s = 10.0f * sign};
+        const wheel_pid_input_t blocked = {.speed_rad_s = 0, .accel_rad_s2 = 0, .feed_forward = 0};
+        for (int k = 0; k < 100; ++k) {
+            EXPECT_EQ(wheel_pid_step(&config, &state, &blocked).duty, sign);
+        }
+        EXPECT_EQ(state.integral, 0.5f * sign); // (3)
+        state.integral = 1.5f * sign;
+        const wheel_pid_input_t fast = {.speed_rad_s = 10.5f * sign, .accel_rad_s2 = 0, .feed_forward = 0};
+        wheel_pid_step(&config, &state, &fast);
+        EXPECT_NEAR(state.integral, (1.5f - 0.5f * config.ki_T_s) * sign, 1e-6f); // still beyond the limit, but the error brings it back
+    }
+}
+
 } // namespace
