@@ -244,8 +244,8 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const Physics physics = make_physics(model);
     Problem best(data, physics, free_parameters(model, physics));
     const std::vector<Eigen::Index> list = find_wanted(best, model, wanted);
-    best.fit({.iterations = 10, .reweight = true});
-    best.fit({.iterations = 10, .reweight = false}); // to the optimum of the scales that the profile keeps
+    for (int i = 0; i < 3; ++i) best.fit({.iterations = 10, .reweight = true}); // until the scales no longer depend on where the fit began
+    best.fit({.iterations = 10, .reweight = false});                            // to the optimum of the scales that the profile keeps
     const Eigen::VectorXd errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();
