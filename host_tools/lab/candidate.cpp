@@ -76,7 +76,8 @@ FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle 
             free.slots.push_back(slot);
         }
     }
-    free.step = std::max(1e-3 * span, 0.2 * spec.of_interest);
+    const bool play = candidate.effect == "backlash" || candidate.effect == "relaxation_length"; // whole integrations with a kink
+    free.step = play ? std::max(1e-3 * span, 0.2 * spec.of_interest) : 1e-7 * span;
     return free;
 }
 
@@ -197,7 +198,8 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
                     c.of_interest.push_back(spec->of_interest);
                     c.minimum.push_back(spec->minimum);
                     c.maximum.push_back(spec->maximum);
-                    c.step.push_back(std::max(spec->of_interest, 0.05 * spec->maximum));
+                    const bool play = c.effect == "backlash" || c.effect == "relaxation_length"; // nothing at zero tells of them
+                    c.step.push_back(play ? std::max(spec->of_interest, 0.05 * spec->maximum) : 1e-6 * spec->of_interest);
                 }
                 if (!c.strengths.empty()) list.push_back(std::move(c));
             }
@@ -256,7 +258,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
             free.minimum = -1e9;
             free.maximum = 1e9;
             const bool multiplier = c.target == TermTarget::soil_strength || c.target == TermTarget::motor_constant || c.target == TermTarget::resistance || c.target == TermTarget::radar;
-            free.step = multiplier ? 0.02 : c.target == TermTarget::rolling ? 0.02 : 0.005;
+            free.step = multiplier || c.target == TermTarget::rolling ? 2e-6 : 5e-7;
             c.step.push_back(free.step);
         }
     return list;

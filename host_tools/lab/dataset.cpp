@@ -155,6 +155,12 @@ struct Builder {
             if (distance_s[k] > limit) data.gap[k] = 1;
     }
 
+    template <typename Mean> static void integrate_voltage(WheelInput &input, const std::vector<double> &t, Mean &&mean_V) {
+        input.voltage_t_s = t;
+        input.voltage_integral_Vs.assign(1, 0);
+        for (std::size_t j = 0; j + 1 < t.size(); ++j) input.voltage_integral_Vs.push_back(input.voltage_integral_Vs.back() + mean_V(j) * (t[j + 1] - t[j]));
+    }
+
     void voltages() {
         const log::Signal *battery = signal("battery.voltage_V");
         const double nominal_V = parameter(model.rover, "battery_voltage_V");
@@ -163,15 +169,18 @@ struct Builder {
         else if (nominal_V > 0) battery_V.assign(data.count, nominal_V);
         bool told = false;
         for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+            WheelInput &input = data.wheel[i];
             if (const log::Signal *voltage = wheel_signal(i, "voltage_V")) {
-                for (std::size_t k = 0; k < data.count; ++k) data.wheel[i].voltage_V.push_back(interpolate(voltage->t_s, voltage->value, data.time(k)));
-            } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !battery_V.empty()) {
-                for (std::size_t k = 0; k < data.count; ++k) { // mean over the grid step of a duty held from its time on
-                    const double eighth = 0.125 * data.step_s, t = data.time(k);
-                    double sum = 0;
-                    for (int part = -3; part <= 3; part += 2) sum += hold(duty->t_s, duty->value, t + part * eighth);
-                    data.wheel[i].voltage_V.push_back(0.25 * sum * battery_V[k]);
-                }
+                for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(interpolate(voltage->t_s, voltage->value, data.time(k)));
+                integrate_voltage(input, voltage->t_s, [&](std::size_t j) { return 0.5 * (voltage->value[j] + voltage->value[j + 1]); });
+            } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !battery_V.empty()) { // held from its time on
+                const auto supply = [&](double t) {
+                    const double x = std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(data.count - 1));
+                    const auto k = std::min(static_cast<std::size_t>(x), data.count - 2);
+                    return battery_V[k] + (x - static_cast<double>(k)) * (battery_V[k + 1] - battery_V[k]);
+                };
+                for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(hold(duty->t_s, duty->value, data.time(k)) * battery_V[k]);
+                integrate_voltage(input, duty->t_s, [&](std::size_t j) { return duty->value[j] * supply(0.5 * (duty->t_s[j] + duty->t_s[j + 1])); });
             } else if (!told && model.wheel[i].driven) {
                 say("no motor voltage (duty and battery.voltage_V, or wheel<i>.voltage_V): the voltage balance is left out");
                 told = true;

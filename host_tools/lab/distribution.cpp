@@ -43,4 +43,13 @@ double f_tail(double f, double d1, double d2) {
     return incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f));
 }
 
+double t_quantile(double p, double freedom) {
+    double low = 0, high = 1e3;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (f_tail(middle * middle, 1, freedom) > p ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
 } // namespace traction::lab

@@ -1,4 +1,4 @@
-// distribution.h - tail probability of the F distribution.
+// distribution.h - tail probability of the F distribution, quantile of Student's t.
 #pragma once
 
 namespace traction::lab {
@@ -6,5 +6,8 @@ namespace traction::lab {
 // P(F > f) with d1, d2 degrees of freedom (d2 may be fractional); 1 when f <= 0. Derived from the regularised incomplete beta
 // function, continued fraction by Lentz's method; relative error < 1e-10 for d1 <= 20, d2 in 1..1000.
 double f_tail(double f, double d1, double d2);
+
+// t with P(|T| > t) = p for a Student t of `freedom` degrees. By bisection on f_tail; p in (0, 1).
+double t_quantile(double p, double freedom);
 
 } // namespace traction::lab

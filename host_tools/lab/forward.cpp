@@ -52,6 +52,25 @@ void Forward::rows_of(std::size_t balance, const std::vector<double> &series, do
     }
 }
 
+// Mean motor voltage over each row's window, a delay earlier, from the log's own integral.
+Eigen::VectorXd Forward::mean_voltage(std::size_t balance, double delay_s) const {
+    const Balance &b = data_->balance[balance];
+    const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
+    const std::vector<double> &t = in.voltage_t_s, &sum = in.voltage_integral_Vs;
+    Eigen::VectorXd mean(static_cast<Eigen::Index>(b.measured.size()));
+    std::size_t j = 0;
+    const auto integral_to = [&](double at) {
+        while (j + 2 < t.size() && t[j + 1] <= at) ++j;
+        while (j > 0 && t[j] > at) --j;
+        return sum[j] + (sum[j + 1] - sum[j]) / (t[j + 1] - t[j]) * (at - t[j]);
+    };
+    for (std::size_t r = 0; r < b.measured.size(); ++r) {
+        const double t0 = b.t0_s[r] - delay_s, t1 = std::max(b.t1_s[r] - delay_s, t0 + 1e-6), from = integral_to(t0);
+        mean[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
+    }
+    return mean;
+}
+
 std::size_t Forward::balance_of(BalanceKind kind, std::size_t wheel) const {
     std::size_t b = 0;
     while (b < data_->balance.size() && (data_->balance[b].kind != kind || data_->balance[b].wheel != static_cast<int>(wheel))) ++b;
@@ -95,8 +114,9 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
     series_.resize(d.count);
     std::vector<double> torque_series(with_bench ? d.count : 0), reading(d.count);
     const bool magnitude = physics.unsigned_current;
-    const double delay_steps = (body.voltage_delay0 + body.actuation_delay) / d.step_s;
-    double heat_K = 0;
+    double heat_K = 0, per_V = 0;
+    const bool varies = terms || p.heating != 0; // the resistance does
+    std::vector<double> per_V_series(varies && with_voltage ? d.count : 0);
     for (std::size_t k = 0; k < d.count; ++k) {
         const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
         const double constant = (1 + p.constant_change) * (1 + magnet_per_K * heat_K);
@@ -110,12 +130,7 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
             const double ripple = p.ripple_cos * std::cos(angle) + p.ripple_sin * std::sin(angle);
             gear += p.ripple_order < 0 ? ripple * soft_sign(w, friction_speed_rad_s) : ripple; // negative order: a friction that varies over the turn
         }
-        double u = 0;
-        if (with_voltage) {
-            const double x = std::clamp(static_cast<double>(k) - delay_steps, 0.0, static_cast<double>(d.count - 1));
-            const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
-            u = (in.voltage_V[i] + (x - static_cast<double>(i)) * (in.voltage_V[i + 1] - in.voltage_V[i])) / (1 + body.voltage_gain);
-        }
+        const double u = with_voltage && terms ? in.voltage_V[k] / (1 + body.voltage_gain) : 0;
         if (terms) {
             Signals s;
             s.t = d.time(k), s.w = w, s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
@@ -140,14 +155,22 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
         reading[k] = magnitude ? std::fabs(I_read) : I_read;
         if (with_voltage) {
             if (p.dead_voltage != 0) u_lost += p.dead_voltage * soft_sign(I, bridge_current_A);
-            const double I_voltage = Ra + p.wiring > 0 ? (u - u_lost - ke * w) / (Ra + p.wiring) : 0;
-            const double read = current_factor * I_voltage + p.current_offset + p.current_extra;
-            series_[k] = magnitude ? std::fabs(read) : read;
+            per_V = Ra + p.wiring > 0 ? current_factor / (Ra + p.wiring) : 0;
+            if (varies) per_V_series[k] = per_V / (1 + body.voltage_gain);
+            series_[k] = -per_V * (u_lost + ke * w) + p.current_offset + p.current_extra; // the motor's voltage follows by rows
         }
         if (p.heating != 0) heat_K += d.step_s / p.heating_time * (p.heating * I * I * p.Ra - heat_K);
     }
     if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, 0, false, out);
-    if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) rows_of(voltage_balance, series_, 0, false, out);
+    if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
+        rows_of(voltage_balance, series_, 0, false, out);
+        const Eigen::VectorXd voltage = mean_voltage(voltage_balance, body.voltage_delay0 + body.actuation_delay);
+        const auto first = static_cast<Eigen::Index>(first_row_[voltage_balance]), n = voltage.size();
+        Eigen::VectorXd slope = Eigen::VectorXd::Constant(out.size(), per_V / (1 + body.voltage_gain));
+        if (varies) rows_of(voltage_balance, per_V_series, 0, false, slope);
+        out.segment(first, n) += slope.segment(first, n).cwiseProduct(voltage);
+        if (magnitude) out.segment(first, n) = out.segment(first, n).cwiseAbs();
+    }
     if (with_bench) rows_of(bench_balance, torque_series, 0, false, out);
 }
 
@@ -219,7 +242,8 @@ void Forward::set_base(const Physics &physics) {
     integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr, true);
     std::swap(base_motion_, scratch_);
     have_base_ = true;
-    linear_base_ = !base_motion_.tangent.empty() && has_neighbours(*data_, physics);
+    base_physics_ = physics;
+    linear_base_ = !base_motion_.tangent.empty() && has_neighbours(*data_, physics, physics);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
     sensors(physics, base_motion_, base_prediction_);
 }
@@ -227,7 +251,7 @@ void Forward::set_base(const Physics &physics) {
 Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {
     if (data_->count < 3) return base_prediction_;
     const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0;
-    if (moves && !(linear_base_ && has_neighbours(*data_, physics))) return predict(physics);
+    if (moves && !(linear_base_ && has_neighbours(*data_, base_physics_, physics))) return predict(physics);
     const bool terms = std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
     if (moves) neighbour(*data_, physics, base_motion_, wheel, terms, scratch_);
     const Motion &motion = moves ? scratch_ : base_motion_;

@@ -27,6 +27,7 @@ class Forward {
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
     void set_base(const Physics &physics);
     const Eigen::VectorXd &base() const { return base_prediction_; }
+    bool has_linear_base() const { return linear_base_; }
     const Motion &motion() const { return base_motion_; }
     const std::vector<std::vector<double>> &winding_current_A() const { return base_current_; } // per wheel, torque balance
 
@@ -41,11 +42,13 @@ class Forward {
     void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;
     // out = (or, adding, +=) the series' mean over each row's window
     void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const;
+    Eigen::VectorXd mean_voltage(std::size_t balance, double delay_s) const;
     std::size_t balance_of(BalanceKind kind, std::size_t wheel) const; // balance.size() when there is none
 
     const Dataset *data_;
     std::size_t row_count_ = 0;
     std::vector<std::size_t> first_row_;
+    Physics base_physics_;
     Motion base_motion_, scratch_;
     mutable std::vector<double> series_, sum_, current_;
     std::vector<std::vector<double>> base_current_;

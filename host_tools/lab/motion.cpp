@@ -16,7 +16,7 @@ Freedom freedom_of(const Dataset &data, const Physics &physics) {
     return {planar, planar || data.yaw_free};
 }
 
-void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep) {
+void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool lags) {
     for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m}) series->resize(count);
     m.rate.resize(count);
     m.tangent.resize(keep ? count : 0);
@@ -25,6 +25,8 @@ void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep) {
         for (auto *series : {&w.traction_N, &w.rolling_N, &w.slip, &w.load_N, &w.ground_speed_m_s}) series->resize(count);
         for (auto *series : {&w.force, &w.traction_by_speed}) series->resize(keep ? count : 0);
         for (auto *series : {&w.traction_by_accel, &w.traction_by_path}) series->resize(keep ? count : 0);
+        for (auto *series : {&w.force_by_slip, &w.slip_by_speed}) series->resize(keep && lags ? count : 0);
+        for (auto *series : {&w.traction_by_slip, &w.slip_by_slip}) series->resize(keep && lags ? count : 0);
     }
 }
 
@@ -35,7 +37,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double step_speed = 1e-6, step_accel = 1e-4, step_path = 3e-3; // of the differences: m/s (and rad/s), m/s^2, m (about a step of the path)
+constexpr double step_speed = 1e-6, step_accel = 1e-4, step_path = 3e-3, step_slip = 1e-6; // of the differences: m/s (and rad/s), m/s^2, m (about a step of the path)
 
 // Root of a function that rises on the whole, in [low, high]: secant steps kept inside the bracket.
 template <typename Function> double bracketed_root(Function &&g, double low, double high, double guess) {
@@ -68,13 +70,14 @@ class Solver {
         right_ = right;
         reach_ = share * data_.step_s;
         grade_ = step_.grade_accel();
+        gyro_ = data_.yaw_rate_rad_s.empty() ? 0 : data_.yaw_rate_rad_s[k];
         centre_ = v_before;
     }
 
     Vector3d rate(const Vector3d &q) {
-        Vector3d force = Vector3d::Zero();
-        for (std::size_t i = 0; i < step_.wheels(); ++i) force += step_.force(i, q);
-        return with_body(force, q);
+        Vector3d sum = Vector3d::Zero();
+        for (std::size_t i = 0; i < step_.wheels(); ++i) sum += force_[i] = step_.force(i, q);
+        return with_body(sum, q);
     }
 
     Vector3d residual(const Vector3d &q) {
@@ -115,19 +118,25 @@ class Solver {
     // Derivatives at q, the state prepared for; leaves the wheels at q.
     void differentiate(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path, Motion &m) {
         StepTangent &t = m.tangent[k];
-        const Vector3d at = rate(q);
-        std::array<double, most_wheels> traction{};
+        const Vector3d at = rate_; // the search ended here
+        std::array<double, most_wheels> traction{}, slip{};
         for (std::size_t i = 0; i < step_.wheels(); ++i) {
             traction[i] = step_.state(i).traction;
-            m.wheel[i].force[k] = step_.force(i, q);
+            slip[i] = step_.state(i).slip;
+            m.wheel[i].force[k] = force_[i];
         }
+        for (std::size_t i = 0; i < step_.wheels(); ++i)
+            if (step_.lags(i)) by_slip(i, k, q, m.wheel[i]);
         const bool free[3] = {true, freedom_.vy, freedom_.yaw};
         Matrix3d J = Matrix3d::Identity();
         for (int c = 0; c < 3; ++c) {
             Vector3d moved = q;
             moved[c] += step_speed;
             if (free[c]) J.col(c) -= reach_ * (rate(moved) - at) / step_speed;
-            for (std::size_t i = 0; i < step_.wheels(); ++i) m.wheel[i].traction_by_speed[k][c] = free[c] ? (step_.state(i).traction - traction[i]) / step_speed : 0;
+            for (std::size_t i = 0; i < step_.wheels(); ++i) {
+                m.wheel[i].traction_by_speed[k][c] = free[c] ? (step_.state(i).traction - traction[i]) / step_speed : 0;
+                if (step_.lags(i)) m.wheel[i].slip_by_speed[k][c] = free[c] ? (step_.state(i).slip - slip[i]) / step_speed : 0;
+            }
         }
         t.inverse = J.inverse();
         if (!t.inverse.allFinite()) t.inverse.setIdentity();
@@ -146,6 +155,16 @@ class Solver {
     }
 
   private:
+    void by_slip(std::size_t i, std::size_t k, const Vector3d &q, Motion::Wheel &w) {
+        const WheelStep::State before = step_.state(i);
+        const Vector3d force = force_[i];
+        step_.remember(i, before.slip_before + step_slip);
+        w.force_by_slip[k] = (step_.force(i, q) - force) / step_slip;
+        w.traction_by_slip[k] = (step_.state(i).traction - before.traction) / step_slip;
+        w.slip_by_slip[k] = (step_.state(i).slip - before.slip) / step_slip;
+        step_.remember(i, before.slip_before);
+    }
+
     Vector3d with_body(Vector3d force, const Vector3d &q) const {
         if (!freedom_.vy) {
             force[0] += step_.body_force(q[0]);
@@ -153,7 +172,7 @@ class Solver {
             const double along = step_.body_force(speed);
             force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
         }
-        return detail::rate_of(force, q, grade_, p_, freedom_);
+        return detail::rate_of(force, q, grade_, gyro_, p_, freedom_);
     }
 
     static bool converged(const Vector3d &f) { return std::fabs(f[0]) < 1e-9 && std::fabs(f[1]) < 1e-9 && std::fabs(f[2]) < 1e-8; }
@@ -200,7 +219,8 @@ class Solver {
     WheelStep step_;
     detail::Freedom freedom_;
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
-    double reach_ = 0, grade_ = 0, most_ = 0, centre_ = 0;
+    std::array<Vector3d, most_wheels> force_{};
+    double reach_ = 0, grade_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
 };
 
 void record(const WheelStep &step, std::size_t k, Motion &m) {
@@ -272,7 +292,8 @@ void integrate_imposed(const Dataset &data, const Physics &p, Motion &m) {
 
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep) {
     const bool free = physics.motion == BodyMotion::longitudinal || physics.motion == BodyMotion::planar;
-    detail::resize(motion, data.count, physics.wheel.size(), keep && free);
+    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(), [&](const WheelPhysics &w) { return w.relaxation + physics.body.relaxation > 0; });
+    detail::resize(motion, data.count, physics.wheel.size(), keep && free, lags);
     if (physics.wheel.size() > most_wheels) return;
     if (free) integrate_free(data, physics, motion, guess, keep);
     else integrate_imposed(data, physics, motion);

@@ -2,9 +2,11 @@
 //
 //   q_k = 4/3 q_{k-1} - 1/3 q_{k-2} + 2/3 h rate(q_k)     second-order backward differences (Gear 1971), L-stable: the soil is stiff  (1)
 //   rate = (Fx/M + r vy, Fy/M - r vx, Mz/Izz)             Euler's equations in the body's frame; vy = 0 for skid steer             (2)
+// Skid steer with a gyro: Mz/Izz + observer_1_s * (gyro - yaw rate). Where all wheels slide nothing else holds the heading, and uneven
+// ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull is not felt.
 // Neighbours of a known motion by one linear recursion, tangent.cpp:
-//   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1})),  A = d rate/dq      (3)
-// where d rate is what the moved parameters change at the known motion.
+//   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1} + rate_s ds_{k-1}))      (3)
+// where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips.
 #pragma once
 
 #include "dataset.h"
@@ -32,6 +34,8 @@ struct Motion {
         std::vector<Eigen::Vector3d> force;             // contribution to (Fx, Fy, Mz); with the tangents only
         std::vector<Eigen::Vector3d> traction_by_speed; // with the tangents only, as are the next
         std::vector<double> traction_by_accel, traction_by_path;
+        std::vector<Eigen::Vector3d> force_by_slip, slip_by_speed; // by the slip a step before, where it lags
+        std::vector<double> traction_by_slip, slip_by_slip;
     };
     std::vector<Wheel> wheel;
     std::vector<StepTangent> tangent; // where asked for
@@ -41,8 +45,8 @@ struct Motion {
 // is a chord iteration, two evaluations a step. `keep`: store the tangents.
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep);
 
-// True where neighbour() holds: free motion, nothing carried by the wheels from step to step.
-bool has_neighbours(const Dataset &data, const Physics &physics);
+// True where neighbour() holds: free motion, no play in the gears, and slip lags at the same wheels.
+bool has_neighbours(const Dataset &data, const Physics &base, const Physics &moved);
 
 // Motion of `moved`, to first order, beside a known motion with its tangents. `wheel`: the only wheel whose numbers differ; -1: any.
 // whole: slip, wheel speed and load too, else the body and the tractions alone.
@@ -56,14 +60,17 @@ struct Freedom {
 };
 Freedom freedom_of(const Dataset &data, const Physics &physics);
 
-// (2) from the sum of forces.
-inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, double grade, const Physics &p, Freedom freedom) {
+inline constexpr double observer_1_s = 3; // forgets in 0.3 s: assumed
+
+// (2) from the sum of forces; gyro: the measured yaw rate, for the observer.
+inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, double grade, double gyro, const Physics &p, Freedom freedom) {
     Eigen::Vector3d rate(force[0] / p.body.mass + grade, 0, freedom.yaw ? force[2] / p.body.yaw_inertia : 0);
+    if (freedom.yaw && !freedom.vy) rate[2] += observer_1_s * (gyro - q[2]);
     if (freedom.vy) rate[0] += q[2] * q[1], rate[1] = force[1] / p.body.mass - q[2] * q[0];
     return rate;
 }
 
-void resize(Motion &motion, std::size_t count, std::size_t wheels, bool keep);
+void resize(Motion &motion, std::size_t count, std::size_t wheels, bool keep, bool lags);
 
 } // namespace detail
 } // namespace traction::lab

@@ -102,6 +102,7 @@ Physics make_physics(const Model &model);
 std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics);
 
 // Writes fitted values back: value of each key that a free parameter stands for.
-void store(Model &model, const FreeParameter &parameter, double increment, double standard_error);
+// `reach`: half of its 95 % interval.
+void store(Model &model, const FreeParameter &parameter, double increment, double reach);
 
 } // namespace traction::lab

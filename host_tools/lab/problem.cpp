@@ -72,8 +72,9 @@ void Problem::linearise() {
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         double low = 0, high = 0;
         bounds(i, low, high);
-        const double step = theta[static_cast<Eigen::Index>(i)] + parameters[i].step > high ? -parameters[i].step : parameters[i].step;
-        jacobian.col(static_cast<Eigen::Index>(i)) = column(at, parameters[i], step);
+        // whole integrations need a step that is large against the 1e-9 m/s of their search
+        const double size = (parameters[i].touched & stage_motion) != 0 && !forward_.has_linear_base() ? 100 * parameters[i].step : parameters[i].step;
+        jacobian.col(static_cast<Eigen::Index>(i)) = column(at, parameters[i], theta[static_cast<Eigen::Index>(i)] + size > high ? -size : size);
     }
 }
 
@@ -208,6 +209,16 @@ double Problem::cost() {
     return residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(prior_precision());
 }
 
+Eigen::VectorXd Problem::scaled_residual(const Physics &at) { return (measured_ - forward_.predict(at)).cwiseProduct(row_scale); }
+
+void Problem::within_bounds() {
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+        double low = 0, high = 0;
+        bounds(static_cast<std::size_t>(i), low, high);
+        theta[i] = std::clamp(theta[i], low, high);
+    }
+}
+
 void Problem::quick_fit(const Problem &base, int iterations) {
     keep_scales(base);
     const Eigen::Index n = base.theta.size(), all = theta.size(), rows = measured_.size();
@@ -250,17 +261,40 @@ void Problem::quick_fit(const Problem &base, int iterations) {
         Eigen::MatrixXd system = normal;
         system.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(all, 1e-12);
         const Eigen::VectorXd moment = jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta);
-        theta += system.ldlt().solve(moment);
-        clamp();
+        theta += bounded_step(system, moment);
     }
 }
 
-void Problem::clamp() {
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-        double low = 0, high = 0;
-        bounds(static_cast<std::size_t>(i), low, high);
-        theta[i] = std::clamp(theta[i], low, high);
+Eigen::VectorXd Problem::bounded_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const {
+    const Eigen::Index n = theta.size();
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
+    std::vector<Eigen::Index> open;
+    for (Eigen::Index i = 0; i < n; ++i) open.push_back(i);
+    while (!open.empty()) {
+        const auto k = static_cast<Eigen::Index>(open.size());
+        Eigen::MatrixXd part(k, k);
+        Eigen::VectorXd right(k);
+        const Eigen::VectorXd rest = moment - normal * step;
+        for (Eigen::Index i = 0; i < k; ++i) {
+            right[i] = rest[open[static_cast<std::size_t>(i)]];
+            for (Eigen::Index j = 0; j < k; ++j) part(i, j) = normal(open[static_cast<std::size_t>(i)], open[static_cast<std::size_t>(j)]);
+        }
+        const Eigen::VectorXd change = part.ldlt().solve(right);
+        std::vector<Eigen::Index> kept;
+        Eigen::VectorXd found = step;
+        for (Eigen::Index i = 0; i < k; ++i) {
+            const Eigen::Index at = open[static_cast<std::size_t>(i)];
+            double low = 0, high = 0;
+            bounds(static_cast<std::size_t>(at), low, high);
+            found[at] = change[i];
+            if (theta[at] + change[i] < low - 1e-12) step[at] = low - theta[at];
+            else if (theta[at] + change[i] > high + 1e-12) step[at] = high - theta[at];
+            else kept.push_back(at);
+        }
+        if (kept.size() == open.size()) return found;
+        open = std::move(kept);
     }
+    return step;
 }
 
 void Problem::settle() {
@@ -269,21 +303,19 @@ void Problem::settle() {
 }
 
 void Problem::polish(int fresh) {
-    constexpr int steps = 4;       // with the same sensitivities
-    constexpr double worth = 2e-4; // relative fall of the cost below which a step is the last
+    constexpr int steps = 5;      // with the same sensitivities
+    constexpr double worth = 0.3; // fall of the cost below which a step is the last: well below one squared standard deviation
     const Eigen::VectorXd precision = prior_precision();
     if (jacobian.rows() != measured_.size() || jacobian.cols() != theta.size()) linearise(), --fresh;
     for (;; --fresh) {
         Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
         normal.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(theta.size(), 1e-12);
-        const Eigen::LDLT<Eigen::MatrixXd> factor(normal);
         const Eigen::VectorXd start = theta;
         const double first = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
         double best = first;
         for (int i = 0; i < steps; ++i) {
             const Eigen::VectorXd before = theta, residual_before = residual;
-            theta += factor.solve(jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta));
-            clamp();
+            theta += bounded_step(normal, jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta));
             double now = cost();
             for (int halving = 0; halving < 3 && !(now < best); ++halving) theta = 0.5 * (theta + before), now = cost();
             if (!(now < best)) {
@@ -292,12 +324,12 @@ void Problem::polish(int fresh) {
             }
             const double fall = best - now;
             best = now;
-            if (fall < worth * best) break;
+            if (fall < worth) break;
         }
         const Eigen::VectorXd moved = theta - start;
         if (fresh <= 0 || moved.dot(normal * moved) < 1e-2) return settle(); // a tenth of a standard deviation: the sensitivities serve there too
         linearise();
-        if (first - best < worth * best) return;
+        if (first - best < worth) return;
     }
 }
 

@@ -46,6 +46,8 @@ class Problem {
     Eigen::VectorXd noise_rows() const; // measurement noise of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
+    Eigen::VectorXd scaled_residual(const Physics &at); // of another physics, on the present scales
+    void within_bounds();                               // moves increments that left their bounds back to them
     double cost(); // squares of all rows and priors at the present increments, where `residual` is then
 
     // Gauss-Newton on baseline plus candidate where the baseline's sensitivities are kept from `base` (the first columns here, same
@@ -66,7 +68,8 @@ class Problem {
     Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
-    void clamp();
+    // Gauss-Newton step that keeps within the bounds: what would leave them is held there, the others solve without it.
+    Eigen::VectorXd bounded_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
 
     const Dataset *data_;
     Physics base_;

@@ -244,9 +244,9 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const Physics physics = make_physics(model);
     Problem best(data, physics, free_parameters(model, physics));
     const std::vector<Eigen::Index> list = find_wanted(best, model, wanted);
-    for (int i = 0; i < 3; ++i) best.fit({.iterations = 10, .reweight = true}); // until the scales no longer depend on where the fit began
-    best.fit({.iterations = 10, .reweight = false});                            // to the optimum of the scales that the profile keeps
-    const Eigen::VectorXd errors = Screen(best).parameter_errors();
+    for (int i = 0; i < 3; ++i) best.fit({.iterations = 10, .thorough = true}); // until the scales no longer depend on where the fit began
+    best.fit({.iterations = 10, .reweight = false, .thorough = true}); // to the optimum of the scales that the profile keeps
+    const std::vector<ParameterError> errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();
     for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's whisper
@@ -254,7 +254,7 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const double best_cost = best.cost();
     best.linearise(); // cost() has moved the prediction
     std::vector<Profile> out;
-    for (const Eigen::Index i : list) out.push_back(profile_one(best, model, i, errors[i], white[i], best_cost));
+    for (const Eigen::Index i : list) out.push_back(profile_one(best, model, i, errors[static_cast<std::size_t>(i)].standard, white[i], best_cost));
     return out;
 }
 

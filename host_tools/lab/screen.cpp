@@ -12,6 +12,8 @@ namespace {
 constexpr double heldout_block_s = 5.0; // LAB.md section 2
 constexpr double test_block_s = 2.5;
 constexpr double fewest_blocks = 10;    // shorter logs are cut finer
+constexpr double most_heldout = 4;      // a block's held-out error counts up to so many times its error in the fit: beyond, the linear
+                                        // step that leaves it out is not to be believed
 } // namespace
 
 Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem) {
@@ -49,11 +51,12 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
         const auto i = static_cast<std::size_t>(b);
         const Eigen::VectorXd step = coarse_.without[i].solve(moment - coarse_.moment[i]);
         const double rr = residual_.segment(coarse_.first[i], coarse_.first[i + 1] - coarse_.first[i]).squaredNorm();
-        block_error_[b] = rr - 2 * step.dot(coarse_.moment[i]) + step.dot(coarse_.gram[i] * step);
+        block_error_[b] = std::min(most_heldout * rr, rr - 2 * step.dot(coarse_.moment[i]) + step.dot(coarse_.gram[i] * step));
     }
     const Eigen::VectorXd final_theta = theta + total_factor_.solve(moment);
     base_penalty_ = final_theta.cwiseProduct(final_theta).dot(precision_);
     base_error_ = block_error_.sum() + base_penalty_;
+    error_ = residual_.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(total_factor_.solve(moment));
 }
 
 void Screen::cut(double length_s, Blocks &blocks, std::vector<std::pair<double, double>> *times) const {
@@ -115,6 +118,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     for (Eigen::Index j = 0; j < k; ++j) schur(j, j) += 1e-9 * schur.diagonal().maxCoeff();
     const Eigen::LLT<Eigen::MatrixXd> schur_factor(schur);
     out.strength = schur_factor.solve(mc - absorb.transpose() * moment_n);
+    out.fall = out.strength.dot(schur * out.strength);
     out.change = total_factor_.solve(moment_n - nc * out.strength);
     if (!out.strength.allFinite()) {
         out.strength.setZero();
@@ -170,7 +174,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
         const double rr = residual_.segment(coarse_.first[i], coarse_.first[i + 1] - coarse_.first[i]).squaredNorm();
         const double error = rr - 2 * delta.dot(coarse_.moment[i]) - 2 * gamma.dot(coarse.mc[i]) + delta.dot(coarse_.gram[i] * delta) +
                              2 * delta.dot(coarse.nc[i] * gamma) + gamma.dot(coarse.cc[i] * gamma);
-        out.block_gain[b] = block_error_[b] - error;
+        out.block_gain[b] = block_error_[b] - std::min(most_heldout * rr, error);
     }
     const Eigen::VectorXd final_theta = problem_.theta.head(n) + out.change;
     out.relief = base_penalty_ - final_theta.cwiseProduct(final_theta).dot(precision_);
@@ -186,6 +190,13 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     return out;
 }
 
+double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const {
+    const Eigen::Index n = nuisance_.cols();
+    const Eigen::VectorXd theta = problem_.theta.head(n), moment = problem_.jacobian.leftCols(n).transpose() * scaled_residual + pull_;
+    change = total_factor_.solve(moment);
+    return scaled_residual.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(change);
+}
+
 std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
     const Eigen::VectorXd noise = problem_.noise_rows();
     const Dataset &data = problem_.data();
@@ -195,11 +206,15 @@ std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
     const std::vector<Eigen::VectorXd> changes = heldout_changes();
     for (Eigen::Index b = 0; b < coarse_.count(); ++b) {
         const auto i = static_cast<std::size_t>(b);
-        for (Eigen::Index row = coarse_.first[i]; row < coarse_.first[i + 1]; ++row) {
-            double e = residual_[row] - nuisance_.row(row).dot(changes[i]);
+        const Eigen::Index first = coarse_.first[i], size = coarse_.first[i + 1] - first;
+        const auto fitted = residual_.segment(first, size);
+        const Eigen::VectorXd heldout = fitted - nuisance_.middleRows(first, size) * changes[i];
+        const double shrink = std::min(1.0, std::sqrt(most_heldout * fitted.squaredNorm() / std::max(1e-300, heldout.squaredNorm())));
+        for (Eigen::Index row = first; row < first + size; ++row) {
+            double e = heldout[row - first] * shrink;
             const Eigen::Index original = order_[static_cast<std::size_t>(row)];
             if (in_noise) e /= problem_.row_scale[original] * noise[original];
-            sum[balance_of_row[static_cast<std::size_t>(order_[static_cast<std::size_t>(row)])]] += e * e;
+            sum[balance_of_row[static_cast<std::size_t>(original)]] += e * e;
         }
     }
     return sum;
@@ -212,17 +227,28 @@ std::vector<Eigen::VectorXd> Screen::heldout_changes() const {
     return changes;
 }
 
-Eigen::VectorXd Screen::parameter_errors() const {
+std::vector<ParameterError> Screen::parameter_errors() const {
+    const Eigen::Index n = nuisance_.cols(), count = fine_.count();
     const Eigen::VectorXd moment = nuisance_.transpose() * residual_ + pull_;
     const Eigen::VectorXd whole = total_factor_.solve(moment);
-    Eigen::MatrixXd deviation(nuisance_.cols(), fine_.count());
-    for (Eigen::Index b = 0; b < fine_.count(); ++b)
-        deviation.col(b) = fine_.without[static_cast<std::size_t>(b)].solve(moment - fine_.moment[static_cast<std::size_t>(b)]) - whole;
-    const double scale = static_cast<double>(fine_.count() - 1) / static_cast<double>(fine_.count());
-    Eigen::MatrixXd covariance = scale * deviation * deviation.transpose();
-    const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(nuisance_.cols(), nuisance_.cols()));
-    covariance += inverse * precision_.asDiagonal() * inverse; // d theta / d prior mean = inverse * precision
-    return covariance.diagonal().cwiseMax(0.25 * inverse.diagonal()).cwiseSqrt();
+    const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::MatrixXd deviation(n, count), information(n, count); // information: of a parameter beside the others, per block
+    for (Eigen::Index b = 0; b < count; ++b) {
+        const auto i = static_cast<std::size_t>(b);
+        deviation.col(b) = fine_.without[i].solve(moment - fine_.moment[i]) - whole;
+        information.col(b) = (inverse * fine_.gram[i]).cwiseProduct(inverse).rowwise().sum();
+    }
+    std::vector<ParameterError> errors;
+    for (Eigen::Index j = 0; j < n; ++j) {
+        const double by_data = deviation.row(j).squaredNorm() * static_cast<double>(count - 1) / static_cast<double>(count);
+        const double by_prior = inverse.row(j).cwiseAbs2().dot(precision_); // d theta / d prior mean = inverse * precision
+        const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j));
+        const double blocks = information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;
+        const double share = by_data > 0 ? (by_data + by_prior) / by_data : 1e3;
+        const double freedom = std::clamp((blocks - 1) * share * share, 4.0, 1e3);
+        errors.push_back({std::sqrt(all), t_quantile(0.05, freedom) * std::sqrt(all)});
+    }
+    return errors;
 }
 
 } // namespace traction::lab

@@ -17,6 +17,7 @@ struct Assessment {
     Eigen::VectorXd strength;       // estimate, what is present included
     Eigen::VectorXd standard_error;
     Eigen::VectorXd change;         // of the baseline's parameters, with the candidate in
+    double fall = 0;          // of the error on all rows, in squared units of scale
     double gain = 0;          // fall of the held-out error incl. priors, in squared units of scale
     double gain_error = 0;    // its standard error over blocks
     double relief = 0;        // part of the gain that is relief of priors
@@ -26,6 +27,11 @@ struct Assessment {
     double information = 0;   // share of the candidate's column that the baseline cannot absorb
     Eigen::VectorXd block_gain;  // held-out fall per 5 s block
     Eigen::VectorXd projected;   // column (first strength) after projection, for cosines
+};
+
+struct ParameterError {
+    double standard = 0; // standard error
+    double reach = 0;    // half of the 95 % interval: Student's t with the parameter's own degrees of freedom
 };
 
 class Screen {
@@ -38,14 +44,17 @@ class Screen {
     // full: also fills `projected`.
     Assessment assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd &present, bool full) const;
 
+    // Error on all rows with this scaled residual, after what the baseline's parameters would then absorb: for a candidate moved alone.
+    double error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const;
+    double error() const { return error_; } // on all rows, priors included, at the baseline's optimum
     double penalty() const { return base_penalty_; }                // of the priors, at the baseline's optimum
     double heldout_error() const { return base_error_; }            // sum of squares over held-out blocks, priors included
     const Eigen::VectorXd &block_error() const { return block_error_; }
     const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
     // Held-out sum of squares per balance; in_noise: in units of each row's measurement noise, which no model changes.
     std::vector<double> heldout_by_balance(bool in_noise = false) const;
-    // Robust standard errors of the problem's own parameters.
-    Eigen::VectorXd parameter_errors() const;
+    // Of the problem's own parameters, robust like a candidate's.
+    std::vector<ParameterError> parameter_errors() const;
     std::vector<Eigen::VectorXd> heldout_changes() const; // parameters without block b, relative to the optimum
 
   private:
@@ -70,7 +79,7 @@ class Screen {
     Blocks fine_, coarse_;
     std::vector<std::pair<double, double>> block_times_;
     Eigen::VectorXd block_error_;
-    double base_error_ = 0, base_penalty_ = 0;
+    double base_error_ = 0, base_penalty_ = 0, error_ = 0;
 };
 
 } // namespace traction::lab

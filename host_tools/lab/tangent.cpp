@@ -17,25 +17,28 @@ using Eigen::Vector3d;
 class Moved {
   public:
     Moved(const Dataset &data, const Physics &moved, const Motion &known, std::size_t first, std::size_t last)
-        : step_(data, moved), p_(moved), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
+        : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
 
     Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
         step_.prepare(k, v_before, accel_before, path, first_, last_);
+        for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1]);
         Vector3d force = Vector3d::Zero();
         for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
         const double speed = freedom_.vy ? std::hypot(q[0], q[1]) : q[0], along = step_.body_force(speed);
         if (!freedom_.vy) force[0] += along;
         else if (speed > 1e-6) force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
-        return detail::rate_of(force, q, step_.grade_accel(), p_, freedom_) - known_.rate[k];
+        return detail::rate_of(force, q, step_.grade_accel(), gyro_.empty() ? 0 : gyro_[k], p_, freedom_) - known_.rate[k];
     }
     double traction_change(std::size_t i, std::size_t k) const {
         return i >= first_ && i < last_ ? step_.state(i).traction - known_.wheel[i].traction_N[k] : 0;
     }
+    double slip_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).slip - known_.wheel[i].slip[k] : 0; }
     const WheelStep &step() const { return step_; }
 
   private:
     WheelStep step_;
     const Physics &p_;
+    const std::vector<double> &gyro_;
     const Motion &known_;
     detail::Freedom freedom_;
     std::size_t first_, last_;
@@ -43,18 +46,23 @@ class Moved {
 
 } // namespace
 
-bool has_neighbours(const Dataset &data, const Physics &physics) {
-    if (physics.motion != BodyMotion::longitudinal && physics.motion != BodyMotion::planar) return false;
-    return physics.wheel.size() <= most_wheels && !WheelStep(data, physics).has_memory();
+bool has_neighbours(const Dataset &data, const Physics &base, const Physics &moved) {
+    if (moved.motion != BodyMotion::longitudinal && moved.motion != BodyMotion::planar) return false;
+    if (moved.wheel.size() > most_wheels) return false;
+    const WheelStep a(data, base), b(data, moved);
+    for (std::size_t i = 0; i < moved.wheel.size(); ++i)
+        if (a.lags(i) != b.lags(i)) return false;
+    return !a.has_play() && !b.has_play();
 }
 
 void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &m) {
-    detail::resize(m, data.count, moved.wheel.size(), false);
+    detail::resize(m, data.count, moved.wheel.size(), false, false);
     const std::size_t wheels = moved.wheel.size(), first = wheel < 0 ? 0 : static_cast<std::size_t>(wheel), last = wheel < 0 ? wheels : first + 1;
     Moved change(data, moved, known, first, last);
     const detail::Freedom freedom = detail::freedom_of(data, moved);
     Vector3d q = Vector3d::Zero(), before = q; // of the change, as are the next two
     double accel = 0, path = 0;
+    std::array<double, most_wheels> slip{};
     for (std::size_t k = 0; k < data.count; ++k) {
         const Vector3d at(known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]);
         const std::size_t j = k == 0 ? 0 : k - 1;
@@ -63,11 +71,18 @@ void neighbour(const Dataset &data, const Physics &moved, const Motion &known, i
         const double reach = (k < 2 ? 1.0 : 2.0 / 3) * data.step_s;
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
         if (!freedom.yaw) right[2] = 0;
-        const Vector3d next = t.inverse * (right + reach * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path));
+        Vector3d by_slip = Vector3d::Zero();
+        for (std::size_t i = 0; i < wheels; ++i)
+            if (change.step().lags(i)) by_slip += known.wheel[i].force_by_slip[k] * slip[i];
+        by_slip = by_slip.cwiseProduct(Vector3d(1 / moved.body.mass, freedom.vy ? 1 / moved.body.mass : 0, freedom.yaw ? 1 / moved.body.yaw_inertia : 0));
+        const Vector3d next = t.inverse * (right + reach * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path + by_slip));
         for (std::size_t i = 0; i < wheels; ++i) {
             const Motion::Wheel &w = known.wheel[i];
             m.wheel[i].traction_N[k] = w.traction_N[k] + change.traction_change(i, k) + w.traction_by_speed[k].dot(next) +
                                        w.traction_by_accel[k] * accel + w.traction_by_path[k] * path;
+            if (!change.step().lags(i)) continue;
+            m.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip[i];
+            slip[i] = change.slip_change(i, k) + w.slip_by_speed[k].dot(next) + w.slip_by_slip[k] * slip[i];
         }
         before = q;
         q = next;
@@ -88,7 +103,7 @@ void neighbour(const Dataset &data, const Physics &moved, const Motion &known, i
             const auto &s = step.state(i);
             const double along = (m.v_m_s[k] - p.y * m.yaw_rate_rad_s[k]) * s.c + (m.vy_m_s[k] + p.x * m.yaw_rate_rad_s[k]) * s.s;
             m.wheel[i].ground_speed_m_s[k] = along;
-            m.wheel[i].slip[k] = slip_of(s.radius * s.gain * data.wheel[i].speed_rad_s[k], along);
+            m.wheel[i].slip[k] = step.lags(i) ? known.wheel[i].slip[k] : slip_of(s.radius * s.gain * data.wheel[i].speed_rad_s[k], along);
             m.wheel[i].load_N[k] = known.wheel[i].load_N[k];
         }
     }

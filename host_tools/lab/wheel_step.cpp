@@ -34,7 +34,7 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         s.gain = 1 / (1 - std::min(0.9, w.encoder_missed));
         s.sigma = w.relaxation + b.relaxation;
         s.plain_sc = std::max(1e-4, w.sc * (1 + b.shear_change));
-        memory_ = memory_ || s.sigma > 0 || w.backlash > 0;
+        play_ = play_ || w.backlash > 0;
     }
     for (const ExtraTerm &term : p_.terms) motion_terms_ = motion_terms_ || (target_stages(term.target) & stage_motion) != 0;
     feels_path_ = feels_path_ || motion_terms_; // a user's expression may name x

@@ -17,11 +17,12 @@ namespace traction::lab {
 
 inline constexpr std::size_t most_wheels = 32;
 
+inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
+                                               // would be too stiff for any step; assumed
+
 // Slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest. rim = R w.
 inline double slip_of(double rim, double v) {
-    const double larger = std::max(std::fabs(rim), std::fabs(v));
-    if (larger < 1e-4) return (rim - v) / 1e-4; // continuous through rest
-    const double s = (rim - v) / larger;
+    const double s = (rim - v) / std::max({std::fabs(rim), std::fabs(v), rest_speed_m_s});
     return s > 1 ? 1 : s < -1 ? -1 : s;
 }
 
@@ -43,6 +44,7 @@ class WheelStep {
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
     double grade_accel() const;         // of the slope, along x
     void commit();                      // the step is found: slip and play become the next step's memory
+    void remember(std::size_t i, double slip) { state_[i].slip_before = slip; }
 
     struct State {
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0;
@@ -53,7 +55,8 @@ class WheelStep {
     const State &state(std::size_t i) const { return state_[i]; }
     std::size_t wheels() const { return n_; }
     double load(std::size_t i, double accel_m_s2) const; // without a measured load
-    bool has_memory() const { return memory_; }      // slip or play is carried from step to step
+    bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slip is carried from step to step: a relaxation length
+    bool has_play() const { return play_; }
     bool feels_path() const { return feels_path_; }  // some force depends on the path travelled
 
   private:
@@ -70,7 +73,7 @@ class WheelStep {
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
     double t_ = 0, path_ = 0, accel_ = 0, yaw_ = 0;
-    bool motion_terms_ = false, memory_ = false, feels_path_ = false;
+    bool motion_terms_ = false, play_ = false, feels_path_ = false;
 };
 
 } // namespace traction::lab

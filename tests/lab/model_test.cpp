@@ -1,7 +1,7 @@
 // The model file: what is read, what is written back, and that every mistake is told with its place and its mend.
 #include "host_tools/lab/distribution.h"
 #include "host_tools/lab/model.h"
-#include "host_tools/lab/motion.h"
+#include "host_tools/lab/wheel_step.h"
 #include "host_tools/lab/physics.h"
 #include "host_tools/lab/smooth.h"
 

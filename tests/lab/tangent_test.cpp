@@ -8,17 +8,18 @@
 namespace traction::lab {
 namespace {
 
-// Both differences are taken with one small step; central for the whole integration, so that its curvature does not count.
+// Central differences of the whole integration, whose search for a step's speed ends at 1e-9 m/s, need the larger step.
 void compare(Forward &forward, const Physics &base, const FreeParameter &parameter, double step, const std::string &what) {
     if ((parameter.touched & stage_motion) == 0) return; // no recursion there
-    Physics moved = base, back = base;
+    Physics small = base, moved = base, back = base;
+    parameter.add(small, 1e-3 * step);
     parameter.add(moved, step);
     parameter.add(back, -step);
     const int wheel = parameter.slots.size() == 1 && parameter.slots[0].in_wheel != nullptr ? parameter.slots[0].wheel : -1;
-    const Eigen::VectorXd tangent = (forward.predict_from_base(moved, parameter.touched, wheel) - forward.base()) / step;
+    const Eigen::VectorXd tangent = (forward.predict_from_base(small, parameter.touched, wheel) - forward.base()) / (1e-3 * step);
     const Eigen::VectorXd whole = (forward.predict(moved) - forward.predict(back)) / (2 * step);
-    // 2 %: one-sided against central, at steps of a twentieth of a fit's, and the search for a step's speed ends at 1e-9 m/s
-    EXPECT_LT((tangent - whole).norm(), 0.02 * whole.norm() + 1e-9) << what << ": " << tangent.norm() << " against " << whole.norm();
+    // 3 %: curvature over the larger step, on concrete most
+    EXPECT_LT((tangent - whole).norm(), 0.03 * whole.norm() + 1e-9) << what << ": " << tangent.norm() << " against " << whole.norm();
 }
 
 TEST(Tangent, agrees_with_whole_integrations_for_every_parameter_and_effect) {
@@ -30,16 +31,18 @@ TEST(Tangent, agrees_with_whole_integrations_for_every_parameter_and_effect) {
         const log::Log log = generator::generate(config);
         const Model model = read_model("models/rover_" + generator::name_of(soil) + ".toml");
         const Dataset data = make_dataset(model, log);
-        const Physics physics = make_physics(model);
+        Physics physics = make_physics(model);
+        if (soil == generator::Soil::sand)
+            for (WheelPhysics &w : physics.wheel) w.relaxation = 0.02; // [m] so that slip lags
         Forward forward(data);
         forward.set_base(physics);
-        for (const FreeParameter &p : free_parameters(model, physics)) compare(forward, physics, p, 0.05 * p.step, p.key);
+        for (const FreeParameter &p : free_parameters(model, physics)) compare(forward, physics, p, 20 * p.step, p.key);
         for (const Candidate &c : catalogue_candidates(model, data, forward.motion())) {
             if (c.effect == "backlash" || c.effect == "relaxation_length" || c.wheel > 0) continue; // wheels with a memory: integrated whole
             if (c.effect == "soil_patch" && c.variant[1].second != 1.0) continue;
             Physics base = physics;
             c.prepare(base);
-            for (std::size_t j = 0; j < c.strengths.size(); ++j) compare(forward, base, c.strengths[j], 0.002 * c.step[j], c.label() + " " + c.strengths[j].key);
+            for (std::size_t j = 0; j < c.strengths.size(); ++j) compare(forward, base, c.strengths[j], 1e-3 * c.of_interest[j], c.label() + " " + c.strengths[j].key);
         }
     }
 }

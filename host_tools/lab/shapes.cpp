@@ -1,5 +1,6 @@
-// What no effect of the catalogue explains: structure-free shapes f(X), tested like any candidate.
-#include "diagnose.h"
+#include "shapes.h"
+
+#include "candidate.h"
 #include "screen.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double shapes_tried = 30;
+constexpr double shapes_tried = 60; // axes x targets, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -24,7 +25,6 @@ ShapeScore assess_shape(const Candidate &c, Problem &problem, const Screen &scre
     c.prepare(at);
     Eigen::MatrixXd columns(problem.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
     for (std::size_t j = 0; j < c.strengths.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = problem.column(at, c.strengths[j], c.step[j]);
-    // knots that no sample is near carry nothing: they follow their neighbour
     s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
     s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
     return s;
@@ -71,32 +71,33 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
 
 } // namespace
 
-std::optional<UnknownShape> find_unknown(Problem &first, Problem &last, std::size_t named_count, const DiagnoseOptions &options) {
-    const bool something_named = named_count > 0;
-    const Screen last_screen(last);
-    const Screen first_screen(first);
-    const auto material = [&](const ShapeScore &s, double base) {
-        const double least = something_named ? 0.05 : options.least_shape_gain;
-        return s.p_value < options.p_limit && s.assessment.gain > least * base && s.assessment.gain > 2.5 * s.assessment.gain_error;
-    };
-    for (const ShapeScore &s : all_shapes(last, last_screen))
-        if (material(s, last_screen.heldout_error())) return describe(s, last_screen.heldout_error());
-    if (!something_named) return std::nullopt;
+Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named_count, const DiagnoseOptions &options) {
+    Beyond beyond;
+    Problem at_last = last, at_first = first; // their forward models are moved about
+    const Screen last_screen(at_last);
+    const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
+    for (const ShapeScore &s : all_shapes(at_last, last_screen)) {
+        if (!(s.p_value < options.p_limit) || !(s.assessment.gain > least * last_screen.heldout_error()) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
+        beyond.shape = describe(s, last_screen.heldout_error());
+        break;
+    }
+    if (named_count == 0) return beyond;
     // does one shape alone do better than all that was named?
-    Problem named = last; // all that was named, on the first problem's scales
-    named.keep_scales(first);
-    named.linearise();
-    const Screen named_screen(named);
+    const Screen first_screen(at_first);
+    at_last.keep_scales(first);
+    at_last.linearise();
+    const Screen named_screen(at_last);
     const double margin = named_count > 1 ? 0.95 : options.shape_margin; // one shape in the stead of several effects is the simpler story
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
-    for (const ShapeScore &s : all_shapes(first, first_screen)) {
+    for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
         if (!(s.p_value < options.p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
         const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
         const double n = static_cast<double>(difference.size());
         const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-        if (named_count > 1 || s.assessment.gain - named_gain > 2 * error) return describe(s, first_screen.heldout_error());
+        if (named_count == 1 && s.assessment.gain - named_gain < 2 * error) continue;
+        return {describe(s, first_screen.heldout_error()), true, s.assessment.gain};
     }
-    return std::nullopt;
+    return beyond;
 }
 
 } // namespace traction::lab

@@ -1,0 +1,66 @@
+#include "columns.h"
+
+#include <algorithm>
+
+namespace traction::lab {
+
+Eigen::MatrixXd Columns::of(const Candidate &c) {
+    Eigen::MatrixXd out(problem_.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
+    for (std::size_t j = 0; j < c.strengths.size(); ++j) out.col(static_cast<Eigen::Index>(j)) = column(c, j).cwiseProduct(problem_.row_scale);
+    return out;
+}
+
+Eigen::VectorXd Columns::column(const Candidate &c, std::size_t j) {
+    const FreeParameter &p = c.strengths[j];
+    if (c.free_shape || p.slots.size() < 2) return single(c, j, p);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(problem_.row_scale.size());
+    for (const Slot &slot : p.slots) {
+        FreeParameter one = p;
+        one.slots = {slot};
+        one.wheel = slot.wheel;
+        sum += single(c, j, one);
+    }
+    return sum;
+}
+
+const Eigen::VectorXd &Columns::single(const Candidate &c, std::size_t j, const FreeParameter &p) {
+    std::string key = c.effect + "/" + p.key + "/" + std::to_string(p.slots.size() == 1 ? p.slots[0].wheel : -1);
+    for (const auto &[name, value] : c.variant) key += "/" + name + std::to_string(value);
+    const auto found = cache_.find(key);
+    if (found != cache_.end()) return found->second;
+    if (c.effect == "soil_patch") return cache_[key] = patch(c, p);
+    Physics at = physics_;
+    Candidate one = c;
+    one.wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : c.wheel;
+    one.prepare(at);
+    return cache_[key] = problem_.column(at, p, c.step[j]).cwiseQuotient(problem_.row_scale);
+}
+
+// A patch is the sum of the cells of the path that it covers.
+Eigen::VectorXd Columns::patch(const Candidate &c, const FreeParameter &p) {
+    const std::vector<double> &path = problem_.forward().motion().path_m;
+    if (cells_.empty()) {
+        const auto [low, high] = std::minmax_element(path.begin(), path.end());
+        cell_start_ = *low;
+        cell_length_ = std::max(0.125, (*high - *low) / 32);
+        cells_.resize(static_cast<std::size_t>((*high - *low) / cell_length_) + 1);
+    }
+    double start = 0, length = 0;
+    for (const auto &[key, value] : c.variant) (key == "start_m" ? start : length) = value;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(problem_.row_scale.size());
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const double begin = cell_start_ + static_cast<double>(i) * cell_length_;
+        const double overlap = std::min(begin + cell_length_, start + length) - std::max(begin, start);
+        if (overlap <= 0) continue;
+        if (cells_[i].size() == 0) {
+            Physics at = physics_;
+            at.body.patch_start = begin;
+            at.body.patch_length = cell_length_;
+            cells_[i] = problem_.column(at, p, c.step[0]).cwiseQuotient(problem_.row_scale);
+        }
+        sum += overlap / cell_length_ * cells_[i];
+    }
+    return sum;
+}
+
+} // namespace traction::lab
