@@ -6,6 +6,11 @@ seconds=${1:-60}
 out=${2:-$root/build/fuzz}
 clang=$(command -v clang || command -v clang-14) || { echo "fuzz: skipped, needs clang with libFuzzer (apt: clang)"; exit 0; }
 mkdir -p "$out/corpus"
+printf 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n);\nint LLVMFuzzerTestOneInput(const char *d, unsigned long n) { return d == 0 && n > 1; }\n' > "$out/try.c"
+"$clang" -fsanitize=fuzzer,address,undefined "$out/try.c" -o "$out/try" > "$out/try.log" 2>&1 || {
+  echo "fuzz: skipped, this clang has no libFuzzer or no sanitizers ($out/try.log; apt: libclang-rt-dev or libclang-rt-14-dev)"
+  exit 0
+}
 cc -std=c11 -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
 "$out/template_gen" mdu1130 "$out/template.c"
 "$clang" -std=c11 -O1 -g -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -I"$root" "$root"/firmware/core/*.c \

@@ -316,6 +316,7 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age)
     doppler_state_t doppler = {};
     ground_speed_state_t filter = state.ground_speed;
     int fresh = 0;
+    float last = 0;
     for (int tick = 0; tick < 300; ++tick) {
         frame.radar_samples = tick % 8 == 0 ? 6 : 5;
         for (int n = 0; n < frame.radar_samples; ++n) {
@@ -329,7 +330,9 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age)
                                             .doppler_fresh = value.fresh, .doppler_quiet = value.quiet};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;
+        last = value.fresh ? value.speed_m_s : last;
         ASSERT_EQ(trace.speed_m_s, out.speed_m_s) << tick;
+        ASSERT_EQ(trace.radar_speed_m_s, last) << tick;
     }
     EXPECT_GT(fresh, 15);
 }
@@ -349,6 +352,66 @@ TEST(PaperConfiguration, is_the_papers_laws)
         const slip_pi_input_t input = {.slip_ref = 0.2f, .slip = 0, .speed_m_s = v};
         EXPECT_NEAR(slip_pi_step(&config.slip_pi, &slip, &input).duty, (config.slip_pi.kp + config.slip_pi.ki_T) * 0.2f, 1e-6f);
     }
+}
+
+TEST_F(Rolling, below_the_speed_where_slip_means_something_the_wheel_follows_the_speed_that_has_it)
+{
+    config.speed_control.ki_T_rad_m = 0;
+    command.mode = MODE_SLIP;
+    command.slip_wheels = 15;
+    for (int &p : pulses) {
+        p = 0;
+    }
+    for (const float forward : {1.0f, -1.0f}) {
+        for (const float slip : {0.5f, -0.5f}) { // of the body's frame: driving forward is positive
+            control_reset(&config, &state);
+            command.slip_ref = slip * forward;
+            command.platform_speed_m_s = 0.04f * forward;
+            run(200);
+            const double rolling = (0.04 / 0.057 + 17.5 * 0.04) * static_cast<double>(forward); // (22) at rest
+            EXPECT_NEAR(trace.wheel[1].set_speed_rad_s, slip > 0 ? rolling / 0.5 : rolling * 0.5, 1e-3) << forward << " " << slip; // (1) solved for w
+        }
+    }
+}
+
+TEST_F(Rolling, slip_loop_integrates_from_tick_to_tick)
+{
+    command.mode = MODE_SLIP;
+    command.slip_wheels = 1;
+    command.slip_ref = 0.02f;
+    run(2);
+    const float first = trace.wheel[0].duty;
+    run(10);
+    const double gain = 5 * 0.3, error = 0.02 - static_cast<double>(trace.wheel[0].slip);
+    EXPECT_NEAR(trace.wheel[0].duty - first, 10 * 0.09 * gain * error, 1e-4); // ten steps of Ki T g e
+}
+
+TEST_F(Rolling, a_turning_rover_slips_by_the_ground_speed_of_each_wheel)
+{
+    frame.present |= FRAME_GYRO;
+    frame.gyro_z_count = 1000; // 0.5 rad/s to the left
+    command.mode = MODE_STOP;
+    run(20);
+    for (int i = 0; i < WHEEL_COUNT; ++i) {
+        const double ground = 0.3 + (i == WHEEL_REAR_LEFT || i == WHEEL_FRONT_LEFT ? -1 : 1) * 0.12 * 0.5, w = 50 * 100 * 2 * clutter::pi / 6000, rim = 0.057 * w;
+        EXPECT_NEAR(trace.wheel[i].slip, rim > ground ? 1 - ground / rim : rim / ground - 1, 1e-4) << i; // (1)
+        EXPECT_NEAR(trace.wheel[i].traction_N, -(1.6e-3 * w + 0.03) / 0.057, 1e-4) << i;                 // (18), (19) without current
+    }
+}
+
+TEST_F(Rolling, without_feed_forward_the_wheel_loop_is_a_plain_pid)
+{
+    config.feed_forward = false;
+    command.mode = MODE_WHEEL_SPEED;
+    for (float &w : command.wheel_speed_rad_s) {
+        w = 5.236f + 0.5f;
+    }
+    run(50);
+    command.mode = MODE_STOP;
+    run(1);
+    command.mode = MODE_WHEEL_SPEED;
+    run(1);
+    EXPECT_NEAR(trace.wheel[3].duty, (0.2 + 0.009) * 0.5, 2e-3); // from duty 0: one step of (2), (3) of wheel_pid.h
 }
 
 } // namespace

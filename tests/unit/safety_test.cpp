@@ -370,4 +370,23 @@ TEST_F(DrivingRover, a_battery_that_is_not_measured_is_not_low)
     EXPECT_EQ(trace.faults, 0u);
 }
 
+TEST_F(DrivingRover, a_long_gap_is_forgotten_as_soon_as_a_short_one)
+{
+    for (const int gap : {6, 5000}) {
+        tick += gap;
+        run(1);
+        EXPECT_TRUE((trace.faults & FAULT_MISSED_TICKS) != 0u);
+        command.mode = MODE_STOP;
+        int ticks = 0;
+        while (trace.faults != 0u && ticks < 300) {
+            run(1);
+            ++ticks;
+        }
+        EXPECT_EQ(ticks, 100) << gap; // one is forgotten per 100 good ticks; five are tolerated
+        run(1000);
+        command.mode = MODE_WHEEL_SPEED;
+        run(1);
+    }
+}
+
 } // namespace

@@ -159,4 +159,18 @@ TEST(Sense, an_encoder_that_falls_silent_after_its_first_count_is_at_rest)
     }
 }
 
+TEST(Sense, both_rails_of_a_signed_converter_are_absurd)
+{
+    const sense_config_t config = rover_config_default().sense;
+    for (const int16_t rail : {INT16_MIN, INT16_MAX}) {
+        sense_state_t state = {};
+        sensor_frame_t frame = quiet_frame();
+        frame.accel_x_count = rail;
+        EXPECT_EQ(sense_measure(&config, &state, &frame).absurd, static_cast<uint32_t>(FRAME_ACCEL));
+        frame.accel_x_count = 0;
+        frame.gyro_z_count = rail;
+        EXPECT_EQ(sense_measure(&config, &state, &frame).absurd, static_cast<uint32_t>(FRAME_GYRO));
+    }
+}
+
 } // namespace

@@ -132,4 +132,13 @@ TEST(SlipPi, integrates_both_ways_within_the_limit)
     }
 }
 
+TEST(SlipPi, a_slip_that_is_no_number_gives_no_duty_and_leaves_the_state_alone)
+{
+    const slip_pi_config_t config = rover_config_default().slip_pi;
+    slip_pi_state_t state = {.integral = 0.3f};
+    const slip_pi_input_t input = {.slip_ref = 0.4f, .slip = std::nanf(""), .speed_m_s = 0.3f};
+    EXPECT_EQ(slip_pi_step(&config, &state, &input).duty, 0.0f);
+    EXPECT_EQ(state.integral, 0.3f);
+}
+
 } // namespace

@@ -83,4 +83,10 @@ TEST(Slip, is_bounded_and_defined_for_every_extreme)
     }
 }
 
+TEST(Slip, is_full_where_the_difference_is_beyond_any_float)
+{
+    EXPECT_EQ(slip(3.4e38f, -3.4e38f), 1.0f);
+    EXPECT_EQ(slip(-3.4e38f, 3.4e38f), -1.0f);
+}
+
 } // namespace
