@@ -162,7 +162,7 @@ TEST(Sense, an_encoder_that_falls_silent_after_its_first_count_is_at_rest)
 TEST(Sense, both_rails_of_a_signed_converter_are_absurd)
 {
     const sense_config_t config = rover_config_default().sense;
-    for (const int16_t rail : {INT16_MIN, INT16_MAX}) {
+    for (const int16_t rail : {int16_t{INT16_MIN}, int16_t{INT16_MAX}}) {
         sense_state_t state = {};
         sensor_frame_t frame = quiet_frame();
         frame.accel_x_count = rail;
