@@ -50,9 +50,8 @@ std::set<std::string> class_of(const std::string &name, const json &result) {
 
 void coverage(const json &effect, const json &result, Reading &reading) {
     const std::string name = text(effect, "name");
-    for (const json &candidate : list_of(result, "candidates")) {
-        const std::string verdict = text(candidate, "verdict");
-        if (plain(text(candidate, "effect")) != name || (verdict != "named" && verdict != "class")) continue;
+    for (const json &candidate : list_of(result, "accepted")) { // the joint fit's values, which the user is shown
+        if (plain(text(candidate, "effect")) != name || static_cast<int>(number(candidate, "wheel", -1)) != effect.value("wheel", -1)) continue;
         const auto parameters = candidate.find("parameters");
         if (parameters == candidate.end() || !parameters->is_object()) continue;
         for (const auto &[key, value] : effect.at("parameters").items()) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace traction::lab {
 
@@ -97,8 +98,8 @@ struct ShapeKind {
 constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::wheel_speed, "torque(wheel speed)"},
     {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},
-    {TermTarget::wheel_torque, Axis::load, "torque(wheel load)"},
-    {TermTarget::wheel_torque, Axis::time, "torque(time)"},
+    {TermTarget::wheel_friction, Axis::load, "friction(wheel load)"},
+    {TermTarget::wheel_friction, Axis::time, "friction(time)"},
     {TermTarget::wheel_torque, Axis::accel, "torque(acceleration)"},
     {TermTarget::rolling, Axis::speed, "resistance(ground speed)"},
     {TermTarget::rolling, Axis::slip, "resistance(slip)"},
@@ -117,6 +118,10 @@ constexpr ShapeKind shape_kinds[] = {
     {TermTarget::accel, Axis::time, "accelerometer(time)"},
     {TermTarget::accel, Axis::accel, "accelerometer(acceleration)"},
     {TermTarget::radar, Axis::abs_speed, "radar(speed)"},
+    {TermTarget::rolling, Axis::yaw_rate, "resistance(yaw rate)"},
+    {TermTarget::wheel_friction, Axis::yaw_rate, "friction(yaw rate)"},
+    {TermTarget::wheel_torque, Axis::reversal, "torque(wheel angle since reversal)"},
+    {TermTarget::voltage, Axis::other_current, "voltage(current of the other motors)"},
 };
 
 const std::vector<double> *axis_series(Axis axis, const Dataset &data, const Motion &motion, const std::vector<std::vector<double>> &current,
@@ -130,12 +135,56 @@ const std::vector<double> *axis_series(Axis axis, const Dataset &data, const Mot
     case Axis::speed:
     case Axis::abs_speed:
     case Axis::direction: return &motion.v_m_s;
-    case Axis::current: return &current[wheel];
+    case Axis::current:
+    case Axis::other_current: return &current[wheel];
+    case Axis::yaw_rate: return &motion.yaw_rate_rad_s;
+    case Axis::reversal: return &data.wheel[wheel].travel_rad;
+    case Axis::place: return &motion.path_m;
     case Axis::time:
     case Axis::angle:
     case Axis::count: break;
     }
     return nullptr;
+}
+
+// At quantiles; over even steps where most of the time is spent at one value; after a reversal where friction turns.
+std::vector<double> knots_of(Axis axis, const std::vector<double> &values) {
+    const double low = quantile(values, 0.02), high = quantile(values, 0.98);
+    std::vector<double> knots;
+    if (axis == Axis::reversal) {
+        for (const double x : {-1.0, -0.4, -0.1, -0.005, 0.005, 0.1, 0.4, 1.0}) // [rad] assumed
+            if (x > low && x < high) knots.push_back(x);
+        return knots;
+    }
+    const bool even = axis == Axis::yaw_rate || axis == Axis::other_current;
+    for (const double q : {0.02, 0.2, 0.4, 0.6, 0.8, 0.98}) {
+        const double knot = even ? low + (q - 0.02) / 0.96 * (high - low) : quantile(values, q);
+        if (knots.empty() || knot > knots.back() + 1e-6 + 0.02 * (high - low)) knots.push_back(knot);
+    }
+    return knots;
+}
+
+// Waves of the ground's strength along the path, at each wheel's place or the body's: half a cycle over the path apart.
+std::vector<Candidate> wave_candidates(const Motion &motion) {
+    std::vector<Candidate> list;
+    const auto [low, high] = std::minmax_element(motion.path_m.begin(), motion.path_m.end());
+    if (motion.path_m.empty() || !(*high - *low > 1)) return list;
+    const double step = std::max(0.5 / (*high - *low), 0.08); // [1/m]
+    for (double cycles = 0.8; cycles < 3.4; cycles += step)
+        for (const Axis axis : {Axis::path, Axis::place}) {
+            Candidate c;
+            char name[80];
+            std::snprintf(name, sizeof name, "soil strength(path), a wave of %.2f m", 1 / cycles);
+            c.effect = name;
+            c.free_shape = true;
+            c.axis = axis;
+            c.target = TermTarget::soil_strength;
+            c.touched = target_stages(c.target);
+            c.order = 2 * std::numbers::pi * cycles;
+            c.strengths.resize(2);
+            list.push_back(std::move(c));
+        }
+    return list;
 }
 
 } // namespace
@@ -148,7 +197,7 @@ void Candidate::prepare(Physics &physics) const {
         term.name = effect;
         term.target = target;
         term.wheel = wheel;
-        term.term = order > 0 ? make_periodic(order) : make_piecewise(axis, knots);
+        term.term = order > 0 ? make_periodic(axis, order) : make_piecewise(axis, knots);
         term.coefficients.assign(strengths.size(), 0);
         physics.terms.push_back(std::move(term));
         return;
@@ -226,10 +275,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
                 for (std::size_t k = 0; k < series->size(); k += 10) values.push_back(kind.axis == Axis::abs_speed ? std::fabs((*series)[k]) : (*series)[k]);
         }
         if (values.empty()) continue;
-        for (const double q : {0.02, 0.2, 0.4, 0.6, 0.8, 0.98}) {
-            const double knot = quantile(values, q);
-            if (c.knots.empty() || knot > c.knots.back() + 1e-6 + 0.02 * (quantile(values, 0.98) - quantile(values, 0.02))) c.knots.push_back(knot);
-        }
+        c.knots = knots_of(kind.axis, values);
         if (c.knots.size() < 3) continue;
         for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();
         list.push_back(std::move(c));
@@ -245,6 +291,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.strengths.resize(2);
         list.push_back(std::move(c));
     }
+    for (Candidate &c : wave_candidates(motion)) list.push_back(std::move(c));
     for (Candidate &c : list)
         for (std::size_t j = 0; j < c.strengths.size(); ++j) {
             FreeParameter &free = c.strengths[j];
@@ -292,11 +339,11 @@ EffectUse effect_of(const Candidate &candidate, const std::vector<double> &stren
 }
 
 std::string shape_expression(const Candidate &c, const std::vector<double> &y) {
-    static const char *names[] = {"t", "w", "v", "s", "Fn", "theta", "x", "a", "I", "v/sqrt(v*v+1e-4)", "abs(v)"};
+    static const char *names[] = {"t", "w", "v", "s", "Fn", "theta", "x", "a", "I", "v/sqrt(v*v+1e-4)", "abs(v)", "r", "X", "d", "Io"};
     const std::string x = names[static_cast<int>(c.axis)];
     char buffer[160];
     if (c.order > 0) {
-        std::snprintf(buffer, sizeof buffer, "%.4g*cos(%g*theta) + %.4g*sin(%g*theta)", y[0], c.order, y[1], c.order);
+        std::snprintf(buffer, sizeof buffer, "%.4g*cos(%g*%s) + %.4g*sin(%g*%s)", y[0], c.order, x.c_str(), y[1], c.order, x.c_str());
         return buffer;
     }
     std::snprintf(buffer, sizeof buffer, "%.4g", y[0]);

@@ -137,6 +137,16 @@ struct Builder {
         }
     }
 
+    void travel(WheelInput &input) const {
+        double from = input.angle_rad.empty() ? 0 : input.angle_rad[0], way = 0;
+        for (std::size_t k = 0; k < input.angle_rad.size(); ++k) {
+            const double w = input.speed_rad_s[k];
+            if (std::fabs(w) > standstill_rad_s && w * way < 0) from = input.angle_rad[k];
+            if (std::fabs(w) > standstill_rad_s) way = w;
+            input.travel_rad.push_back(input.angle_rad[k] - from);
+        }
+    }
+
     // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
     void slopes_of(WheelInput &input) const {
         std::vector<double> &dw = input.accel_rad_s2;
@@ -503,7 +513,7 @@ struct Builder {
             data.count = 0;
             return;
         }
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) wheel_motion(i);
+        for (std::size_t i = 0; i < model.wheel.size(); ++i) wheel_motion(i), travel(data.wheel[i]);
         voltages();
         yaw();
         imposed_motion();

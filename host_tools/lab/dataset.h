@@ -42,6 +42,7 @@ struct Balance {
 
 struct WheelInput {
     std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
+    std::vector<double> travel_rad;  // since the wheel last reversed
     std::vector<double> jerk_rad_s2; // what the smoothing does to the acceleration: a second, narrower one minus it
     std::vector<double> voltage_V;                            // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs;     // its integral at the log's own times: a row's mean is exact

@@ -135,12 +135,16 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
             Signals s;
             s.t = d.time(k), s.w = w, s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
             s.x = motion.path_m[k] + p.x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k], s.u = u;
+            s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = 0;
+            for (std::size_t j = 0; j < base_current_.size(); ++j)
+                if (j != wheel && base_current_[j].size() == d.count) s.Io += base_current_[j][k];
             s.I = KG > 0 ? (gear + p.J * dw + radius * m.traction_N[k]) / KG : 0;
             for (const ExtraTerm &term : physics.terms) {
                 if (term.wheel >= 0 && term.wheel != static_cast<int>(wheel)) continue;
                 if ((target_stages(term.target) & (stage_torque | stage_voltage)) == 0) continue;
                 const double f = term.term->value(s, term.coefficients.data());
                 if (term.target == TermTarget::wheel_torque) gear += f;
+                else if (term.target == TermTarget::wheel_friction) gear += f * soft_sign(w, friction_speed_rad_s);
                 else if (term.target == TermTarget::voltage) u_lost += f;
                 else if (term.target == TermTarget::motor_constant) KG *= 1 + f, ke *= 1 + f;
                 else if (term.target == TermTarget::resistance) Ra *= std::max(0.05, 1 + f);
@@ -184,7 +188,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         double f = 1;
         for (const ExtraTerm &term : physics.terms) {
             if (term.target != target) continue;
-            s.t = d.time(k), s.v = s.V = motion.v_m_s[k], s.x = motion.path_m[k], s.a = motion.accel_m_s2[k], s.r = motion.yaw_rate_rad_s[k];
+            s.t = d.time(k), s.v = s.V = motion.v_m_s[k], s.x = s.X = motion.path_m[k], s.a = motion.accel_m_s2[k], s.r = motion.yaw_rate_rad_s[k];
             f += term.term->value(s, term.coefficients.data());
         }
         return f;

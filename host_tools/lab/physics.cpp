@@ -134,7 +134,7 @@ void add_user_effect(Physics &physics, const Model &model, const EffectUse &use)
     term.wheel = use.wheel;
     if (!parse_target(use.acts_on, term.target))
         throw ModelError(model.file, 0, "effect." + use.name + ".acts_on", "unknown place \"" + use.acts_on + "\"",
-                         "use wheel_torque, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, "
+                         "use wheel_torque, wheel_friction, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, "
                          "motor_constant, resistance, sensor.accel, sensor.radar, sensor.camera or sensor.current");
     std::vector<std::string> names;
     for (const auto &[key, parameter] : use.parameters) {

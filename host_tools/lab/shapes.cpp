@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace traction::lab {
 
@@ -41,7 +42,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {
 
 UnknownShape describe(const ShapeScore &s, double base_error) {
     UnknownShape u;
-    static const char *units[] = {"N m", "N", "N", "N", "V", "1", "1", "1", "1", "m/s^2", "1", "1", "1"};
+    static const char *units[] = {"N m", "N m", "N", "N", "N", "V", "1", "1", "1", "1", "m/s^2", "1", "1", "1"};
     u.variable = std::string(axis_name(s.candidate.axis));
     u.target = std::string(target_name(s.candidate.target));
     u.balance = s.candidate.effect;
@@ -52,8 +53,8 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     for (Eigen::Index j = 0; j < s.assessment.strength.size(); ++j) y.push_back(s.assessment.strength[j]);
     u.expression = shape_expression(s.candidate, y);
     if (s.candidate.order > 0) {
-        for (int i = 0; i <= 36; ++i) {
-            const double theta = 2 * 3.14159265358979 * i / 36, f = y[0] * std::cos(s.candidate.order * theta) + y[1] * std::sin(s.candidate.order * theta);
+        for (int i = 0; i <= 36; ++i) { // a turn of the wheel, or one wave
+            const double theta = 2 * std::numbers::pi * i / 36 / (s.candidate.axis == Axis::angle ? 1 : s.candidate.order), f = y[0] * std::cos(s.candidate.order * theta) + y[1] * std::sin(s.candidate.order * theta);
             const double band = 1.96 * s.assessment.standard_error.maxCoeff();
             u.x.push_back(theta), u.y.push_back(f), u.low.push_back(f - band), u.high.push_back(f + band);
         }
@@ -77,7 +78,7 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     const Screen last_screen(at_last);
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
     for (const ShapeScore &s : all_shapes(at_last, last_screen)) {
-        if (!(s.p_value < options.p_limit) || !(s.assessment.gain > least * last_screen.heldout_error()) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
+        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > least * last_screen.heldout_error()) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
         beyond.shape = describe(s, last_screen.heldout_error());
         break;
     }
@@ -90,7 +91,7 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     const double margin = named_count > 1 ? 0.95 : options.shape_margin; // one shape in the stead of several effects is the simpler story
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
-        if (!(s.p_value < options.p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
+        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
         const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
         const double n = static_cast<double>(difference.size());
         const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));

@@ -13,14 +13,14 @@ namespace traction::lab {
 namespace {
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(TermTarget::count)> target_names = {
-    "wheel_torque", "wheel_force", "rolling_resistance", "body_force", "voltage", "soil_strength", "shear_slip",
+    "wheel_torque", "wheel_friction", "wheel_force", "rolling_resistance", "body_force", "voltage", "soil_strength", "shear_slip",
     "motor_constant", "resistance", "sensor.accel", "sensor.radar", "sensor.camera", "sensor.current"};
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_names = {
     "time", "wheel speed", "ground speed", "slip", "wheel load", "wheel angle", "path travelled", "acceleration",
-    "winding current (model)", "direction", "absolute speed"};
+    "winding current (model)", "direction", "absolute speed", "yaw rate", "place on the path", "wheel angle since reversal", "current of the other motors (model)"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_units = {
-    "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s"};
+    "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s", "rad/s", "m", "rad", "A"};
 
 class Piecewise : public Term {
   public:
@@ -42,12 +42,14 @@ class Piecewise : public Term {
 
 class Periodic : public Term {
   public:
-    explicit Periodic(double order) : order_(order) {}
+    Periodic(Axis axis, double order) : axis_(axis), order_(order) {}
     double value(const Signals &signals, const double *c) const override {
-        return c[0] * std::cos(order_ * signals.theta) + c[1] * std::sin(order_ * signals.theta);
+        const double x = order_ * axis_value(axis_, signals);
+        return c[0] * std::cos(x) + c[1] * std::sin(x);
     }
 
   private:
+    Axis axis_;
     double order_;
 };
 
@@ -55,9 +57,9 @@ class Expression : public Term {
   public:
     Expression(const std::string &text, const std::vector<std::string> &parameters) : coefficients_(parameters.size()) {
         try {
-            const std::array<std::pair<const char *, double *>, 13> names = {{{"t", &s_.t}, {"w", &s_.w}, {"v", &s_.v},
+            const std::array<std::pair<const char *, double *>, 16> names = {{{"t", &s_.t}, {"w", &s_.w}, {"v", &s_.v},
                 {"s", &s_.s}, {"Fn", &s_.Fn}, {"theta", &s_.theta}, {"x", &s_.x}, {"a", &s_.a}, {"I", &s_.I}, {"u", &s_.u},
-                {"Ft", &s_.Ft}, {"V", &s_.V}, {"r", &s_.r}}};
+                {"Ft", &s_.Ft}, {"V", &s_.V}, {"r", &s_.r}, {"X", &s_.X}, {"d", &s_.d}, {"Io", &s_.Io}}};
             for (const auto &[name, place] : names) parser_.DefineVar(name, place);
             for (std::size_t i = 0; i < parameters.size(); ++i) parser_.DefineVar(parameters[i], &coefficients_[i]);
             parser_.DefineConst("pi", M_PI);
@@ -93,7 +95,8 @@ bool parse_target(std::string_view name, TermTarget &target) {
 
 unsigned target_stages(TermTarget target) {
     switch (target) {
-    case TermTarget::wheel_torque: return stage_torque;
+    case TermTarget::wheel_torque:
+    case TermTarget::wheel_friction: return stage_torque;
     case TermTarget::wheel_force:
     case TermTarget::rolling:
     case TermTarget::body_force:
@@ -127,6 +130,10 @@ double axis_value(Axis axis, const Signals &s) {
     case Axis::current: return s.I;
     case Axis::direction: return s.v / std::sqrt(s.v * s.v + 1e-4);
     case Axis::abs_speed: return std::fabs(s.v);
+    case Axis::yaw_rate: return s.r;
+    case Axis::place: return s.X;
+    case Axis::reversal: return s.d;
+    case Axis::other_current: return s.Io;
     case Axis::count: break;
     }
     return 0;
@@ -135,7 +142,7 @@ double axis_value(Axis axis, const Signals &s) {
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots) {
     return std::make_shared<Piecewise>(axis, std::move(knots));
 }
-std::shared_ptr<Term> make_periodic(double order) { return std::make_shared<Periodic>(order); }
+std::shared_ptr<Term> make_periodic(Axis axis, double order) { return std::make_shared<Periodic>(axis, order); }
 std::shared_ptr<Term> make_expression(const std::string &expression, const std::vector<std::string> &parameters) {
     return std::make_shared<Expression>(expression, parameters);
 }

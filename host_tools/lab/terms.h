@@ -2,7 +2,8 @@
 //
 // Signals a term may name (SI): t time, w wheel speed, v ground speed at the wheel, s slip, Fn wheel load, theta wheel angle,
 // x path travelled, a body acceleration, I winding current (the model's, never the measured one), u motor voltage, Ft traction,
-// V body speed, r yaw rate.
+// V body speed, r yaw rate, X path of the body's middle, d wheel angle since its last reversal, Io current of the other motors together
+// (the model's).
 #pragma once
 
 #include <array>
@@ -16,6 +17,7 @@ namespace traction::lab {
 // Where a term acts. Multipliers act as times (1 + f).
 enum class TermTarget {
     wheel_torque,   // adds to Gr [N m], opposing the motor; the term carries its own sign
+    wheel_friction, // adds to Gr against the wheel's motion [N m]
     wheel_force,    // adds to the force of the wheel on the body, along its heading [N]
     rolling,        // adds to the rolling resistance Rr [N], opposes motion
     body_force,     // adds to the force on the body along x [N]
@@ -36,7 +38,7 @@ bool parse_target(std::string_view name, TermTarget &target);
 unsigned target_stages(TermTarget target); // Stage bits of physics.h
 
 struct Signals {
-    double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0;
+    double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0, X = 0, d = 0, Io = 0;
 };
 
 // A function of the signals, linear or not in its coefficients. Evaluation does not change the object's meaning (a parser inside
@@ -47,7 +49,7 @@ class Term {
     virtual double value(const Signals &signals, const double *coefficients) const = 0;
 };
 
-enum class Axis { time, wheel_speed, speed, slip, load, angle, path, accel, current, direction, abs_speed, count };
+enum class Axis { time, wheel_speed, speed, slip, load, angle, path, accel, current, direction, abs_speed, yaw_rate, place, reversal, other_current, count };
 std::string_view axis_name(Axis axis);
 std::string_view axis_unit(Axis axis);
 double axis_value(Axis axis, const Signals &signals);
@@ -55,8 +57,8 @@ double axis_value(Axis axis, const Signals &signals);
 // sum_k c_k * hat_k(X): piecewise linear through the knots, constant outside them.
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots);
 
-// c_0 cos(n theta) + c_1 sin(n theta).
-std::shared_ptr<Term> make_periodic(double order);
+// c_0 cos(n X) + c_1 sin(n X), n in radians per unit of the axis.
+std::shared_ptr<Term> make_periodic(Axis axis, double order);
 
 // A muparser expression in the signals and the named parameters (the coefficients, in that order). Throws std::runtime_error
 // with muparser's message and position.

@@ -55,6 +55,7 @@ void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
     s.w = s.gain * data_.wheel[i].speed_rad_s[k];
     s.rim = s.radius * s.w;
     s.theta = s.gain * data_.wheel[i].angle_rad[k];
+    s.travel = data_.wheel[i].travel_rad.empty() ? 0 : s.gain * data_.wheel[i].travel_rad[k];
     s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i, accel_) : data_.load_N[i][k];
     double strength = 1;
     const double place = path_ + w.x; // each wheel at its own place, as the catalogue has it
@@ -71,6 +72,7 @@ void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
 Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     const State &s = state_[i];
     const WheelPhysics &w = p_.wheel[i];
+    yaw_rate_ = q[2];
     const double vx = q[0] - w.y * q[2], vy = q[1] + w.x * q[2];
     const double along = vx * s.c + vy * s.s, across = -vx * s.s + vy * s.c;
     const double forward = pull(i, along, q[0], across);
@@ -140,6 +142,7 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
     Signals signals;
     signals.t = t_, signals.w = s.w, signals.v = v, signals.s = s.slip, signals.Fn = s.load, signals.theta = s.theta;
     signals.x = path_ + p_.wheel[i].x, signals.a = accel_, signals.V = body_v, signals.Ft = s.traction;
+    signals.r = yaw_rate_, signals.X = path_, signals.d = s.travel;
     for (const ExtraTerm &term : p_.terms) {
         if (term.wheel >= 0 && static_cast<std::size_t>(term.wheel) != i) continue;
         if (term.target == TermTarget::wheel_force) extra += term.term->value(signals, term.coefficients.data());
@@ -154,7 +157,7 @@ double WheelStep::body_force(double v) const {
     double force = -b.tether * std::max(0.0, std::fabs(path_)) * soft_sign(path_, 1e-3) - b.drag * soft_sign(v, resist_speed_m_s);
     if (motion_terms_) {
         Signals signals;
-        signals.t = t_, signals.v = v, signals.V = v, signals.x = path_, signals.a = accel_;
+        signals.t = t_, signals.v = v, signals.V = v, signals.x = signals.X = path_, signals.a = accel_, signals.r = yaw_rate_;
         for (const ExtraTerm &term : p_.terms)
             if (term.target == TermTarget::body_force) force += term.term->value(signals, term.coefficients.data());
     }

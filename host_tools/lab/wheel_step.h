@@ -48,7 +48,7 @@ class WheelStep {
 
     struct State {
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0;
-        double rim = 0, w = 0, theta = 0, load = 0, Fm = 0, sc = 0.1;
+        double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1;
         double slip_before = 0, play_before = 0;
         double v = 0, slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
     };
@@ -72,7 +72,7 @@ class WheelStep {
     std::size_t n_;
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
-    double t_ = 0, path_ = 0, accel_ = 0, yaw_ = 0;
+    double t_ = 0, path_ = 0, accel_ = 0, yaw_ = 0, yaw_rate_ = 0;
     bool motion_terms_ = false, play_ = false, feels_path_ = false;
 };
 
