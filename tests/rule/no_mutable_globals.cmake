@@ -10,5 +10,7 @@ string(REGEX MATCHALL "[^\n]* [bBdDsSC] [^\n]*" mutable "${symbols}")
 list(FILTER mutable EXCLUDE REGEX "\\.data\\.rel\\.ro")
 if(mutable)
   string(REPLACE ";" "\n" mutable "${mutable}")
-  message(FATAL_ERROR "mutable globals in ${LIBRARY}:\n${mutable}")
+  # NOTICE: an error's text is wrapped by CMake, where depends on the path's length
+  message(NOTICE "${LIBRARY}:\n${mutable}")
+  message(FATAL_ERROR "mutable globals in a library")
 endif()

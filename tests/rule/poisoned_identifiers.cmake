@@ -18,5 +18,7 @@ foreach(file IN LISTS files)
   endif()
 endforeach()
 if(offences)
-  message(FATAL_ERROR "poisoned identifiers in firmware/core:\n${offences}")
+  # NOTICE: an error's text is wrapped by CMake, where depends on the path's length
+  message(NOTICE "${offences}")
+  message(FATAL_ERROR "poisoned identifiers in firmware/core")
 endif()
