@@ -53,7 +53,7 @@ int run(int argc, char **argv) {
     app.set_version_flag("--version", TRACTION_VERSION);
     app.require_subcommand(1);
     app.footer("Exit codes: 0 done, 1 the answer is negative, 2 wrong command line, 3 bad input, 4 file error, 70 a bug.\n"
-               "./traction also knows: test (build and run every test), build, help.");
+               "./traction also knows: test (build and run every test), build, prove, fuzz, mutate, help.");
     Outcome outcome;
 #define X(name) add_##name(app, outcome);
 #include "verb_list.inc"

@@ -5,10 +5,10 @@
 set -eu
 file=$1 cli=$2 work=$3 root=$4
 rm -rf "$work"
-mkdir -p "$work"
-ln -s "$root/scenarios" "$root/models" "$work/"
-ln -s "$root/../shared" "$work/../shared" 2>/dev/null || true
-cd "$work"
+mkdir -p "$work/run"
+ln -s "$root/../shared" "$work/" # the link is inside the folder of its own, so that two documents at once do not meet
+cd "$work/run"
+ln -s "$root/scenarios" "$root/models" .
 awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^\.\/traction / { sub(/[ \t]+#.*$/, ""); print }' "$file" >commands
 count=0
 while read -r command; do
