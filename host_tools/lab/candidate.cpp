@@ -100,6 +100,7 @@ constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},
     {TermTarget::wheel_friction, Axis::load, "friction(wheel load)"},
     {TermTarget::wheel_friction, Axis::time, "friction(time)"},
+    {TermTarget::wheel_friction, Axis::direction, "friction(direction of travel)"},
     {TermTarget::wheel_torque, Axis::accel, "torque(acceleration)"},
     {TermTarget::rolling, Axis::speed, "resistance(ground speed)"},
     {TermTarget::rolling, Axis::slip, "resistance(slip)"},
@@ -156,6 +157,7 @@ std::vector<double> knots_of(Axis axis, const std::vector<double> &values) {
             if (x > low && x < high) knots.push_back(x);
         return knots;
     }
+    if (axis == Axis::direction) return {-0.9, 0, 0.9};
     const bool even = axis == Axis::yaw_rate || axis == Axis::other_current;
     for (const double q : {0.02, 0.2, 0.4, 0.6, 0.8, 0.98}) {
         const double knot = even ? low + (q - 0.02) / 0.96 * (high - low) : quantile(values, q);
@@ -169,7 +171,7 @@ std::vector<Candidate> wave_candidates(const Motion &motion) {
     std::vector<Candidate> list;
     const auto [low, high] = std::minmax_element(motion.path_m.begin(), motion.path_m.end());
     if (motion.path_m.empty() || !(*high - *low > 1)) return list;
-    const double step = std::max(0.5 / (*high - *low), 0.08); // [1/m]
+    const double step = std::max(0.65 / (*high - *low), 0.08); // [1/m]
     for (double cycles = 0.8; cycles < 3.4; cycles += step)
         for (const Axis axis : {Axis::path, Axis::place}) {
             Candidate c;

@@ -172,7 +172,7 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || overall_heldout(problem) > 1.01 * overall_heldout(before)) return std::nullopt;
+        if (!large_enough(t.candidate, value) || overall_heldout(problem) > 1.03 * overall_heldout(before)) return std::nullopt;
         return problem;
     }
 

@@ -197,6 +197,21 @@ double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::Vec
     return scaled_residual.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(change);
 }
 
+double Screen::best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const {
+    const Dataset &data = problem_.data();
+    const Eigen::VectorXd before = problem_.residual.cwiseProduct(problem_.row_scale);
+    const Eigen::VectorXd after = before - columns * step.strength - problem_.jacobian.leftCols(nuisance_.cols()) * step.change;
+    double best = 0;
+    Eigen::Index first = 0;
+    for (const Balance &balance : data.balance) {
+        const auto n = static_cast<Eigen::Index>(balance.measured.size());
+        const double squares = before.segment(first, n).squaredNorm();
+        if (squares > 0) best = std::max(best, 1 - after.segment(first, n).squaredNorm() / squares);
+        first += n;
+    }
+    return best;
+}
+
 std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
     const Eigen::VectorXd noise = problem_.noise_rows();
     const Dataset &data = problem_.data();

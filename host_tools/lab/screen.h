@@ -46,6 +46,8 @@ class Screen {
 
     // Error on all rows with this scaled residual, after what the baseline's parameters would then absorb: for a candidate moved alone.
     double error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const;
+    // Largest relative fall of one balance's error on all rows, by the linear step.
+    double best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const;
     double error() const { return error_; } // on all rows, priors included, at the baseline's optimum
     double penalty() const { return base_penalty_; }                // of the priors, at the baseline's optimum
     double heldout_error() const { return base_error_; }            // sum of squares over held-out blocks, priors included

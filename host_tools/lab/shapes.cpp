@@ -77,12 +77,22 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     Problem at_last = last, at_first = first; // their forward models are moved about
     const Screen last_screen(at_last);
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
-    for (const ShapeScore &s : all_shapes(at_last, last_screen)) {
+    const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen);
+    const ShapeScore *best = nullptr;
+    double best_gain = 0;
+    for (const ShapeScore &s : scores) {
         if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > least * last_screen.heldout_error()) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
-        beyond.shape = describe(s, last_screen.heldout_error());
-        break;
+        // of shapes that do nearly as well, the one with the fewest coefficients
+        if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())) continue;
+        if (best == nullptr) best_gain = s.assessment.gain;
+        best = &s;
     }
+    if (best != nullptr) beyond.shape = describe(*best, last_screen.heldout_error());
     if (named_count == 0) return beyond;
+    // where nothing is left that any shape would explain, no shape can do better than what was named
+    double left = 0;
+    for (const ShapeScore &s : scores) left = std::max(left, s.assessment.gain);
+    if (left < 0.01 * last_screen.heldout_error()) return beyond;
     // does one shape alone do better than all that was named?
     const Screen first_screen(at_first);
     at_last.keep_scales(first);

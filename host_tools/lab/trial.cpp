@@ -67,6 +67,7 @@ Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &column
     t.gain_error = t.assessment.gain_error;
     t.block_gain = t.assessment.block_gain;
     for (Eigen::Index j = 0; j < C.cols(); ++j) t.value.push_back(t.assessment.strength[j]);
+    if (t.p_value < 0.01) t.best_balance_gain = screen.best_balance_fall(C, t.assessment);
     if (plausible_sign(c, t.value)) t.promise = t.assessment.fall; // else its bound stops it
     return t;
 }
@@ -133,6 +134,7 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
     t.gain_error = std::sqrt((t.block_gain.array() - mean).square().sum() * blocks / std::max(1.0, blocks - 1));
     const Screen with(problem);
     t.promise = base_screen.error() - with.error();
+    t.best_balance_gain = 0;
     const std::vector<double> before = base_screen.heldout_by_balance(), after = with.heldout_by_balance();
     for (std::size_t b = 0; b < before.size(); ++b)
         if (before[b] > 0) t.best_balance_gain = std::max(t.best_balance_gain, 1 - after[b] / before[b]);
