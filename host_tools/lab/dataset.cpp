@@ -1,255 +1,19 @@
 #include "dataset.h"
 
+#include "inputs.h"
 #include "smooth.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace traction::lab {
 
 namespace {
 
-constexpr double bin_s = 0.05;         // rows of fast signals: keeps all below 10 Hz, assumed enough for a rover's physics
-constexpr double longest_gap_s = 0.25; // beyond it a wheel's speed is not known
-constexpr double standstill_rad_s = 0.15; // below it friction is indeterminate: the torque balance says nothing
+constexpr double bin_s = 0.05; // rows of fast signals: keeps all below 10 Hz, assumed enough for a rover's physics
 
-double sample_period(const log::Signal &signal) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < signal.t_s.size(); ++i) steps.push_back(signal.t_s[i] - signal.t_s[i - 1]);
-    return median(steps);
-}
-
-double parameter(const Parameters &table, const std::string &key) {
-    const auto found = table.find(key);
-    return found == table.end() ? 0.0 : found->second.value;
-}
-
-struct Builder {
-    const Model &model;
-    const log::Log &log;
-    Dataset data;
-
-    const log::Signal *signal(const std::string &name) const {
-        const log::Signal *found = log.find(name);
-        return found != nullptr && found->t_s.size() >= 3 ? found : nullptr;
-    }
-    const log::Signal *wheel_signal(std::size_t i, const std::string &quantity) const {
-        return signal("wheel" + std::to_string(i) + "." + quantity);
-    }
-    double header(const std::string &key) const {
-        const auto found = log.header.find(key);
-        return found == log.header.end() ? 0.0 : std::atof(found->second.c_str());
-    }
-    // Header window.<signal>, or window.wheel.<quantity> for all wheels: a sample is the mean of the window that ends at its time.
-    double window_of(const log::Signal &s) const {
-        const double own = header("window." + s.name);
-        if (own > 0 || s.name.substr(0, 5) != "wheel") return own;
-        return header("window.wheel" + s.name.substr(s.name.find('.')));
-    }
-    void say(const std::string &text) { data.messages.push_back(text); }
-
-    void header_of_log() {
-        data.log_file = log.source.substr(log.source.find_last_of('/') + 1);
-        data.duration_s = log.duration_s();
-        if (const auto found = log.header.find("scenario"); found != log.header.end()) data.scenario = found->second;
-        data.accel_bias_prior_m_s2 = header("bias.imu.accel_x_m_s2");
-        if (const auto found = log.header.find("date"); found != log.header.end()) data.date = found->second;
-    }
-
-    // The signal that tells wheel i's motion best: counts, then angle, then speed.
-    const log::Signal *motion_signal(std::size_t i, double &angle_scale) const {
-        angle_scale = 0;
-        if (const log::Signal *count = wheel_signal(i, "encoder_count")) {
-            angle_scale = 2 * std::numbers::pi / parameter(model.sensors, "encoder.counts_per_turn");
-            return count;
-        }
-        if (const log::Signal *angle = wheel_signal(i, "angle_rad")) {
-            angle_scale = 1;
-            return angle;
-        }
-        return wheel_signal(i, "speed_rad_s");
-    }
-
-    bool set_grid() {
-        double first = -1e300, last = 1e300, period = 1e300;
-        std::size_t longest = 0;
-        bool any = false;
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) {
-            double scale = 0;
-            const log::Signal *s = motion_signal(i, scale);
-            if (s == nullptr) continue;
-            any = true;
-            first = std::max(first, s->t_s.front());
-            last = std::min(last, s->t_s.back());
-            period = std::min(period, sample_period(*s));
-            longest = std::max(longest, s->t_s.size());
-        }
-        if (!any || !(last > first)) {
-            say("the log has no wheel speed (wheel<i>.encoder_count, wheel<i>.angle_rad or wheel<i>.speed_rad_s): nothing can be compared");
-            return false;
-        }
-        data.independent_rows = model.motion == BodyMotion::imposed && period >= 0.5;
-        data.start_s = first;
-        data.step_s = data.independent_rows ? period : std::max(0.02, (last - first) / 30000);
-        data.count = static_cast<std::size_t>((last - first) / data.step_s + 1e-6) + 1;
-        data.gap.assign(data.count, 0);
-        return data.count >= 3;
-    }
-
-    void wheel_motion(std::size_t i) {
-        WheelInput &input = data.wheel[i];
-        double scale = 0;
-        const log::Signal *s = motion_signal(i, scale);
-        if (s == nullptr) {
-            say("wheel " + std::to_string(i) + " has no speed in the log: taken as standing still, its balances are left out");
-            input.angle_rad.assign(data.count, 0);
-            input.speed_rad_s = input.accel_rad_s2 = input.angle_rad;
-            return;
-        }
-        const double half = data.independent_rows ? 0.1 * data.step_s : std::max(0.055, 2.6 * sample_period(*s));
-        if (scale > 0) {
-            std::vector<double> angle(s->value);
-            for (double &a : angle) a *= scale;
-            Smooth smooth = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 2);
-            input.angle_rad = std::move(smooth.value);
-            input.speed_rad_s = std::move(smooth.slope);
-            mark_gaps(smooth.distance_s, *s);
-            slopes_of(input);
-            WheelInput narrow;
-            narrow.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
-            slopes_of(narrow);
-            for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow.accel_rad_s2[k] - input.accel_rad_s2[k]);
-        } else if (data.independent_rows) {
-            for (std::size_t k = 0; k < data.count; ++k) input.speed_rad_s.push_back(interpolate(s->t_s, s->value, data.time(k)));
-            input.angle_rad.assign(data.count, 0);
-            input.accel_rad_s2.assign(data.count, 0);
-        } else {
-            Smooth smooth = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, half, 2);
-            input.speed_rad_s = std::move(smooth.value);
-            input.accel_rad_s2 = std::move(smooth.slope);
-            mark_gaps(smooth.distance_s, *s);
-            const std::vector<double> narrow = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
-            for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow[k] - input.accel_rad_s2[k]);
-            input.angle_rad.assign(data.count, 0);
-            for (std::size_t k = 1; k < data.count; ++k)
-                input.angle_rad[k] = input.angle_rad[k - 1] + 0.5 * data.step_s * (input.speed_rad_s[k] + input.speed_rad_s[k - 1]);
-        }
-    }
-
-    void travel(WheelInput &input) const {
-        double from = input.angle_rad.empty() ? 0 : input.angle_rad[0], way = 0;
-        for (std::size_t k = 0; k < input.angle_rad.size(); ++k) {
-            const double w = input.speed_rad_s[k];
-            if (std::fabs(w) > standstill_rad_s && w * way < 0) from = input.angle_rad[k];
-            if (std::fabs(w) > standstill_rad_s) way = w;
-            input.travel_rad.push_back(input.angle_rad[k] - from);
-        }
-    }
-
-    // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
-    void slopes_of(WheelInput &input) const {
-        std::vector<double> &dw = input.accel_rad_s2;
-        const std::vector<double> &w = input.speed_rad_s;
-        dw.assign(data.count, 0);
-        const auto n = static_cast<std::ptrdiff_t>(data.count), reach = std::max<std::ptrdiff_t>(1, std::lround(0.02 / data.step_s));
-        for (std::ptrdiff_t k = 0; k < n; ++k) {
-            const std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, k - reach), b = std::min(n - 1, k + reach);
-            dw[static_cast<std::size_t>(k)] = (w[static_cast<std::size_t>(b)] - w[static_cast<std::size_t>(a)]) / (static_cast<double>(b - a) * data.step_s);
-        }
-    }
-
-    void mark_gaps(const std::vector<double> &distance_s, const log::Signal &s) {
-        const double limit = std::max(longest_gap_s, 2.6 * sample_period(s));
-        for (std::size_t k = 0; k < data.count; ++k)
-            if (distance_s[k] > limit) data.gap[k] = 1;
-    }
-
-    template <typename Mean> static void integrate_voltage(WheelInput &input, const std::vector<double> &t, Mean &&mean_V) {
-        input.voltage_t_s = t;
-        input.voltage_integral_Vs.assign(1, 0);
-        for (std::size_t j = 0; j + 1 < t.size(); ++j) input.voltage_integral_Vs.push_back(input.voltage_integral_Vs.back() + mean_V(j) * (t[j + 1] - t[j]));
-    }
-
-    void voltages() {
-        const log::Signal *battery = signal("battery.voltage_V");
-        const double nominal_V = parameter(model.rover, "battery_voltage_V");
-        std::vector<double> battery_V;
-        if (battery != nullptr) battery_V = smooth_at(battery->t_s, battery->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*battery)), 1).value;
-        else if (nominal_V > 0) battery_V.assign(data.count, nominal_V);
-        bool told = false;
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) {
-            WheelInput &input = data.wheel[i];
-            if (const log::Signal *voltage = wheel_signal(i, "voltage_V")) {
-                for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(interpolate(voltage->t_s, voltage->value, data.time(k)));
-                integrate_voltage(input, voltage->t_s, [&](std::size_t j) { return 0.5 * (voltage->value[j] + voltage->value[j + 1]); });
-            } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !battery_V.empty()) { // held from its time on
-                const auto supply = [&](double t) {
-                    const double x = std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(data.count - 1));
-                    const auto k = std::min(static_cast<std::size_t>(x), data.count - 2);
-                    return battery_V[k] + (x - static_cast<double>(k)) * (battery_V[k + 1] - battery_V[k]);
-                };
-                for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(hold(duty->t_s, duty->value, data.time(k)) * battery_V[k]);
-                integrate_voltage(input, duty->t_s, [&](std::size_t j) { return duty->value[j] * supply(0.5 * (duty->t_s[j] + duty->t_s[j + 1])); });
-            } else if (!told && model.wheel[i].driven) {
-                say("no motor voltage (duty and battery.voltage_V, or wheel<i>.voltage_V): the voltage balance is left out");
-                told = true;
-            }
-        }
-    }
-
-    void yaw() {
-        const log::Signal *gyro = signal("imu.gyro_z_rad_s"), *camera = signal("camera.yaw_rad");
-        if (gyro != nullptr) {
-            data.yaw_rate_rad_s = smooth_at(gyro->t_s, gyro->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*gyro)), 1).value;
-        } else if (camera != nullptr) {
-            data.yaw_rate_rad_s = smooth_at(camera->t_s, unwrapped(camera->value), data.start_s, data.step_s, data.count, std::max(0.35, 2.5 * sample_period(*camera)), 2).slope;
-        } else if (model.wheel.size() > 1 && model.motion == BodyMotion::longitudinal) {
-            say("no yaw rate (imu.gyro_z_rad_s or camera.yaw_rad): the body is taken to drive straight");
-        }
-        double sides = 0; // half the distance between the wheels' tracks
-        for (const WheelSpec &w : model.wheel) sides = std::max(sides, std::fabs(parameter(w.geometry, "y_m")));
-        data.yaw_free = model.motion == BodyMotion::longitudinal && (gyro != nullptr || camera != nullptr) && sides > 1e-3 && model.wheel.size() > 1;
-        if (camera != nullptr) {
-            const std::vector<double> angle = unwrapped(camera->value);
-            for (std::size_t k = 0; k < data.count; ++k) data.yaw_rad.push_back(interpolate(camera->t_s, angle, data.time(k)));
-        } else if (!data.yaw_rate_rad_s.empty()) {
-            double angle = 0;
-            for (std::size_t k = 0; k < data.count; ++k) data.yaw_rad.push_back(angle += data.yaw_rate_rad_s[k] * data.step_s);
-        }
-    }
-
-    static std::vector<double> unwrapped(std::vector<double> angle) {
-        double turn = 0;
-        for (std::size_t i = 1; i < angle.size(); ++i) {
-            const double step = angle[i] + turn - angle[i - 1];
-            if (std::fabs(step) > std::numbers::pi) turn -= 2 * std::numbers::pi * std::round(step / (2 * std::numbers::pi));
-            angle[i] += turn;
-        }
-        return angle;
-    }
-
-    void imposed_motion() {
-        if (model.motion == BodyMotion::imposed) {
-            if (const log::Signal *speed = signal("carriage.speed_m_s")) {
-                for (std::size_t k = 0; k < data.count; ++k) data.body_speed_m_s.push_back(interpolate(speed->t_s, speed->value, data.time(k)));
-            } else if (const log::Signal *slip = wheel_signal(0, "slip")) { // a bench that states slip instead
-                const double radius = parameter(model.wheel[0].geometry, "radius_m");
-                for (std::size_t k = 0; k < data.count; ++k) {
-                    const double s = interpolate(slip->t_s, slip->value, data.time(k)), rim = radius * data.wheel[0].speed_rad_s[k];
-                    data.body_speed_m_s.push_back(s >= 0 ? rim * (1 - s) : rim / std::max(1e-3, 1 + s));
-                }
-            } else {
-                say("no carriage.speed_m_s (or wheel0.slip): the imposed speed is taken as zero");
-            }
-        }
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) {
-            const log::Signal *load = wheel_signal(i, "normal_N");
-            if (load == nullptr) continue;
-            data.load_N.resize(model.wheel.size());
-            for (std::size_t k = 0; k < data.count; ++k) data.load_N[i].push_back(std::max(0.0, interpolate(load->t_s, load->value, data.time(k))));
-        }
-    }
+struct Builder : InputBuilder {
+    Builder(const Model &of, const log::Log &from) : InputBuilder{of, from, {}} {}
 
     // A released bridge carries no current whatever the duty says (actuator.motor_enable 0).
     bool powered(double t0, double t1) const {
@@ -548,10 +312,10 @@ void noise_from_repeat(Dataset &data, const Dataset &other) {
 } // namespace
 
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
-    Builder builder{model, log, {}, {}, 0};
+    Builder builder(model, log);
     builder.build();
     if (repeat != nullptr) {
-        Builder other{model, *repeat, {}, {}, 0};
+        Builder other(model, *repeat);
         other.build();
         noise_from_repeat(builder.data, other.data);
     }

@@ -1,0 +1,43 @@
+// inputs.h - the inputs of the forward model on one uniform grid, from a log: wheel motion, motor voltage, yaw, imposed speed.
+#pragma once
+
+#include "dataset.h"
+
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+inline constexpr double standstill_rad_s = 0.15; // below it friction is indeterminate: the torque balance says nothing
+
+double sample_period(const log::Signal &signal); // [s], median
+double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
+
+// Fills everything of a Dataset but its balances.
+struct InputBuilder {
+    const Model &model;
+    const log::Log &log;
+    Dataset data;
+
+    const log::Signal *signal(const std::string &name) const;
+    const log::Signal *wheel_signal(std::size_t i, const std::string &quantity) const;
+    double header(const std::string &key) const;
+    // Header window.<signal>, or window.wheel.<quantity> for all wheels: a sample is the mean of the window that ends at its time.
+    double window_of(const log::Signal &s) const;
+    void say(const std::string &text);
+    void header_of_log();
+    // The signal that tells wheel i's motion best: counts, then angle, then speed.
+    const log::Signal *motion_signal(std::size_t i, double &angle_scale) const;
+    bool set_grid();
+    void wheel_motion(std::size_t i);
+    void travel(WheelInput &input) const;
+    // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
+    void slopes_of(WheelInput &input) const;
+    void mark_gaps(const std::vector<double> &distance_s, const log::Signal &s);
+    void voltages();
+    void yaw();
+    static std::vector<double> unwrapped(std::vector<double> angle);
+    void imposed_motion();
+};
+
+} // namespace traction::lab
