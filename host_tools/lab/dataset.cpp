@@ -311,6 +311,13 @@ void noise_from_repeat(Dataset &data, const Dataset &other) {
 
 } // namespace
 
+double Dataset::acceleration_loss(double omega) const {
+    const double x = omega * step_s; // central differences over two steps, then linear interpolation between them
+    if (!(x > 1e-6)) return 0;
+    const double kept = slope_response(smoothing_half_s, omega) * std::sin(x) / x * std::pow(std::sin(x / 2) / (x / 2), 2);
+    return std::clamp(1 - kept, 0.0, 1.0);
+}
+
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
     Builder builder(model, log);
     builder.build();

@@ -61,10 +61,13 @@ struct Dataset {
     std::vector<char> gap;              // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
     std::vector<std::string> messages;  // what is missing and what that removes
+    double smoothing_half_s = 0;        // half width of the encoder's parabolas
     double accel_bias_prior_m_s2 = 0;   // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
     std::string log_file, scenario, date;
     double duration_s = 0;
 
+    // Share of a wheel's acceleration at omega [rad/s] that the smoothing and the grid lose.
+    double acceleration_loss(double omega_rad_s) const;
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
 

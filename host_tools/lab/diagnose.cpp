@@ -71,9 +71,21 @@ class Search {
                     const FreeParameter &p = problem.parameters[i];
                     if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
                     a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
-                    a.low[j] = a.value[j] - errors[i].reach;
-                    a.high[j] = a.value[j] + errors[i].reach;
+                    const double reach = errors[i].reach + std::fabs(a.value[j]) * smoothing_doubt(a.candidate);
+                    a.low[j] = a.value[j] - reach;
+                    a.high[j] = a.value[j] + reach;
                 }
+    }
+
+    // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses
+    // at the ripple's frequency is not known of its size.
+    double smoothing_doubt(const Candidate &c) const {
+        if (c.effect != "torque_ripple" || c.variant.empty()) return 0;
+        double squares = 0, n = 0;
+        for (const WheelInput &w : data_.wheel)
+            for (const double speed : w.speed_rad_s)
+                if (std::fabs(speed) > 0.5) squares += speed * speed, ++n;
+        return n > 0 ? data_.acceleration_loss(std::fabs(c.variant[0].second) * std::sqrt(squares / n)) : 0;
     }
 
     // Best shape of each effect and wheel, those that promise most first.

@@ -271,4 +271,26 @@ Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touc
     return out;
 }
 
+Eigen::VectorXd Forward::predict_shaped(const Physics &base, const UnitResponse &unit, const Term &term, const std::vector<double> &coefficients) {
+    const Dataset &d = *data_;
+    const Motion &m = base_motion_;
+    std::vector<std::vector<double>> share(base.wheel.size(), std::vector<double>(d.count));
+    Signals s;
+    for (std::size_t i = 0; i < base.wheel.size(); ++i) {
+        const double gain = 1 / (1 - std::min(0.9, base.wheel[i].encoder_missed));
+        for (std::size_t k = 0; k < d.count; ++k) {
+            const std::size_t j = k == 0 ? 0 : k - 1;
+            s.t = d.time(k), s.w = gain * d.wheel[i].speed_rad_s[k], s.v = m.wheel[i].ground_speed_m_s[k], s.s = m.wheel[i].slip[k], s.Fn = m.wheel[i].load_N[k];
+            s.theta = gain * d.wheel[i].angle_rad[k], s.X = m.path_m[j], s.x = s.X + base.wheel[i].x, s.a = m.rate[j][0], s.V = m.v_m_s[k], s.r = m.yaw_rate_rad_s[k];
+            s.Ft = m.wheel[i].traction_N[k], s.d = d.wheel[i].travel_rad.empty() ? 0 : gain * d.wheel[i].travel_rad[k];
+            share[i][k] = term.value(s, coefficients.data());
+        }
+    }
+    neighbour_shaped(d, base, m, unit, share, scratch_);
+    Eigen::VectorXd out = base_prediction_;
+    for (std::size_t i = 0; i < base.wheel.size(); ++i) torque_of_traction(base, scratch_, i, out);
+    sensors(base, scratch_, out);
+    return out;
+}
+
 } // namespace traction::lab

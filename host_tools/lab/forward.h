@@ -25,6 +25,8 @@ class Forward {
 
     // The same when only the stages in `touched` (see Stage) differ from `base`, the prediction of the last set_base().
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
+    // A shape that moves the body, with these coefficients, beside the base.
+    Eigen::VectorXd predict_shaped(const Physics &base, const UnitResponse &unit, const Term &term, const std::vector<double> &coefficients);
     void set_base(const Physics &physics);
     const Eigen::VectorXd &base() const { return base_prediction_; }
     bool has_linear_base() const { return linear_base_; }

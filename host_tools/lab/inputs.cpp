@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace traction::lab {
@@ -110,10 +111,17 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.speed_rad_s = input.accel_rad_s2 = input.angle_rad;
         return;
     }
-    const double half = data.independent_rows ? 0.1 * data.step_s : std::max(0.055, 2.6 * sample_period(*s));
+    double half = data.independent_rows ? 0.1 * data.step_s : std::max(0.055, 2.6 * sample_period(*s));
+    data.smoothing_half_s = half;
     if (scale > 0) {
         std::vector<double> angle(s->value);
         for (double &a : angle) a *= scale;
+        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, standstill_rad_s); wide > 1.2 * half) {
+            half = wide;
+            char text[160];
+            std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s", s->name.c_str(), half);
+            say(text);
+        }
         Smooth smooth = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 2);
         input.angle_rad = std::move(smooth.value);
         input.speed_rad_s = std::move(smooth.slope);

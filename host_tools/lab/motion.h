@@ -52,6 +52,15 @@ bool has_neighbours(const Dataset &data, const Physics &base, const Physics &mov
 // whole: slip, wheel speed and load too, else the body and the tractions alone.
 void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &motion);
 
+// What one unit of a term does at each step of a known motion, per wheel: shapes f(X) share it, each with its own f.
+struct UnitResponse {
+    std::vector<std::vector<Eigen::Vector3d>> force; // (Fx, Fy, Mz)
+    std::vector<std::vector<double>> traction;
+};
+UnitResponse unit_response(const Dataset &data, const Physics &base, const Motion &known, TermTarget target);
+// share: f at each wheel and step.
+void neighbour_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share, Motion &motion);
+
 namespace detail {
 
 // What is sought in a step: which of (vx, vy, yaw rate) follow from the forces.

@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 namespace traction::lab {
 
 namespace {
 
 void cut_part(log::Log &log, double from_s, double to_s) {
-    if (!(to_s > from_s)) return;
+    if (!(from_s > 0) && !(to_s > 0)) return;
+    if (!(to_s > 0)) to_s = std::numeric_limits<double>::infinity();
     for (log::Signal &s : log.signals) {
         log::Signal part;
         part.name = s.name;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace traction::lab {
@@ -19,23 +20,52 @@ struct ShapeScore {
     double p_value = 1;
 };
 
-ShapeScore assess_shape(const Candidate &c, Problem &problem, const Screen &screen, const Physics &physics) {
-    ShapeScore s;
-    s.candidate = c;
-    Physics at = physics;
-    c.prepare(at);
-    Eigen::MatrixXd columns(problem.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
-    for (std::size_t j = 0; j < c.strengths.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = problem.column(at, c.strengths[j], c.step[j]);
-    s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
-    s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
-    return s;
-}
+// Columns of all shapes: those that move the body share the response to a unit of their target.
+class ShapeColumns {
+  public:
+    explicit ShapeColumns(Problem &problem) : problem_(problem), physics_(problem.physics()) {
+        for (const WheelPhysics &w : physics_.wheel) plain_ = plain_ && w.dead_voltage == 0 && w.heating == 0;
+        plain_ = plain_ && physics_.terms.empty() && problem.forward().has_linear_base();
+    }
+
+    Eigen::MatrixXd of(const Candidate &c) {
+        Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
+        Physics at = physics_;
+        c.prepare(at);
+        const bool shared = plain_ && c.touched == stage_motion && c.target != TermTarget::body_force;
+        for (std::size_t j = 0; j < c.strengths.size(); ++j) {
+            const auto col = static_cast<Eigen::Index>(j);
+            if (!shared) {
+                columns.col(col) = problem_.column(at, c.strengths[j], c.step[j]);
+                continue;
+            }
+            auto found = units_.find(c.target);
+            if (found == units_.end()) found = units_.emplace(c.target, unit_response(problem_.data(), physics_, problem_.forward().motion(), c.target)).first;
+            std::vector<double> one(c.strengths.size(), 0);
+            one[j] = 1;
+            columns.col(col) = (problem_.forward().predict_shaped(physics_, found->second, *at.terms.back().term, one) - problem_.forward().base()).cwiseProduct(problem_.row_scale);
+        }
+        return columns;
+    }
+
+  private:
+    Problem &problem_;
+    Physics physics_;
+    bool plain_ = true;
+    std::map<TermTarget, UnitResponse> units_;
+};
 
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {
     std::vector<ShapeScore> list;
-    const Physics physics = problem.physics();
-    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.forward().winding_current_A()))
-        list.push_back(assess_shape(c, problem, screen, physics));
+    ShapeColumns columns(problem);
+    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.forward().winding_current_A())) {
+        ShapeScore s;
+        s.candidate = c;
+        const Eigen::MatrixXd C = columns.of(c);
+        s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false);
+        s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
+        list.push_back(std::move(s));
+    }
     std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
     return list;
 }

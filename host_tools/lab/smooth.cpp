@@ -28,7 +28,41 @@ void solve_local(const double (&s)[5], const double (&r)[3], int degree, double 
     slope = 0;
 }
 
+constexpr double widest_half_s = 0.5; // starts and stops of a second still show
+constexpr double slope_noise = 0.01;  // of the speed: on hard ground a slip of 1 % carries a tenth of the load
+
+// What is white in the samples while the wheel turns, by the covariance -sigma^2 of neighbouring deviations from the straight line
+// through a sample's neighbours; an acceleration makes that covariance positive. `speed`: its median.
+double scatter_of(const std::vector<double> &t, const std::vector<double> &angle, double period, double still, double &speed) {
+    std::vector<double> deviation, size, moving;
+    for (std::size_t j = 1; j + 1 < angle.size(); ++j) {
+        const double span = t[j + 1] - t[j - 1], mean = (angle[j + 1] - angle[j - 1]) / span;
+        deviation.push_back(std::numeric_limits<double>::quiet_NaN());
+        if (!(span < 4 * period) || !(std::fabs(mean) > still)) continue;
+        deviation.back() = angle[j] - angle[j - 1] - mean * (t[j] - t[j - 1]);
+        size.push_back(std::fabs(deviation.back()));
+        moving.push_back(std::fabs(mean));
+    }
+    if (moving.size() < 50) return 0;
+    speed = median(moving);
+    const auto most_of = static_cast<std::ptrdiff_t>(size.size() * 4 / 5);
+    std::nth_element(size.begin(), size.begin() + most_of, size.end());
+    const double most = 4 * size[static_cast<std::size_t>(most_of)]; // a counter's reset is no scatter
+    double sum = 0, n = 0;
+    for (std::size_t j = 0; j + 1 < deviation.size(); ++j)
+        if (std::fabs(deviation[j]) < most && std::fabs(deviation[j + 1]) < most) sum -= deviation[j] * deviation[j + 1], ++n;
+    return n > 0 ? std::sqrt(std::max(0.0, sum / n)) : 0;
+}
+
 } // namespace
+
+double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s, double still_rad_s) {
+    double speed = 0;
+    const double scatter = scatter_of(t_s, angle_rad, period_s, still_rad_s, speed);
+    if (!(scatter > 0)) return half_s;
+    // tricube weights: a scatter sigma leaves 1.85 sigma sqrt(period) / half^1.5 in the slope
+    return std::clamp(std::pow(1.85 * scatter * std::sqrt(period_s) / (slope_noise * speed), 2.0 / 3), half_s, std::max(half_s, widest_half_s));
+}
 
 Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s, std::size_t count,
                  double half_width_s, int degree) {
@@ -70,6 +104,18 @@ Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &valu
         out.distance_s[k] = std::fabs(t_s[near] - t);
     }
     return out;
+}
+
+double slope_response(double half_width_s, double omega_rad_s) {
+    const double x = omega_rad_s * half_width_s;
+    if (!(x > 1e-6)) return 1;
+    double kept = 0, norm = 0;
+    for (int i = -200; i <= 200; ++i) {
+        const double u = i / 200.0, c = 1 - std::fabs(u * u * u), w = c * c * c;
+        kept += w * u * std::sin(x * u);
+        norm += w * u * x * u;
+    }
+    return kept / norm;
 }
 
 double interpolate(const std::vector<double> &t_s, const std::vector<double> &value, double at_s) {

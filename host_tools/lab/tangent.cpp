@@ -33,6 +33,7 @@ class Moved {
         return i >= first_ && i < last_ ? step_.state(i).traction - known_.wheel[i].traction_N[k] : 0;
     }
     double slip_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).slip - known_.wheel[i].slip[k] : 0; }
+    double grade_accel(std::size_t) const { return step_.grade_accel(); }
     const WheelStep &step() const { return step_; }
 
   private:
@@ -44,23 +45,35 @@ class Moved {
     std::size_t first_, last_;
 };
 
-} // namespace
+// A unit response times a function of the known motion.
+class Shaped {
+  public:
+    Shaped(const Dataset &data, const Physics &physics, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share)
+        : p_(physics), known_(known), unit_(unit), share_(share), freedom_(detail::freedom_of(data, physics)), step_(data, physics) {}
+    Vector3d rate_change(std::size_t k, const Vector3d &, double, double, double) const {
+        Vector3d force = Vector3d::Zero();
+        for (std::size_t i = 0; i < unit_.force.size(); ++i) force += share_[i][k] * unit_.force[i][k];
+        return {force[0] / p_.body.mass, freedom_.vy ? force[1] / p_.body.mass : 0, freedom_.yaw ? force[2] / p_.body.yaw_inertia : 0};
+    }
+    double traction_change(std::size_t i, std::size_t k) const { return share_[i][k] * unit_.traction[i][k]; }
+    double slip_change(std::size_t, std::size_t) const { return 0; } // a shape acts on forces
+    double grade_accel(std::size_t k) const { return known_.rate[k][0] - known_.accel_m_s2[k] - (freedom_.vy ? known_.yaw_rate_rad_s[k] * known_.vy_m_s[k] : 0); }
+    const WheelStep &step() const { return step_; }
 
-bool has_neighbours(const Dataset &data, const Physics &base, const Physics &moved) {
-    if (moved.motion != BodyMotion::longitudinal && moved.motion != BodyMotion::planar) return false;
-    if (moved.wheel.size() > most_wheels) return false;
-    const WheelStep a(data, base), b(data, moved);
-    for (std::size_t i = 0; i < moved.wheel.size(); ++i)
-        if (a.lags(i) != b.lags(i)) return false;
-    return !a.has_play() && !b.has_play();
-}
+  private:
+    const Physics &p_;
+    const Motion &known_;
+    const UnitResponse &unit_;
+    const std::vector<std::vector<double>> &share_;
+    detail::Freedom freedom_;
+    WheelStep step_;
+};
 
-void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &m) {
-    detail::resize(m, data.count, moved.wheel.size(), false, false);
-    const std::size_t wheels = moved.wheel.size(), first = wheel < 0 ? 0 : static_cast<std::size_t>(wheel), last = wheel < 0 ? wheels : first + 1;
-    Moved change(data, moved, known, first, last);
+// (3): the motion beside the known one, from what `change` says of each step.
+template <typename Change> void follow(const Dataset &data, const Physics &moved, const Motion &known, Change &change, Motion &m) {
+    const std::size_t wheels = moved.wheel.size();
     const detail::Freedom freedom = detail::freedom_of(data, moved);
-    Vector3d q = Vector3d::Zero(), before = q; // of the change, as are the next two
+    Vector3d q = Vector3d::Zero(), before = q; // of the change, as are the next
     double accel = 0, path = 0;
     std::array<double, most_wheels> slip{};
     for (std::size_t k = 0; k < data.count; ++k) {
@@ -93,10 +106,28 @@ void neighbour(const Dataset &data, const Physics &moved, const Motion &known, i
         m.vy_m_s[k] = now[1];
         m.yaw_rate_rad_s[k] = now[2];
         m.path_m[k] = known.path_m[k] + path;
-        m.accel_m_s2[k] = known.rate[k][0] + accel - change.step().grade_accel() - (freedom.vy ? now[2] * now[1] : 0);
+        m.accel_m_s2[k] = known.rate[k][0] + accel - change.grade_accel(k) - (freedom.vy ? now[2] * now[1] : 0);
     }
+}
+
+} // namespace
+
+bool has_neighbours(const Dataset &data, const Physics &base, const Physics &moved) {
+    if (moved.motion != BodyMotion::longitudinal && moved.motion != BodyMotion::planar) return false;
+    if (moved.wheel.size() > most_wheels) return false;
+    const WheelStep a(data, base), b(data, moved);
+    for (std::size_t i = 0; i < moved.wheel.size(); ++i)
+        if (a.lags(i) != b.lags(i)) return false;
+    return !a.has_play() && !b.has_play();
+}
+
+void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &m) {
+    const std::size_t wheels = moved.wheel.size(), first = wheel < 0 ? 0 : static_cast<std::size_t>(wheel), last = wheel < 0 ? wheels : first + 1;
+    detail::resize(m, data.count, wheels, false, false);
+    Moved change(data, moved, known, first, last);
+    follow(data, moved, known, change, m);
     if (!whole) return;
-    const WheelStep step(data, moved);
+    const WheelStep &step = change.step();
     for (std::size_t i = 0; i < wheels; ++i) {
         const WheelPhysics &p = moved.wheel[i];
         for (std::size_t k = 0; k < data.count; ++k) {
@@ -107,6 +138,32 @@ void neighbour(const Dataset &data, const Physics &moved, const Motion &known, i
             m.wheel[i].load_N[k] = known.wheel[i].load_N[k];
         }
     }
+}
+
+UnitResponse unit_response(const Dataset &data, const Physics &base, const Motion &known, TermTarget target) {
+    constexpr double size = 1e-6;
+    Physics moved = base;
+    moved.terms.push_back({"unit", target, -1, {size}, make_piecewise(Axis::time, {0})});
+    WheelStep step(data, moved);
+    UnitResponse unit;
+    unit.force.resize(base.wheel.size());
+    unit.traction.resize(base.wheel.size());
+    for (std::size_t k = 0; k < data.count; ++k) {
+        const std::size_t j = k == 0 ? 0 : k - 1;
+        step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j]);
+        for (std::size_t i = 0; i < base.wheel.size(); ++i) {
+            step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j]);
+            unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) / size);
+            unit.traction[i].push_back((step.state(i).traction - known.wheel[i].traction_N[k]) / size);
+        }
+    }
+    return unit;
+}
+
+void neighbour_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share, Motion &m) {
+    detail::resize(m, data.count, base.wheel.size(), false, false);
+    Shaped change(data, base, known, unit, share);
+    follow(data, base, known, change, m);
 }
 
 } // namespace traction::lab
