@@ -16,11 +16,12 @@ json seal(const std::string &category, const std::string &effect, int wheel = -1
 }
 
 json answer(const std::string &kind, const std::vector<std::string> &effects) {
-    json one = {{"verdict", {{"kind", kind}, {"effects", effects}}}, {"candidates", json::array()}, {"classes", json::array()}};
+    json one = {{"verdict", {{"kind", kind}, {"effects", effects}}}, {"candidates", json::array()}, {"accepted", json::array()}, {"classes", json::array()}};
     for (const std::string &effect : effects) {
         const std::string plain = effect.substr(0, effect.find(' '));
         one["candidates"].push_back({{"effect", plain}, {"wheel", plain == effect ? -1 : effect.back() - '0'}, {"verdict", "named"}, {"detectability", 10.0},
                                      {"parameters", {{"size", {{"value", 2.1}, {"low", 1.9}, {"high", 2.3}}}}}});
+        one["accepted"].push_back(one["candidates"].back());
     }
     return one;
 }
@@ -48,6 +49,15 @@ TEST(Judge, counts_a_right_name_its_wheel_and_its_interval) {
     EXPECT_EQ(line(score, "wheel_right").value, 1);
     EXPECT_EQ(line(score, "coverage").value, 1);
     EXPECT_EQ(line(score, "false_discoveries").value, 0);
+}
+
+TEST(Judge, an_interval_counts_as_the_joint_fit_states_it_for_the_hidden_wheel) {
+    const json hidden = seal("one", "wiring_resistance", 2);
+    json said = answer("named", {"wiring_resistance on wheel 2"});
+    said["accepted"][0]["parameters"]["size"] = {{"value", 2.5}, {"low", 2.2}, {"high", 2.8}}; // the candidate alone would hold 2.0
+    EXPECT_EQ(line(judge({{"a", hidden, said, 0.5}}), "coverage").count, 1);
+    EXPECT_EQ(line(judge({{"a", hidden, said, 0.5}}), "coverage").value, 0);
+    EXPECT_EQ(line(judge({{"a", hidden, answer("named", {"wiring_resistance on wheel 1"}), 0.5}}), "coverage").count, 0);
 }
 
 TEST(Judge, counts_a_wrong_name_and_shows_it_in_the_confusion) {
