@@ -272,9 +272,9 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         for (int i = 0; i < wheels; ++i) {
             const std::vector<double> *series = axis_series(kind.axis, data, motion, current_A, static_cast<std::size_t>(i));
             if (kind.axis == Axis::time)
-                for (std::size_t k = 0; k < data.count; k += 20) values.push_back(data.time(k));
+                for (std::size_t k = 0; k < data.count; k += data.independent_rows ? 1 : 20) values.push_back(data.time(k));
             else if (series != nullptr)
-                for (std::size_t k = 0; k < series->size(); k += 10) values.push_back(kind.axis == Axis::abs_speed ? std::fabs((*series)[k]) : (*series)[k]);
+                for (std::size_t k = 0; k < series->size(); k += data.independent_rows ? 1 : 10) values.push_back(kind.axis == Axis::abs_speed ? std::fabs((*series)[k]) : (*series)[k]);
         }
         if (values.empty()) continue;
         c.knots = knots_of(kind.axis, values);

@@ -282,16 +282,16 @@ class Search {
         refresh(problem, Screen(problem));
     }
 
-    // A shape that alone explains more than all that was named: at most the first name stands, as a part of the answer.
+    // A shape that alone explains what was named, and more: what was named is its shadow, and no more than the first name stands.
     void look_beyond(const Problem &first, Problem &last) {
         Beyond beyond = find_unknown(first, last, d_.accepted.size(), options_);
         d_.unknown = std::move(beyond.shape);
         if (!d_.unknown || !beyond.alone) return;
-        while (d_.accepted.size() > 1 || (d_.accepted.size() == 1 && d_.accepted[0].gain_squares < 0.5 * beyond.gain_squares)) {
+        while (d_.accepted.size() > (beyond.left_behind ? 0U : 1U)) {
             Model without = d_.model;
             const Candidate &c = d_.accepted.back().candidate;
             std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == c.effect && use.wheel == c.wheel; });
-            d_.messages.push_back(c.label() + " was found too, but " + d_.unknown->balance + " alone explains more than all that was named: not named");
+            d_.messages.push_back(c.label() + " of the catalogue comes near, but " + d_.unknown->balance + " alone explains as much: not named");
             last = fitted(without, &last);
             remove(d_.accepted.size() - 1, std::move(without), last);
         }

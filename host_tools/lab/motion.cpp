@@ -17,7 +17,7 @@ Freedom freedom_of(const Dataset &data, const Physics &physics) {
 }
 
 void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool lags) {
-    for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m}) series->resize(count);
+    for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m, &m.away_m}) series->resize(count);
     m.rate.resize(count);
     m.tangent.resize(keep ? count : 0);
     m.wheel.resize(wheels);
@@ -65,8 +65,8 @@ class Solver {
         most_ /= p_.body.mass;
     }
 
-    void prepare(std::size_t k, const Vector3d &right, double share, double v_before, double accel_before, double path) {
-        step_.prepare(k, v_before, accel_before, path);
+    void prepare(std::size_t k, const Vector3d &right, double share, double v_before, double accel_before, double path, double away) {
+        step_.prepare(k, v_before, accel_before, path, away);
         right_ = right;
         reach_ = share * data_.step_s;
         grade_ = step_.grade_accel();
@@ -116,7 +116,7 @@ class Solver {
     detail::Freedom freedom() const { return freedom_; }
 
     // Derivatives at q, the state prepared for; leaves the wheels at q.
-    void differentiate(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path, Motion &m) {
+    void differentiate(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path, double away, Motion &m) {
         StepTangent &t = m.tangent[k];
         const Vector3d at = rate_; // the search ended here
         std::array<double, most_wheels> traction{}, slip{};
@@ -142,15 +142,15 @@ class Solver {
         if (!t.inverse.allFinite()) t.inverse.setIdentity();
         t.rate_by_accel = Vector3d::Zero();
         t.rate_by_path = Vector3d::Zero();
-        step_.prepare(k, v_before, accel_before + step_accel, path);
+        step_.prepare(k, v_before, accel_before + step_accel, path, away);
         t.rate_by_accel = (rate(q) - at) / step_accel;
         for (std::size_t i = 0; i < step_.wheels(); ++i) m.wheel[i].traction_by_accel[k] = (step_.state(i).traction - traction[i]) / step_accel;
         if (step_.feels_path()) {
-            step_.prepare(k, v_before, accel_before, path + step_path);
+            step_.prepare(k, v_before, accel_before, path + step_path, away + step_path);
             t.rate_by_path = (rate(q) - at) / step_path;
         }
         for (std::size_t i = 0; i < step_.wheels(); ++i) m.wheel[i].traction_by_path[k] = step_.feels_path() ? (step_.state(i).traction - traction[i]) / step_path : 0;
-        step_.prepare(k, v_before, accel_before, path);
+        step_.prepare(k, v_before, accel_before, path, away);
         rate(q);
     }
 
@@ -240,14 +240,14 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
     Vector3d q = Vector3d::Zero(), before = q, shift = q;
     if (!freedom.vy)
         for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
-    double accel = 0, path = 0;
+    double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
     const bool chord = guess != nullptr && guess->tangent.size() == data.count;
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
         if (!freedom.yaw) right[2] = given;
-        const double v_before = q[0], accel_before = accel, path_before = path;
-        solver.prepare(k, right, k < 2 ? 1.0 : 2.0 / 3, v_before, accel_before, path_before);
+        const double v_before = q[0], accel_before = accel, path_before = path, away_before = away;
+        solver.prepare(k, right, k < 2 ? 1.0 : 2.0 / 3, v_before, accel_before, path_before, away_before);
         Vector3d start = q + data.step_s * Vector3d(accel, 0, 0);
         if (guess != nullptr) start = Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]) + shift;
         if (!freedom.yaw) start[2] = given;
@@ -255,16 +255,21 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         if (!found.allFinite()) found = q;
         if (guess != nullptr) shift = found - Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]);
         const Vector3d rate = solver.rate_found();
-        if (keep) solver.differentiate(k, found, v_before, accel_before, path_before, m);
+        if (keep) solver.differentiate(k, found, v_before, accel_before, path_before, away_before, m);
         solver.step().commit();
         before = q;
         q = found;
         accel = rate[0];
         path += (freedom.vy ? std::hypot(q[0], q[1]) : q[0]) * data.step_s;
+        heading = data.yaw_rad.empty() ? heading + q[2] * data.step_s : data.yaw_rad[k];
+        x += q[0] * std::cos(heading) * data.step_s;
+        y += q[0] * std::sin(heading) * data.step_s;
+        away = freedom.vy ? path : x * std::cos(heading) + y * std::sin(heading);
         m.v_m_s[k] = q[0];
         m.vy_m_s[k] = q[1];
         m.yaw_rate_rad_s[k] = q[2];
         m.path_m[k] = path;
+        m.away_m[k] = away;
         m.rate[k] = rate;
         m.accel_m_s2[k] = rate[0] - solver.grade() - (freedom.vy ? q[2] * q[1] : 0);
         record(solver.step(), k, m);
@@ -276,14 +281,14 @@ void integrate_imposed(const Dataset &data, const Physics &p, Motion &m) {
     double path = 0;
     for (std::size_t k = 0; k < data.count; ++k) {
         const double v = data.body_speed_m_s.empty() ? 0 : data.body_speed_m_s[k];
-        step.prepare(k, v, 0, path);
+        step.prepare(k, v, 0, path, path);
         if (p.motion != BodyMotion::none)
             for (std::size_t i = 0; i < step.wheels(); ++i) step.force(i, {v, 0, 0});
         step.commit();
         path += v * data.step_s;
         m.v_m_s[k] = v;
         m.vy_m_s[k] = m.yaw_rate_rad_s[k] = m.accel_m_s2[k] = 0;
-        m.path_m[k] = path;
+        m.path_m[k] = m.away_m[k] = path;
         record(step, k, m);
     }
 }

@@ -17,7 +17,7 @@ constexpr double shapes_tried = 60; // axes x targets, waves and periods, less t
 struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
-    double p_value = 1;
+    double p_value = 1, balance_fall = 0;
 };
 
 // Columns of all shapes: those that move the body share the response to a unit of their target.
@@ -64,6 +64,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {
         const Eigen::MatrixXd C = columns.of(c);
         s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false);
         s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
+        if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(C, s.assessment);
         list.push_back(std::move(s));
     }
     std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
@@ -107,11 +108,15 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     Problem at_last = last, at_first = first; // their forward models are moved about
     const Screen last_screen(at_last);
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
+    // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
+    const auto material = [&](const ShapeScore &s) {
+        return s.assessment.gain > least * last_screen.heldout_error() || (s.balance_fall > 0.15 && s.p_value < 1e-4);
+    };
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen);
     const ShapeScore *best = nullptr;
     double best_gain = 0;
     for (const ShapeScore &s : scores) {
-        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > least * last_screen.heldout_error()) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
+        if (!(s.p_value < options.shape_p_limit) || !material(s) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())) continue;
         if (best == nullptr) best_gain = s.assessment.gain;
@@ -122,21 +127,23 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     // where nothing is left that any shape would explain, no shape can do better than what was named
     double left = 0;
     for (const ShapeScore &s : scores) left = std::max(left, s.assessment.gain);
-    if (left < 0.01 * last_screen.heldout_error()) return beyond;
+    if (!beyond.shape && left < 0.01 * last_screen.heldout_error()) return beyond;
     // does one shape alone do better than all that was named?
     const Screen first_screen(at_first);
     at_last.keep_scales(first);
     at_last.linearise();
     const Screen named_screen(at_last);
-    const double margin = named_count > 1 ? 0.95 : options.shape_margin; // one shape in the stead of several effects is the simpler story
+    // one shape in the stead of several effects, or of an effect that leaves a shape behind, is the simpler story
+    const bool plainer = named_count > 1 || beyond.shape.has_value();
+    const double margin = plainer ? 0.95 : options.shape_margin;
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
         if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
         const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
         const double n = static_cast<double>(difference.size());
         const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-        if (named_count == 1 && s.assessment.gain - named_gain < 2 * error) continue;
-        return {describe(s, first_screen.heldout_error()), true, s.assessment.gain};
+        if (!plainer && s.assessment.gain - named_gain < 2 * error) continue;
+        return {describe(s, first_screen.heldout_error()), true, beyond.shape.has_value()};
     }
     return beyond;
 }

@@ -20,7 +20,7 @@ class Moved {
         : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
 
     Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
-        step_.prepare(k, v_before, accel_before, path, first_, last_);
+        step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1]);
         Vector3d force = Vector3d::Zero();
         for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
@@ -150,7 +150,7 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
     unit.traction.resize(base.wheel.size());
     for (std::size_t k = 0; k < data.count; ++k) {
         const std::size_t j = k == 0 ? 0 : k - 1;
-        step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j]);
+        step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j], k == 0 ? 0 : known.away_m[j]);
         for (std::size_t i = 0; i < base.wheel.size(); ++i) {
             step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j]);
             unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) / size);

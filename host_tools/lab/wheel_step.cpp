@@ -40,9 +40,10 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
     feels_path_ = feels_path_ || motion_terms_; // a user's expression may name x
 }
 
-void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, std::size_t first, std::size_t last) {
+void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first, std::size_t last) {
     t_ = data_.time(k);
     path_ = path_m;
+    away_ = away_m;
     accel_ = accel_before;
     yaw_ = data_.yaw_rad.empty() ? 0 : data_.yaw_rad[k];
     for (std::size_t i = first; i < std::min(last, n_); ++i) prepare_wheel(i, k, v_before);
@@ -154,7 +155,7 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
 
 double WheelStep::body_force(double v) const {
     const BodyPhysics &b = p_.body;
-    double force = -b.tether * std::max(0.0, std::fabs(path_)) * soft_sign(path_, 1e-3) - b.drag * soft_sign(v, resist_speed_m_s);
+    double force = -b.tether * away_ - b.drag * soft_sign(v, resist_speed_m_s);
     if (motion_terms_) {
         Signals signals;
         signals.t = t_, signals.v = v, signals.V = v, signals.x = signals.X = path_, signals.a = accel_, signals.r = yaw_rate_;

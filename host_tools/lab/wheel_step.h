@@ -36,8 +36,9 @@ class WheelStep {
   public:
     WheelStep(const Dataset &data, const Physics &physics);
 
-    // Prepares time index k from the state at the step before: wheels first to last - 1, the others are left as they are.
-    void prepare(std::size_t k, double v_before, double accel_before, double path_m, std::size_t first = 0, std::size_t last = most_wheels);
+    // Prepares time index k from the state at the step before: wheels first to last - 1, the others are left as they are. away: of the
+    // way from the start, the part along the heading.
+    void prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first = 0, std::size_t last = most_wheels);
 
     // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
     Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
@@ -72,7 +73,7 @@ class WheelStep {
     std::size_t n_;
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
-    double t_ = 0, path_ = 0, accel_ = 0, yaw_ = 0, yaw_rate_ = 0;
+    double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, yaw_ = 0, yaw_rate_ = 0;
     bool motion_terms_ = false, play_ = false, feels_path_ = false;
 };
 
