@@ -282,12 +282,12 @@ class Search {
         refresh(problem, Screen(problem));
     }
 
-    // A shape that alone explains what was named, and more: what was named is its shadow, and no more than the first name stands.
+    // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that.
     void look_beyond(const Problem &first, Problem &last) {
         Beyond beyond = find_unknown(first, last, d_.accepted.size(), options_);
         d_.unknown = std::move(beyond.shape);
         if (!d_.unknown || !beyond.alone) return;
-        while (d_.accepted.size() > (beyond.left_behind ? 0U : 1U)) {
+        while (d_.accepted.size() > 1 || (d_.accepted.size() == 1 && d_.accepted[0].gain_squares < 0.5 * beyond.gain_squares)) {
             Model without = d_.model;
             const Candidate &c = d_.accepted.back().candidate;
             std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == c.effect && use.wheel == c.wheel; });

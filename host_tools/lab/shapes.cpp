@@ -133,17 +133,16 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     at_last.keep_scales(first);
     at_last.linearise();
     const Screen named_screen(at_last);
-    // one shape in the stead of several effects, or of an effect that leaves a shape behind, is the simpler story
-    const bool plainer = named_count > 1 || beyond.shape.has_value();
-    const double margin = plainer ? 0.95 : options.shape_margin;
+    // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
+    const double margin = named_count > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
         if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
         const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
         const double n = static_cast<double>(difference.size());
         const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-        if (!plainer && s.assessment.gain - named_gain < 2 * error) continue;
-        return {describe(s, first_screen.heldout_error()), true, beyond.shape.has_value()};
+        if (named_count == 1 && s.assessment.gain - named_gain < 2 * error) continue;
+        return {describe(s, first_screen.heldout_error()), true, s.assessment.gain};
     }
     return beyond;
 }

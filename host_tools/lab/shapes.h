@@ -10,7 +10,7 @@ namespace traction::lab {
 struct Beyond {
     std::optional<UnknownShape> shape;
     bool alone = false;      // the shape in the stead of all that was named does better than they
-    bool left_behind = false; // and what was named leaves a shape behind: none of it stands
+    double gain_squares = 0; // what it explains of the first problem's held-out error, where alone
 };
 
 // `first`: the baseline; `last`: with all that was named.
