@@ -339,8 +339,7 @@ void Problem::fit(const FitOptions &options) {
     if (options.reweight) {
         settle();
         set_scales();
-        if (options.thorough) solve(std::max(1, options.iterations / 2));
-        else polish(1);
+        polish(options.thorough ? 2 : 1); // Ceres then starts where the quick steps end: from far away it may end at a bound
         set_scales();
     }
     if (options.thorough) solve(options.iterations);
