@@ -205,17 +205,17 @@ class Search {
     }
 
     // Which passers the data cannot tell from the winner.
-    std::vector<std::size_t> confounded(std::vector<Trial> &trials, std::size_t winner) const {
+    std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner) const {
         std::vector<std::size_t> members;
         const Trial &w = trials[winner];
         for (std::size_t i = 0; i < trials.size(); ++i) {
-            Trial &t = trials[i];
+            const Trial &t = trials[i];
             if (i == winner || t.verdict != "passes" || t.candidate.effect == w.candidate.effect) continue;
             const Eigen::VectorXd difference = w.block_gain - t.block_gain;
             const double n = static_cast<double>(difference.size()), error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
             const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
-            t.cosine_with_winner = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
-            if (less < 0.1 * w.gain && (less < 2 * error || std::fabs(t.cosine_with_winner) > options_.same_cosine)) members.push_back(i);
+            const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
+            if (less < 0.1 * w.gain && (less < 2 * error || std::fabs(cosine) > options_.same_cosine)) members.push_back(i);
         }
         return members;
     }

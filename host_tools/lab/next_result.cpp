@@ -1,26 +1,17 @@
 // next_result.cpp - the next experiment as text and JSON.
 #include "next.h"
 
+#include "append.h"
 #include "manoeuvre.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <set>
 
 namespace traction::lab {
 
 namespace {
-
-__attribute__((format(printf, 2, 3))) void append(std::string &text, const char *pattern, ...) {
-    char buffer[700];
-    va_list arguments;
-    va_start(arguments, pattern);
-    std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
-    va_end(arguments);
-    text += buffer;
-}
 
 std::string joined(const std::vector<std::string> &members) {
     std::string text;

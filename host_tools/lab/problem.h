@@ -1,8 +1,7 @@
 // problem.h - a model fitted to a data set: residuals, sensitivities, weights, and the fit itself (Ceres).
 //
-// Sensitivities are structured finite differences: one pass per parameter, of the stages it touches only (forward.h). Chosen over
-// dual numbers because user expressions, sub-models with memory (backlash, relaxation) and the bracketed root stay ordinary code,
-// and because two thirds of the parameters leave the motion alone, so that a pass costs a tenth.
+// Sensitivities are structured finite differences of the stages that a parameter touches only (forward.h); those of the motion come
+// from a linear recursion beside it (tangent.cpp).
 // Every balance is scaled by max(its noise, its own residual): what the model cannot explain in a channel must not drown the others.
 #pragma once
 
@@ -16,7 +15,7 @@ namespace traction::lab {
 
 struct FitOptions {
     int iterations = 2;     // linearisations (Ceres: iterations) after the last reweighting
-    bool reweight = true; // set the scale of each balance from its residual and Huber weights, then fit again
+    bool reweight = true;   // set the scale of each balance from its residual and Huber weights, then fit again
     bool thorough = false; // Ceres to its own convergence; else Gauss-Newton that keeps its sensitivities while they serve
 };
 
@@ -50,7 +49,7 @@ class Problem {
     void within_bounds();                               // moves increments that left their bounds back to them
     double cost(); // squares of all rows and priors at the present increments, where `residual` is then
 
-    // Gauss-Newton on baseline plus candidate where the baseline's sensitivities are kept from `base` (the first columns here, same
+    // Gauss-Newton on baseline plus a candidate that leaves the motion alone, where the baseline's sensitivities are kept from `base` (the first columns here, same
     // scales): a candidate moves them little, and a pass for each is saved. Leaves the problem linearised.
     void quick_fit(const Problem &base, int iterations);
 

@@ -1,7 +1,8 @@
 #include "result.h"
 
+#include "append.h"
+
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 
 namespace traction::lab {
@@ -16,15 +17,6 @@ json series(const std::vector<double> &values, std::size_t every = 1) {
     json out = json::array();
     for (std::size_t i = 0; i < values.size(); i += every) out.push_back(finite(values[i]));
     return out;
-}
-
-__attribute__((format(printf, 2, 3))) void append(std::string &text, const char *pattern, ...) {
-    char buffer[512];
-    va_list arguments;
-    va_start(arguments, pattern);
-    std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
-    va_end(arguments);
-    text += buffer;
 }
 
 json effect_json(const EffectUse &use) {

@@ -26,7 +26,6 @@ struct Trial {
     std::string verdict;
     bool refitted = false;
     Eigen::VectorXd baseline; // increments of the baseline's parameters, where refitted
-    double cosine_with_winner = 0;
 };
 
 // The linear step.
