@@ -2,8 +2,11 @@
 
 #include "fixed.h"
 
+#include <stddef.h>
+
 // Gain from ADC counts to the transform's input: 10 bit to within 1 bit of full scale.
 enum { DOPPLER_GAIN = 32 };
+enum { EARLY_TWICE = 128, EARLY_MIRRORED = 192, EARLY_YOUNGER = 64 }; // lengths of the early windows; by how many samples they are younger
 
 // (1): the largest power in the template's band.
 static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
@@ -123,20 +126,33 @@ static void slide(doppler_state_t *state, int32_t hop)
     state->filled = FFT_LENGTH - hop;
 }
 
-// Until the window has been full once, its missing part is the mirror image of what there is: the same frequencies, no step, no
-// influence of the offset. Returns true when a value is due, and by how many samples its mean age is less than a full window's.
-static bool mirror_early(doppler_state_t *state, int32_t *younger)
+// Until the window has been full once, two early windows. Of 128 samples each is taken twice: half the frequency, and half the Doppler
+// shift, so the template holds (but for the band-pass, whose lower edge lies at half the frequency too). Of 192 the missing part is
+// the mirror image of what there is: the same frequencies, no step, no influence of the offset. Either has a smaller mean age over the
+// square of the Hann window, 63.25 and 63.9 samples of 127.5. Returns the window that is due, or NULL.
+static const int16_t *early_window(doppler_state_t *state)
 {
-    static const int16_t less[2] = {99, 64}; // mean age over the square of the Hann window, m = 128 and 192: 28.9, 63.9 of 127.5
-    const int32_t m = state->filled;
-    if (state->full || (m != 128 && m != 192)) {
-        return false;
+    if (state->full) {
+        return NULL;
     }
-    for (int32_t j = m; j < FFT_LENGTH; j++) {
-        state->window.sample[j] = state->window.sample[2 * m - 1 - j];
+    if (state->filled == EARLY_TWICE) {
+        return state->twice;
     }
-    *younger = less[m == 192];
-    return true;
+    if (state->filled != EARLY_MIRRORED) {
+        return NULL;
+    }
+    for (int32_t j = EARLY_MIRRORED; j < FFT_LENGTH; j++) {
+        state->window.sample[j] = state->window.sample[2 * EARLY_MIRRORED - 1 - j];
+    }
+    return state->window.sample;
+}
+
+static void transform(doppler_state_t *state, const int16_t *window, int32_t late_samples)
+{
+    fft_power(window, state->power);
+    state->pending = true;
+    state->halved = window == state->twice;
+    state->late_samples = late_samples;
 }
 
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
@@ -144,20 +160,25 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
     doppler_output_t out = {false, false, 0.0f, 0};
     if (state->pending) {
         measure(config, state->power, &out);
+        out.speed_m_s = state->halved ? 2.0f * out.speed_m_s : out.speed_m_s;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->pending = false;
     }
     for (int32_t i = 0; i < count; i++) {
         const int32_t limited = sample[i] > 1023u ? 1023 : (int32_t)sample[i];
-        state->window.sample[state->filled] = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
+        const int16_t value = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
+        state->window.sample[state->filled] = value;
+        if (!state->full && state->filled < EARLY_TWICE) {
+            state->twice[2 * state->filled] = value;
+            state->twice[2 * state->filled + 1] = value;
+        }
         state->filled++;
-        int32_t younger = 0;
-        if (state->filled == FFT_LENGTH || (config->method == DOPPLER_LIKELIHOOD && mirror_early(state, &younger))) {
-            fft_power(state->window.sample, state->power);
-            state->pending = true;
-            state->late_samples = count - 1 - i - younger;
+        const int16_t *early = config->method == DOPPLER_LIKELIHOOD ? early_window(state) : NULL;
+        if (early != NULL) {
+            transform(state, early, count - 1 - i - EARLY_YOUNGER);
         }
         if (state->filled == FFT_LENGTH) {
+            transform(state, state->window.sample, count - 1 - i);
             state->full = true;
             slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
         }

@@ -7,8 +7,8 @@
 // sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
 // geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
 // ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
-// below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 and
-// then 192 of them with their mirror image make two early values (ours alone).
+// below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each
+// taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours alone).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -34,7 +34,7 @@ typedef struct {
     int32_t speeds;           // grid size
     int32_t first_bin;        // spectral bins used: first_bin .. first_bin + bins - 1
     int32_t bins;
-    float speed_m_s[DOPPLER_SPEEDS_MAX]; // the grid, rising
+    float speed_m_s[DOPPLER_SPEEDS_MAX]; // the grid, rising: the speeds at which (2) has its minimum there on average
     int16_t inverse[DOPPLER_SPEEDS_MAX * DOPPLER_BINS_MAX] __attribute__((aligned(8))); // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
     int32_t volume[DOPPLER_SPEEDS_MAX];  // q * sum_k ln S_v[k]
     int32_t quiet[DOPPLER_SPEEDS_MAX];   // q * expected J/a of an echo of which half is white noise
@@ -56,10 +56,12 @@ typedef struct {
             int16_t sample[4];
         } __attribute__((aligned(8))) four[FFT_LENGTH / 4];
     } window;
+    int16_t twice[FFT_LENGTH];  // the first 128 samples, each twice
     int32_t filled;             // valid samples so far
     uint64_t power[FFT_BINS];   // of the last full window
     int32_t late_samples;       // samples since that window's end
     bool pending;               // its speed is not made yet
+    bool halved;                // that window is `twice`: it reads half the speed
     bool full;                  // the window has been filled once
 } doppler_state_t; // zeroed = reset
 

@@ -24,13 +24,14 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
     *state = zero;
     state->p_vv = 1.0f; // (1 m/s)^2: nothing is known
     state->p_bb = config->bias_start_m_s2 * config->bias_start_m_s2;
+    state->speed_noise_m2_s2 = config->speed_noise_m2_s2;
 }
 
 static void predict(const ground_speed_config_t *config, ground_speed_state_t *state, float accel_m_s2)
 {
     const float T = config->tick_s;
     state->speed_m_s = fixed_clamp(state->speed_m_s + (accel_m_s2 - state->bias_m_s2) * T, -10.0f, 10.0f); // (2), bounded
-    state->p_vv += T * (T * state->p_bb - 2.0f * state->p_vb) + config->speed_noise_m2_s2;
+    state->p_vv += T * (T * state->p_bb - 2.0f * state->p_vb) + state->speed_noise_m2_s2;
     state->p_vb -= T * state->p_bb;
     state->p_bb += config->bias_noise_m2_s4;
 }
@@ -44,6 +45,28 @@ static void integrate(const ground_speed_config_t *config, ground_speed_state_t 
     const int32_t last = state->integral_q20[state->head];
     state->head = (state->head + 1) % GROUND_SPEED_HISTORY;
     state->integral_q20[state->head] = (int32_t)((uint32_t)last + (uint32_t)whole);
+}
+
+enum { NOISE_TICKS = 32, NOISE_EVERY = 16, NOISE_LOST_BITS = 4, NOISE_LIMIT = 8191 };
+static const float noise_share = 0.125f; // [1] of a mean that enters the running one: 1.3 s of memory, 10 % of spread (assumed)
+
+// (6) from the second differences of V, each limited to 0.125 m/s per tick: the sum stays below 2^31.
+static void watch_noise(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    uint32_t sum = 0;
+    int32_t newer = state->integral_q20[state->head];
+    int32_t middle = state->integral_q20[((uint32_t)state->head - 1u) % GROUND_SPEED_HISTORY];
+    for (uint32_t j = 2; j < NOISE_TICKS + 2; j++) {
+        const int32_t older = state->integral_q20[((uint32_t)state->head - j) % GROUND_SPEED_HISTORY];
+        const int32_t bend = fixed_wrap_difference(fixed_wrap_difference(newer, middle), fixed_wrap_difference(middle, older)) >> NOISE_LOST_BITS;
+        const int32_t limited = bend < -NOISE_LIMIT ? -NOISE_LIMIT : bend > NOISE_LIMIT ? NOISE_LIMIT : bend;
+        sum += (uint32_t)(limited * limited);
+        newer = middle;
+        middle = older;
+    }
+    const float mean = (float)sum * (1.0f / (2.0f * NOISE_TICKS * 65536.0f * 65536.0f)); // units of 2^-16 m/s
+    state->accel_noise_m2_s2 += noise_share * (mean - state->accel_noise_m2_s2);
+    state->speed_noise_m2_s2 = fixed_clamp(state->accel_noise_m2_s2, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
 }
 
 // sum_j w_j (V(t) - V(t - s_j)) of (3).
@@ -174,6 +197,9 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     if (fresh) {
         state->quiet = input->doppler_quiet ? state->quiet + (state->quiet < 1000 ? 1 : 0) : 0;
     }
+    if (!fresh && (uint32_t)state->head % NOISE_EVERY == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
+        watch_noise(config, state); // not in the tick of a value, which is the longest
+    }
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     state->standstill = is_standing(config, state);
@@ -192,7 +218,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || state->std_m_s == 0.0f) { // between, the filter forgets little: a root is dear
         // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
-        const float unseen = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->speed_noise_m2_s2 * window_tau_ticks;
+        const float unseen = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * window_tau_ticks;
         const float variance = state->p_vv + unseen;
         state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
     }

@@ -6,9 +6,11 @@
 //
 //   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
 //   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has jumped: a slope
+//   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
+// (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -26,7 +28,8 @@ typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t
 typedef struct {
     ground_speed_method_t method;
     float tick_s;                  // T
-    float speed_noise_m2_s2;       // Qv per tick
+    float speed_noise_m2_s2;       // Qv per tick, at least
+    float speed_noise_max_m2_s2;   // and at most; at or below the other, (6) is off
     float bias_noise_m2_s4;        // Qb per tick
     float bias_start_m_s2;         // standard deviation of the bias at reset
     float bias_max_m_s2;           // |b| limit
@@ -51,6 +54,8 @@ typedef struct {
     float bias_m_s2;
     float p_vv, p_vb, p_bb;        // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
     float std_m_s;                 // of the speed, at the last measurement
+    float accel_noise_m2_s2;       // mean of (6) per tick
+    float speed_noise_m2_s2;       // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
     float integral_rest_m_s;       // part of V below one unit

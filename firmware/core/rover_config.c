@@ -54,6 +54,7 @@ static ground_speed_config_t ground_speed_default(void)
         .method = GROUND_SPEED_BIAS,
         .tick_s = tick_s,
         .speed_noise_m2_s2 = 4e-6f, // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
+        .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,  // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .bias_start_m_s2 = 0.1f,
         .bias_max_m_s2 = 1.0f,
@@ -152,6 +153,7 @@ control_config_t rover_config_paper(void)
     // With Q per tick and one value every 50 ticks a gain of 0.22 has a time constant of 2 s: Q = R 0.22^2/(1 - 0.22)/50
     config.ground_speed.doppler_noise_m2_s2 = 4e-4f; // (0.02 m/s)^2: 10 % at 0.2 m/s, (12)
     config.ground_speed.speed_noise_m2_s2 = 5e-7f;
+    config.ground_speed.speed_noise_max_m2_s2 = 5e-7f;
     config.ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
     config.ground_speed.bias_start_m_s2 = 0.0f;
     config.wheel_pid.slew_T_rad_s = 1e6f;

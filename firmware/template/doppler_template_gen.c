@@ -5,11 +5,16 @@
 //   patch at depression th, azimuth ph:  dP = G^2(th, ph) sin^n(th) sin(th) cos(th) dth dph            (1)
 //   its Doppler shift:                   f  = 2 v (f0/c) cos(th) cos(ph)                                (2)
 //   S_v[k] = (1 - e) sum dP |H(f)|^2 (|W(k - f/df)|^2 + |W(k + f/df)|^2) / sum + e / bins              (3)
+//   X[k] = sum_m sqrt(dP_m) |H| (z_m W(k - f_m/df) + z_m* W(k + f_m/df)) + noise,  z_m complex normal     (4)
+//   grid speed = v / mean(v_found / v) over draws of (4)                                                 (5)
 //
 // (1): range r = h/sin(th), ground area dA = h^2 cos(th)/sin^3(th) dth dph, power ~ G^2 sigma0 dA / r^4, sigma0 ~ sin^n(th):
 // the height h drops out (derived here). (2): (11) Lhomme-Desages for one direction. (3): band-pass H, Hann window W, a real
-// signal's mirror image, and a share e of white noise.
+// signal's mirror image, and a share e of white noise. (4), (5): where the firmware's search finds its minimum for echoes of this very
+// model, speckle included; it lies 1 to 2 % low where few bins carry the echo, because the power that scales J is that of the same
+// few bins. A closed form of second order does not converge there (tried), so the generator draws windows.
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +44,11 @@ static const double noise_share = 0.05;     // e, assumed
 static const double speed_low_m_s = 0.04;
 static const double speed_high_m_s = 1.35;
 
-enum { LENGTH = 256, SPEEDS = 96, FINE = 2000, FIRST_BIN = 1 };
+static const double calm_share = 0.004;     // white noise in (4), assumed: 20 dB below the echo at the converter, 48 of 128 bins of it in the band
+
+enum { LENGTH = 256, SPEEDS = 96, FINE = 2000, FIRST_BIN = 1, BINS = 120 };
+enum { COARSE = 4 };                           // of doppler.c: where it searches first
+enum { QUARTERS = 4 * (BINS + 8), DRAWS = 1500, REACH = 20, EDGE = 8, SMOOTH = 4 }; // REACH: (4) is cut 5 bins from f, 1e-4 of its peak
 
 // Histogram of cos(th) cos(ph) weighted by (1): the echo's spectrum at unit speed.
 static void beam_histogram(const radar_t *radar, double *weight)
@@ -123,16 +132,157 @@ static void describe(const radar_t *radar, const double *weight, FILE *out)
             (mode + 0.5) / FINE / cos(mounting_deg * pi / 180), sqrt(square / sum - mean * mean) / mean);
 }
 
+// --- (4), (5)
+
+typedef struct {
+    int bins;
+    double step;
+    double inverse[SPEEDS][BINS], volume[SPEEDS]; // as the firmware has them: whole numbers
+} table_t;
+
+static double uniform(uint64_t *state) // splitmix64
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static double normal(uint64_t *state)
+{
+    double sum = -6;
+    for (int i = 0; i < 12; i++) {
+        sum += uniform(state);
+    }
+    return sum;
+}
+
+// Amplitude of the Hann window at d bins from its centre, without its phase.
+static double hann_amplitude(double d)
+{
+    return fabs(fabs(d) - 1) < 1e-9 ? 0.5 : fabs(d) < 1e-9 ? 1 : sin(pi * d) / (pi * d * (1 - d * d));
+}
+
+// Amplitudes sqrt(dP) |H| of (4) on quarters of a bin, scaled so that the powers of (4) have the sum 1.
+static void amplitudes(const radar_t *radar, const double *weight, double v, int bins, double *amplitude)
+{
+    const double high = band_high_Hz * radar->f0_Hz / radars[0].f0_Hz;
+    double power[QUARTERS] = {0}, sum = 0;
+    for (int i = 0; i < FINE; i++) {
+        const double f = 2 * v * radar->f0_Hz / c_m_s * (i + 0.5) / FINE;
+        const int m = (int)(4 * f * LENGTH / sample_rate_Hz + 0.5);
+        power[m < QUARTERS ? m : QUARTERS - 1] += weight[i] * band_power(f, high);
+    }
+    for (int m = 1; m < QUARTERS; m++) {
+        for (int k = FIRST_BIN; k < FIRST_BIN + bins; k++) {
+            sum += power[m] * (hann_power(k - 0.25 * m) + hann_power(k + 0.25 * m));
+        }
+    }
+    for (int m = 0; m < QUARTERS; m++) {
+        amplitude[m] = m == 0 ? 0 : sqrt(power[m] / sum);
+    }
+}
+
+// Powers of one window of (4).
+static void draw(const double *amplitude, int bins, uint64_t *state, double *power)
+{
+    static double re[QUARTERS], im[QUARTERS], noise[2][BINS + 2], hann[2 * QUARTERS];
+    for (int m = 0; hann[0] == 0 && m < 2 * QUARTERS; m++) {
+        hann[2 * QUARTERS - 1 - m] = hann_amplitude(0.25 * (2 * QUARTERS - 1 - m));
+    }
+    for (int m = 0; m < QUARTERS; m++) {
+        re[m] = amplitude[m] > 0 ? amplitude[m] * normal(state) * sqrt(0.5) : 0;
+        im[m] = amplitude[m] > 0 ? amplitude[m] * normal(state) * sqrt(0.5) : 0;
+    }
+    for (int k = 0; k < bins + 2; k++) { // the window's mean square is 3/8
+        noise[0][k] = normal(state) * sqrt(0.5 * calm_share / (0.375 * bins));
+        noise[1][k] = normal(state) * sqrt(0.5 * calm_share / (0.375 * bins));
+    }
+    for (int k = 0; k < bins; k++) {
+        const int centre = 4 * (k + FIRST_BIN);
+        double x[2];
+        for (int part = 0; part < 2; part++) {
+            x[part] = 0.5 * noise[part][k + 1] + 0.25 * (noise[part][k] + noise[part][k + 2]);
+        }
+        for (int m = centre > REACH ? centre - REACH : 1; m <= centre + REACH && m < QUARTERS; m++) {
+            const double w = hann[abs(centre - m)], mirrored = hann[centre + m];
+            x[0] += re[m] * (w + mirrored);
+            x[1] += im[m] * (w - mirrored);
+        }
+        power[k] = x[0] * x[0] + x[1] * x[1];
+    }
+}
+
+static double cost(const table_t *table, const double *power, double total, int speed)
+{
+    double sum = total * table->volume[speed];
+    for (int k = 0; k < table->bins; k++) {
+        sum += power[k] * table->inverse[speed][k];
+    }
+    return sum;
+}
+
+// Logarithm of the speed that the firmware's search finds, over that of the grid's first.
+static double found(const table_t *table, const double *power)
+{
+    double total = 0, J[SPEEDS];
+    int coarse = COARSE / 2;
+    for (int k = 0; k < table->bins; k++) {
+        total += power[k];
+    }
+    for (int i = COARSE / 2; i < SPEEDS; i += COARSE) {
+        J[i] = cost(table, power, total, i);
+        coarse = J[i] < J[coarse] ? i : coarse;
+    }
+    int best = coarse;
+    for (int i = coarse - COARSE < 0 ? 0 : coarse - COARSE; i <= coarse + COARSE && i < SPEEDS; i++) {
+        J[i] = cost(table, power, total, i);
+        best = J[i] < J[best] ? i : best;
+    }
+    if (best == 0 || best == SPEEDS - 1) {
+        return table->step * best;
+    }
+    const double left = J[best - 1] - J[best], right = J[best + 1] - J[best];
+    return table->step * (best + (left + right > 0 ? 0.5 * (left - right) / (left + right) : 0));
+}
+
+// (5) over the grid. The grid's ends cannot be told apart from what lies beyond: they take the value of EDGE speeds further in.
+// Averaged over neighbours, 15 % to both sides: what stays is a ripple of 0.5 % by where the echo lies between two bins of 2 Hz, which is
+// narrower than the spread of the values. Sampling error 0.05 %; rounded to that, so that libraries that differ in a last bit agree.
+static void mean_found(const radar_t *radar, const double *weight, const table_t *table, double *ratio)
+{
+    double raw[SPEEDS] = {0}, amplitude[QUARTERS], power[BINS];
+    for (int i = EDGE; i < SPEEDS - EDGE; i++) {
+        uint64_t state = 20 + (uint64_t)i;
+        amplitudes(radar, weight, speed_low_m_s * exp(table->step * i), table->bins, amplitude);
+        for (int n = 0; n < DRAWS; n++) {
+            draw(amplitude, table->bins, &state, power);
+            raw[i] += exp(found(table, power) - table->step * i) / DRAWS;
+        }
+    }
+    for (int i = 0; i < SPEEDS; i++) {
+        const int centre = i < EDGE ? EDGE : i >= SPEEDS - EDGE ? SPEEDS - EDGE - 1 : i;
+        double sum = 0;
+        int n = 0;
+        for (int j = centre - SMOOTH < EDGE ? EDGE : centre - SMOOTH; j <= centre + SMOOTH && j < SPEEDS - EDGE; j++, n++) {
+            sum += raw[j];
+        }
+        ratio[i] = floor(sum / n * 2000 + 0.5) / 2000;
+    }
+}
+
 static int write_template(const radar_t *radar, FILE *out)
 {
     static double weight[FINE];
     static double S[SPEEDS][LENGTH / 2];
+    static table_t table;
+    double ratio[SPEEDS];
     const double shift = 2 * radar->f0_Hz / c_m_s; // [Hz per m/s] along the ground
     const double highest = fmin(speed_high_m_s, 0.46 * sample_rate_Hz / shift);
     const double step = log(highest / speed_low_m_s) / (SPEEDS - 1);
     int bins = (int)ceil(highest * shift / (sample_rate_Hz / LENGTH)) - FIRST_BIN + 1;
     bins = (bins + 7) / 8 * 8; // rows of whole 128-bit groups
-    bins = bins > 120 ? 120 : bins;
+    bins = bins > BINS ? BINS : bins;
     double smallest = 1;
     beam_histogram(radar, weight);
     for (int i = 0; i < SPEEDS; i++) {
@@ -142,6 +292,17 @@ static int write_template(const radar_t *radar, FILE *out)
         }
     }
     const double scale = 32767 * smallest;
+    for (int i = 0; i < SPEEDS; i++) {
+        double ln = 0;
+        for (int k = 0; k < bins; k++) {
+            ln += log(S[i][k]);
+            table.inverse[i][k] = floor(scale / S[i][k] + 0.5);
+        }
+        table.volume[i] = floor(scale * ln + 0.5);
+    }
+    table.bins = bins;
+    table.step = step;
+    mean_found(radar, weight, &table, ratio);
     fprintf(out, "// Made by doppler_template_gen from the radar's geometry; do not edit.\n");
     describe(radar, weight, out);
     fprintf(out, "#include \"firmware/core/doppler_template.h\"\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n"
@@ -149,22 +310,18 @@ static int write_template(const radar_t *radar, FILE *out)
                  "    .speed_m_s = {",
             radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
     for (int i = 0; i < SPEEDS; i++) {
-        fprintf(out, "%.8ef, ", speed_low_m_s * exp(step * i));
+        fprintf(out, "%.8ef, ", speed_low_m_s * exp(step * i) / ratio[i]); // (5)
     }
     fprintf(out, "},\n    .inverse = {\n");
     for (int i = 0; i < SPEEDS; i++) {
         for (int k = 0; k < bins; k++) {
-            fprintf(out, "%d,", (int)floor(scale / S[i][k] + 0.5));
+            fprintf(out, "%d,", (int)table.inverse[i][k]);
         }
         fprintf(out, "\n");
     }
     fprintf(out, "},\n    .volume = {");
     for (int i = 0; i < SPEEDS; i++) {
-        double ln = 0;
-        for (int k = 0; k < bins; k++) {
-            ln += log(S[i][k]);
-        }
-        fprintf(out, "%d, ", (int)floor(scale * ln + 0.5));
+        fprintf(out, "%d, ", (int)table.volume[i]);
     }
     // E[J]/a where half of the power is white: sum_k ((S_v - e/bins) / (1 - e) + 1/bins) / 2 / S_v[k] + ln S_v[k]
     fprintf(out, "},\n    .quiet = {");
