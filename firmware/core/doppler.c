@@ -2,8 +2,6 @@
 
 #include "fixed.h"
 
-#include <stddef.h>
-
 // Gain from ADC counts to the transform's input: 10 bit to within 1 bit of full scale.
 enum { DOPPLER_GAIN = 32 };
 enum { EARLY_TWICE = 128, EARLY_MIRRORED = 192, EARLY_YOUNGER = 64 }; // lengths of the early windows; by how many samples they are younger
@@ -126,33 +124,40 @@ static void slide(doppler_state_t *state, int32_t hop)
     state->filled = FFT_LENGTH - hop;
 }
 
-// Until the window has been full once, two early windows. Of 128 samples each is taken twice: half the frequency, and half the Doppler
-// shift, so the template holds (but for the band-pass, whose lower edge lies at half the frequency too). Of 192 the missing part is
-// the mirror image of what there is: the same frequencies, no step, no influence of the offset. Either has a smaller mean age over the
-// square of the Hann window, 63.25 and 63.9 samples of 127.5. Returns the window that is due, or NULL.
-static const int16_t *early_window(doppler_state_t *state)
+static const float halved_least_m_s = 0.085f; // [m/s] just above twice the grid's lowest speed, where half a window hears the converter's offset
+
+static void mirror(doppler_state_t *state)
 {
-    if (state->full) {
-        return NULL;
-    }
-    if (state->filled == EARLY_TWICE) {
-        return state->twice;
-    }
-    if (state->filled != EARLY_MIRRORED) {
-        return NULL;
-    }
     for (int32_t j = EARLY_MIRRORED; j < FFT_LENGTH; j++) {
         state->window.sample[j] = state->window.sample[2 * EARLY_MIRRORED - 1 - j];
     }
-    return state->window.sample;
 }
 
-static void transform(doppler_state_t *state, const int16_t *window, int32_t late_samples)
+static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 {
-    fft_power(window, state->power);
+    if (halved) {
+        fft_power(state->twice, state->power);
+    } else {
+        fft_power(state->window.sample, state->power);
+    }
     state->pending = true;
-    state->halved = window == state->twice;
+    state->halved = halved;
     state->late_samples = late_samples;
+}
+
+// Until the window has been full once, two early windows. Of 128 samples each is taken twice: half the frequency, and half the Doppler
+// shift, so the template holds (but for the band-pass, whose lower edge lies at half the frequency too). Of 192 the missing part is
+// the mirror image of what there is: the same frequencies, no step, no influence of the offset. Either has a smaller mean age over the
+// square of the Hann window, 63.25 and 63.9 samples of 127.5.
+static void transform_early(doppler_state_t *state, int32_t late_samples)
+{
+    if (state->full || (state->filled != EARLY_TWICE && state->filled != EARLY_MIRRORED)) {
+        return;
+    }
+    if (state->filled == EARLY_MIRRORED) {
+        mirror(state);
+    }
+    transform(state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
 }
 
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
@@ -160,7 +165,10 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
     doppler_output_t out = {false, false, 0.0f, 0};
     if (state->pending) {
         measure(config, state->power, &out);
-        out.speed_m_s = state->halved ? 2.0f * out.speed_m_s : out.speed_m_s;
+        if (state->halved) {
+            out.speed_m_s *= 2.0f;
+            out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
+        }
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->pending = false;
     }
@@ -173,12 +181,11 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
             state->twice[2 * state->filled + 1] = value;
         }
         state->filled++;
-        const int16_t *early = config->method == DOPPLER_LIKELIHOOD ? early_window(state) : NULL;
-        if (early != NULL) {
-            transform(state, early, count - 1 - i - EARLY_YOUNGER);
+        if (config->method == DOPPLER_LIKELIHOOD) {
+            transform_early(state, count - 1 - i);
         }
         if (state->filled == FFT_LENGTH) {
-            transform(state, state->window.sample, count - 1 - i);
+            transform(state, false, count - 1 - i);
             state->full = true;
             slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
         }

@@ -1,5 +1,7 @@
 #include "calibrate.h"
 
+#include "radar_model.h"
+
 #include "firmware/core/rover_config.h"
 #include "host_tools/report/report.h"
 
@@ -19,7 +21,8 @@ namespace {
 constexpr int window_samples = 256;
 constexpr double slowest_m_s = 0.15;  // below, 1 mm of camera noise at 7 Hz is more than 5 %, and the band-pass blinds the radar
 constexpr double steady_share = 0.12; // largest spread of the true speed within a window
-constexpr double model_std = 0.005;   // [1] of the scale, assumed: ground exponent 0..2 and the likelihood's own bias, measured 0.2 to 0.5 %
+constexpr double model_std = 0.003;   // [1] of the scale: (2)'s radar against the tests' and the simulator's, measured 0 to 0.3 %
+constexpr int modelled_windows = 2000; // 2.5 % of spread each: 0.06 % of the scale
 constexpr int blocks = 10;
 
 // The true speed, piecewise constant.
@@ -71,58 +74,6 @@ double window_mean(const Speed &speed, const std::vector<double> &t_s, std::size
     return good ? mean : std::nan("");
 }
 
-// Power of the Hann window at d bins from its centre.
-double hann_power(double d) {
-    if (std::fabs(d) < 1e-9) return 1;
-    if (std::fabs(std::fabs(d) - 1) < 1e-9) return 0.25;
-    const double w = std::sin(std::numbers::pi * d) / (std::numbers::pi * d * (1 - d * d));
-    return w * w;
-}
-
-// (2): what the firmware's likelihood makes of the expected echo of a radar at this angle, over the true speed of 0.5 m/s. The beam
-// is the MDU1130's, as firmware/template weighs it.
-double heard_share(const doppler_template_t &beam, double angle_deg) {
-    constexpr double v = 0.5, f0_Hz = 9.9e9, c_m_s = 299792458.0, df_Hz = 2;
-    const double rad = std::numbers::pi / 180, c = std::cos(angle_deg * rad), s = std::sin(angle_deg * rad);
-    std::vector<double> power(static_cast<std::size_t>(beam.bins), 0.0);
-    for (double th = 0.5; th < 90; th += 1)
-        for (double ph = -89.5; ph < 90; ph += 1) {
-            const double x = std::cos(th * rad) * std::cos(ph * rad), y = std::cos(th * rad) * std::sin(ph * rad), z = -std::sin(th * rad);
-            const double along = x * c - z * s, up = x * s + z * c;
-            if (along <= 0) continue;
-            const double el = std::asin(up) / rad / 36, az = std::atan2(y, along) / rad / 72;
-            const double f = 2 * v * f0_Hz / c_m_s * x;
-            const double band = 1 / (1 + std::pow(3 / f, 4)) / (1 + std::pow(f / 80, 4));
-            const double weight = band * std::exp(-8 * std::log(2.0) * (el * el + az * az)) * std::pow(std::sin(th * rad), 2) * std::cos(th * rad);
-            const int near = static_cast<int>(f / df_Hz) - beam.first_bin;
-            for (int k = std::max(0, near - 3); k < std::min(beam.bins, near + 5); k++)
-                power[static_cast<std::size_t>(k)] += weight * hann_power(k + beam.first_bin - f / df_Hz);
-        }
-    double total = 0;
-    for (const double p : power) total += p;
-    std::vector<double> J;
-    for (int i = 0; i < beam.speeds; i++) {
-        double sum = total * beam.volume[i];
-        for (int k = 0; k < beam.bins; k++) {
-            const double p = 0.95 * power[static_cast<std::size_t>(k)] + 0.05 * total / beam.bins; // the template's share of white noise
-            sum += p * beam.inverse[i * beam.bins + k];
-        }
-        J.push_back(sum);
-    }
-    const auto best = static_cast<std::size_t>(std::min_element(J.begin() + 1, J.end() - 1) - J.begin());
-    const double left = J[best - 1] - J[best], right = J[best + 1] - J[best], offset = left + right > 0 ? 0.5 * (left - right) / (left + right) : 0;
-    return static_cast<double>(beam.speed_m_s[best]) * std::exp(offset * static_cast<double>(beam.log_step)) / v;
-}
-
-double angle_of(const doppler_template_t &beam, double scale) {
-    double low = 2, high = 45;
-    for (int i = 0; i < 12; i++) { // heard_share falls with the angle; 12 halvings: 0.01 deg
-        const double middle = 0.5 * (low + high);
-        (heard_share(beam, middle) * scale > 1 ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-}
-
 struct Pair {
     double reference, radar;
 };
@@ -132,6 +83,37 @@ double ratio(const std::vector<Pair> &pairs, std::size_t from, std::size_t to) {
     for (std::size_t i = 0; i < pairs.size(); i++)
         if (i < from || i >= to) reference += pairs[i].reference, radar += pairs[i].radar;
     return reference / radar;
+}
+
+// Angle at which (2) gives this scale on ground of this exponent. The scale rises with the angle; the table is read backwards.
+class AngleTable {
+  public:
+    AngleTable(const doppler_template_t &beam, double exponent, const std::vector<double> &speed_m_s) {
+        const int repeats = std::max(1, modelled_windows / static_cast<int>(speed_m_s.size()));
+        for (double angle = lowest_deg; angle <= highest_deg; angle += step_deg) {
+            const double scale = modelled_scale(beam, {.angle_deg = angle, .ground_exponent = exponent}, speed_m_s, repeats);
+            scale_.push_back(scale_.empty() ? scale : std::max(scale, scale_.back() + 1e-6)); // rising, whatever the draws say
+        }
+    }
+    double angle_deg(double scale) const {
+        const auto above = std::upper_bound(scale_.begin(), scale_.end(), scale);
+        if (above == scale_.begin()) return lowest_deg;
+        if (above == scale_.end()) return highest_deg;
+        const auto i = static_cast<std::size_t>(above - scale_.begin());
+        return lowest_deg + step_deg * (static_cast<double>(i) - (scale_[i] - scale) / (scale_[i] - scale_[i - 1]));
+    }
+
+  private:
+    static constexpr double lowest_deg = 4, highest_deg = 44, step_deg = 5;
+    std::vector<double> scale_;
+};
+
+// Every n-th of the reference speeds: what (2) is drawn at.
+std::vector<double> speeds_of(const std::vector<Pair> &pairs) {
+    std::vector<double> out;
+    const std::size_t step = std::max<std::size_t>(1, pairs.size() / 100);
+    for (std::size_t i = 0; i < pairs.size(); i += step) out.push_back(pairs[i].reference);
+    return out;
 }
 
 } // namespace
@@ -167,9 +149,16 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
     for (std::size_t b = 0; b < blocks; b++) mean += (without[b] = ratio(pairs, pairs.size() * b / blocks, pairs.size() * (b + 1) / blocks)) / blocks;
     for (const double value : without) out.scale_std += (value - mean) * (value - mean);
     out.scale_std = std::sqrt(out.scale_std * (blocks - 1) / blocks); // jackknife: blocks are longer than a window's memory
-    out.angle_deg = angle_of(*config.doppler.beam, out.scale);
-    const double spread = std::hypot(out.scale_std, model_std); // one number cannot tell an angle from a ground
-    out.angle_std_deg = 0.5 * std::fabs(angle_of(*config.doppler.beam, out.scale + spread) - angle_of(*config.doppler.beam, out.scale - spread));
+    const std::vector<double> speeds = speeds_of(pairs);
+    const double spread = std::hypot(out.scale_std, model_std);
+    for (std::size_t n = 0; n < out.angle_by_exponent_deg.size(); n++) {
+        const AngleTable table(*config.doppler.beam, static_cast<double>(n), speeds);
+        out.angle_by_exponent_deg[n] = table.angle_deg(out.scale);
+        if (n == 1) out.angle_known_ground_std_deg = 0.5 * (table.angle_deg(out.scale + spread) - table.angle_deg(out.scale - spread));
+    }
+    out.angle_deg = out.angle_by_exponent_deg[1];
+    const double ground = (out.angle_by_exponent_deg[0] - out.angle_by_exponent_deg[2]) / std::sqrt(12.0); // exponent 0 to 2, all as likely (assumed)
+    out.angle_std_deg = std::hypot(out.angle_known_ground_std_deg, ground);
     return out;
 }
 

@@ -12,7 +12,8 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
 
 // The invariant: every whole number that something is indexed with or added to. Bytes that it does not name are unknown.
 /*@ predicate in_window(doppler_state_t *d) =
-      0 <= d->filled < 256 && -99 <= d->late_samples <= 7 && \forall integer n; 0 <= n < 256 ==> -16384 <= d->window.sample[n] <= 16352;
+      0 <= d->filled < 256 && -64 <= d->late_samples <= 7 &&
+      \forall integer n; 0 <= n < 256 ==> -16384 <= d->window.sample[n] <= 16352 && -16384 <= d->twice[n] <= 16352;
     predicate in_order(control_state_t *s) = in_window(&s->doppler) && 0 <= s->sense.head < 8 && 0 <= s->ground_speed.head < 64 &&
       0 <= s->ground_speed.refused <= 8 && 0 <= s->ground_speed.quiet <= 1000 && 0 <= s->ground_speed.still_ticks <= 1000 &&
       0 <= s->safety.turn < 4;
@@ -25,11 +26,13 @@ static control_state_t any_state_in_order(void)
     //@ loop unroll 256;
     for (int n = 0; n < FFT_LENGTH; n++) {
         state.doppler.window.sample[n] = any_sample(-16384, 16352); // 10 bits around 512, times 32
+        state.doppler.twice[n] = any_sample(-16384, 16352);
     }
     state.doppler.filled = Frama_C_interval(0, 255);
-    state.doppler.late_samples = Frama_C_interval(-99, 7);
+    state.doppler.late_samples = Frama_C_interval(-64, 7);
     state.doppler.pending = Frama_C_interval(0, 1) != 0;
     state.doppler.full = Frama_C_interval(0, 1) != 0;
+    state.doppler.halved = Frama_C_interval(0, 1) != 0;
     state.sense.head = Frama_C_interval(0, 7);
     state.ground_speed.head = Frama_C_interval(0, 63);
     state.ground_speed.refused = Frama_C_interval(0, 8);

@@ -218,7 +218,6 @@ TEST(Doppler, a_value_says_how_many_samples_came_after_its_window)
     doppler_state_t state = {};
     const uint16_t sample[8] = {512, 600, 512, 400, 512, 600, 512, 400};
     int total = 0, values = 0;
-    const double hann_age[] = {128, 192}; // lengths of the early windows
     for (int call = 0; total < 700; ++call) {
         const int count = call % 3 == 0 ? 6 : 5;
         const doppler_output_t out = doppler_step(&config, &state, sample, count);
@@ -228,13 +227,12 @@ TEST(Doppler, a_value_says_how_many_samples_came_after_its_window)
         }
         const int end = 128 + 64 * values; // samples in when the window was full
         double younger = 0;
-        if (values < 2) { // mean age of the samples by the square of the Hann window, the missing ones taken from the mirror
-            const double m = hann_age[values];
+        if (values < 2) { // mean age of the samples by the square of the Hann window: 128 each taken twice, or 192 and their mirror image
             double weight = 0, age = 0;
             for (int n = 0; n < 256; ++n) {
                 const double h = std::pow((1 - std::cos(2 * clutter::pi * n / 256)) / 2, 2);
                 weight += h;
-                age += h * (n < m ? m - 1 - n : n - m);
+                age += h * (values == 0 ? 127 - n / 2 : n < 192 ? 191 - n : n - 192);
             }
             younger = 127.5 - age / weight;
         }

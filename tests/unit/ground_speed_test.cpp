@@ -319,6 +319,38 @@ TEST(GroundSpeed, knows_its_own_uncertainty)
     EXPECT_NEAR(std::sqrt(square / claimed), 1, 0.1); // the claim is made at the values; between them noise adds up to 12 * 4e-6 of 2.3e-4 m^2/s^2
 }
 
+TEST(GroundSpeed, measures_the_accelerometers_noise_and_never_believes_less_than_stated)
+{
+    ground_speed_config_t config = rover_config_default().ground_speed;
+    for (const double noise : {0.05, 0.2, 0.4, 1.0, 5.0}) {
+        clutter::Random random{43};
+        ground_speed_state_t state;
+        ground_speed_reset(&config, &state);
+        EXPECT_EQ(state.speed_noise_m2_s2, config.speed_noise_m2_s2);
+        double mean = 0;
+        for (int k = 0; k < 20000; ++k) { // over a drive of 1 m/s^2 ramps, there and back
+            const double a = k % 400 < 100 ? 1 : k % 400 < 200 ? 0 : k % 400 < 300 ? -1 : 0;
+            const ground_speed_input_t input = only_accel(a + noise * random.normal());
+            ground_speed_step(&config, &state, &input);
+            mean += static_cast<double>(state.speed_noise_m2_s2) / 20000;
+        }
+        const double truth = std::pow(noise * 0.01, 2), stated = static_cast<double>(config.speed_noise_m2_s2);
+        // the four ramps' edges of 400 ticks add (1 m/s^2)^2 4/400/2 (0.01 s)^2 = 5e-7; where truth is the stated one, the larger of it and a mean that
+        // spreads by 10 % is 4 % more; beyond the limit it stays there
+        const double expected = std::fmin(std::fmax(truth + 5e-7, stated), static_cast<double>(config.speed_noise_max_m2_s2));
+        EXPECT_NEAR(mean, expected, 0.08 * expected + 1e-7) << noise;
+        EXPECT_GE(state.speed_noise_m2_s2, config.speed_noise_m2_s2);
+    }
+    config.speed_noise_max_m2_s2 = config.speed_noise_m2_s2; // off
+    ground_speed_state_t state;
+    ground_speed_reset(&config, &state);
+    for (int k = 0; k < 1000; ++k) {
+        const ground_speed_input_t input = only_accel(k % 2 == 0 ? 3 : -3);
+        ground_speed_step(&config, &state, &input);
+    }
+    EXPECT_EQ(state.speed_noise_m2_s2, config.speed_noise_m2_s2);
+}
+
 TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels)
 {
     for (const bool paper : {false, true}) {
