@@ -1,6 +1,7 @@
 #include "dataset.h"
 
 #include "inputs.h"
+#include "jumps.h"
 #include "smooth.h"
 
 #include <algorithm>
@@ -94,31 +95,6 @@ struct Builder : InputBuilder {
         return true;
     }
 
-    // Current that the smoothing of the acceleration may have cost the torque balance in a window [A].
-    double smoothing_error(std::size_t i, double t0, double t1) const {
-        const std::vector<double> &jerk = data.wheel[i].jerk_rad_s2;
-        if (jerk.empty()) return 0;
-        const auto a = static_cast<std::size_t>(std::max(0.0, (t0 - data.start_s) / data.step_s));
-        const auto b = std::min(data.count - 1, static_cast<std::size_t>((t1 - data.start_s) / data.step_s) + 1);
-        double sum = 0;
-        for (std::size_t k = a; k <= b; ++k) sum += std::fabs(jerk[k]);
-        const double mean = std::max(0.0, sum / static_cast<double>(b - a + 1) - jerk_noise(i));
-        return mean * parameter(model.wheel[i].motor, "inertia_kg_m2") / parameter(model.wheel[i].motor, "torque_constant_Nm_A");
-    }
-
-    // Median of the same difference: what the encoder's noise alone makes.
-    double jerk_noise(std::size_t i) const {
-        if (jerk_noise_.size() < data.wheel.size()) jerk_noise_.assign(data.wheel.size(), -1);
-        if (jerk_noise_[i] < 0) {
-            std::vector<double> size(data.wheel[i].jerk_rad_s2);
-            for (double &x : size) x = std::fabs(x);
-            jerk_noise_[i] = 2 * median(size);
-        }
-        return jerk_noise_[i];
-    }
-    mutable std::vector<double> jerk_noise_;
-    std::size_t too_quick_ = 0;
-
     void currents(std::size_t i) {
         const log::Signal *current = wheel_signal(i, "current_A");
         if (current == nullptr) {
@@ -143,14 +119,9 @@ struct Builder : InputBuilder {
             torque.noise = all.noise;
             for (std::size_t r = 0; r < all.measured.size(); ++r) {
                 if (!data.independent_rows && !moves(i, all.t0_s[r], all.t1_s[r])) continue;
-                if (smoothing_error(i, all.t0_s[r], all.t1_s[r]) > 8 * torque.noise) {
-                    ++too_quick_; // a set-point step: the encoder cannot follow it
-                    continue;
-                }
                 torque.t0_s.push_back(all.t0_s[r]);
                 torque.t1_s.push_back(all.t1_s[r]);
                 torque.measured.push_back(all.measured[r]);
-                torque.noise_factor.push_back(std::hypot(1.0, smoothing_error(i, all.t0_s[r], all.t1_s[r]) / torque.noise));
             }
             add(std::move(torque));
         } else {
@@ -252,7 +223,7 @@ struct Builder : InputBuilder {
         }
         add(std::move(along));
         if (model.motion == BodyMotion::planar && y != nullptr) add(std::move(side));
-        if (angle != nullptr && (model.motion == BodyMotion::planar || signal("imu.gyro_z_rad_s") == nullptr)) add(std::move(turn));
+        if (angle != nullptr && signal("imu.gyro_z_rad_s") == nullptr) add(std::move(turn));
     }
 
     void balances() {
@@ -267,7 +238,7 @@ struct Builder : InputBuilder {
         if (signal("imu.accel_x_m_s2") == nullptr) say("imu.accel_x_m_s2 is missing: the acceleration balance is left out");
         radar();
         camera();
-        if (model.motion == BodyMotion::longitudinal) simple("imu.gyro_z_rad_s", "yaw rate", "rad/s", BalanceKind::yaw_rate, -1, "gyro.noise_rad_s");
+        simple("imu.gyro_z_rad_s", "yaw rate", "rad/s", BalanceKind::yaw_rate, -1, "gyro.noise_rad_s");
     }
 
     void build() {
@@ -282,7 +253,6 @@ struct Builder : InputBuilder {
         yaw();
         imposed_motion();
         balances();
-        if (too_quick_ > 0) say(std::to_string(too_quick_) + " rows of the torque balances lie at speed steps quicker than the encoder can tell: left out");
         if (data.balance.empty()) say("the log has no measurement that this model predicts: nothing can be compared");
     }
 };
@@ -312,15 +282,32 @@ void noise_from_repeat(Dataset &data, const Dataset &other) {
 } // namespace
 
 double Dataset::acceleration_loss(double omega) const {
-    const double x = omega * step_s; // central differences over two steps, then linear interpolation between them
+    const double x = omega * step_s; // differences of fourth order, then linear interpolation between them
     if (!(x > 1e-6)) return 0;
-    const double kept = slope_response(smoothing_half_s, omega) * std::sin(x) / x * std::pow(std::sin(x / 2) / (x / 2), 2);
+    const double difference = (8 * std::sin(x) - std::sin(2 * x)) / (6 * x);
+    const double kept = slope_response(smoothing_half_s, omega) * difference * std::pow(std::sin(x / 2) / (x / 2), 2);
     return std::clamp(1 - kept, 0.0, 1.0);
+}
+
+std::vector<double> Dataset::voltage_integral(const WheelInput &input, double lag_s) const {
+    if (input.duty.empty() || (lag_s == 0 && !input.voltage_integral_Vs.empty())) return input.voltage_integral_Vs;
+    std::vector<double> sum(1, 0);
+    std::size_t i = 0;
+    for (std::size_t j = 0; j + 1 < input.voltage_t_s.size(); ++j) {
+        const double step = input.voltage_t_s[j + 1] - input.voltage_t_s[j], middle = input.voltage_t_s[j] + 0.5 * step + lag_s;
+        while (i + 2 < supply_t_s.size() && supply_t_s[i + 1] <= middle) ++i;
+        double V = supply_V[i];
+        if (i + 1 < supply_t_s.size())
+            V += std::clamp((middle - supply_t_s[i]) / (supply_t_s[i + 1] - supply_t_s[i]), 0.0, 1.0) * (supply_V[i + 1] - supply_V[i]);
+        sum.push_back(sum.back() + input.duty[j] * V * step);
+    }
+    return sum;
 }
 
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
     Builder builder(model, log);
     builder.build();
+    doubt_jumps(model, builder.data);
     if (repeat != nullptr) {
         Builder other(model, *repeat);
         other.build();

@@ -43,9 +43,10 @@ struct Balance {
 struct WheelInput {
     std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
     std::vector<double> travel_rad;  // since the wheel last reversed
-    std::vector<double> jerk_rad_s2; // what the smoothing does to the acceleration: a second, narrower one minus it
+    std::vector<double> plain_speed_rad_s, plain_accel_rad_s2; // by parabolas throughout: speed_rad_s differs where it jumps; empty: nowhere
     std::vector<double> voltage_V;                            // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs;     // its integral at the log's own times: a row's mean is exact
+    std::vector<double> duty;                                 // held from those times on; empty where the voltage itself is logged
 };
 
 struct Dataset {
@@ -57,7 +58,9 @@ struct Dataset {
     std::vector<double> yaw_rad;        // empty when unknown: integral of the rate, or the camera's
     std::vector<double> body_speed_m_s; // imposed speed; empty otherwise
     std::vector<std::vector<double>> load_N; // measured load per wheel; empty when not logged
+    std::vector<double> supply_t_s, supply_V; // battery, or one constant
     bool yaw_free = false;              // the log measures yaw, so the yaw rate follows from the model's forces
+    bool gyro = false;                  // the yaw rate is a gyro's
     std::vector<char> gap;              // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
     std::vector<std::string> messages;  // what is missing and what that removes
@@ -68,6 +71,8 @@ struct Dataset {
 
     // Share of a wheel's acceleration at omega [rad/s] that the smoothing and the grid lose.
     double acceleration_loss(double omega_rad_s) const;
+    // Integral of a wheel's voltage at voltage_t_s + lag_s, where the command acts lag_s late on the supply of its own time.
+    std::vector<double> voltage_integral(const WheelInput &input, double lag_s) const;
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
 

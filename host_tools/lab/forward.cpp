@@ -23,6 +23,7 @@ Forward::Forward(const Dataset &data) : data_(&data) {
         row_count_ += balance.measured.size();
     }
     base_current_.resize(data.wheel.size());
+    mean_voltage_.resize(data.wheel.size());
 }
 
 // Mean of a grid series over each row's window, through its running integral; a window of no width gives the value there.
@@ -52,12 +53,14 @@ void Forward::rows_of(std::size_t balance, const std::vector<double> &series, do
     }
 }
 
-// Mean motor voltage over each row's window, a delay earlier, from the log's own integral.
-Eigen::VectorXd Forward::mean_voltage(std::size_t balance, double delay_s) const {
+// Mean motor voltage over each row's window, delay_s earlier; lag_s: what the command lags behind the log, the supply does not.
+const Eigen::VectorXd &Forward::mean_voltage(std::size_t balance, double delay_s, double lag_s) const {
     const Balance &b = data_->balance[balance];
     const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
-    const std::vector<double> &t = in.voltage_t_s, &sum = in.voltage_integral_Vs;
-    Eigen::VectorXd mean(static_cast<Eigen::Index>(b.measured.size()));
+    MeanVoltage &known = mean_voltage_[static_cast<std::size_t>(b.wheel)];
+    if (known.mean_V.size() != 0 && known.delay_s == delay_s && known.lag_s == lag_s) return known.mean_V;
+    known = {delay_s, lag_s, Eigen::VectorXd(static_cast<Eigen::Index>(b.measured.size()))};
+    const std::vector<double> &t = in.voltage_t_s, sum = data_->voltage_integral(in, lag_s);
     std::size_t j = 0;
     const auto integral_to = [&](double at) {
         while (j + 2 < t.size() && t[j + 1] <= at) ++j;
@@ -65,10 +68,10 @@ Eigen::VectorXd Forward::mean_voltage(std::size_t balance, double delay_s) const
         return sum[j] + (sum[j + 1] - sum[j]) / (t[j + 1] - t[j]) * (at - t[j]);
     };
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
-        const double t0 = b.t0_s[r] - delay_s, t1 = std::max(b.t1_s[r] - delay_s, t0 + 1e-6), from = integral_to(t0);
-        mean[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
+        const double t0 = b.t0_s[r] - delay_s - lag_s, t1 = std::max(b.t1_s[r] - delay_s - lag_s, t0 + 1e-6), from = integral_to(t0);
+        known.mean_V[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
     }
-    return mean;
+    return known.mean_V;
 }
 
 std::size_t Forward::balance_of(BalanceKind kind, std::size_t wheel) const {
@@ -92,7 +95,7 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
         if (p.mesh != 0) series_[k] += per_N * p.mesh * (std::fabs(now[k]) - std::fabs(before[k])) * soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
         if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
     }
-    rows_of(balance, series_, 0, true, out);
+    rows_of(balance, series_, physics.body.current_delay, true, out);
 }
 
 void Forward::electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
@@ -165,13 +168,13 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
         }
         if (p.heating != 0) heat_K += d.step_s / p.heating_time * (p.heating * I * I * p.Ra - heat_K);
     }
-    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, 0, false, out);
+    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, body.current_delay, false, out);
     if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
-        rows_of(voltage_balance, series_, 0, false, out);
-        const Eigen::VectorXd voltage = mean_voltage(voltage_balance, body.voltage_delay0 + body.actuation_delay);
+        rows_of(voltage_balance, series_, body.current_delay, false, out);
+        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, body.current_delay, body.voltage_delay0 + body.actuation_delay);
         const auto first = static_cast<Eigen::Index>(first_row_[voltage_balance]), n = voltage.size();
         Eigen::VectorXd slope = Eigen::VectorXd::Constant(out.size(), per_V / (1 + body.voltage_gain));
-        if (varies) rows_of(voltage_balance, per_V_series, 0, false, slope);
+        if (varies) rows_of(voltage_balance, per_V_series, body.current_delay, false, slope);
         out.segment(first, n) += slope.segment(first, n).cwiseProduct(voltage);
         if (magnitude) out.segment(first, n) = out.segment(first, n).cwiseAbs();
     }
@@ -197,10 +200,12 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         const BalanceKind kind = d.balance[i].kind;
         double delay = 0;
         if (kind == BalanceKind::accel) {
-            double lagged = 0;
+            double lagged = 0, before = 0;
+            const double share = 1 - std::exp(-d.step_s / tilt_lag_s);
             for (std::size_t k = 0; k < d.count; ++k) {
                 const double a = motion.accel_m_s2[k];
-                lagged += d.step_s / (tilt_lag_s + d.step_s) * (a - lagged);
+                lagged += share * (0.5 * (a + before) - lagged);
+                before = a;
                 x[k] = (a + b.gravity * b.accel_tilt * lagged) * (1 + b.accel_scale) + b.accel_bias0 + b.accel_bias + b.accel_drift * d.time(k) + factor(TermTarget::accel, k) - 1;
             }
         } else if (kind == BalanceKind::radar) {

@@ -44,7 +44,7 @@ class Forward {
     void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;
     // out = (or, adding, +=) the series' mean over each row's window
     void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const;
-    Eigen::VectorXd mean_voltage(std::size_t balance, double delay_s) const;
+    const Eigen::VectorXd &mean_voltage(std::size_t balance, double delay_s, double lag_s) const;
     std::size_t balance_of(BalanceKind kind, std::size_t wheel) const; // balance.size() when there is none
 
     const Dataset *data_;
@@ -53,6 +53,11 @@ class Forward {
     Physics base_physics_;
     Motion base_motion_, scratch_;
     mutable std::vector<double> series_, sum_, current_;
+    struct MeanVoltage {
+        double delay_s = 0, lag_s = 0;
+        Eigen::VectorXd mean_V;
+    };
+    mutable std::vector<MeanVoltage> mean_voltage_; // per wheel, the last one asked for
     std::vector<std::vector<double>> base_current_;
     Eigen::VectorXd base_prediction_;
     bool have_base_ = false, linear_base_ = false; // linear: its neighbours follow from its tangents

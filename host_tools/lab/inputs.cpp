@@ -13,12 +13,6 @@ namespace {
 
 constexpr double longest_gap_s = 0.25; // beyond it a wheel's speed is not known
 
-template <typename Mean> void integrate_voltage(WheelInput &input, const std::vector<double> &t, Mean &&mean_V) {
-    input.voltage_t_s = t;
-    input.voltage_integral_Vs.assign(1, 0);
-    for (std::size_t j = 0; j + 1 < t.size(); ++j) input.voltage_integral_Vs.push_back(input.voltage_integral_Vs.back() + mean_V(j) * (t[j + 1] - t[j]));
-}
-
 } // namespace
 
 double sample_period(const log::Signal &signal) {
@@ -127,10 +121,10 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.speed_rad_s = std::move(smooth.slope);
         mark_gaps(smooth.distance_s, *s);
         slopes_of(input);
-        WheelInput narrow;
-        narrow.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
-        slopes_of(narrow);
-        for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow.accel_rad_s2[k] - input.accel_rad_s2[k]);
+        WheelInput sharp;
+        sharp.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 3).slope;
+        slopes_of(sharp);
+        follow_jumps(input, sharp);
     } else if (data.independent_rows) {
         for (std::size_t k = 0; k < data.count; ++k) input.speed_rad_s.push_back(interpolate(s->t_s, s->value, data.time(k)));
         input.angle_rad.assign(data.count, 0);
@@ -140,11 +134,38 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.speed_rad_s = std::move(smooth.value);
         input.accel_rad_s2 = std::move(smooth.slope);
         mark_gaps(smooth.distance_s, *s);
-        const std::vector<double> narrow = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, 0.55 * half, 2).slope;
-        for (std::size_t k = 0; k < data.count; ++k) input.jerk_rad_s2.push_back(narrow[k] - input.accel_rad_s2[k]);
+        WheelInput sharp;
+        Smooth cubic = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, half, 3);
+        sharp.speed_rad_s = std::move(cubic.value), sharp.accel_rad_s2 = std::move(cubic.slope);
+        follow_jumps(input, sharp);
         input.angle_rad.assign(data.count, 0);
         for (std::size_t k = 1; k < data.count; ++k)
             input.angle_rad[k] = input.angle_rad[k - 1] + 0.5 * data.step_s * (input.speed_rad_s[k] + input.speed_rad_s[k - 1]);
+    }
+}
+
+// Where cubics and parabolas differ by more than noise, the wheel jumps: there the cubics serve.
+void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp) const {
+    constexpr double jump = 5;                      // standard deviations
+    constexpr double calm = 0.2, quantile = 0.2533; // the difference's noise: from its calmest fifth while the wheel turns, whatever the rest does
+    std::vector<double> size, moving;
+    for (std::size_t k = 0; k < data.count; ++k) {
+        size.push_back(std::fabs(sharp.accel_rad_s2[k] - input.accel_rad_s2[k]));
+        if (std::fabs(input.speed_rad_s[k]) > standstill_rad_s) moving.push_back(size[k]);
+    }
+    if (moving.empty()) return;
+    const auto place = moving.begin() + static_cast<std::ptrdiff_t>(calm * static_cast<double>(moving.size()));
+    std::nth_element(moving.begin(), place, moving.end());
+    const double limit = jump * *place / quantile;
+    const auto reach = static_cast<std::size_t>(std::lround(0.5 * data.smoothing_half_s / data.step_s));
+    input.plain_speed_rad_s = input.speed_rad_s;
+    input.plain_accel_rad_s2 = input.accel_rad_s2;
+    for (std::size_t k = 0; k < data.count; ++k) {
+        if (!(size[k] > limit)) continue;
+        for (std::size_t j = k - std::min(k, reach); j <= std::min(data.count - 1, k + reach); ++j) {
+            input.speed_rad_s[j] = sharp.speed_rad_s[j];
+            input.accel_rad_s2[j] = sharp.accel_rad_s2[j];
+        }
     }
 }
 
@@ -163,10 +184,11 @@ void InputBuilder::slopes_of(WheelInput &input) const {
     const std::vector<double> &w = input.speed_rad_s;
     dw.assign(data.count, 0);
     const auto n = static_cast<std::ptrdiff_t>(data.count), reach = std::max<std::ptrdiff_t>(1, std::lround(0.02 / data.step_s));
-    for (std::ptrdiff_t k = 0; k < n; ++k) {
-        const std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, k - reach), b = std::min(n - 1, k + reach);
-        dw[static_cast<std::size_t>(k)] = (w[static_cast<std::size_t>(b)] - w[static_cast<std::size_t>(a)]) / (static_cast<double>(b - a) * data.step_s);
-    }
+    const auto over = [&](std::ptrdiff_t k, std::ptrdiff_t by) {
+        const std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, k - by), b = std::min(n - 1, k + by);
+        return (w[static_cast<std::size_t>(b)] - w[static_cast<std::size_t>(a)]) / (static_cast<double>(b - a) * data.step_s);
+    };
+    for (std::ptrdiff_t k = 0; k < n; ++k) dw[static_cast<std::size_t>(k)] = (4 * over(k, reach) - over(k, 2 * reach)) / 3; // fourth order
 }
 
 void InputBuilder::mark_gaps(const std::vector<double> &distance_s, const log::Signal &s) {
@@ -178,23 +200,27 @@ void InputBuilder::mark_gaps(const std::vector<double> &distance_s, const log::S
 void InputBuilder::voltages() {
     const log::Signal *battery = signal("battery.voltage_V");
     const double nominal_V = parameter(model.rover, "battery_voltage_V");
-    std::vector<double> battery_V;
-    if (battery != nullptr) battery_V = smooth_at(battery->t_s, battery->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*battery)), 1).value;
-    else if (nominal_V > 0) battery_V.assign(data.count, nominal_V);
+    if (battery != nullptr) { // a sample that is a mean over a window stands for its middle
+        for (const double t : battery->t_s) data.supply_t_s.push_back(t - 0.5 * window_of(*battery));
+        data.supply_V = battery->value;
+    } else if (nominal_V > 0) {
+        data.supply_t_s = {data.start_s}, data.supply_V = {nominal_V};
+    }
     bool told = false;
     for (std::size_t i = 0; i < model.wheel.size(); ++i) {
         WheelInput &input = data.wheel[i];
         if (const log::Signal *voltage = wheel_signal(i, "voltage_V")) {
             for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(interpolate(voltage->t_s, voltage->value, data.time(k)));
-            integrate_voltage(input, voltage->t_s, [&](std::size_t j) { return 0.5 * (voltage->value[j] + voltage->value[j + 1]); });
-        } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !battery_V.empty()) { // held from its time on
-            const auto supply = [&](double t) {
-                const double x = std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(data.count - 1));
-                const auto k = std::min(static_cast<std::size_t>(x), data.count - 2);
-                return battery_V[k] + (x - static_cast<double>(k)) * (battery_V[k + 1] - battery_V[k]);
-            };
-            for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(hold(duty->t_s, duty->value, data.time(k)) * battery_V[k]);
-            integrate_voltage(input, duty->t_s, [&](std::size_t j) { return duty->value[j] * supply(0.5 * (duty->t_s[j] + duty->t_s[j + 1])); });
+            input.voltage_t_s = voltage->t_s;
+            input.voltage_integral_Vs.assign(1, 0);
+            for (std::size_t j = 0; j + 1 < voltage->t_s.size(); ++j)
+                input.voltage_integral_Vs.push_back(input.voltage_integral_Vs.back() + 0.5 * (voltage->value[j] + voltage->value[j + 1]) * (voltage->t_s[j + 1] - voltage->t_s[j]));
+        } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !data.supply_V.empty()) { // held from its time on
+            for (std::size_t k = 0; k < data.count; ++k)
+                input.voltage_V.push_back(hold(duty->t_s, duty->value, data.time(k)) * interpolate(data.supply_t_s, data.supply_V, data.time(k)));
+            input.voltage_t_s = duty->t_s;
+            input.duty = duty->value;
+            input.voltage_integral_Vs = data.voltage_integral(input, 0);
         } else if (!told && model.wheel[i].driven) {
             say("no motor voltage (duty and battery.voltage_V, or wheel<i>.voltage_V): the voltage balance is left out");
             told = true;
@@ -204,6 +230,7 @@ void InputBuilder::voltages() {
 
 void InputBuilder::yaw() {
     const log::Signal *gyro = signal("imu.gyro_z_rad_s"), *camera = signal("camera.yaw_rad");
+    data.gyro = gyro != nullptr;
     if (gyro != nullptr) {
         data.yaw_rate_rad_s = smooth_at(gyro->t_s, gyro->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*gyro)), 1).value;
     } else if (camera != nullptr) {

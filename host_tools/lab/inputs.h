@@ -30,6 +30,7 @@ struct InputBuilder {
     const log::Signal *motion_signal(std::size_t i, double &angle_scale) const;
     bool set_grid();
     void wheel_motion(std::size_t i);
+    void follow_jumps(WheelInput &input, const WheelInput &sharp) const;
     void travel(WheelInput &input) const;
     // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
     void slopes_of(WheelInput &input) const;

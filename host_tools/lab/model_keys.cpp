@@ -37,6 +37,7 @@ constexpr ModelKey sensors[] = {
     {"encoder.counts_per_turn", "1", 6000, 1, 1e9, 0, 0},
     {"duty.delay_s", "s", 0, -5, 5, 0, 0.004},
     {"current.noise_A", "A", 0, 0, 1e3, 0, 0},
+    {"current.delay_s", "s", 0, -5, 5, 0, 0.003},
     {"accel.noise_m_s2", "m/s^2", 0, 0, 1e3, 0, 0},
     {"accel.bias_m_s2", "m/s^2", 0, -5, 5, 0, 0.05},
     {"gyro.noise_rad_s", "rad/s", 0, 0, 1e2, 0, 0},

@@ -13,7 +13,8 @@ namespace detail {
 
 Freedom freedom_of(const Dataset &data, const Physics &physics) {
     const bool planar = physics.motion == BodyMotion::planar;
-    return {planar, planar || data.yaw_free};
+    const bool omni = planar && std::find(physics.grips_sideways.begin(), physics.grips_sideways.end(), false) != physics.grips_sideways.end();
+    return {planar, planar || data.yaw_free, omni, planar ? data.gyro : data.yaw_free};
 }
 
 void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool lags) {
@@ -111,7 +112,7 @@ class Solver {
     }
 
     const Vector3d &rate_found() const { return rate_; }
-    double grade() const { return grade_; }
+    double grade() const { return grade_[0]; }
     WheelStep &step() { return step_; }
     detail::Freedom freedom() const { return freedom_; }
 
@@ -166,7 +167,7 @@ class Solver {
     }
 
     Vector3d with_body(Vector3d force, const Vector3d &q) const {
-        if (!freedom_.vy) {
+        if (!freedom_.omni) {
             force[0] += step_.body_force(q[0]);
         } else if (const double speed = std::hypot(q[0], q[1]); speed > 1e-6) {
             const double along = step_.body_force(speed);
@@ -220,7 +221,8 @@ class Solver {
     detail::Freedom freedom_;
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
     std::array<Vector3d, most_wheels> force_{};
-    double reach_ = 0, grade_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
+    Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
+    double reach_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
 };
 
 void record(const WheelStep &step, std::size_t k, Motion &m) {
@@ -260,11 +262,11 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         before = q;
         q = found;
         accel = rate[0];
-        path += (freedom.vy ? std::hypot(q[0], q[1]) : q[0]) * data.step_s;
+        path += (freedom.omni ? std::hypot(q[0], q[1]) : q[0]) * data.step_s;
         heading = data.yaw_rad.empty() ? heading + q[2] * data.step_s : data.yaw_rad[k];
-        x += q[0] * std::cos(heading) * data.step_s;
-        y += q[0] * std::sin(heading) * data.step_s;
-        away = freedom.vy ? path : x * std::cos(heading) + y * std::sin(heading);
+        x += (q[0] * std::cos(heading) - q[1] * std::sin(heading)) * data.step_s;
+        y += (q[0] * std::sin(heading) + q[1] * std::cos(heading)) * data.step_s;
+        away = freedom.omni ? path : x * std::cos(heading) + y * std::sin(heading);
         m.v_m_s[k] = q[0];
         m.vy_m_s[k] = q[1];
         m.yaw_rate_rad_s[k] = q[2];

@@ -1,8 +1,8 @@
 // motion.h - the body's speed from the model's forces, the wheels' speeds being given: (1) of forward.h.
 //
 //   q_k = 4/3 q_{k-1} - 1/3 q_{k-2} + 2/3 h rate(q_k)     second-order backward differences (Gear 1971), L-stable: the soil is stiff  (1)
-//   rate = (Fx/M + r vy, Fy/M - r vx, Mz/Izz)             Euler's equations in the body's frame; vy = 0 for skid steer             (2)
-// Skid steer with a gyro: Mz/Izz + observer_1_s * (gyro - yaw rate). Where all wheels slide nothing else holds the heading, and uneven
+//   rate = (Fx/M + r vy, Fy/M - r vx, Mz/Izz)             Euler's equations in the body's frame; vy = 0 for longitudinal motion     (2)
+// With a gyro: Mz/Izz + observer_1_s * (gyro - yaw rate). Where all wheels slide nothing else holds the heading, and uneven
 // ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull is not felt.
 // Neighbours of a known motion by one linear recursion, tangent.cpp:
 //   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1} + rate_s ds_{k-1}))      (3)
@@ -27,7 +27,7 @@ struct StepTangent {
 // Trajectory of one pass, on the grid.
 struct Motion {
     std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, path_m;
-    std::vector<double> away_m;     // of the way from the start, the part along the heading (planar machines: the path)
+    std::vector<double> away_m;     // of the way from the start, the part along the heading (omni wheels: the path)
     std::vector<double> accel_m_s2; // specific force along x: what an accelerometer feels
     std::vector<Eigen::Vector3d> rate; // of (vx, vy, yaw rate)
     struct Wheel {
@@ -67,16 +67,18 @@ namespace detail {
 // What is sought in a step: which of (vx, vy, yaw rate) follow from the forces.
 struct Freedom {
     bool vy = false, yaw = false;
+    bool omni = false;     // rollers: the body goes any way, its path has no sign
+    bool observed = false; // a gyro holds the yaw rate
 };
 Freedom freedom_of(const Dataset &data, const Physics &physics);
 
 inline constexpr double observer_1_s = 3; // forgets in 0.3 s: assumed
 
-// (2) from the sum of forces; gyro: the measured yaw rate, for the observer.
-inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, double grade, double gyro, const Physics &p, Freedom freedom) {
-    Eigen::Vector3d rate(force[0] / p.body.mass + grade, 0, freedom.yaw ? force[2] / p.body.yaw_inertia : 0);
-    if (freedom.yaw && !freedom.vy) rate[2] += observer_1_s * (gyro - q[2]);
-    if (freedom.vy) rate[0] += q[2] * q[1], rate[1] = force[1] / p.body.mass - q[2] * q[0];
+// (2) from the sum of forces; grade: gravity along the slope, forward and left; gyro: the measured yaw rate, for the observer.
+inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, const Eigen::Vector2d &grade, double gyro, const Physics &p, Freedom freedom) {
+    Eigen::Vector3d rate(force[0] / p.body.mass + grade[0], 0, freedom.yaw ? force[2] / p.body.yaw_inertia : 0);
+    if (freedom.observed) rate[2] += observer_1_s * (gyro - q[2]);
+    if (freedom.vy) rate[0] += q[2] * q[1], rate[1] = force[1] / p.body.mass + grade[1] - q[2] * q[0];
     return rate;
 }
 

@@ -41,6 +41,7 @@ constexpr Key keys[] = {
     {"rover", "yaw_inertia_kg_m2", nullptr, &B::yaw_inertia, stage_motion},
     {"rover", "centre_height_m", nullptr, &B::centre_height, stage_motion},
     {"sensors", "duty.delay_s", nullptr, &B::voltage_delay0, stage_voltage},
+    {"sensors", "current.delay_s", nullptr, &B::current_delay, stage_torque | stage_voltage},
     {"sensors", "accel.bias_m_s2", nullptr, &B::accel_bias0, stage_sensors},
     {"sensors", "gyro.bias_rad_s", nullptr, &B::gyro_bias, stage_sensors},
     {"sensors", "radar.scale", nullptr, &B::radar_scale0, stage_sensors},

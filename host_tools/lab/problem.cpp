@@ -145,35 +145,46 @@ void Problem::solve(int iterations) {
     linearise();
 }
 
+double Problem::speed_range(double t0, double t1) const {
+    const std::vector<double> &v = forward_.motion().v_m_s;
+    const auto at = [&](double t) { return std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (t - data_->start_s) / data_->step_s))); };
+    const auto [low, high] = std::minmax_element(v.begin() + static_cast<std::ptrdiff_t>(at(t0)), v.begin() + static_cast<std::ptrdiff_t>(at(t1)) + 1);
+    return *high - *low;
+}
+
 // Variance of each row of a balance as a sum of non-negative parts: constant, traction squared (ground that is not even), jerk
-// squared, slip sensitivity squared (encoder noise through a stiff soil). Multiplicative updates of a weighted least squares.
+// squared, slip sensitivity squared (encoder noise through a stiff soil), speed squared (vibration), squared range of the speed within
+// the row's window (a Doppler radar reads one of its speeds). Multiplicative updates of a weighted least squares.
 Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squares, double floor_variance) const {
     const Balance &balance = data_->balance[b];
     const auto n = static_cast<Eigen::Index>(balance.measured.size());
     const Motion &m = forward_.motion();
-    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, 4);
+    constexpr Eigen::Index parts = 6;
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, parts);
     for (Eigen::Index r = 0; r < n; ++r) {
         const double t0 = balance.t0_s[static_cast<std::size_t>(r)], t1 = balance.t1_s[static_cast<std::size_t>(r)];
         const auto k = std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (0.5 * (t0 + t1) - data_->start_s) / data_->step_s)));
         F(r, 0) = 1;
+        F(r, 4) = m.v_m_s[k] * m.v_m_s[k];
+        F(r, 5) = speed_range(t0, t1) * speed_range(t0, t1);
         for (std::size_t i = 0; i < m.wheel.size(); ++i) {
             if (balance.wheel >= 0 && static_cast<std::size_t>(balance.wheel) != i) continue;
             const double traction = m.wheel[i].traction_N[k], slip = m.wheel[i].slip[k];
             F(r, 1) += traction * traction;
-            if (!data_->wheel[i].jerk_rad_s2.empty()) F(r, 2) += data_->wheel[i].accel_rad_s2[k] * data_->wheel[i].accel_rad_s2[k];
+            F(r, 2) += data_->wheel[i].accel_rad_s2[k] * data_->wheel[i].accel_rad_s2[k];
             const double speed = std::max(0.2, std::fabs(data_->wheel[i].speed_rad_s[k])), sc = 0.1;
             const double steep = std::exp(-std::fabs(slip) / sc) / speed; // where the soil's curve is steep, and the wheel slow
             F(r, 3) += steep * steep;
         }
     }
     Eigen::VectorXd variance = Eigen::VectorXd::Constant(n, std::max(floor_variance, squares.mean()));
-    for (Eigen::Index c = 0; c < 4; ++c)
+    for (Eigen::Index c = 0; c < parts; ++c)
         if (const double mean = F.col(c).mean(); mean > 0) F.col(c) /= mean;
-    Eigen::Vector4d x = Eigen::Vector4d::Constant(squares.mean() / 4);
+    Eigen::VectorXd x = Eigen::VectorXd::Constant(parts, squares.mean() / parts);
     for (int pass = 0; pass < 3; ++pass) {
         const Eigen::VectorXd weight = variance.array().square().inverse();
-        const Eigen::Vector4d target = F.transpose() * weight.cwiseProduct(squares);
-        const Eigen::Matrix4d gram = F.transpose() * weight.asDiagonal() * F;
+        const Eigen::VectorXd target = F.transpose() * weight.cwiseProduct(squares);
+        const Eigen::MatrixXd gram = F.transpose() * weight.asDiagonal() * F;
         for (int i = 0; i < 200; ++i) x = x.cwiseProduct(target.cwiseQuotient((gram * x).cwiseMax(1e-300)));
         variance = (F * x).cwiseMax(floor_variance);
     }

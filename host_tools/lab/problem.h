@@ -64,6 +64,7 @@ class Problem {
     friend class RowsCost;
     void set_scales(); // the Jacobian, if there is one, is scaled anew
     void settle();     // prediction and residual at the present increments; the Jacobian stays
+    double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
     Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;

@@ -1,5 +1,7 @@
 #include "smooth.h"
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,8 +10,20 @@ namespace traction::lab {
 
 namespace {
 
-// Weighted least squares of a polynomial of degree <= 2 about x = 0, from its moments; degrades to a lower degree when singular.
-void solve_local(const double (&s)[5], const double (&r)[3], int degree, double &value, double &slope) {
+// Weighted least squares of a polynomial of degree <= 3 about x = 0, from its moments; degrades to a lower degree when singular.
+void solve_local(const double (&s)[7], const double (&r)[4], int degree, double &value, double &slope) {
+    if (degree >= 3) {
+        Eigen::Matrix4d S;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) S(i, j) = s[i + j];
+        const Eigen::LDLT<Eigen::Matrix4d> factor(S);
+        if (factor.vectorD().minCoeff() > 1e-9 * s[0]) {
+            const Eigen::Vector4d c = factor.solve(Eigen::Vector4d(r[0], r[1], r[2], r[3]));
+            value = c[0];
+            slope = c[1];
+            return;
+        }
+    }
     if (degree >= 2) {
         const double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[3] * s[2]) + s[2] * (s[1] * s[3] - s[2] * s[2]);
         if (det > 1e-12 * s[0] * s[0] * s[0]) {
@@ -87,15 +101,15 @@ Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &valu
             else ++b;
             width = std::max(width, 1.05 * std::min(left, right));
         }
-        double s[5] = {}, r[3] = {};
+        double s[7] = {}, r[4] = {};
         const double y0 = value[near]; // removed first: keeps precision for large angles
         for (std::size_t i = a; i < b; ++i) {
             const double x = (t_s[i] - t) / width;
             const double c = 1 - std::fabs(x * x * x);
             const double w = c > 0 ? c * c * c : 0;
             const double y = value[i] - y0, wx = w * x, wxx = wx * x;
-            s[0] += w, s[1] += wx, s[2] += wxx, s[3] += wxx * x, s[4] += wxx * x * x;
-            r[0] += w * y, r[1] += wx * y, r[2] += wxx * y;
+            s[0] += w, s[1] += wx, s[2] += wxx, s[3] += wxx * x, s[4] += wxx * x * x, s[5] += wxx * x * x * x, s[6] += wxx * x * x * x * x;
+            r[0] += w * y, r[1] += wx * y, r[2] += wxx * y, r[3] += wxx * x * y;
         }
         double slope = 0;
         solve_local(s, r, degree, out.value[k], slope);

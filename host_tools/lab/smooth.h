@@ -11,7 +11,7 @@ struct Smooth {
     std::vector<double> distance_s; // from each time to the nearest sample: large in a gap
 };
 
-// At each time, a parabola (line when degree is 1) fitted with tricube weights to the samples within half_width_s, widened to
+// At each time, a polynomial of degree 1 to 3 fitted with tricube weights to the samples within half_width_s, widened to
 // the nearest degree + 3 samples where there are fewer. t_s increasing. Linear in the data, so that measured and predicted quantities
 // filtered alike stay comparable.
 Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s, std::size_t count,

@@ -24,8 +24,8 @@ class Moved {
         for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1]);
         Vector3d force = Vector3d::Zero();
         for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
-        const double speed = freedom_.vy ? std::hypot(q[0], q[1]) : q[0], along = step_.body_force(speed);
-        if (!freedom_.vy) force[0] += along;
+        const double speed = freedom_.omni ? std::hypot(q[0], q[1]) : q[0], along = step_.body_force(speed);
+        if (!freedom_.omni) force[0] += along;
         else if (speed > 1e-6) force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
         return detail::rate_of(force, q, step_.grade_accel(), gyro_.empty() ? 0 : gyro_[k], p_, freedom_) - known_.rate[k];
     }
@@ -33,7 +33,7 @@ class Moved {
         return i >= first_ && i < last_ ? step_.state(i).traction - known_.wheel[i].traction_N[k] : 0;
     }
     double slip_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).slip - known_.wheel[i].slip[k] : 0; }
-    double grade_accel(std::size_t) const { return step_.grade_accel(); }
+    double grade_accel(std::size_t) const { return step_.grade_accel()[0]; }
     const WheelStep &step() const { return step_; }
 
   private:
@@ -101,7 +101,7 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
         q = next;
         accel = (q[0] - right[0]) / reach;
         const Vector3d now = at + q;
-        path += data.step_s * (freedom.vy ? std::hypot(now[0], now[1]) - std::hypot(at[0], at[1]) : q[0]);
+        path += data.step_s * (freedom.omni ? std::hypot(now[0], now[1]) - std::hypot(at[0], at[1]) : q[0]);
         m.v_m_s[k] = now[0];
         m.vy_m_s[k] = now[1];
         m.yaw_rate_rad_s[k] = now[2];

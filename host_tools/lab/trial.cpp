@@ -79,6 +79,7 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
     c.prepare(at);
     const double linear = t.value[0], largest = linear < 0 && c.minimum[0] < 0 ? c.minimum[0] : c.maximum[0];
     std::vector<double> sizes = {linear, 2 * linear, 0.5 * largest};
+    if (std::fabs(linear) < 0.1 * std::fabs(largest)) sizes = {linear, 0.1 * largest, 0.25 * largest, 0.5 * largest}; // a poor baseline hides large ones
     if (strongly_nonlinear(c.effect)) sizes = {c.of_interest[0], 0.1 * largest, 0.25 * largest, 0.5 * largest, 0.8 * largest};
     double best = screen.error();
     const double before = best;
@@ -117,7 +118,7 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
     }
     if ((t.candidate.touched & stage_motion) != 0) {
         if (t.start_change.size() == n) problem.theta.head(n) += t.start_change, problem.within_bounds();
-        problem.polish(3); // the soil's curve is strongly nonlinear: fresh sensitivities
+        problem.polish(strongly_nonlinear(t.candidate.effect) ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
     } else {
         problem.quick_fit(base, 3);
     }

@@ -165,9 +165,11 @@ double WheelStep::body_force(double v) const {
     return force;
 }
 
-double WheelStep::grade_accel() const {
+Eigen::Vector2d WheelStep::grade_accel() const {
     const BodyPhysics &b = p_.body;
-    return b.grade == 0 ? 0 : -b.gravity * std::sin(b.grade) * std::cos(yaw_ - b.grade_direction);
+    if (b.grade == 0) return {0, 0};
+    const double steep = b.gravity * std::sin(b.grade), turned = yaw_ - b.grade_direction;
+    return {-steep * std::cos(turned), steep * std::sin(turned)};
 }
 
 void WheelStep::commit() {

@@ -43,7 +43,7 @@ class WheelStep {
     // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
     Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
-    double grade_accel() const;         // of the slope, along x
+    Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                      // the step is found: slip and play become the next step's memory
     void remember(std::size_t i, double slip) { state_[i].slip_before = slip; }
 
