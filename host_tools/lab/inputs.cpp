@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 namespace traction::lab {
 
@@ -159,12 +160,11 @@ void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp) cons
     const double limit = jump * *place / quantile;
     const auto reach = static_cast<std::size_t>(std::lround(0.5 * data.smoothing_half_s / data.step_s));
     input.plain_speed_rad_s = input.speed_rad_s;
-    input.plain_accel_rad_s2 = input.accel_rad_s2;
+    input.plain_accel_rad_s2 = std::exchange(input.accel_rad_s2, sharp.accel_rad_s2);
     for (std::size_t k = 0; k < data.count; ++k) {
         if (!(size[k] > limit)) continue;
         for (std::size_t j = k - std::min(k, reach); j <= std::min(data.count - 1, k + reach); ++j) {
             input.speed_rad_s[j] = sharp.speed_rad_s[j];
-            input.accel_rad_s2[j] = sharp.accel_rad_s2[j];
         }
     }
 }
