@@ -30,7 +30,8 @@ struct InputBuilder {
     const log::Signal *motion_signal(std::size_t i, double &angle_scale) const;
     bool set_grid();
     void wheel_motion(std::size_t i);
-    void follow_jumps(WheelInput &input, const WheelInput &sharp) const;
+    void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
+    static double rounding_noise(const std::vector<double> &angle_rad, double period_s, double half_s);
     void travel(WheelInput &input) const;
     // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
     void slopes_of(WheelInput &input) const;

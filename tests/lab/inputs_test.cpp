@@ -1,0 +1,157 @@
+// inputs_test.cpp - what a log becomes before the model is asked: wheels that jump, samples that are means, a command that comes late.
+#include "host_tools/lab/dataset.h"
+#include "host_tools/lab/problem.h"
+#include "host_tools/lab/smooth.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace traction::lab {
+namespace {
+
+constexpr double tick_s = 0.01, jump_s = 3.005, accel_rad_s2 = 30, counts_per_rad = 6000 / (2 * std::numbers::pi);
+
+// A bench motor that turns at 2 rad/s and, from jump_s on, gains accel_rad_s2 for 0.3 s; the current is the torque's, the duty its own.
+log::Log motor(double jump_rad_s2) {
+    log::Log log;
+    log::Signal count{"wheel0.encoder_count", {}, {}}, current{"wheel0.current_A", {}, {}}, duty{"wheel0.duty", {}, {}}, battery{"battery.voltage_V", {}, {}};
+    for (int i = 0; i < 600; ++i) {
+        const double t = tick_s * i, since = std::clamp(t - jump_s, 0.0, 0.3), after = std::max(0.0, t - jump_s - 0.3);
+        count.t_s.push_back(t), count.value.push_back(std::floor(counts_per_rad * (2 * t + jump_rad_s2 * (0.5 * since * since + 0.3 * after))));
+        const bool gains = t > jump_s && t < jump_s + 0.3;
+        current.t_s.push_back(t), current.value.push_back((0.03 + (gains ? 5e-3 * jump_rad_s2 : 0.0)) / 0.265);
+        duty.t_s.push_back(t), duty.value.push_back(i < 300 ? 0.25 : 0.75);
+        battery.t_s.push_back(t), battery.value.push_back(8 - 0.1 * t);
+    }
+    log.signals = {count, current, duty, battery};
+    log.header["noise.wheel0.current_A"] = "0.01";
+    return log;
+}
+
+Model bench() {
+    return parse_model("[rover]\nmotion = \"none\"\n[[wheel]]\nradius_m = 0.057\n[motor]\ntorque_constant_Nm_A = 0.265\nresistance_ohm = 3.24\n"
+                       "inertia_kg_m2 = 5e-3\nviscous_Nms = 0\ncoulomb_Nm = 0.03\n[sensors.encoder]\ncounts_per_turn = 6000\n", "bench");
+}
+
+const Balance &balance(const Dataset &data, BalanceKind kind) {
+    for (const Balance &b : data.balance)
+        if (b.kind == kind) return b;
+    throw std::logic_error("the balance is missing");
+}
+
+TEST(Smooth, a_cubic_passes_unchanged_with_its_slope) {
+    std::vector<double> t, y;
+    for (int i = 0; i < 60; ++i) t.push_back(0.02 * i + 0.003 * ((i * 7) % 5)), y.push_back(3 - 2 * t.back() + 7 * std::pow(t.back(), 3));
+    const Smooth s = smooth_at(t, y, 0.2, 0.01, 70, 0.1, 3);
+    for (std::size_t k = 0; k < 70; ++k) {
+        const double x = 0.2 + 0.01 * static_cast<double>(k);
+        EXPECT_NEAR(s.value[k], 3 - 2 * x + 7 * x * x * x, 1e-8); // exact but for rounding of the 4 x 4 solution
+        EXPECT_NEAR(s.slope[k], -2 + 21 * x * x, 1e-6);
+    }
+}
+
+TEST(Inputs, where_a_wheel_jumps_its_speed_is_followed_closer_and_elsewhere_stays_as_smooth) {
+    const Dataset data = make_dataset(bench(), motor(accel_rad_s2));
+    const WheelInput &w = data.wheel[0];
+    ASSERT_EQ(w.plain_speed_rad_s.size(), data.count);
+    double followed = 0, plain = 0;
+    for (std::size_t k = 0; k < data.count; ++k) {
+        const double t = data.time(k), truth = 2 + accel_rad_s2 * std::clamp(t - jump_s, 0.0, 0.3);
+        const bool near = std::min(std::fabs(t - jump_s), std::fabs(t - jump_s - 0.3)) < 0.05;
+        if (near) followed += std::pow(w.speed_rad_s[k] - truth, 2), plain += std::pow(w.plain_speed_rad_s[k] - truth, 2);
+        if (t < jump_s - 0.2) {
+            EXPECT_EQ(w.speed_rad_s[k], w.plain_speed_rad_s[k]) << t;
+        }
+    }
+    EXPECT_LT(followed, 0.6 * plain); // of the parabolas' squared loss at a kink, cubics of the same width leave less than half
+}
+
+TEST(Inputs, rows_at_a_jump_are_doubted_and_calm_rows_are_not) {
+    const Dataset data = make_dataset(bench(), motor(accel_rad_s2));
+    const Balance &torque = balance(data, BalanceKind::current_torque);
+    double calm = 0, jump = 0;
+    std::size_t rows_there = 0;
+    for (std::size_t r = 0; r < torque.measured.size(); ++r) {
+        const double t = 0.5 * (torque.t0_s[r] + torque.t1_s[r]);
+        if (t < jump_s - 0.2) calm = std::max(calm, torque.noise_factor[r]);
+        if (std::fabs(t - jump_s) < 0.05) jump = std::max(jump, torque.noise_factor[r]), ++rows_there;
+    }
+    EXPECT_LT(calm, 1.2); // the encoder's own noise
+    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: doubted, or left out
+}
+
+TEST(Inputs, a_current_that_is_the_mean_of_its_tick_stands_for_the_middle_of_it) {
+    log::Log log = motor(0);
+    const Balance instant = balance(make_dataset(bench(), log), BalanceKind::current_torque);
+    log.header["window.wheel.current_A"] = "0.01";
+    const Balance mean = balance(make_dataset(bench(), log), BalanceKind::current_torque);
+    ASSERT_GT(mean.t0_s.size(), 10U);
+    const std::size_t last = mean.t0_s.size() - 1, same = instant.t0_s.size() - 1;
+    EXPECT_NEAR(instant.t1_s[same] - mean.t1_s[last], 0.005, 1e-9);
+}
+
+TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
+    const Dataset data = make_dataset(bench(), motor(0));
+    const WheelInput &w = data.wheel[0];
+    const double lag = 0.1;
+    const std::vector<double> now = data.voltage_integral(w, 0), late = data.voltage_integral(w, lag);
+    ASSERT_EQ(late.size(), w.voltage_t_s.size());
+    for (const std::size_t j : {std::size_t{100}, std::size_t{500}}) {
+        const double t = w.voltage_t_s[j], change = std::min(t, 3.0), rest = t - change;
+        // integral of duty (8 - 0.1 t) by hand; late: of duty (8 - 0.1 (t + lag))
+        const double by_hand = 0.25 * (8 * change - 0.05 * change * change) + 0.75 * (8 * rest - 0.05 * (t * t - change * change));
+        EXPECT_NEAR(now[j], by_hand, 1e-9);
+        EXPECT_NEAR(late[j], by_hand - 0.1 * lag * (0.25 * change + 0.75 * rest), 1e-9);
+    }
+}
+
+TEST(Inputs, a_planar_rover_with_a_gyro_has_its_yaw_rate_and_its_sideways_way_and_a_path_with_a_sign) {
+    Model model = read_model("models/rover_concrete.toml");
+    model.motion = BodyMotion::planar;
+    sim::Scenario scenario = sim::parse_scenario("title = \"back\"\nduration_s = 8\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 4\nmode = \"platform_speed\"\n"
+                                                 "speed_m_s = 0.4\nyaw_rate_rad_s = 0.5\n[[drive]]\nfor_s = 4\nmode = \"platform_speed\"\nspeed_m_s = -0.4\n", "back");
+    const Dataset data = make_dataset(model, simulate(scenario).log);
+    EXPECT_NO_THROW(balance(data, BalanceKind::yaw_rate));
+    EXPECT_NO_THROW(balance(data, BalanceKind::camera_y));
+    Forward forward(data);
+    const Physics physics = make_physics(model);
+    const Eigen::VectorXd predicted = forward.predict(physics);
+    forward.set_base(physics);
+    const std::vector<double> &path = forward.motion().path_m;
+    EXPECT_LT(path.back(), 0.6 * *std::max_element(path.begin(), path.end())); // there and back
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance) {
+        double e = 0;
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) e += std::pow((b.measured[r] - predicted[row]) / b.noise, 2);
+        if (b.kind != BalanceKind::yaw_rate) continue;
+        EXPECT_LT(std::sqrt(e / static_cast<double>(b.measured.size())), 20); // of noise, before any fit; at rest it would be 110
+    }
+}
+
+TEST(Rows, on_the_same_uneven_ground_a_slow_row_weighs_less_than_a_quick_one) {
+    log::Log log = simulate(sim::read_scenario("scenarios/identification.toml")).log;
+    const Model model = read_model("models/rover_sand.toml");
+    const Dataset data = make_dataset(model, log);
+    Problem problem(data, make_physics(model), free_parameters(model, make_physics(model)));
+    problem.fit({});
+    const Motion &m = problem.forward().motion();
+    const Balance &torque = data.balance[0];
+    ASSERT_EQ(torque.kind, BalanceKind::current_torque);
+    std::vector<double> slow, quick;
+    for (std::size_t r = 0; r < torque.measured.size(); ++r) {
+        const auto k = static_cast<std::size_t>((0.5 * (torque.t0_s[r] + torque.t1_s[r]) - data.start_s) / data.step_s);
+        if (std::fabs(m.wheel[0].traction_N[k]) < 2.5 || torque.noise_factor[r] > 1.2) continue; // hard pulls, no jumps
+        const double v = std::fabs(m.v_m_s[k]);
+        if (v < 0.15) slow.push_back(problem.row_scale[static_cast<Eigen::Index>(r)]);
+        if (v > 0.3) quick.push_back(problem.row_scale[static_cast<Eigen::Index>(r)]);
+    }
+    ASSERT_GT(slow.size(), 10U);
+    ASSERT_GT(quick.size(), 10U);
+    EXPECT_LT(median(slow), 0.9 * median(quick));
+}
+
+} // namespace
+} // namespace traction::lab
