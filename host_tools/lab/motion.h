@@ -43,7 +43,7 @@ struct Motion {
 };
 
 // Integrates over the whole grid. `guess`: a nearby trajectory that starts the root search, or nullptr; with its tangents the search
-// is a chord iteration, two evaluations a step. `keep`: store the tangents.
+// is a chord iteration, one or two evaluations a step. `keep`: store the tangents.
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep);
 
 // True where neighbour() holds: free motion, no play in the gears, and slip lags at the same wheels.

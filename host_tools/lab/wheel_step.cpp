@@ -90,19 +90,26 @@ Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     return {fx, fy, moment};
 }
 
+double WheelStep::slip_at(const State &s, double v) const {
+    if (!(s.sigma > 0)) return slip_of(s.rim, v);
+    const double h = data_.step_s / s.sigma;
+    return std::clamp((s.slip_before + h * (s.rim - v)) / (1 + h * std::max(std::fabs(s.rim), std::fabs(v))), -1.0, 1.0);
+}
+
+void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N) {
+    State &s = state_[i];
+    s.v += (change[0] - p_.wheel[i].y * change[2]) * s.c + (change[1] + p_.wheel[i].x * change[2]) * s.s;
+    s.slip = slip_at(s, s.v);
+    s.traction += traction_N;
+}
+
 // Force along the heading at wheel-centre speed v; side_v across it. Combined slip: the grip acts against the whole sliding
 // velocity, sideways with the share lateral_grip.
 double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     State &s = state_[i];
     const BodyPhysics &b = p_.body;
     s.v = v;
-    if (s.sigma > 0) {
-        const double h = data_.step_s / s.sigma;
-        s.slip = (s.slip_before + h * (s.rim - v)) / (1 + h * std::max(std::fabs(s.rim), std::fabs(v)));
-        s.slip = std::clamp(s.slip, -1.0, 1.0);
-    } else {
-        s.slip = slip_of(s.rim, v);
-    }
+    s.slip = slip_at(s, v);
     double Fm = s.Fm, sc = s.sc, extra = 0, extra_rolling = 0;
     if (b.sliding_loss != 0) Fm *= std::exp(-std::min(20.0, b.sliding_loss * std::fabs(s.rim - v)));
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);

@@ -42,6 +42,8 @@ class WheelStep {
 
     // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
     Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
+    // Moves the state of wheel i by a small change of q, to first order; rolling and side are left. The caller knows the traction's change.
+    void nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N);
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
     Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                      // the step is found: slip and play become the next step's memory
@@ -63,6 +65,7 @@ class WheelStep {
   private:
     void prepare_wheel(std::size_t i, std::size_t k, double v_before);
     double pull(std::size_t i, double v, double body_v, double side_v);
+    double slip_at(const State &s, double v) const;
     double contact(std::size_t i, double v);
     void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
     void loads();
