@@ -20,37 +20,15 @@ constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue
 Forward::Forward(const Dataset &data) : data_(&data) {
     for (const Balance &balance : data.balance) {
         first_row_.push_back(row_count_);
+        windows_.emplace_back(data, balance);
         row_count_ += balance.measured.size();
     }
     base_current_.resize(data.wheel.size());
     mean_voltage_.resize(data.wheel.size());
 }
 
-// Mean of a grid series over each row's window, through its running integral; a window of no width gives the value there.
 void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const {
-    const Dataset &d = *data_;
-    const Balance &b = d.balance[balance];
-    const double last = static_cast<double>(d.count - 1);
-    sum_.resize(d.count);
-    sum_[0] = 0;
-    for (std::size_t k = 1; k < d.count; ++k) sum_[k] = sum_[k - 1] + 0.5 * (series[k - 1] + series[k]);
-    const auto value_at = [&](double x) {
-        const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
-        const double f = x - static_cast<double>(i);
-        return series[i] + f * (series[i + 1] - series[i]);
-    };
-    const auto integral_to = [&](double x) {
-        const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
-        const double f = x - static_cast<double>(i);
-        return sum_[i] + f * (series[i] + 0.5 * f * (series[i + 1] - series[i]));
-    };
-    for (std::size_t r = 0; r < b.measured.size(); ++r) {
-        const double x0 = std::clamp((b.t0_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
-        const double x1 = std::clamp((b.t1_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
-        const double mean = x1 - x0 < 1e-6 ? value_at(x0) : (integral_to(x1) - integral_to(x0)) / (x1 - x0);
-        double &row = out[static_cast<Eigen::Index>(first_row_[balance] + r)];
-        row = adding ? row + mean : mean;
-    }
+    windows_[balance].mean(series, delay_s, adding, out.segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(data_->balance[balance].measured.size())));
 }
 
 // Mean motor voltage over each row's window, delay_s earlier; lag_s: what the command lags behind the log, the supply does not.
@@ -115,7 +93,9 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
         terms = terms || ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel)));
     current.resize(d.count);
     series_.resize(d.count);
-    std::vector<double> torque_series(with_bench ? d.count : 0), reading(d.count);
+    std::vector<double> torque_series(with_bench ? d.count : 0);
+    std::vector<double> &reading = reading_;
+    reading.resize(d.count);
     const bool magnitude = physics.unsigned_current;
     double heat_K = 0, per_V = 0;
     const bool varies = terms || p.heating != 0; // the resistance does

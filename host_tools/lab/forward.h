@@ -9,6 +9,7 @@
 #pragma once
 
 #include "motion.h"
+#include "windows.h"
 
 #include <Eigen/Core>
 
@@ -52,7 +53,8 @@ class Forward {
     std::vector<std::size_t> first_row_;
     Physics base_physics_;
     Motion base_motion_, scratch_;
-    mutable std::vector<double> series_, sum_, current_;
+    mutable std::vector<double> series_, reading_, current_;
+    mutable std::vector<Windows> windows_; // per balance
     struct MeanVoltage {
         double delay_s = 0, lag_s = 0;
         Eigen::VectorXd mean_V;

@@ -62,7 +62,7 @@ Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &column
     Trial t;
     t.candidate = c;
     const Eigen::MatrixXd C = columns.of(c);
-    take(t, screen.assess(C, Eigen::VectorXd::Zero(C.cols()), true));
+    take(t, screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false));
     t.gain = t.assessment.gain;
     t.gain_error = t.assessment.gain_error;
     t.block_gain = t.assessment.block_gain;
