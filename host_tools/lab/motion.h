@@ -59,8 +59,9 @@ struct UnitResponse {
     std::vector<std::vector<double>> traction;
 };
 UnitResponse unit_response(const Dataset &data, const Physics &base, const Motion &known, TermTarget target);
-// share: f at each wheel and step.
-void neighbour_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share, Motion &motion);
+// Several shapes at once. share: of shape j at wheel i and step k, at (k * wheels + i) * motions.size() + j.
+inline constexpr std::size_t most_shapes = 8;
+void neighbours_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<double> &share, std::vector<Motion> &motions);
 
 namespace detail {
 

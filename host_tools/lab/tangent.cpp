@@ -45,30 +45,6 @@ class Moved {
     std::size_t first_, last_;
 };
 
-// A unit response times a function of the known motion.
-class Shaped {
-  public:
-    Shaped(const Dataset &data, const Physics &physics, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share)
-        : p_(physics), known_(known), unit_(unit), share_(share), freedom_(detail::freedom_of(data, physics)), step_(data, physics) {}
-    Vector3d rate_change(std::size_t k, const Vector3d &, double, double, double) const {
-        Vector3d force = Vector3d::Zero();
-        for (std::size_t i = 0; i < unit_.force.size(); ++i) force += share_[i][k] * unit_.force[i][k];
-        return {force[0] / p_.body.mass, freedom_.vy ? force[1] / p_.body.mass : 0, freedom_.yaw ? force[2] / p_.body.yaw_inertia : 0};
-    }
-    double traction_change(std::size_t i, std::size_t k) const { return share_[i][k] * unit_.traction[i][k]; }
-    double slip_change(std::size_t, std::size_t) const { return 0; } // a shape acts on forces
-    double grade_accel(std::size_t k) const { return known_.rate[k][0] - known_.accel_m_s2[k] - (freedom_.vy ? known_.yaw_rate_rad_s[k] * known_.vy_m_s[k] : 0); }
-    const WheelStep &step() const { return step_; }
-
-  private:
-    const Physics &p_;
-    const Motion &known_;
-    const UnitResponse &unit_;
-    const std::vector<std::vector<double>> &share_;
-    detail::Freedom freedom_;
-    WheelStep step_;
-};
-
 // (3): the motion beside the known one, from what `change` says of each step.
 template <typename Change> void follow(const Dataset &data, const Physics &moved, const Motion &known, Change &change, Motion &m) {
     const std::size_t wheels = moved.wheel.size();
@@ -158,12 +134,6 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
         }
     }
     return unit;
-}
-
-void neighbour_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share, Motion &m) {
-    detail::resize(m, data.count, base.wheel.size(), false, false);
-    Shaped change(data, base, known, unit, share);
-    follow(data, base, known, change, m);
 }
 
 } // namespace traction::lab

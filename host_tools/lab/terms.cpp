@@ -34,6 +34,16 @@ class Piecewise : public Term {
         const double f = (x - knots_[i - 1]) / (knots_[i] - knots_[i - 1]);
         return c[i - 1] + f * (c[i] - c[i - 1]);
     }
+    void weights(const Signals &signals, std::size_t count, double *weight) const override {
+        const double x = axis_value(axis_, signals);
+        std::fill(weight, weight + count, 0.0);
+        std::size_t i = 1;
+        while (i < knots_.size() && x >= knots_[i]) ++i;
+        if (i == knots_.size()) --i;
+        const double f = knots_.size() == 1 ? 1 : std::clamp((x - knots_[i - 1]) / (knots_[i] - knots_[i - 1]), 0.0, 1.0);
+        if (knots_.size() > 1) weight[i - 1] = 1 - f;
+        weight[i] = f;
+    }
 
   private:
     Axis axis_;
@@ -46,6 +56,10 @@ class Periodic : public Term {
     double value(const Signals &signals, const double *c) const override {
         const double x = order_ * axis_value(axis_, signals);
         return c[0] * std::cos(x) + c[1] * std::sin(x);
+    }
+    void weights(const Signals &signals, std::size_t, double *weight) const override {
+        const double x = order_ * axis_value(axis_, signals);
+        weight[0] = std::cos(x), weight[1] = std::sin(x);
     }
 
   private:
@@ -83,6 +97,15 @@ class Expression : public Term {
 };
 
 } // namespace
+
+void Term::weights(const Signals &signals, std::size_t count, double *weight) const {
+    std::vector<double> one(count, 0);
+    for (std::size_t j = 0; j < count; ++j) {
+        one[j] = 1;
+        weight[j] = value(signals, one.data());
+        one[j] = 0;
+    }
+}
 
 std::string_view target_name(TermTarget target) { return target_names[static_cast<std::size_t>(target)]; }
 

@@ -47,6 +47,8 @@ class Term {
   public:
     virtual ~Term() = default;
     virtual double value(const Signals &signals, const double *coefficients) const = 0;
+    // What each coefficient counts, of a shape that is linear in them: value = sum of weight times coefficient.
+    virtual void weights(const Signals &signals, std::size_t count, double *weight) const;
 };
 
 enum class Axis { time, wheel_speed, speed, slip, load, angle, path, accel, current, direction, abs_speed, yaw_rate, place, reversal, other_current, count };
