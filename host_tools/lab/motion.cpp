@@ -77,9 +77,7 @@ class Solver {
     }
 
     Vector3d rate(const Vector3d &q) {
-        Vector3d sum = Vector3d::Zero();
-        for (std::size_t i = 0; i < step_.wheels(); ++i) sum += force_[i] = step_.force(i, q);
-        return with_body(sum, q);
+        return with_body(step_.forces(q, force_), q);
     }
 
     Vector3d residual(const Vector3d &q) {
@@ -259,6 +257,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();
+    const bool far = keep || p.body.tether != 0; // who else asks how far away it is?
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
@@ -279,10 +278,15 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         q = found;
         accel = rate[0];
         path += (freedom.omni ? std::hypot(q[0], q[1]) : q[0]) * data.step_s;
-        heading = data.yaw_rad.empty() ? heading + q[2] * data.step_s : data.yaw_rad[k];
-        x += (q[0] * std::cos(heading) - q[1] * std::sin(heading)) * data.step_s;
-        y += (q[0] * std::sin(heading) + q[1] * std::cos(heading)) * data.step_s;
-        away = freedom.omni ? path : x * std::cos(heading) + y * std::sin(heading);
+        if (far && !freedom.omni) {
+            heading = data.yaw_rad.empty() ? heading + q[2] * data.step_s : data.yaw_rad[k];
+            const double c = std::cos(heading), s = std::sin(heading);
+            x += (q[0] * c - q[1] * s) * data.step_s;
+            y += (q[0] * s + q[1] * c) * data.step_s;
+            away = x * c + y * s;
+        } else {
+            away = path;
+        }
         m.v_m_s[k] = q[0];
         m.vy_m_s[k] = q[1];
         m.yaw_rate_rad_s[k] = q[2];
