@@ -17,6 +17,9 @@
 
 namespace traction::lab {
 
+// True where no wheel's current remembers or bends: the torque balance follows the tractions, the voltage balance does not.
+bool plain_currents(const Physics &physics);
+
 class Forward {
   public:
     explicit Forward(const Dataset &data);

@@ -5,6 +5,10 @@
 
 namespace traction::lab {
 
+bool plain_currents(const Physics &physics) {
+    return std::all_of(physics.wheel.begin(), physics.wheel.end(), [](const WheelPhysics &w) { return w.dead_voltage == 0 && w.heating == 0; });
+}
+
 Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count) {
     const Dataset &d = *data_;
     const Motion &m = base_motion_;

@@ -24,8 +24,7 @@ struct ShapeScore {
 class ShapeColumns {
   public:
     explicit ShapeColumns(Problem &problem) : problem_(problem), physics_(problem.physics()) {
-        for (const WheelPhysics &w : physics_.wheel) plain_ = plain_ && w.dead_voltage == 0 && w.heating == 0;
-        plain_ = plain_ && physics_.terms.empty() && problem.forward().has_linear_base();
+        plain_ = plain_currents(physics_) && physics_.terms.empty() && problem.forward().has_linear_base();
     }
 
     Eigen::MatrixXd of(const Candidate &c) {

@@ -50,6 +50,23 @@ class Piecewise : public Term {
     std::vector<double> knots_;
 };
 
+class Cells : public Term {
+  public:
+    Cells(Axis axis, double start, double length) : axis_(axis), start_(start), length_(length) {}
+    double value(const Signals &signals, const double *c) const override {
+        const double x = (axis_value(axis_, signals) - start_) / length_;
+        return x >= 0 ? c[static_cast<std::size_t>(x)] : 0;
+    }
+    void weights(const Signals &signals, std::size_t count, double *weight) const override {
+        const double x = (axis_value(axis_, signals) - start_) / length_;
+        for (std::size_t j = 0; j < count; ++j) weight[j] = x >= static_cast<double>(j) && x < static_cast<double>(j + 1) ? 1 : 0;
+    }
+
+  private:
+    Axis axis_;
+    double start_, length_;
+};
+
 class Periodic : public Term {
   public:
     Periodic(Axis axis, double order) : axis_(axis), order_(order) {}
@@ -165,6 +182,7 @@ double axis_value(Axis axis, const Signals &s) {
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots) {
     return std::make_shared<Piecewise>(axis, std::move(knots));
 }
+std::shared_ptr<Term> make_cells(Axis axis, double start, double length) { return std::make_shared<Cells>(axis, start, length); }
 std::shared_ptr<Term> make_periodic(Axis axis, double order) { return std::make_shared<Periodic>(axis, order); }
 std::shared_ptr<Term> make_expression(const std::string &expression, const std::vector<std::string> &parameters) {
     return std::make_shared<Expression>(expression, parameters);

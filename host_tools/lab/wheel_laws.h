@@ -32,16 +32,14 @@ inline double root(double x) { return std::sqrt(x); }
 inline Lane root(const Lane &x) { return x.sqrt(); }
 inline double falling(double x) { return std::exp(-x); }
 inline Lane falling(const Lane &x) { return (-x).exp(); }
-inline double where_below(double x, double limit, double below, double above) { return x < limit ? below : above; }
-inline Lane where_below(const Lane &x, double limit, const Lane &below, const Lane &above) { return (x < limit).select(below, above); }
 
 } // namespace law
 
 // x / sqrt(x^2 + e^2): sign without the jump.
-template <typename T> T soft_sign(const T &x, double e) { return x / law::root(T(x * x + e * e)); }
+template <typename T> inline T soft_sign(const T &x, double e) { return x / law::root(T(x * x + e * e)); }
 
 // (1), rim = R w.
-template <typename T> T plain_slip(const T &rim, const T &v) {
+template <typename T> inline T plain_slip(const T &rim, const T &v) {
     return law::within(T((rim - v) / law::larger(law::larger(law::magnitude(rim), law::magnitude(v)), rest_speed_m_s)), -1, 1);
 }
 
@@ -49,15 +47,14 @@ inline double slip_of(double rim, double v) { return plain_slip(rim, v); }
 inline Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v); }
 
 // (2); h_1_m: 0 where it does not lag.
-template <typename T> T lagging_slip(const T &slip_before, const T &h_1_m, const T &rim, const T &v) {
+template <typename T> inline T lagging_slip(const T &slip_before, const T &h_1_m, const T &rim, const T &v) {
     return law::within(T((slip_before + h_1_m * (rim - v)) / (1 + h_1_m * law::larger(law::magnitude(rim), law::magnitude(v)))), -1, 1);
 }
 
-// (3) at the size of the slip; near zero a series, where the quotient loses digits.
-template <typename T> T traction_shape(SoilLaw soil, const T &slip_size, const T &sc) {
-    const T x = slip_size / sc, left = law::falling(x);
-    if (soil == SoilLaw::burckhardt) return 1 - left;
-    return law::where_below(x, 1e-4, T(0.5 * x), T(1 - (1 - left) / law::larger(x, T(x * 0 + 1e-300))));
+// (3) over x, for x > 0; constant below 1e-4, where the quotient would lose digits and the curve is straight.
+template <typename T> inline T traction_slope(SoilLaw soil, const T &size) {
+    const T x = law::larger(size, 1e-4), per_x = 1 / x, risen = 1 - law::falling(x);
+    return soil == SoilLaw::burckhardt ? T(risen * per_x) : T((1 - risen * per_x) * per_x);
 }
 
 } // namespace traction::lab

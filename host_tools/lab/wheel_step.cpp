@@ -42,10 +42,10 @@ void WheelStep::gather() {
         const State &s = state_[i];
         Four &four = four_[i / 4];
         const auto at = static_cast<Eigen::Index>(i % 4);
-        four.c[at] = s.c, four.s[at] = s.s, four.x[at] = w.x, four.y[at] = w.y, four.sc[at] = s.plain_sc;
+        four.c[at] = s.c, four.s[at] = s.s, four.x[at] = w.x, four.y[at] = w.y, four.per_sc[at] = 1 / s.plain_sc;
         four.grip[at] = w.grip, four.resistance[at] = w.crr + w.rolling, four.lateral[at] = w.lateral + p_.body.scrub;
         four.per_speed_m[at] = s.radius * s.gain, four.adhesion[at] = w.adhesion, four.mu[at] = w.mu;
-        four.load_0[at] = s.load_0, four.load_per_accel[at] = s.load_per_accel, four.fixed_load[at] = w.load;
+        four.load_0[at] = w.load > 0 ? w.load : s.load_0, four.load_per_accel[at] = w.load > 0 ? 0 : s.load_per_accel;
         four.lag_1_m[at] = s.sigma > 0 ? data_.step_s / s.sigma : 0;
         all_grip = all_grip && p_.grips_sideways[i];
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
@@ -103,7 +103,7 @@ void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
     const std::size_t first = 4 * g, count = std::min<std::size_t>(4, n_ - first);
     const auto speed = [&](std::size_t at) { return at < count ? data_.wheel[first + at].speed_rad_s[k] : 0; };
     f.rim = f.per_speed_m * Lane(speed(0), speed(1), speed(2), speed(3));
-    f.load = (f.fixed_load > 0).select(f.fixed_load, (f.load_0 + f.load_per_accel * accel_).max(0.0));
+    f.load = (f.load_0 + f.load_per_accel * accel_).max(0.0);
     f.Fm = f.adhesion + f.mu * f.load;
     for (std::size_t i = 0; i < count && !even_; ++i) f.Fm[static_cast<Eigen::Index>(i)] *= strength(first + i, v_before);
     f.Fm = f.Fm.max(0.0);
@@ -122,8 +122,7 @@ void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     Lane Fm = f.Fm;
     if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
     const Lane across = -f.grip * side_v / f.rim.abs().max(v.abs()).max(least_combined_m_s);
-    const Lane whole = (f.slip.square() + across.square()).sqrt();
-    const Lane grip = Fm * traction_shape(p_.soil_law, whole, f.sc) / whole.max(1e-9);
+    const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + across.square()).sqrt() * f.per_sc));
     f.traction = grip * f.slip;
     f.side = grip * across;
     const Lane resist = f.load * (f.resistance + b.slip_sinkage * f.slip.abs() + b.speed_resistance * v.abs());
@@ -198,12 +197,11 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     s.side = 0;
     if (side_v != 0 && p_.wheel[i].grip > 0 && p_.grips_sideways[i]) {
         const double across = -p_.wheel[i].grip * side_v / std::max({std::fabs(s.rim), std::fabs(v), least_combined_m_s});
-        const double whole = length(s.slip, across);
-        const double grip = whole > 1e-9 ? Fm * traction_shape(p_.soil_law, whole, sc) / whole : 0;
+        const double grip = Fm / sc * traction_slope(p_.soil_law, length(s.slip, across) / sc);
         s.traction = grip * s.slip;
         s.side = grip * across;
     } else {
-        s.traction = std::copysign(Fm * traction_shape(p_.soil_law, std::fabs(s.slip), sc), s.slip);
+        s.traction = Fm / sc * traction_slope(p_.soil_law, std::fabs(s.slip) / sc) * s.slip;
     }
     if (p_.wheel[i].backlash > 0) s.traction *= contact(i, v);
     const double resist = s.load * (p_.wheel[i].crr + p_.wheel[i].rolling + b.slip_sinkage * std::fabs(s.slip) + b.speed_resistance * std::fabs(v)) + extra_rolling;

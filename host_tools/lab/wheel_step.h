@@ -54,8 +54,8 @@ class WheelStep {
     // Four wheels side by side; where there are fewer, the last carry nothing.
     struct Four {
         Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(), lateral = Lane::Zero();
-        Lane sc = Lane::Constant(0.1), lag_1_m = Lane::Zero(), slip_before = Lane::Zero();
-        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero(), fixed_load = Lane::Zero();
+        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero();
+        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero();
         Lane rim = Lane::Zero(), load = Lane::Zero(), Fm = Lane::Zero();
         Lane v, slip, traction, rolling, side;
     };
