@@ -53,6 +53,7 @@ class Search {
     Problem fitted(const Model &model, const Problem *warm = nullptr) const {
         const Physics physics = make_physics(model);
         Problem problem(data_, physics, free_parameters(model, physics));
+        if (warm != nullptr) problem.start_near(*warm);
         for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
             for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
                 const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];

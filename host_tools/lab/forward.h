@@ -38,6 +38,7 @@ class Forward {
     std::vector<ElectricSeries> electric_unit(const Physics &base, TermTarget target) const; // per wheel
     Eigen::MatrixXd shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term, std::size_t count) const;
     void set_base(const Physics &physics);
+    void start_near(const Forward &other) { base_motion_ = other.base_motion_, have_base_ = other.have_base_; } // its motion is the first guess
     const Eigen::VectorXd &base() const { return base_prediction_; }
     bool has_linear_base() const { return linear_base_; }
     const Motion &motion() const { return base_motion_; }

@@ -38,6 +38,7 @@ Problem joint_problem(const Trial &t, const Problem &base, const Model &model, c
     for (const FreeParameter &p : t.candidate.strengths) parameters.push_back(p);
     Problem problem(data, physics, parameters);
     problem.keep_scales(base);
+    problem.start_near(base);
     problem.theta.head(base.theta.size()) = base.theta;
     return problem;
 }
