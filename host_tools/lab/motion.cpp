@@ -61,8 +61,8 @@ template <typename Function> double bracketed_root(Function &&g, double low, dou
 // One implicit step: g(q) = q - right - share h rate(q) = 0.
 class Solver {
   public:
-    Solver(const Dataset &data, const Physics &physics)
-        : data_(data), p_(physics), step_(data, physics), freedom_(detail::freedom_of(data, physics)) {
+    Solver(const Dataset &data, const Physics &physics, bool keeps)
+        : data_(data), p_(physics), step_(data, physics), freedom_(detail::freedom_of(data, physics)), keeps_(keeps) {
         for (const WheelPhysics &w : p_.wheel) most_ += (w.adhesion + std::fabs(w.mu) * 10 + 1) + p_.body.gravity * p_.body.mass * (std::fabs(w.mu) + 2);
         most_ /= p_.body.mass;
     }
@@ -77,7 +77,7 @@ class Solver {
     }
 
     Vector3d rate(const Vector3d &q) {
-        return with_body(step_.forces(q, force_), q);
+        return with_body(step_.forces(q, keeps_ ? &force_ : nullptr), q);
     }
 
     Vector3d residual(const Vector3d &q) {
@@ -232,6 +232,7 @@ class Solver {
     const Physics &p_;
     WheelStep step_;
     detail::Freedom freedom_;
+    bool keeps_; // the tangents will be asked for
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
     std::array<Vector3d, most_wheels> force_{};
     Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
@@ -250,7 +251,7 @@ void record(const WheelStep &step, std::size_t k, Motion &m) {
 }
 
 void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Motion *guess, bool keep) {
-    Solver solver(data, p);
+    Solver solver(data, p, keep);
     const detail::Freedom freedom = solver.freedom();
     Vector3d q = Vector3d::Zero(), before = q, shift = q, shift_before = q; // shift: from the guess
     if (!freedom.vy)

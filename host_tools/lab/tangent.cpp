@@ -23,7 +23,7 @@ class Moved {
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1]);
         Vector3d force = Vector3d::Zero();
-        if (first_ == 0 && last_ == p_.wheel.size()) force = step_.forces(q, force_);
+        if (first_ == 0 && last_ == p_.wheel.size()) force = step_.forces(q, nullptr);
         else
             for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
         const double speed = freedom_.omni ? std::hypot(q[0], q[1]) : q[0], along = step_.body_force(speed);
@@ -45,7 +45,6 @@ class Moved {
     const Motion &known_;
     detail::Freedom freedom_;
     std::size_t first_, last_;
-    std::array<Vector3d, most_wheels> force_{};
 };
 
 // (3): the motion beside the known one, from what `change` says of each step.

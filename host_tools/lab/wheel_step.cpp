@@ -115,7 +115,7 @@ void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
 }
 
 // As pull() has it, for wheels that grip sideways.
-void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
+inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     const BodyPhysics &b = p_.body;
     f.v = v;
     f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
@@ -129,12 +129,14 @@ void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     f.rolling = resist * soft_sign(v, resist_speed_m_s);
 }
 
-Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> &each) {
+Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    if (!plain_) {
-        for (std::size_t i = 0; i < n_; ++i) sum += each[i] = force(i, q);
-        return sum;
+    for (std::size_t i = 0; i < n_ && !plain_; ++i) {
+        const Eigen::Vector3d one = force(i, q);
+        if (each != nullptr) (*each)[i] = one;
+        sum += one;
     }
+    if (!plain_) return sum;
     for (std::size_t g = 0; 4 * g < n_; ++g) {
         Four &f = four_[g];
         const Lane vx = q[0] - f.y * q[2], vy = q[1] + f.x * q[2];
@@ -144,10 +146,10 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
             const auto at = static_cast<Eigen::Index>(i % 4);
             State &s = state_[i];
-            s.v = f.v[at], s.slip = f.slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at], s.side = f.side[at];
-            each[i] = {fx[at], 0, moment[at]};
-            sum += each[i];
+            s.v = f.v[at], s.slip = f.slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
+            if (each != nullptr) (*each)[i] = {fx[at], 0, moment[at]};
         }
+        sum += Eigen::Vector3d(fx.sum(), 0, moment.sum());
     }
     return sum;
 }

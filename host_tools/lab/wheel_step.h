@@ -28,8 +28,8 @@ class WheelStep {
 
     // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
     Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
-    // All wheels at once: their sum, and in `each` what every one contributes.
-    Eigen::Vector3d forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> &each);
+    // All wheels at once: their sum, and in `each`, if given, what every one contributes.
+    Eigen::Vector3d forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each);
     // Moves the state of wheel i by a small change of q, to first order; rolling and side are left. The caller knows the traction's change.
     void nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N);
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
