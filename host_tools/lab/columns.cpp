@@ -52,15 +52,27 @@ Eigen::VectorXd Columns::patch(const Candidate &c, const FreeParameter &p) {
         const double begin = cell_start_ + static_cast<double>(i) * cell_length_;
         const double overlap = std::min(begin + cell_length_, start + length) - std::max(begin, start);
         if (overlap <= 0) continue;
-        if (cells_[i].size() == 0) {
-            Physics at = physics_;
-            at.body.patch_start = begin;
-            at.body.patch_length = cell_length_;
-            cells_[i] = problem_.column(at, p, c.step[0]).cwiseQuotient(problem_.row_scale);
-        }
+        if (cells_[i].size() == 0) fill_cells(c, p, i);
         sum += overlap / cell_length_ * cells_[i];
     }
     return sum;
+}
+
+// Cell `first` and some after it: as shapes of the ground's strength where nothing forbids, else one by one.
+void Columns::fill_cells(const Candidate &c, const FreeParameter &p, std::size_t first) {
+    Forward &forward = problem_.forward();
+    if (forward.has_linear_base() && physics_.terms.empty() && plain_currents(physics_)) {
+        if (ground_.force.empty()) ground_ = unit_response(problem_.data(), physics_, forward.motion(), TermTarget::soil_strength);
+        const std::size_t count = std::min(most_shapes, cells_.size() - first);
+        const auto cells = make_cells(Axis::path, cell_start_ + static_cast<double>(first) * cell_length_, cell_length_);
+        const Eigen::MatrixXd columns = forward.shaped(physics_, ground_, *cells, count);
+        for (std::size_t j = 0; j < count; ++j) cells_[first + j] = columns.col(static_cast<Eigen::Index>(j));
+        return;
+    }
+    Physics at = physics_;
+    at.body.patch_start = cell_start_ + static_cast<double>(first) * cell_length_;
+    at.body.patch_length = cell_length_;
+    cells_[first] = problem_.column(at, p, c.step[0]).cwiseQuotient(problem_.row_scale);
 }
 
 } // namespace traction::lab

@@ -53,6 +53,7 @@ class Search {
     Problem fitted(const Model &model, const Problem *warm = nullptr) const {
         const Physics physics = make_physics(model);
         Problem problem(data_, physics, free_parameters(model, physics));
+        if (warm != nullptr) problem.start_near(*warm);
         for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
             for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
                 const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];
@@ -136,7 +137,8 @@ class Search {
     }
 
     // Those most sure by their linear step, then those whose scan saw more than the step did.
-    void refit_likely(std::vector<Trial> &trials, const Problem &problem, const Screen &screen) {
+    void refit_likely(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
+        Columns columns(problem, cache_);
         double best = 0; // of the held-out gains that passed: what explains less than half can be neither the winner nor of its class
         std::vector<Trial *> order;
         for (Trial &t : trials) order.push_back(&t);
@@ -146,6 +148,7 @@ class Search {
                 if (t->refitted || !likely(*t)) continue;
                 if (most-- <= 0) return;
                 refit(*t, problem, screen, d_.model, data_);
+                if (t->assessment.projected.size() == 0) t->assessment.projected = screen.projected(columns.of(t->candidate).col(0)); // the step was the fit
                 judge(*t, screen.heldout_error(), options_);
                 if (t->verdict == "passes") best = std::max(best, t->gain);
                 tick();

@@ -20,37 +20,15 @@ constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue
 Forward::Forward(const Dataset &data) : data_(&data) {
     for (const Balance &balance : data.balance) {
         first_row_.push_back(row_count_);
+        windows_.emplace_back(data, balance);
         row_count_ += balance.measured.size();
     }
     base_current_.resize(data.wheel.size());
     mean_voltage_.resize(data.wheel.size());
 }
 
-// Mean of a grid series over each row's window, through its running integral; a window of no width gives the value there.
 void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const {
-    const Dataset &d = *data_;
-    const Balance &b = d.balance[balance];
-    const double last = static_cast<double>(d.count - 1);
-    sum_.resize(d.count);
-    sum_[0] = 0;
-    for (std::size_t k = 1; k < d.count; ++k) sum_[k] = sum_[k - 1] + 0.5 * (series[k - 1] + series[k]);
-    const auto value_at = [&](double x) {
-        const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
-        const double f = x - static_cast<double>(i);
-        return series[i] + f * (series[i + 1] - series[i]);
-    };
-    const auto integral_to = [&](double x) {
-        const auto i = std::min(static_cast<std::size_t>(x), d.count - 2);
-        const double f = x - static_cast<double>(i);
-        return sum_[i] + f * (series[i] + 0.5 * f * (series[i + 1] - series[i]));
-    };
-    for (std::size_t r = 0; r < b.measured.size(); ++r) {
-        const double x0 = std::clamp((b.t0_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
-        const double x1 = std::clamp((b.t1_s[r] - delay_s - d.start_s) / d.step_s, 0.0, last);
-        const double mean = x1 - x0 < 1e-6 ? value_at(x0) : (integral_to(x1) - integral_to(x0)) / (x1 - x0);
-        double &row = out[static_cast<Eigen::Index>(first_row_[balance] + r)];
-        row = adding ? row + mean : mean;
-    }
+    windows_[balance].mean(series, delay_s, adding, out.segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(data_->balance[balance].measured.size())));
 }
 
 // Mean motor voltage over each row's window, delay_s earlier; lag_s: what the command lags behind the log, the supply does not.
@@ -98,87 +76,92 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     rows_of(balance, series_, physics.body.current_delay, true, out);
 }
 
-void Forward::electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
-                         Eigen::VectorXd &out) const {
+Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const {
     const Dataset &d = *data_;
-    const WheelPhysics &p = physics.wheel[wheel];
-    const BodyPhysics &body = physics.body;
     const WheelInput &in = d.wheel[wheel];
     const Motion::Wheel &m = motion.wheel[wheel];
-    const std::size_t torque_balance = balance_of(BalanceKind::current_torque, wheel), voltage_balance = balance_of(BalanceKind::current_voltage, wheel),
-                      bench_balance = balance_of(BalanceKind::torque, wheel);
-    const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(), with_bench = bench_balance < d.balance.size();
-    if (!with_torque && !with_voltage && !with_bench) return;
+    const double gain = 1 / (1 - std::min(0.9, physics.wheel[wheel].encoder_missed));
+    Signals s;
+    s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
+    s.x = motion.path_m[k] + physics.wheel[wheel].x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k];
+    s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / (1 + physics.body.voltage_gain);
+    s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = 0;
+    for (std::size_t j = 0; j < base_current_.size(); ++j)
+        if (j != wheel && base_current_[j].size() == d.count) s.Io += base_current_[j][k];
+    return s;
+}
+
+void Forward::electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current, ElectricSeries &out) const {
+    const Dataset &d = *data_;
+    const WheelPhysics &p = physics.wheel[wheel];
+    const WheelInput &in = d.wheel[wheel];
+    const std::vector<double> &traction = motion.wheel[wheel].traction_N;
     const double gain = 1 / (1 - std::min(0.9, p.encoder_missed)), radius = p.radius * (1 + p.radius_change);
-    bool terms = false;
+    std::vector<const ExtraTerm *> terms;
     for (const ExtraTerm &term : physics.terms)
-        terms = terms || ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel)));
+        if ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel))) terms.push_back(&term);
     current.resize(d.count);
-    series_.resize(d.count);
-    std::vector<double> torque_series(with_bench ? d.count : 0), reading(d.count);
-    const bool magnitude = physics.unsigned_current;
-    double heat_K = 0, per_V = 0;
-    const bool varies = terms || p.heating != 0; // the resistance does
-    std::vector<double> per_V_series(varies && with_voltage ? d.count : 0);
+    for (auto *series : {&out.reading, &out.lost, &out.per_V, &out.shaft}) series->resize(d.count);
+    double heat_K = 0;
     for (std::size_t k = 0; k < d.count; ++k) {
         const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
         const double constant = (1 + p.constant_change) * (1 + magnet_per_K * heat_K);
         double KG = p.KG * constant, ke = p.ke * constant, Ra = p.Ra * (1 + copper_per_K * heat_K), u_lost = 0;
         double friction = (p.b + p.viscous) * std::fabs(w) + p.t0 + p.coulomb;
         if (p.stribeck != 0) friction += p.stribeck * std::exp(-(w / p.stribeck_speed) * (w / p.stribeck_speed));
-        if (p.mesh != 0) friction += p.mesh * std::fabs(radius * m.traction_N[k]);
-        double gear = friction * soft_sign(w, friction_speed_rad_s), current_factor = 1 + p.current_gain;
+        if (p.mesh != 0) friction += p.mesh * std::fabs(radius * traction[k]);
+        const double side = soft_sign(w, friction_speed_rad_s);
+        double gear = friction * side, current_factor = 1 + p.current_gain;
         if (p.ripple_cos != 0 || p.ripple_sin != 0) {
             const double angle = std::fabs(p.ripple_order) * gain * in.angle_rad[k];
             const double ripple = p.ripple_cos * std::cos(angle) + p.ripple_sin * std::sin(angle);
-            gear += p.ripple_order < 0 ? ripple * soft_sign(w, friction_speed_rad_s) : ripple; // negative order: a friction that varies over the turn
+            gear += p.ripple_order < 0 ? ripple * side : ripple; // negative order: a friction that varies over the turn
         }
-        const double u = with_voltage && terms ? in.voltage_V[k] / (1 + body.voltage_gain) : 0;
-        if (terms) {
-            Signals s;
-            s.t = d.time(k), s.w = w, s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
-            s.x = motion.path_m[k] + p.x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k], s.u = u;
-            s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = 0;
-            for (std::size_t j = 0; j < base_current_.size(); ++j)
-                if (j != wheel && base_current_[j].size() == d.count) s.Io += base_current_[j][k];
-            s.I = KG > 0 ? (gear + p.J * dw + radius * m.traction_N[k]) / KG : 0;
-            for (const ExtraTerm &term : physics.terms) {
-                if (term.wheel >= 0 && term.wheel != static_cast<int>(wheel)) continue;
-                if ((target_stages(term.target) & (stage_torque | stage_voltage)) == 0) continue;
-                const double f = term.term->value(s, term.coefficients.data());
-                if (term.target == TermTarget::wheel_torque) gear += f;
-                else if (term.target == TermTarget::wheel_friction) gear += f * soft_sign(w, friction_speed_rad_s);
-                else if (term.target == TermTarget::voltage) u_lost += f;
-                else if (term.target == TermTarget::motor_constant) KG *= 1 + f, ke *= 1 + f;
-                else if (term.target == TermTarget::resistance) Ra *= std::max(0.05, 1 + f);
-                else if (term.target == TermTarget::current) current_factor *= 1 + f;
+        if (!terms.empty()) {
+            Signals s = signals_of(physics, motion, wheel, k);
+            s.I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
+            for (const ExtraTerm *term : terms) {
+                const double f = term->term->value(s, term->coefficients.data());
+                if (term->target == TermTarget::wheel_torque) gear += f;
+                else if (term->target == TermTarget::wheel_friction) gear += f * side;
+                else if (term->target == TermTarget::voltage) u_lost += f;
+                else if (term->target == TermTarget::motor_constant) KG *= 1 + f, ke *= 1 + f;
+                else if (term->target == TermTarget::resistance) Ra *= std::max(0.05, 1 + f);
+                else if (term->target == TermTarget::current) current_factor *= 1 + f;
             }
         }
-        const double shaft = gear + p.J * dw + radius * m.traction_N[k];
-        const double I = KG > 0 ? shaft / KG : 0;
+        const double I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
         current[k] = I;
-        if (with_bench) torque_series[k] = radius * m.traction_N[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
+        out.shaft[k] = radius * traction[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
         const double I_read = current_factor * I + p.current_offset + p.current_extra;
-        reading[k] = magnitude ? std::fabs(I_read) : I_read;
-        if (with_voltage) {
-            if (p.dead_voltage != 0) u_lost += p.dead_voltage * soft_sign(I, bridge_current_A);
-            per_V = Ra + p.wiring > 0 ? current_factor / (Ra + p.wiring) : 0;
-            if (varies) per_V_series[k] = per_V / (1 + body.voltage_gain);
-            series_[k] = -per_V * (u_lost + ke * w) + p.current_offset + p.current_extra; // the motor's voltage follows by rows
-        }
+        out.reading[k] = physics.unsigned_current ? std::fabs(I_read) : I_read;
+        if (p.dead_voltage != 0) u_lost += p.dead_voltage * soft_sign(I, bridge_current_A);
+        const double per_V = Ra + p.wiring > 0 ? current_factor / (Ra + p.wiring) : 0;
+        out.per_V[k] = per_V / (1 + physics.body.voltage_gain);
+        out.lost[k] = per_V * (u_lost + ke * w) - p.current_offset - p.current_extra;
         if (p.heating != 0) heat_K += d.step_s / p.heating_time * (p.heating * I * I * p.Ra - heat_K);
     }
-    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, reading, body.current_delay, false, out);
+}
+
+void Forward::electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
+                         Eigen::VectorXd &out) const {
+    const Dataset &d = *data_;
+    const std::size_t torque_balance = balance_of(BalanceKind::current_torque, wheel), voltage_balance = balance_of(BalanceKind::current_voltage, wheel),
+                      bench_balance = balance_of(BalanceKind::torque, wheel);
+    const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(), with_bench = bench_balance < d.balance.size();
+    if (!with_torque && !with_voltage && !with_bench) return;
+    electric_series(physics, motion, wheel, current, electric_);
+    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_.reading, physics.body.current_delay, false, out);
     if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
-        rows_of(voltage_balance, series_, body.current_delay, false, out);
-        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, body.current_delay, body.voltage_delay0 + body.actuation_delay);
-        const auto first = static_cast<Eigen::Index>(first_row_[voltage_balance]), n = voltage.size();
-        Eigen::VectorXd slope = Eigen::VectorXd::Constant(out.size(), per_V / (1 + body.voltage_gain));
-        if (varies) rows_of(voltage_balance, per_V_series, body.current_delay, false, slope);
-        out.segment(first, n) += slope.segment(first, n).cwiseProduct(voltage);
-        if (magnitude) out.segment(first, n) = out.segment(first, n).cwiseAbs();
+        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
+        auto rows = out.segment(static_cast<Eigen::Index>(first_row_[voltage_balance]), voltage.size());
+        rows_of(voltage_balance, electric_.per_V, physics.body.current_delay, false, out);
+        const Eigen::VectorXd through = rows.cwiseProduct(voltage);
+        rows_of(voltage_balance, electric_.lost, physics.body.current_delay, false, out);
+        rows = through - rows;
+        if (physics.unsigned_current) rows = rows.cwiseAbs();
     }
-    if (with_bench) rows_of(bench_balance, torque_series, 0, false, out);
+    if (with_bench) rows_of(bench_balance, electric_.shaft, 0, false, out);
 }
 
 void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const {
@@ -273,28 +256,6 @@ Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touc
         else if (moves) torque_of_traction(physics, motion, i, out);
     }
     if (moves || (touched & stage_sensors) != 0) sensors(physics, motion, out);
-    return out;
-}
-
-Eigen::VectorXd Forward::predict_shaped(const Physics &base, const UnitResponse &unit, const Term &term, const std::vector<double> &coefficients) {
-    const Dataset &d = *data_;
-    const Motion &m = base_motion_;
-    std::vector<std::vector<double>> share(base.wheel.size(), std::vector<double>(d.count));
-    Signals s;
-    for (std::size_t i = 0; i < base.wheel.size(); ++i) {
-        const double gain = 1 / (1 - std::min(0.9, base.wheel[i].encoder_missed));
-        for (std::size_t k = 0; k < d.count; ++k) {
-            const std::size_t j = k == 0 ? 0 : k - 1;
-            s.t = d.time(k), s.w = gain * d.wheel[i].speed_rad_s[k], s.v = m.wheel[i].ground_speed_m_s[k], s.s = m.wheel[i].slip[k], s.Fn = m.wheel[i].load_N[k];
-            s.theta = gain * d.wheel[i].angle_rad[k], s.X = m.path_m[j], s.x = s.X + base.wheel[i].x, s.a = m.rate[j][0], s.V = m.v_m_s[k], s.r = m.yaw_rate_rad_s[k];
-            s.Ft = m.wheel[i].traction_N[k], s.d = d.wheel[i].travel_rad.empty() ? 0 : gain * d.wheel[i].travel_rad[k];
-            share[i][k] = term.value(s, coefficients.data());
-        }
-    }
-    neighbour_shaped(d, base, m, unit, share, scratch_);
-    Eigen::VectorXd out = base_prediction_;
-    for (std::size_t i = 0; i < base.wheel.size(); ++i) torque_of_traction(base, scratch_, i, out);
-    sensors(base, scratch_, out);
     return out;
 }
 

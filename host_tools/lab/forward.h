@@ -9,12 +9,16 @@
 #pragma once
 
 #include "motion.h"
+#include "windows.h"
 
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace traction::lab {
+
+// True where no wheel's current remembers or bends: the torque balance follows the tractions, the voltage balance does not.
+bool plain_currents(const Physics &physics);
 
 class Forward {
   public:
@@ -25,9 +29,16 @@ class Forward {
 
     // The same when only the stages in `touched` (see Stage) differ from `base`, the prediction of the last set_base().
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
-    // A shape that moves the body, with these coefficients, beside the base.
-    Eigen::VectorXd predict_shaped(const Physics &base, const UnitResponse &unit, const Term &term, const std::vector<double> &coefficients);
+    // What one unit of each coefficient of a shape f(X) changes in each row, beside the base: of a shape that moves the body, and of one of the
+    // torque and voltage balances alone. Holds where nothing but the motion remembers (no heating, no other terms).
+    Eigen::MatrixXd shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count);
+    struct ElectricSeries {
+        std::vector<double> reading, lost, per_V, shaft; // current by torque; by voltage: per_V times the motor's voltage, less what is lost
+    };
+    std::vector<ElectricSeries> electric_unit(const Physics &base, TermTarget target) const; // per wheel
+    Eigen::MatrixXd shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term, std::size_t count) const;
     void set_base(const Physics &physics);
+    void start_near(const Forward &other) { base_motion_ = other.base_motion_, have_base_ = other.have_base_; } // its motion is the first guess
     const Eigen::VectorXd &base() const { return base_prediction_; }
     bool has_linear_base() const { return linear_base_; }
     const Motion &motion() const { return base_motion_; }
@@ -40,6 +51,8 @@ class Forward {
     Eigen::VectorXd observe(const Physics &physics, const Motion &motion) const;
     void electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
                     Eigen::VectorXd &out) const;
+    void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current, ElectricSeries &out) const;
+    Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const; // of the torque and voltage terms, I left out
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
     void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;
     // out = (or, adding, +=) the series' mean over each row's window
@@ -52,7 +65,10 @@ class Forward {
     std::vector<std::size_t> first_row_;
     Physics base_physics_;
     Motion base_motion_, scratch_;
-    mutable std::vector<double> series_, sum_, current_;
+    mutable std::vector<double> series_, current_;
+    mutable ElectricSeries electric_;
+    std::vector<Motion> shaped_;
+    mutable std::vector<Windows> windows_; // per balance
     struct MeanVoltage {
         double delay_s = 0, lag_s = 0;
         Eigen::VectorXd mean_V;

@@ -38,6 +38,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr double near_end = 1e-5; // m/s and rad/s: the Jacobian is known to a few percent, which leaves 1e-6 at most, far below any sensor's noise
 constexpr double step_speed = 1e-6, step_accel = 1e-4, step_path = 3e-3, step_slip = 1e-6; // of the differences: m/s (and rad/s), m/s^2, m (about a step of the path)
 
 // Root of a function that rises on the whole, in [low, high]: secant steps kept inside the bracket.
@@ -60,8 +61,8 @@ template <typename Function> double bracketed_root(Function &&g, double low, dou
 // One implicit step: g(q) = q - right - share h rate(q) = 0.
 class Solver {
   public:
-    Solver(const Dataset &data, const Physics &physics)
-        : data_(data), p_(physics), step_(data, physics), freedom_(detail::freedom_of(data, physics)) {
+    Solver(const Dataset &data, const Physics &physics, bool keeps)
+        : data_(data), p_(physics), step_(data, physics), freedom_(detail::freedom_of(data, physics)), keeps_(keeps) {
         for (const WheelPhysics &w : p_.wheel) most_ += (w.adhesion + std::fabs(w.mu) * 10 + 1) + p_.body.gravity * p_.body.mass * (std::fabs(w.mu) + 2);
         most_ /= p_.body.mass;
     }
@@ -76,9 +77,7 @@ class Solver {
     }
 
     Vector3d rate(const Vector3d &q) {
-        Vector3d sum = Vector3d::Zero();
-        for (std::size_t i = 0; i < step_.wheels(); ++i) sum += force_[i] = step_.force(i, q);
-        return with_body(sum, q);
+        return with_body(step_.forces(q, keeps_ ? &force_ : nullptr), q);
     }
 
     Vector3d residual(const Vector3d &q) {
@@ -86,20 +85,34 @@ class Solver {
         return q - right_ - reach_ * rate_;
     }
 
-    // Chord iteration with a known inverse; else Newton with halving, and for the speed alone a bracketed search.
-    Vector3d solve(Vector3d q, const Matrix3d *inverse) {
-        Vector3d f;
-        if (inverse != nullptr) {
-            double last = 1e300;
-            f = residual(q);
-            for (int i = 0; i < 8; ++i) {
-                if (converged(f)) return q;
-                if (!(f.squaredNorm() < last)) break;
-                last = f.squaredNorm();
-                q -= *inverse * f;
-                f = residual(q);
+    // From a near start: chord iteration with an inverse that each step mends (Broyden's good update). A last change smaller than `near_end` is
+    // taken without another evaluation where `exact` is not asked for. False: not found.
+    bool approach(Vector3d &q, const Motion &guess, std::size_t k, bool exact) {
+        Matrix3d inverse = guess.tangent[k].inverse;
+        Vector3d f = residual(q);
+        double last = 1e300;
+        for (int i = 0; i < 8; ++i) {
+            if (converged(f)) return true;
+            if (!(f.squaredNorm() < last)) return false;
+            last = f.squaredNorm();
+            const Vector3d change = -(inverse * f), f_before = f;
+            q += change;
+            if (!exact && change.cwiseAbs().maxCoeff() < near_end) {
+                rate_ = (q - right_) / reach_;
+                for (std::size_t w = 0; w < step_.wheels(); ++w) step_.nudge(w, change, guess.wheel[w].traction_by_speed[k].dot(change));
+                return true;
             }
+            f = residual(q);
+            const Vector3d seen = inverse * (f - f_before);
+            const double along = change.dot(seen);
+            if (along > 1e-3 * change.squaredNorm()) inverse += (change - seen) * (change.transpose() * inverse) / along;
         }
+        return converged(f);
+    }
+
+    // Newton with halving, and for the speed alone a bracketed search.
+    Vector3d solve(Vector3d q) {
+        Vector3d f;
         if (freedom_.yaw || freedom_.vy) {
             q = newton(q);
             f = residual(q);
@@ -219,6 +232,7 @@ class Solver {
     const Physics &p_;
     WheelStep step_;
     detail::Freedom freedom_;
+    bool keeps_; // the tangents will be asked for
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
     std::array<Vector3d, most_wheels> force_{};
     Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
@@ -237,25 +251,27 @@ void record(const WheelStep &step, std::size_t k, Motion &m) {
 }
 
 void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Motion *guess, bool keep) {
-    Solver solver(data, p);
+    Solver solver(data, p, keep);
     const detail::Freedom freedom = solver.freedom();
-    Vector3d q = Vector3d::Zero(), before = q, shift = q;
+    Vector3d q = Vector3d::Zero(), before = q, shift = q, shift_before = q; // shift: from the guess
     if (!freedom.vy)
         for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
-    const bool chord = guess != nullptr && guess->tangent.size() == data.count;
+    const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();
+    const bool far = keep || p.body.tether != 0; // who else asks how far away it is?
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
         if (!freedom.yaw) right[2] = given;
         const double v_before = q[0], accel_before = accel, path_before = path, away_before = away;
         solver.prepare(k, right, k < 2 ? 1.0 : 2.0 / 3, v_before, accel_before, path_before, away_before);
-        Vector3d start = q + data.step_s * Vector3d(accel, 0, 0);
-        if (guess != nullptr) start = Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]) + shift;
-        if (!freedom.yaw) start[2] = given;
-        Vector3d found = solver.solve(start, chord ? &guess->tangent[k].inverse : nullptr);
+        const Vector3d guessed = guess != nullptr ? Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]) : q;
+        Vector3d found = guess != nullptr ? Vector3d(guessed + 2 * shift - shift_before) : Vector3d(q + data.step_s * Vector3d(accel, 0, 0));
+        if (!freedom.yaw) found[2] = given;
+        if (!chord || !solver.approach(found, *guess, k, exact)) found = solver.solve(found);
         if (!found.allFinite()) found = q;
-        if (guess != nullptr) shift = found - Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]);
+        shift_before = shift;
+        shift = found - guessed;
         const Vector3d rate = solver.rate_found();
         if (keep) solver.differentiate(k, found, v_before, accel_before, path_before, away_before, m);
         solver.step().commit();
@@ -263,10 +279,15 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         q = found;
         accel = rate[0];
         path += (freedom.omni ? std::hypot(q[0], q[1]) : q[0]) * data.step_s;
-        heading = data.yaw_rad.empty() ? heading + q[2] * data.step_s : data.yaw_rad[k];
-        x += (q[0] * std::cos(heading) - q[1] * std::sin(heading)) * data.step_s;
-        y += (q[0] * std::sin(heading) + q[1] * std::cos(heading)) * data.step_s;
-        away = freedom.omni ? path : x * std::cos(heading) + y * std::sin(heading);
+        if (far && !freedom.omni) {
+            heading = data.yaw_rad.empty() ? heading + q[2] * data.step_s : data.yaw_rad[k];
+            const double c = std::cos(heading), s = std::sin(heading);
+            x += (q[0] * c - q[1] * s) * data.step_s;
+            y += (q[0] * s + q[1] * c) * data.step_s;
+            away = x * c + y * s;
+        } else {
+            away = path;
+        }
         m.v_m_s[k] = q[0];
         m.vy_m_s[k] = q[1];
         m.yaw_rate_rad_s[k] = q[2];

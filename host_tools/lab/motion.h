@@ -27,7 +27,7 @@ struct StepTangent {
 // Trajectory of one pass, on the grid.
 struct Motion {
     std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, path_m;
-    std::vector<double> away_m;     // of the way from the start, the part along the heading (omni wheels: the path)
+    std::vector<double> away_m;     // of the way from the start, the part along the heading (omni wheels: the path); with the tangents or a tether only
     std::vector<double> accel_m_s2; // specific force along x: what an accelerometer feels
     std::vector<Eigen::Vector3d> rate; // of (vx, vy, yaw rate)
     struct Wheel {
@@ -43,7 +43,7 @@ struct Motion {
 };
 
 // Integrates over the whole grid. `guess`: a nearby trajectory that starts the root search, or nullptr; with its tangents the search
-// is a chord iteration, two evaluations a step. `keep`: store the tangents.
+// is a chord iteration, one or two evaluations a step. `keep`: store the tangents.
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep);
 
 // True where neighbour() holds: free motion, no play in the gears, and slip lags at the same wheels.
@@ -59,8 +59,9 @@ struct UnitResponse {
     std::vector<std::vector<double>> traction;
 };
 UnitResponse unit_response(const Dataset &data, const Physics &base, const Motion &known, TermTarget target);
-// share: f at each wheel and step.
-void neighbour_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share, Motion &motion);
+// Several shapes at once. share: of shape j at wheel i and step k, at (k * wheels + i) * motions.size() + j.
+inline constexpr std::size_t most_shapes = 8;
+void neighbours_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<double> &share, std::vector<Motion> &motions);
 
 namespace detail {
 

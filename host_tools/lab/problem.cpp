@@ -68,8 +68,7 @@ void Problem::bounds(std::size_t i, double &low, double &high) const {
 
 void Problem::linearise() {
     const Physics at = physics();
-    forward_.set_base(at);
-    residual = measured_ - forward_.base();
+    settle();
     jacobian.resize(measured_.size(), theta.size());
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         double low = 0, high = 0;
@@ -217,6 +216,8 @@ void Problem::set_scales() {
     if (jacobian.rows() == row_scale.size()) jacobian = row_scale.cwiseQuotient(before).asDiagonal() * jacobian;
 }
 
+void Problem::start_near(const Problem &other) { forward_.start_near(other.forward_); }
+
 void Problem::keep_scales(const Problem &other) {
     row_scale = other.row_scale;
     sigma = other.sigma;
@@ -250,8 +251,7 @@ void Problem::quick_fit(const Problem &base, int iterations) {
     Eigen::MatrixXd columns_before;
     for (int i = 0; i <= iterations; ++i) {
         const Physics at = physics();
-        forward_.set_base(at);
-        residual = measured_ - forward_.base();
+        settle();
         const double cost = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
         if (i > 0 && !(cost < cost_before)) { // too far: half way back, at most a few times
             if (cost > 1.0001 * cost_before && i < iterations) {
@@ -316,7 +316,9 @@ Eigen::VectorXd Problem::bounded_step(const Eigen::MatrixXd &normal, const Eigen
 }
 
 void Problem::settle() {
-    forward_.set_base(physics());
+    if (!settled_ || settled_at_ != theta) forward_.set_base(physics());
+    settled_ = true;
+    settled_at_ = theta;
     residual = measured_ - forward_.base();
 }
 

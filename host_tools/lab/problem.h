@@ -60,6 +60,9 @@ class Problem {
     // Keeps the scales of another problem on the same data, so that their errors compare.
     void keep_scales(const Problem &other);
 
+    // The first search for the body's motion starts from another problem's, on the same data.
+    void start_near(const Problem &other);
+
   private:
     friend class RowsCost;
     void set_scales(); // the Jacobian, if there is one, is scaled anew
@@ -75,6 +78,8 @@ class Problem {
     Physics base_;
     Forward forward_;
     Eigen::VectorXd measured_;
+    bool settled_ = false;       // the forward model has a base, at these increments:
+    Eigen::VectorXd settled_at_;
 };
 
 } // namespace traction::lab

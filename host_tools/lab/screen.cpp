@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 namespace traction::lab {
 
@@ -17,89 +17,150 @@ constexpr double most_heldout = 4;      // a block's held-out error counts up to
 } // namespace
 
 Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem) {
-    const Dataset &data = problem.data();
-    std::vector<double> time;
-    for (const Balance &b : data.balance)
-        for (std::size_t r = 0; r < b.measured.size(); ++r) time.push_back(0.5 * (b.t0_s[r] + b.t1_s[r]));
-    order_.resize(time.size());
-    std::iota(order_.begin(), order_.end(), Eigen::Index{0});
-    std::stable_sort(order_.begin(), order_.end(), [&](Eigen::Index a, Eigen::Index b) { return time[static_cast<std::size_t>(a)] < time[static_cast<std::size_t>(b)]; });
-    const auto rows = static_cast<Eigen::Index>(order_.size()), n = leading < 0 ? problem.theta.size() : leading;
+    const Eigen::Index n = leading < 0 ? problem.theta.size() : leading;
     const Eigen::VectorXd theta = problem.theta.head(n);
-    nuisance_.resize(rows, n);
-    residual_.resize(rows);
-    row_time_.resize(order_.size());
-    for (Eigen::Index i = 0; i < rows; ++i) {
-        const Eigen::Index row = order_[static_cast<std::size_t>(i)];
-        nuisance_.row(i) = problem.jacobian.row(row).head(n);
-        residual_[i] = problem.residual[row] * problem.row_scale[row];
-        row_time_[static_cast<std::size_t>(i)] = time[static_cast<std::size_t>(row)];
-    }
+    nuisance_ = problem.jacobian.leftCols(n);
+    residual_ = problem.residual.cwiseProduct(problem.row_scale);
     precision_ = problem.prior_precision().head(n);
     // a parameter that the data do not see and no prior holds would make the system singular: a whisper holds it
     for (Eigen::Index j = 0; j < n; ++j) precision_[j] = std::max(precision_[j], 1e-9 * (1 + nuisance_.col(j).squaredNorm()));
     pull_ = -precision_.cwiseProduct(theta);
-    total_ = nuisance_.transpose() * nuisance_;
-    total_.diagonal() += precision_;
+    cut();
+    total_ = precision_.asDiagonal();
+    moment_ = pull_;
+    for (std::size_t b = 0; b < coarse_.gram.size(); ++b) total_ += coarse_.gram[b], moment_ += coarse_.moment[b];
     total_factor_.compute(total_);
-    cut(data.independent_rows ? data.step_s : std::min(test_block_s, data.duration_s / (2 * fewest_blocks)), fine_, nullptr);
-    cut(data.independent_rows ? data.step_s : std::min(heldout_block_s, data.duration_s / fewest_blocks), coarse_, &block_times_);
+    factor(fine_);
+    factor(coarse_);
 
     block_error_.resize(coarse_.count());
-    const Eigen::VectorXd moment = nuisance_.transpose() * residual_ + pull_;
     for (Eigen::Index b = 0; b < coarse_.count(); ++b) {
         const auto i = static_cast<std::size_t>(b);
-        const Eigen::VectorXd step = coarse_.without[i].solve(moment - coarse_.moment[i]);
-        const double rr = residual_.segment(coarse_.first[i], coarse_.first[i + 1] - coarse_.first[i]).squaredNorm();
+        const Eigen::VectorXd step = coarse_.without[i].matrixU().solve(coarse_.half[i]);
+        const double rr = coarse_.squares[i];
         block_error_[b] = std::min(most_heldout * rr, rr - 2 * step.dot(coarse_.moment[i]) + step.dot(coarse_.gram[i] * step));
     }
-    const Eigen::VectorXd final_theta = theta + total_factor_.solve(moment);
+    const Eigen::VectorXd step = total_factor_.solve(moment_), final_theta = theta + step;
     base_penalty_ = final_theta.cwiseProduct(final_theta).dot(precision_);
     base_error_ = block_error_.sum() + base_penalty_;
-    error_ = residual_.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(total_factor_.solve(moment));
+    error_ = residual_.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment_.dot(step);
 }
 
-void Screen::cut(double length_s, Blocks &blocks, std::vector<std::pair<double, double>> *times) const {
-    const auto rows = static_cast<Eigen::Index>(row_time_.size());
-    const double start = problem_.data().start_s;
-    for (Eigen::Index i = 0; i < rows;) {
-        const double block = std::floor((row_time_[static_cast<std::size_t>(i)] - start) / length_s + 1e-9);
-        Eigen::Index j = i;
-        while (j < rows && std::floor((row_time_[static_cast<std::size_t>(j)] - start) / length_s + 1e-9) == block) ++j;
-        blocks.first.push_back(i);
-        const auto N = nuisance_.middleRows(i, j - i);
-        blocks.gram.push_back(N.transpose() * N);
-        blocks.moment.push_back(N.transpose() * residual_.segment(i, j - i));
-        if (times != nullptr) times->emplace_back(start + block * length_s, start + (block + 1) * length_s);
-        i = j;
+// Blocks of both lengths, and what of the baseline each holds.
+void Screen::cut() {
+    const Dataset &data = problem_.data();
+    const double start = data.start_s;
+    const double fine_s = data.independent_rows ? data.step_s : std::min(test_block_s, data.duration_s / (2 * fewest_blocks));
+    const double coarse_s = data.independent_rows ? data.step_s : std::min(heldout_block_s, data.duration_s / fewest_blocks);
+    std::map<double, std::size_t> fine, coarse;
+    std::vector<std::pair<double, double>> place; // of each segment: its blocks
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance)
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            const double time = 0.5 * (b.t0_s[r] + b.t1_s[r]) - start;
+            const std::pair<double, double> here(std::floor(time / fine_s + 1e-9), std::floor(time / coarse_s + 1e-9));
+            if (r == 0 || here != place.back()) {
+                segments_.push_back({row, 0, 0, 0});
+                place.push_back(here);
+                fine[here.first] = coarse[here.second] = 0;
+            }
+            ++segments_.back().size;
+        }
+    std::size_t count = 0;
+    for (auto &[block, index] : fine) index = count++;
+    count = 0;
+    for (auto &[block, index] : coarse) index = count++, block_times_.emplace_back(start + block * coarse_s, start + (block + 1) * coarse_s);
+    const Eigen::Index n = nuisance_.cols();
+    for (Blocks *blocks : {&fine_, &coarse_}) {
+        const std::size_t size = blocks == &fine_ ? fine.size() : coarse.size();
+        blocks->gram.assign(size, Eigen::MatrixXd::Zero(n, n));
+        blocks->moment.assign(size, Eigen::VectorXd::Zero(n));
+        blocks->squares.assign(size, 0);
     }
-    blocks.first.push_back(rows);
-    for (const Eigen::MatrixXd &gram : blocks.gram) blocks.without.emplace_back(total_ - gram);
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+        Segment &s = segments_[i];
+        s.fine = fine.at(place[i].first), s.coarse = coarse.at(place[i].second);
+        const auto N = nuisance_.middleRows(s.first, s.size);
+        const auto r = residual_.segment(s.first, s.size);
+        const Eigen::MatrixXd gram = N.transpose() * N;
+        const Eigen::VectorXd moment = N.transpose() * r;
+        fine_.gram[s.fine] += gram, coarse_.gram[s.coarse] += gram;
+        fine_.moment[s.fine] += moment, coarse_.moment[s.coarse] += moment;
+        fine_.squares[s.fine] += r.squaredNorm(), coarse_.squares[s.coarse] += r.squaredNorm();
+    }
 }
+
+void Screen::factor(Blocks &blocks) const {
+    for (std::size_t b = 0; b < blocks.gram.size(); ++b) {
+        blocks.without.emplace_back(total_ - blocks.gram[b]);
+        blocks.half.push_back(blocks.without[b].matrixL().solve(moment_ - blocks.moment[b]));
+    }
+}
+
+void Screen::parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) const {
+    const Eigen::Index k = columns.cols(), n = nuisance_.cols();
+    Eigen::VectorXd nc(n);
+    for (const Segment &s : segments_) {
+        const auto N = nuisance_.middleRows(s.first, s.size);
+        const auto r = residual_.segment(s.first, s.size);
+        for (Eigen::Index j = 0; j < k; ++j) {
+            const auto c = columns.col(j).segment(s.first, s.size);
+            if ((c.array() == 0).all()) continue; // most effects leave most balances alone
+            nc.noalias() = N.transpose() * c;
+            fine.nc[s.fine].col(j) += nc, coarse.nc[s.coarse].col(j) += nc;
+            const double mc = c.dot(r);
+            fine.mc[s.fine][j] += mc, coarse.mc[s.coarse][j] += mc;
+            for (Eigen::Index i = 0; i <= j; ++i) {
+                const double cc = c.dot(columns.col(i).segment(s.first, s.size));
+                fine.cc[s.fine](i, j) += cc, coarse.cc[s.coarse](i, j) += cc;
+                if (i != j) fine.cc[s.fine](j, i) += cc, coarse.cc[s.coarse](j, i) += cc;
+            }
+        }
+    }
+}
+
+class Screen::LeaveOut {
+  public:
+    LeaveOut(const Blocks &blocks, const Part &part, const Eigen::MatrixXd &nc, const Eigen::MatrixXd &cc, const Eigen::VectorXd &mc, const Eigen::VectorXd &whisper)
+        : blocks_(blocks), part_(part), nc_(nc), cc_(cc), mc_(mc), whisper_(whisper) {}
+
+    const Eigen::VectorXd &strength(std::size_t b) {
+        half_ = nc_ - part_.nc[b];
+        blocks_.without[b].matrixL().solveInPlace(half_);
+        schur_ = cc_ - part_.cc[b];
+        schur_.noalias() -= half_.transpose() * half_;
+        schur_.diagonal() += whisper_;
+        gamma = mc_ - part_.mc[b];
+        gamma.noalias() -= half_.transpose() * blocks_.half[b];
+        if (gamma.size() == 1) gamma[0] /= schur_(0, 0);
+        else gamma = factor_.compute(schur_).solve(gamma).eval();
+        return gamma;
+    }
+    // Of the block left out, by the strength just found; the baseline's step without it included.
+    double error(std::size_t b) {
+        delta_ = blocks_.half[b];
+        delta_.noalias() -= half_ * gamma;
+        blocks_.without[b].matrixU().solveInPlace(delta_);
+        return blocks_.squares[b] - 2 * delta_.dot(blocks_.moment[b]) - 2 * gamma.dot(part_.mc[b]) + delta_.dot(blocks_.gram[b] * delta_) +
+               2 * delta_.dot(part_.nc[b] * gamma) + gamma.dot(part_.cc[b] * gamma);
+    }
+    Eigen::VectorXd gamma;
+
+  private:
+    const Blocks &blocks_;
+    const Part &part_;
+    const Eigen::MatrixXd &nc_, &cc_;
+    const Eigen::VectorXd &mc_, &whisper_;
+    Eigen::MatrixXd half_, schur_;
+    Eigen::VectorXd delta_;
+    Eigen::LDLT<Eigen::MatrixXd> factor_;
+};
 
 Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd &present, bool full) const {
     Assessment out;
-    const Eigen::Index k = columns.cols(), rows = columns.rows(), n = nuisance_.cols();
-    Eigen::MatrixXd C(rows, k);
-    for (Eigen::Index i = 0; i < rows; ++i) C.row(i) = columns.row(order_[static_cast<std::size_t>(i)]);
-    const Eigen::VectorXd moment_n = nuisance_.transpose() * residual_ + pull_;
-
-    struct Part {
-        std::vector<Eigen::MatrixXd> nc, cc;
-        std::vector<Eigen::VectorXd> mc;
-    };
-    const auto parts = [&](const Blocks &blocks) {
-        Part part;
-        for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b) {
-            const Eigen::Index first = blocks.first[b], size = blocks.first[b + 1] - first;
-            const auto c = C.middleRows(first, size);
-            part.nc.push_back(nuisance_.middleRows(first, size).transpose() * c);
-            part.cc.push_back(c.transpose() * c);
-            part.mc.push_back(c.transpose() * residual_.segment(first, size));
-        }
-        return part;
-    };
-    const Part fine = parts(fine_), coarse = parts(coarse_);
+    const Eigen::Index k = columns.cols(), n = nuisance_.cols();
+    Part fine(fine_.gram.size(), n, k), coarse(coarse_.gram.size(), n, k);
+    parts(columns, fine, coarse);
     Eigen::MatrixXd nc = Eigen::MatrixXd::Zero(n, k), cc = Eigen::MatrixXd::Zero(k, k);
     Eigen::VectorXd mc = Eigen::VectorXd::Zero(k);
     for (std::size_t b = 0; b < fine.nc.size(); ++b) nc += fine.nc[b], cc += fine.cc[b], mc += fine.mc[b];
@@ -117,33 +178,24 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     // a coefficient that the data barely see (a knot without samples) must not blow up
     for (Eigen::Index j = 0; j < k; ++j) schur(j, j) += 1e-9 * schur.diagonal().maxCoeff();
     const Eigen::LLT<Eigen::MatrixXd> schur_factor(schur);
-    out.strength = schur_factor.solve(mc - absorb.transpose() * moment_n);
+    out.strength = schur_factor.solve(mc - absorb.transpose() * moment_);
     out.fall = out.strength.dot(schur * out.strength);
-    out.change = total_factor_.solve(moment_n - nc * out.strength);
+    out.change = total_factor_.solve(moment_ - nc * out.strength);
     if (!out.strength.allFinite()) {
         out.strength.setZero();
         return out;
     }
 
-    const auto leave_out = [&](const Blocks &blocks, const Part &part, std::size_t b, Eigen::VectorXd &gamma, Eigen::VectorXd &delta) {
-        const Eigen::MatrixXd nc_b = nc - part.nc[b];
-        const Eigen::VectorXd mn_b = moment_n - blocks.moment[b];
-        const Eigen::MatrixXd a = blocks.without[b].solve(nc_b);
-        Eigen::MatrixXd s = cc - part.cc[b] - nc_b.transpose() * a;
-        for (Eigen::Index j = 0; j < k; ++j) s(j, j) += 1e-6 * schur(j, j);
-        gamma = s.ldlt().solve(mc - part.mc[b] - a.transpose() * mn_b);
-        delta = blocks.without[b].solve(mn_b - nc_b * gamma);
-    };
-
+    const Eigen::VectorXd whisper = 1e-6 * schur.diagonal();
     // jackknife over the fine blocks
     const Eigen::Index count = fine_.count();
     Eigen::MatrixXd deviation(k, count);
-    Eigen::VectorXd gamma, delta, weight(count);
+    Eigen::VectorXd weight(count);
+    const Eigen::VectorXd a0 = absorb.col(0);
+    LeaveOut without_fine(fine_, fine, nc, cc, mc, whisper);
     for (Eigen::Index b = 0; b < count; ++b) {
-        leave_out(fine_, fine, static_cast<std::size_t>(b), gamma, delta);
-        deviation.col(b) = gamma - out.strength;
         const auto i = static_cast<std::size_t>(b);
-        const Eigen::VectorXd a0 = absorb.col(0);
+        deviation.col(b) = without_fine.strength(i) - out.strength;
         weight[b] = std::max(0.0, fine.cc[i](0, 0) - 2 * a0.dot(fine.nc[i].col(0)) + a0.dot(fine_.gram[i] * a0));
     }
     const double scale = static_cast<double>(count - 1) / static_cast<double>(count);
@@ -168,12 +220,11 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     out.freedom = freedom;
 
     // held-out error by the coarse blocks
+    LeaveOut without_coarse(coarse_, coarse, nc, cc, mc, whisper);
     for (Eigen::Index b = 0; b < coarse_.count(); ++b) {
         const auto i = static_cast<std::size_t>(b);
-        leave_out(coarse_, coarse, i, gamma, delta);
-        const double rr = residual_.segment(coarse_.first[i], coarse_.first[i + 1] - coarse_.first[i]).squaredNorm();
-        const double error = rr - 2 * delta.dot(coarse_.moment[i]) - 2 * gamma.dot(coarse.mc[i]) + delta.dot(coarse_.gram[i] * delta) +
-                             2 * delta.dot(coarse.nc[i] * gamma) + gamma.dot(coarse.cc[i] * gamma);
+        without_coarse.strength(i);
+        const double rr = coarse_.squares[i], error = without_coarse.error(i);
         out.block_gain[b] = block_error_[b] - std::min(most_heldout * rr, error);
     }
     const Eigen::VectorXd final_theta = problem_.theta.head(n) + out.change;
@@ -182,11 +233,15 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     const double mean = out.block_gain.mean();
     out.gain_error = std::sqrt((out.block_gain.array() - mean).square().sum() * static_cast<double>(coarse_.count()) / std::max<double>(1, static_cast<double>(coarse_.count() - 1)));
     out.strength = whole;
-    if (full) {
-        out.projected.resize(rows + n);
-        out.projected.head(rows) = C.col(0) - nuisance_ * absorb.col(0);
-        out.projected.tail(n) = -precision_.cwiseSqrt().cwiseProduct(absorb.col(0));
-    }
+    if (full) out.projected = projected(columns.col(0), a0);
+    return out;
+}
+
+Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column) const { return projected(column, total_factor_.solve(nuisance_.transpose() * column)); }
+
+Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const {
+    Eigen::VectorXd out(column.size() + absorb.size());
+    out << column - nuisance_ * absorb, -precision_.cwiseSqrt().cwiseProduct(absorb);
     return out;
 }
 
@@ -219,38 +274,37 @@ std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
     std::vector<std::size_t> balance_of_row;
     for (std::size_t b = 0; b < data.balance.size(); ++b) balance_of_row.insert(balance_of_row.end(), data.balance[b].measured.size(), b);
     const std::vector<Eigen::VectorXd> changes = heldout_changes();
-    for (Eigen::Index b = 0; b < coarse_.count(); ++b) {
-        const auto i = static_cast<std::size_t>(b);
-        const Eigen::Index first = coarse_.first[i], size = coarse_.first[i + 1] - first;
-        const auto fitted = residual_.segment(first, size);
-        const Eigen::VectorXd heldout = fitted - nuisance_.middleRows(first, size) * changes[i];
-        const double shrink = std::min(1.0, std::sqrt(most_heldout * fitted.squaredNorm() / std::max(1e-300, heldout.squaredNorm())));
-        for (Eigen::Index row = first; row < first + size; ++row) {
-            double e = heldout[row - first] * shrink;
-            const Eigen::Index original = order_[static_cast<std::size_t>(row)];
-            if (in_noise) e /= problem_.row_scale[original] * noise[original];
-            sum[balance_of_row[static_cast<std::size_t>(original)]] += e * e;
+    Eigen::VectorXd heldout(residual_.size());
+    std::vector<double> squares(coarse_.gram.size(), 0);
+    for (const Segment &s : segments_) {
+        heldout.segment(s.first, s.size) = residual_.segment(s.first, s.size) - nuisance_.middleRows(s.first, s.size) * changes[s.coarse];
+        squares[s.coarse] += heldout.segment(s.first, s.size).squaredNorm();
+    }
+    for (const Segment &s : segments_) {
+        const double shrink = std::min(1.0, std::sqrt(most_heldout * coarse_.squares[s.coarse] / std::max(1e-300, squares[s.coarse])));
+        for (Eigen::Index row = s.first; row < s.first + s.size; ++row) {
+            double e = heldout[row] * shrink;
+            if (in_noise) e /= problem_.row_scale[row] * noise[row];
+            sum[balance_of_row[static_cast<std::size_t>(row)]] += e * e;
         }
     }
     return sum;
 }
 
 std::vector<Eigen::VectorXd> Screen::heldout_changes() const {
-    const Eigen::VectorXd moment = nuisance_.transpose() * residual_ + pull_;
     std::vector<Eigen::VectorXd> changes;
-    for (std::size_t b = 0; b < coarse_.gram.size(); ++b) changes.push_back(coarse_.without[b].solve(moment - coarse_.moment[b]));
+    for (std::size_t b = 0; b < coarse_.gram.size(); ++b) changes.push_back(coarse_.without[b].matrixU().solve(coarse_.half[b]));
     return changes;
 }
 
 std::vector<ParameterError> Screen::parameter_errors() const {
     const Eigen::Index n = nuisance_.cols(), count = fine_.count();
-    const Eigen::VectorXd moment = nuisance_.transpose() * residual_ + pull_;
-    const Eigen::VectorXd whole = total_factor_.solve(moment);
+    const Eigen::VectorXd whole = total_factor_.solve(moment_);
     const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(n, n));
     Eigen::MatrixXd deviation(n, count), information(n, count); // information: of a parameter beside the others, per block
     for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        deviation.col(b) = fine_.without[i].solve(moment - fine_.moment[i]) - whole;
+        deviation.col(b) = fine_.without[i].matrixU().solve(fine_.half[i]) - whole;
         information.col(b) = (inverse * fine_.gram[i]).cwiseProduct(inverse).rowwise().sum();
     }
     std::vector<ParameterError> errors;

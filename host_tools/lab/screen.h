@@ -44,6 +44,9 @@ class Screen {
     // full: also fills `projected`.
     Assessment assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd &present, bool full) const;
 
+    // The column off which the baseline's share is taken, and what that costs its priors: for cosines.
+    Eigen::VectorXd projected(const Eigen::VectorXd &column) const;
+
     // Error on all rows with this scaled residual, after what the baseline's parameters would then absorb: for a candidate moved alone.
     double error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const;
     // Largest relative fall of one balance's error on all rows, by the linear step.
@@ -61,19 +64,37 @@ class Screen {
 
   private:
     struct Blocks {
-        std::vector<Eigen::Index> first; // rows, sorted by time; size count + 1
         std::vector<Eigen::MatrixXd> gram;
         std::vector<Eigen::VectorXd> moment; // N' r
+        std::vector<double> squares;         // r' r
         std::vector<Eigen::LLT<Eigen::MatrixXd>> without;
+        std::vector<Eigen::VectorXd> half;   // of the step without the block: L^-1 (moment of the others)
         Eigen::Index count() const { return static_cast<Eigen::Index>(gram.size()); }
     };
-    void cut(double length_s, Blocks &blocks, std::vector<std::pair<double, double>> *times) const;
+    // Rows of one balance that lie in one block of either length.
+    struct Segment {
+        Eigen::Index first = 0, size = 0;
+        std::size_t fine = 0, coarse = 0;
+    };
+    // N' C, C' C and C' r of a candidate, per block.
+    struct Part {
+        std::vector<Eigen::MatrixXd> nc, cc;
+        std::vector<Eigen::VectorXd> mc;
+        Part(std::size_t blocks, Eigen::Index n, Eigen::Index k)
+            : nc(blocks, Eigen::MatrixXd::Zero(n, k)), cc(blocks, Eigen::MatrixXd::Zero(k, k)), mc(blocks, Eigen::VectorXd::Zero(k)) {}
+    };
+    // The candidate's strengths where one block is left out, and with `delta` the change of the baseline's parameters.
+    class LeaveOut;
+    void cut();
+    void factor(Blocks &blocks) const;
+    void parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) const;
+    Eigen::VectorXd projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const;
 
     const Problem &problem_;
-    std::vector<Eigen::Index> order_; // rows by time
-    std::vector<double> row_time_;
-    Eigen::MatrixXd nuisance_;  // sorted
-    Eigen::VectorXd residual_;  // sorted, scaled
+    std::vector<Segment> segments_;
+    Eigen::MatrixXd nuisance_;
+    Eigen::VectorXd residual_;  // scaled
+    Eigen::VectorXd moment_;    // N' r + pull
     Eigen::VectorXd precision_; // of the priors
     Eigen::VectorXd pull_;      // -precision * theta
     Eigen::MatrixXd total_;

@@ -24,35 +24,41 @@ struct ShapeScore {
 class ShapeColumns {
   public:
     explicit ShapeColumns(Problem &problem) : problem_(problem), physics_(problem.physics()) {
-        for (const WheelPhysics &w : physics_.wheel) plain_ = plain_ && w.dead_voltage == 0 && w.heating == 0;
-        plain_ = plain_ && physics_.terms.empty() && problem.forward().has_linear_base();
+        plain_ = plain_currents(physics_) && physics_.terms.empty() && problem.forward().has_linear_base();
     }
 
     Eigen::MatrixXd of(const Candidate &c) {
-        Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
         Physics at = physics_;
         c.prepare(at);
-        const bool shared = plain_ && c.touched == stage_motion && c.target != TermTarget::body_force;
-        for (std::size_t j = 0; j < c.strengths.size(); ++j) {
-            const auto col = static_cast<Eigen::Index>(j);
-            if (!shared) {
-                columns.col(col) = problem_.column(at, c.strengths[j], c.step[j]);
-                continue;
-            }
-            auto found = units_.find(c.target);
-            if (found == units_.end()) found = units_.emplace(c.target, unit_response(problem_.data(), physics_, problem_.forward().motion(), c.target)).first;
-            std::vector<double> one(c.strengths.size(), 0);
-            one[j] = 1;
-            columns.col(col) = (problem_.forward().predict_shaped(physics_, found->second, *at.terms.back().term, one) - problem_.forward().base()).cwiseProduct(problem_.row_scale);
-        }
+        const Term &term = *at.terms.back().term;
+        const std::size_t count = c.strengths.size();
+        const bool electric = (c.touched & (stage_torque | stage_voltage)) != 0 && (c.touched & (stage_motion | stage_sensors)) == 0;
+        if (plain_ && count <= most_shapes && c.touched == stage_motion && c.target != TermTarget::body_force)
+            return problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), term, count);
+        if (plain_ && electric && !physics_.unsigned_current)
+            return problem_.row_scale.asDiagonal() * problem_.forward().shaped_electric(physics_, electric_unit(c.target), term, count);
+        Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
+        for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
         return columns;
     }
 
   private:
+    const UnitResponse &unit(TermTarget target) {
+        auto found = units_.find(target);
+        if (found == units_.end()) found = units_.emplace(target, unit_response(problem_.data(), physics_, problem_.forward().motion(), target)).first;
+        return found->second;
+    }
+    const std::vector<Forward::ElectricSeries> &electric_unit(TermTarget target) {
+        auto found = electric_units_.find(target);
+        if (found == electric_units_.end()) found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
+        return found->second;
+    }
+
     Problem &problem_;
     Physics physics_;
     bool plain_ = true;
     std::map<TermTarget, UnitResponse> units_;
+    std::map<TermTarget, std::vector<Forward::ElectricSeries>> electric_units_;
 };
 
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {

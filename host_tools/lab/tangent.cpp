@@ -23,7 +23,9 @@ class Moved {
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1]);
         Vector3d force = Vector3d::Zero();
-        for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
+        if (first_ == 0 && last_ == p_.wheel.size()) force = step_.forces(q, nullptr);
+        else
+            for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
         const double speed = freedom_.omni ? std::hypot(q[0], q[1]) : q[0], along = step_.body_force(speed);
         if (!freedom_.omni) force[0] += along;
         else if (speed > 1e-6) force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
@@ -43,30 +45,6 @@ class Moved {
     const Motion &known_;
     detail::Freedom freedom_;
     std::size_t first_, last_;
-};
-
-// A unit response times a function of the known motion.
-class Shaped {
-  public:
-    Shaped(const Dataset &data, const Physics &physics, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share)
-        : p_(physics), known_(known), unit_(unit), share_(share), freedom_(detail::freedom_of(data, physics)), step_(data, physics) {}
-    Vector3d rate_change(std::size_t k, const Vector3d &, double, double, double) const {
-        Vector3d force = Vector3d::Zero();
-        for (std::size_t i = 0; i < unit_.force.size(); ++i) force += share_[i][k] * unit_.force[i][k];
-        return {force[0] / p_.body.mass, freedom_.vy ? force[1] / p_.body.mass : 0, freedom_.yaw ? force[2] / p_.body.yaw_inertia : 0};
-    }
-    double traction_change(std::size_t i, std::size_t k) const { return share_[i][k] * unit_.traction[i][k]; }
-    double slip_change(std::size_t, std::size_t) const { return 0; } // a shape acts on forces
-    double grade_accel(std::size_t k) const { return known_.rate[k][0] - known_.accel_m_s2[k] - (freedom_.vy ? known_.yaw_rate_rad_s[k] * known_.vy_m_s[k] : 0); }
-    const WheelStep &step() const { return step_; }
-
-  private:
-    const Physics &p_;
-    const Motion &known_;
-    const UnitResponse &unit_;
-    const std::vector<std::vector<double>> &share_;
-    detail::Freedom freedom_;
-    WheelStep step_;
 };
 
 // (3): the motion beside the known one, from what `change` says of each step.
@@ -158,12 +136,6 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
         }
     }
     return unit;
-}
-
-void neighbour_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<std::vector<double>> &share, Motion &m) {
-    detail::resize(m, data.count, base.wheel.size(), false, false);
-    Shaped change(data, base, known, unit, share);
-    follow(data, base, known, change, m);
 }
 
 } // namespace traction::lab

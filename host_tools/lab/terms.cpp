@@ -34,10 +34,37 @@ class Piecewise : public Term {
         const double f = (x - knots_[i - 1]) / (knots_[i] - knots_[i - 1]);
         return c[i - 1] + f * (c[i] - c[i - 1]);
     }
+    void weights(const Signals &signals, std::size_t count, double *weight) const override {
+        const double x = axis_value(axis_, signals);
+        std::fill(weight, weight + count, 0.0);
+        std::size_t i = 1;
+        while (i < knots_.size() && x >= knots_[i]) ++i;
+        if (i == knots_.size()) --i;
+        const double f = knots_.size() == 1 ? 1 : std::clamp((x - knots_[i - 1]) / (knots_[i] - knots_[i - 1]), 0.0, 1.0);
+        if (knots_.size() > 1) weight[i - 1] = 1 - f;
+        weight[i] = f;
+    }
 
   private:
     Axis axis_;
     std::vector<double> knots_;
+};
+
+class Cells : public Term {
+  public:
+    Cells(Axis axis, double start, double length) : axis_(axis), start_(start), length_(length) {}
+    double value(const Signals &signals, const double *c) const override {
+        const double x = (axis_value(axis_, signals) - start_) / length_;
+        return x >= 0 ? c[static_cast<std::size_t>(x)] : 0;
+    }
+    void weights(const Signals &signals, std::size_t count, double *weight) const override {
+        const double x = (axis_value(axis_, signals) - start_) / length_;
+        for (std::size_t j = 0; j < count; ++j) weight[j] = x >= static_cast<double>(j) && x < static_cast<double>(j + 1) ? 1 : 0;
+    }
+
+  private:
+    Axis axis_;
+    double start_, length_;
 };
 
 class Periodic : public Term {
@@ -46,6 +73,10 @@ class Periodic : public Term {
     double value(const Signals &signals, const double *c) const override {
         const double x = order_ * axis_value(axis_, signals);
         return c[0] * std::cos(x) + c[1] * std::sin(x);
+    }
+    void weights(const Signals &signals, std::size_t, double *weight) const override {
+        const double x = order_ * axis_value(axis_, signals);
+        weight[0] = std::cos(x), weight[1] = std::sin(x);
     }
 
   private:
@@ -83,6 +114,15 @@ class Expression : public Term {
 };
 
 } // namespace
+
+void Term::weights(const Signals &signals, std::size_t count, double *weight) const {
+    std::vector<double> one(count, 0);
+    for (std::size_t j = 0; j < count; ++j) {
+        one[j] = 1;
+        weight[j] = value(signals, one.data());
+        one[j] = 0;
+    }
+}
 
 std::string_view target_name(TermTarget target) { return target_names[static_cast<std::size_t>(target)]; }
 
@@ -142,6 +182,7 @@ double axis_value(Axis axis, const Signals &s) {
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots) {
     return std::make_shared<Piecewise>(axis, std::move(knots));
 }
+std::shared_ptr<Term> make_cells(Axis axis, double start, double length) { return std::make_shared<Cells>(axis, start, length); }
 std::shared_ptr<Term> make_periodic(Axis axis, double order) { return std::make_shared<Periodic>(axis, order); }
 std::shared_ptr<Term> make_expression(const std::string &expression, const std::vector<std::string> &parameters) {
     return std::make_shared<Expression>(expression, parameters);

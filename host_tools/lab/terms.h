@@ -47,6 +47,8 @@ class Term {
   public:
     virtual ~Term() = default;
     virtual double value(const Signals &signals, const double *coefficients) const = 0;
+    // What each coefficient counts, of a shape that is linear in them: value = sum of weight times coefficient.
+    virtual void weights(const Signals &signals, std::size_t count, double *weight) const;
 };
 
 enum class Axis { time, wheel_speed, speed, slip, load, angle, path, accel, current, direction, abs_speed, yaw_rate, place, reversal, other_current, count };
@@ -56,6 +58,9 @@ double axis_value(Axis axis, const Signals &signals);
 
 // sum_k c_k * hat_k(X): piecewise linear through the knots, constant outside them.
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots);
+
+// sum_k c_k where X lies in cell k: cells of equal length from `start` on.
+std::shared_ptr<Term> make_cells(Axis axis, double start, double length);
 
 // c_0 cos(n X) + c_1 sin(n X), n in radians per unit of the axis.
 std::shared_ptr<Term> make_periodic(Axis axis, double order);

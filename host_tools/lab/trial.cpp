@@ -38,6 +38,7 @@ Problem joint_problem(const Trial &t, const Problem &base, const Model &model, c
     for (const FreeParameter &p : t.candidate.strengths) parameters.push_back(p);
     Problem problem(data, physics, parameters);
     problem.keep_scales(base);
+    problem.start_near(base);
     problem.theta.head(base.theta.size()) = base.theta;
     return problem;
 }
@@ -62,7 +63,7 @@ Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &column
     Trial t;
     t.candidate = c;
     const Eigen::MatrixXd C = columns.of(c);
-    take(t, screen.assess(C, Eigen::VectorXd::Zero(C.cols()), true));
+    take(t, screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false));
     t.gain = t.assessment.gain;
     t.gain_error = t.assessment.gain_error;
     t.block_gain = t.assessment.block_gain;

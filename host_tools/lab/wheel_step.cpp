@@ -7,18 +7,12 @@ namespace traction::lab {
 namespace {
 
 constexpr double resist_speed_m_s = 5e-3; // rolling resistance reverses over this speed: assumed, below any sensor's resolution
+constexpr double scrub_speed_m_s = 5e-3;  // and sideways scrub over this one
+constexpr double least_combined_m_s = 0.02; // combined slip is taken against at least this speed: assumed
 
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
 
 } // namespace
-
-double traction_shape(SoilLaw law, double s, double sc) {
-    const double x = std::fabs(s) / sc;
-    double f = 0;
-    if (law == SoilLaw::burckhardt) f = 1 - std::exp(-x);
-    else f = x < 1e-4 ? 0.5 * x : 1 - (1 - std::exp(-x)) / x; // series near zero, where the quotient loses digits
-    return s < 0 ? -f : f;
-}
 
 WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data), p_(physics), n_(physics.wheel.size()) {
     loads();
@@ -38,6 +32,26 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
     }
     for (const ExtraTerm &term : p_.terms) motion_terms_ = motion_terms_ || (target_stages(term.target) & stage_motion) != 0;
     feels_path_ = feels_path_ || motion_terms_; // a user's expression may name x
+    gather();
+}
+
+void WheelStep::gather() {
+    bool all_grip = true, all_lag = true, none_lags = true;
+    for (std::size_t i = 0; i < n_; ++i) {
+        const WheelPhysics &w = p_.wheel[i];
+        const State &s = state_[i];
+        Four &four = four_[i / 4];
+        const auto at = static_cast<Eigen::Index>(i % 4);
+        four.c[at] = s.c, four.s[at] = s.s, four.x[at] = w.x, four.y[at] = w.y, four.per_sc[at] = 1 / s.plain_sc;
+        four.grip[at] = w.grip, four.resistance[at] = w.crr + w.rolling, four.lateral[at] = w.lateral + p_.body.scrub;
+        four.per_speed_m[at] = s.radius * s.gain, four.adhesion[at] = w.adhesion, four.mu[at] = w.mu;
+        four.load_0[at] = w.load > 0 ? w.load : s.load_0, four.load_per_accel[at] = w.load > 0 ? 0 : s.load_per_accel;
+        four.lag_1_m[at] = s.sigma > 0 ? data_.step_s / s.sigma : 0;
+        all_grip = all_grip && p_.grips_sideways[i];
+        all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
+    }
+    even_ = p_.body.patch_change == 0 && p_.body.soil_gradient == 0 && p_.body.multi_pass == 0;
+    plain_ = p_.motion == BodyMotion::longitudinal && all_grip && (all_lag || none_lags) && !motion_terms_ && !play_;
 }
 
 void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first, std::size_t last) {
@@ -46,28 +60,98 @@ void WheelStep::prepare(std::size_t k, double v_before, double accel_before, dou
     away_ = away_m;
     accel_ = accel_before;
     yaw_ = data_.yaw_rad.empty() ? 0 : data_.yaw_rad[k];
+    if (plain_ && data_.load_N.empty() && first == 0 && last >= n_) {
+        for (std::size_t g = 0; 4 * g < n_; ++g) prepare_four(g, k, v_before);
+        return;
+    }
     for (std::size_t i = first; i < std::min(last, n_); ++i) prepare_wheel(i, k, v_before);
 }
 
-void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
+// Of the ground under wheel i, relative.
+double WheelStep::strength(std::size_t i, double v_before) const {
     const BodyPhysics &b = p_.body;
-    const WheelPhysics &w = p_.wheel[i];
-    State &s = state_[i];
-    s.w = s.gain * data_.wheel[i].speed_rad_s[k];
-    s.rim = s.radius * s.w;
-    s.theta = s.gain * data_.wheel[i].angle_rad[k];
-    s.travel = data_.wheel[i].travel_rad.empty() ? 0 : s.gain * data_.wheel[i].travel_rad[k];
-    s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i, accel_) : data_.load_N[i][k];
     double strength = 1;
-    const double place = path_ + w.x; // each wheel at its own place, as the catalogue has it
+    const double place = path_ + p_.wheel[i].x; // each wheel at its own place, as the catalogue has it
     if (b.patch_change != 0 && place >= b.patch_start && place < b.patch_start + b.patch_length) strength *= 1 + b.patch_change;
     if (b.soil_gradient != 0) strength *= std::max(0.05, 1 + b.soil_gradient * path_);
     if (b.multi_pass != 0) {
         const double forward = 0.5 * (1 + soft_sign(v_before, 0.01));
         strength *= 1 + b.multi_pass * (ahead_[i] * forward + behind_[i] * (1 - forward));
     }
-    s.Fm = std::max(0.0, (w.adhesion + w.mu * s.load) * strength);
+    return strength;
+}
+
+void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
+    const WheelPhysics &w = p_.wheel[i];
+    State &s = state_[i];
+    s.w = s.gain * data_.wheel[i].speed_rad_s[k];
+    s.rim = s.radius * s.w;
+    if (motion_terms_) {
+        s.theta = s.gain * data_.wheel[i].angle_rad[k];
+        s.travel = data_.wheel[i].travel_rad.empty() ? 0 : s.gain * data_.wheel[i].travel_rad[k];
+    }
+    s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i, accel_) : data_.load_N[i][k];
+    s.Fm = std::max(0.0, (w.adhesion + w.mu * s.load) * (even_ ? 1 : strength(i, v_before)));
     s.sc = s.plain_sc;
+    const auto at = static_cast<Eigen::Index>(i % 4);
+    four_[i / 4].rim[at] = s.rim, four_[i / 4].load[at] = s.load, four_[i / 4].Fm[at] = s.Fm;
+}
+
+// As prepare_wheel() has it.
+void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
+    Four &f = four_[g];
+    const std::size_t first = 4 * g, count = std::min<std::size_t>(4, n_ - first);
+    const auto speed = [&](std::size_t at) { return at < count ? data_.wheel[first + at].speed_rad_s[k] : 0; };
+    f.rim = f.per_speed_m * Lane(speed(0), speed(1), speed(2), speed(3));
+    f.load = (f.load_0 + f.load_per_accel * accel_).max(0.0);
+    f.Fm = f.adhesion + f.mu * f.load;
+    for (std::size_t i = 0; i < count && !even_; ++i) f.Fm[static_cast<Eigen::Index>(i)] *= strength(first + i, v_before);
+    f.Fm = f.Fm.max(0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        State &s = state_[first + i];
+        s.rim = f.rim[at], s.load = f.load[at], s.Fm = f.Fm[at], s.sc = s.plain_sc;
+    }
+}
+
+// As pull() has it, for wheels that grip sideways.
+inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
+    const BodyPhysics &b = p_.body;
+    f.v = v;
+    f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
+    Lane Fm = f.Fm;
+    if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
+    const Lane across = -f.grip * side_v / f.rim.abs().max(v.abs()).max(least_combined_m_s);
+    const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + across.square()).sqrt() * f.per_sc));
+    f.traction = grip * f.slip;
+    f.side = grip * across;
+    const Lane resist = f.load * (f.resistance + b.slip_sinkage * f.slip.abs() + b.speed_resistance * v.abs());
+    f.rolling = resist * soft_sign(v, resist_speed_m_s);
+}
+
+Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < n_ && !plain_; ++i) {
+        const Eigen::Vector3d one = force(i, q);
+        if (each != nullptr) (*each)[i] = one;
+        sum += one;
+    }
+    if (!plain_) return sum;
+    for (std::size_t g = 0; 4 * g < n_; ++g) {
+        Four &f = four_[g];
+        const Lane vx = q[0] - f.y * q[2], vy = q[1] + f.x * q[2];
+        contact_of(f, vx * f.c + vy * f.s, vy * f.c - vx * f.s);
+        const Lane forward = f.traction - f.rolling, fx = forward * f.c - f.side * f.s, fy = forward * f.s + f.side * f.c;
+        const Lane moment = f.x * fy - f.y * fx - f.lateral * f.load * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
+        for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
+            const auto at = static_cast<Eigen::Index>(i % 4);
+            State &s = state_[i];
+            s.v = f.v[at], s.slip = f.slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
+            if (each != nullptr) (*each)[i] = {fx[at], 0, moment[at]};
+        }
+        sum += Eigen::Vector3d(fx.sum(), 0, moment.sum());
+    }
+    return sum;
 }
 
 Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
@@ -80,14 +164,26 @@ Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     const double fx = forward * s.c - s.side * s.s, fy = forward * s.s + s.side * s.c;
     double moment = w.x * fy - w.y * fx;
     if (p_.motion == BodyMotion::longitudinal) { // vy = 0: skid steer turns about its middle
-        moment -= (w.lateral + p_.body.scrub) * s.load * w.x * soft_sign(w.x * q[2], 5e-3);
+        moment -= (w.lateral + p_.body.scrub) * s.load * w.x * soft_sign(w.x * q[2], scrub_speed_m_s);
         return {fx, 0, moment};
     }
     if (p_.motion == BodyMotion::planar && p_.grips_sideways[i]) {
-        const double scrub = -(w.lateral + p_.body.scrub) * s.load * soft_sign(across, 5e-3);
+        const double scrub = -(w.lateral + p_.body.scrub) * s.load * soft_sign(across, scrub_speed_m_s);
         return {fx - scrub * s.s, fy + scrub * s.c, moment + scrub * (w.x * s.c + w.y * s.s)};
     }
     return {fx, fy, moment};
+}
+
+double WheelStep::slip_at(const State &s, double v) const {
+    if (!(s.sigma > 0)) return slip_of(s.rim, v);
+    return lagging_slip(s.slip_before, data_.step_s / s.sigma, s.rim, v);
+}
+
+void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N) {
+    State &s = state_[i];
+    s.v += (change[0] - p_.wheel[i].y * change[2]) * s.c + (change[1] + p_.wheel[i].x * change[2]) * s.s;
+    s.slip = slip_at(s, s.v);
+    s.traction += traction_N;
 }
 
 // Force along the heading at wheel-centre speed v; side_v across it. Combined slip: the grip acts against the whole sliding
@@ -96,25 +192,18 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     State &s = state_[i];
     const BodyPhysics &b = p_.body;
     s.v = v;
-    if (s.sigma > 0) {
-        const double h = data_.step_s / s.sigma;
-        s.slip = (s.slip_before + h * (s.rim - v)) / (1 + h * std::max(std::fabs(s.rim), std::fabs(v)));
-        s.slip = std::clamp(s.slip, -1.0, 1.0);
-    } else {
-        s.slip = slip_of(s.rim, v);
-    }
+    s.slip = slip_at(s, v);
     double Fm = s.Fm, sc = s.sc, extra = 0, extra_rolling = 0;
     if (b.sliding_loss != 0) Fm *= std::exp(-std::min(20.0, b.sliding_loss * std::fabs(s.rim - v)));
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
     s.side = 0;
     if (side_v != 0 && p_.wheel[i].grip > 0 && p_.grips_sideways[i]) {
-        const double across = -p_.wheel[i].grip * side_v / std::max({std::fabs(s.rim), std::fabs(v), 0.02});
-        const double whole = length(s.slip, across);
-        const double grip = whole > 1e-9 ? Fm * traction_shape(p_.soil_law, whole, sc) / whole : 0;
+        const double across = -p_.wheel[i].grip * side_v / std::max({std::fabs(s.rim), std::fabs(v), least_combined_m_s});
+        const double grip = Fm / sc * traction_slope(p_.soil_law, length(s.slip, across) / sc);
         s.traction = grip * s.slip;
         s.side = grip * across;
     } else {
-        s.traction = Fm * traction_shape(p_.soil_law, s.slip, sc);
+        s.traction = Fm / sc * traction_slope(p_.soil_law, std::fabs(s.slip) / sc) * s.slip;
     }
     if (p_.wheel[i].backlash > 0) s.traction *= contact(i, v);
     const double resist = s.load * (p_.wheel[i].crr + p_.wheel[i].rolling + b.slip_sinkage * std::fabs(s.slip) + b.speed_resistance * std::fabs(v)) + extra_rolling;
@@ -173,7 +262,7 @@ Eigen::Vector2d WheelStep::grade_accel() const {
 }
 
 void WheelStep::commit() {
-    for (std::size_t i = 0; i < n_; ++i) state_[i].slip_before = state_[i].slip, state_[i].play_before = state_[i].play;
+    for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip), state_[i].play_before = state_[i].play;
 }
 
 void WheelStep::loads() {

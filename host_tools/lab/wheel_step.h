@@ -6,6 +6,7 @@
 
 #include "dataset.h"
 #include "physics.h"
+#include "wheel_laws.h"
 
 #include <Eigen/Core>
 
@@ -17,21 +18,6 @@ namespace traction::lab {
 
 inline constexpr std::size_t most_wheels = 32;
 
-inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
-                                               // would be too stiff for any step; assumed
-
-// Slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest. rim = R w.
-inline double slip_of(double rim, double v) {
-    const double s = (rim - v) / std::max({std::fabs(rim), std::fabs(v), rest_speed_m_s});
-    return s > 1 ? 1 : s < -1 ? -1 : s;
-}
-
-// Ft / Fm at slip s: (20) janosi or (21) burckhardt, odd.
-double traction_shape(SoilLaw law, double s, double sc);
-
-// x / sqrt(x^2 + e^2): sign without the jump.
-inline double soft_sign(double x, double e) { return x / std::sqrt(x * x + e * e); }
-
 class WheelStep {
   public:
     WheelStep(const Dataset &data, const Physics &physics);
@@ -42,10 +28,14 @@ class WheelStep {
 
     // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
     Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
+    // All wheels at once: their sum, and in `each`, if given, what every one contributes.
+    Eigen::Vector3d forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each);
+    // Moves the state of wheel i by a small change of q, to first order; rolling and side are left. The caller knows the traction's change.
+    void nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N);
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
     Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                      // the step is found: slip and play become the next step's memory
-    void remember(std::size_t i, double slip) { state_[i].slip_before = slip; }
+    void remember(std::size_t i, double slip) { state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip; }
 
     struct State {
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0;
@@ -61,8 +51,21 @@ class WheelStep {
     bool feels_path() const { return feels_path_; }  // some force depends on the path travelled
 
   private:
+    // Four wheels side by side; where there are fewer, the last carry nothing.
+    struct Four {
+        Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(), lateral = Lane::Zero();
+        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero();
+        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero();
+        Lane rim = Lane::Zero(), load = Lane::Zero(), Fm = Lane::Zero();
+        Lane v, slip, traction, rolling, side;
+    };
+    void gather();
+    void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
     void prepare_wheel(std::size_t i, std::size_t k, double v_before);
+    void prepare_four(std::size_t g, std::size_t k, double v_before);
+    double strength(std::size_t i, double v_before) const;
     double pull(std::size_t i, double v, double body_v, double side_v);
+    double slip_at(const State &s, double v) const;
     double contact(std::size_t i, double v);
     void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
     void loads();
@@ -74,6 +77,9 @@ class WheelStep {
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
     double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, yaw_ = 0, yaw_rate_ = 0;
+    std::array<Four, most_wheels / 4> four_;
+    bool plain_ = false; // the wheels' forces need no more than `four_`
+    bool even_ = false;  // the ground is as strong everywhere
     bool motion_terms_ = false, play_ = false, feels_path_ = false;
 };
 
