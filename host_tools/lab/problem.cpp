@@ -10,9 +10,7 @@
 namespace traction::lab {
 
 namespace {
-constexpr double huber = 3.0;            // in units of the balance's scale
-constexpr double ground_length_m = 0.25; // over which a ground's grip changes: assumed, a few contact lengths
-constexpr double most_alike = 50;        // rows that a rover at rest repeats, at most
+constexpr double huber = 3.0; // in units of the balance's scale
 }
 
 Problem::Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> free)
@@ -161,14 +159,11 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
     const auto n = static_cast<Eigen::Index>(balance.measured.size());
     const Motion &m = forward_.motion();
     constexpr Eigen::Index parts = 6;
-    Eigen::VectorXd alike = Eigen::VectorXd::Ones(n); // rows on the same ground
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, parts);
     for (Eigen::Index r = 0; r < n; ++r) {
         const double t0 = balance.t0_s[static_cast<std::size_t>(r)], t1 = balance.t1_s[static_cast<std::size_t>(r)];
         const auto k = std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (0.5 * (t0 + t1) - data_->start_s) / data_->step_s)));
         F(r, 0) = 1;
-        const double spacing = r > 0 ? t0 - balance.t0_s[static_cast<std::size_t>(r - 1)] : t1 - t0;
-        alike[r] = std::clamp(ground_length_m / std::max(1e-6, std::fabs(m.v_m_s[k]) * spacing), 1.0, most_alike);
         F(r, 4) = m.v_m_s[k] * m.v_m_s[k];
         F(r, 5) = speed_range(t0, t1) * speed_range(t0, t1);
         for (std::size_t i = 0; i < m.wheel.size(); ++i) {
@@ -192,8 +187,6 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
         for (int i = 0; i < 200; ++i) x = x.cwiseProduct(target.cwiseQuotient((gram * x).cwiseMax(1e-300)));
         variance = (F * x).cwiseMax(floor_variance);
     }
-    // uneven ground is a function of place: what a slow row sees, its neighbours see again
-    for (Eigen::Index r = 0; r < n; ++r) variance[r] += (alike[r] - 1) * x[1] * F(r, 1);
     return variance;
 }
 

@@ -1,6 +1,6 @@
 // inputs_test.cpp - what a log becomes before the model is asked: wheels that jump, samples that are means, a command that comes late.
 #include "host_tools/lab/dataset.h"
-#include "host_tools/lab/problem.h"
+#include "host_tools/lab/forward.h"
 #include "host_tools/lab/smooth.h"
 #include "host_tools/simulate/simulate.h"
 
@@ -129,28 +129,6 @@ TEST(Inputs, a_planar_rover_with_a_gyro_has_its_yaw_rate_and_its_sideways_way_an
         if (b.kind != BalanceKind::yaw_rate) continue;
         EXPECT_LT(std::sqrt(e / static_cast<double>(b.measured.size())), 20); // of noise, before any fit; at rest it would be 110
     }
-}
-
-TEST(Rows, on_the_same_uneven_ground_a_slow_row_weighs_less_than_a_quick_one) {
-    log::Log log = simulate(sim::read_scenario("scenarios/identification.toml")).log;
-    const Model model = read_model("models/rover_sand.toml");
-    const Dataset data = make_dataset(model, log);
-    Problem problem(data, make_physics(model), free_parameters(model, make_physics(model)));
-    problem.fit({});
-    const Motion &m = problem.forward().motion();
-    const Balance &torque = data.balance[0];
-    ASSERT_EQ(torque.kind, BalanceKind::current_torque);
-    std::vector<double> slow, quick;
-    for (std::size_t r = 0; r < torque.measured.size(); ++r) {
-        const auto k = static_cast<std::size_t>((0.5 * (torque.t0_s[r] + torque.t1_s[r]) - data.start_s) / data.step_s);
-        if (std::fabs(m.wheel[0].traction_N[k]) < 2.5 || torque.noise_factor[r] > 1.2) continue; // hard pulls, no jumps
-        const double v = std::fabs(m.v_m_s[k]);
-        if (v < 0.15) slow.push_back(problem.row_scale[static_cast<Eigen::Index>(r)]);
-        if (v > 0.3) quick.push_back(problem.row_scale[static_cast<Eigen::Index>(r)]);
-    }
-    ASSERT_GT(slow.size(), 10U);
-    ASSERT_GT(quick.size(), 10U);
-    EXPECT_LT(median(slow), 0.9 * median(quick));
 }
 
 } // namespace
