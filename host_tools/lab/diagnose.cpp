@@ -175,6 +175,9 @@ class Search {
         return true;
     }
 
+    // Held-out error; where it lies below that of the fit, the linear step that left a block out went where a bound would have stopped it.
+    static double honest_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
+
     // The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
     // candidate must keep its size.
     std::optional<Problem> with(const Trial &t, const Problem &before) const {
@@ -184,7 +187,7 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || overall_heldout(problem) > 1.03 * overall_heldout(before)) return std::nullopt;
+        if (!large_enough(t.candidate, value) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
         return problem;
     }
 
