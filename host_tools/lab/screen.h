@@ -67,6 +67,7 @@ class Screen {
         std::vector<Eigen::LLT<Eigen::MatrixXd>> without;
         Eigen::Index count() const { return static_cast<Eigen::Index>(gram.size()); }
     };
+    std::vector<ParameterError> parameter_errors_by(const Blocks &blocks) const;
     void cut(double length_s, Blocks &blocks, std::vector<std::pair<double, double>> *times) const;
 
     const Problem &problem_;
