@@ -135,9 +135,13 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
             Signals s;
             s.t = d.time(k), s.w = w, s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
             s.x = motion.path_m[k] + p.x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k], s.u = u;
-            s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = 0;
-            for (std::size_t j = 0; j < base_current_.size(); ++j)
-                if (j != wheel && base_current_[j].size() == d.count) s.Io += base_current_[j][k];
+            s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = s.Ia = s.Is = 0;
+            for (std::size_t j = 0; j < base_current_.size(); ++j) {
+                if (j == wheel || base_current_[j].size() != d.count) continue;
+                s.Io += base_current_[j][k];
+                if (same_axle(p, physics.wheel[j])) s.Ia += base_current_[j][k];
+                if (same_side(p, physics.wheel[j])) s.Is += base_current_[j][k];
+            }
             s.I = KG > 0 ? (gear + p.J * dw + radius * m.traction_N[k]) / KG : 0;
             for (const ExtraTerm &term : physics.terms) {
                 if (term.wheel >= 0 && term.wheel != static_cast<int>(wheel)) continue;

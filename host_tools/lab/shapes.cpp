@@ -1,6 +1,7 @@
 #include "shapes.h"
 
 #include "candidate.h"
+#include "distribution.h"
 #include "screen.h"
 
 #include <algorithm>
@@ -55,15 +56,23 @@ class ShapeColumns {
     std::map<TermTarget, UnitResponse> units_;
 };
 
+// Two tests, corrected for their number and that of the shapes: of the coefficients (robust, but each costs a degree of freedom), and of the
+// held-out error's fall over blocks (Diebold and Mariano, J. Business & Economic Statistics 13 (1995) 253, of one mean).
+double corrected(const Assessment &a) {
+    const double blocks = static_cast<double>(a.block_gain.size()), t = a.gain_error > 0 ? a.gain / a.gain_error : 0;
+    const double falls = t > 0 && blocks > 1 ? 0.5 * f_tail(t * t, 1, blocks - 1) : 1;
+    return std::min(1.0, 2 * shapes_tried * std::min(a.p_value, falls));
+}
+
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
-    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.forward().winding_current_A())) {
+    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
         ShapeScore s;
         s.candidate = c;
         const Eigen::MatrixXd C = columns.of(c);
         s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false);
-        s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
+        s.p_value = corrected(s.assessment);
         if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(C, s.assessment);
         list.push_back(std::move(s));
     }
@@ -101,6 +110,14 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     return u;
 }
 
+// Evidence that repeats: sure beside its scatter over blocks, or very sure by the test and not the work of two blocks alone.
+bool repeats(const ShapeScore &s) {
+    if (s.assessment.gain > 2.5 * s.assessment.gain_error) return true;
+    Eigen::VectorXd gain = s.assessment.block_gain;
+    std::sort(gain.begin(), gain.end());
+    return s.p_value < 2e-3 && gain.size() > 2 && gain.head(gain.size() - 2).sum() > 0;
+}
+
 } // namespace
 
 Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named_count, const DiagnoseOptions &options) {
@@ -116,7 +133,7 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     const ShapeScore *best = nullptr;
     double best_gain = 0;
     for (const ShapeScore &s : scores) {
-        if (!(s.p_value < options.shape_p_limit) || !material(s) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
+        if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())) continue;
         if (best == nullptr) best_gain = s.assessment.gain;
