@@ -308,8 +308,9 @@ class Search {
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
             Beyond beyond = find_unknown(first, last, named, options_);
             if (beyond.shape) d_.unknown = beyond.shape;
-            while (beyond.alone && (d_.accepted.size() > 1 || (d_.accepted.size() == 1 && d_.accepted[0].gain_squares < 0.5 * beyond.gain_squares))) {
-                demote(d_.accepted.size() - 1, last);
+            std::vector<std::size_t> &rest = beyond.replaced;
+            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * beyond.gain_squares); rest.pop_back()) {
+                demote(rest.back(), last);
                 again = true;
             }
             if (!again && beyond.stand_in) {

@@ -181,6 +181,23 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
     return describe(*best, screen.heldout_error());
 }
 
+// The named effects that say the same as the shape. One that keeps more than half of what it gains beside it is about something else, and
+// neither stands nor falls with it. Waves keep no columns: all are taken to be in their way.
+std::vector<std::size_t> in_its_way(const Problem &last, const std::vector<Candidate> &named, const std::string &shape, const std::vector<ShapeScore> &scores) {
+    const auto found = std::find_if(scores.begin(), scores.end(), [&](const ShapeScore &s) { return s.candidate.effect == shape && s.columns.cols() > 0; });
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        Eigen::MatrixXd columns;
+        if (found != scores.end()) {
+            const Problem less = without(last, named[i], columns);
+            const double own = Screen(less).assess(columns, Eigen::VectorXd::Zero(columns.cols()), false).gain;
+            if (beside(less, columns, *found).gain > 0.5 * own) continue;
+        }
+        list.push_back(i);
+    }
+    return list;
+}
+
 // Evidence that repeats: sure beside its scatter over blocks, or very sure by the test and not the work of two blocks alone.
 bool repeats(const ShapeScore &s) {
     if (s.assessment.gain > 2.5 * s.assessment.gain_error) return true;
@@ -224,15 +241,17 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
     at_last.keep_scales(first);
     at_last.linearise();
     const Screen named_screen(at_last);
-    // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
-    const double margin = named_count > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
-        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
+        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > 0.95 * named_gain)) continue;
+        const std::vector<std::size_t> replaced = in_its_way(last, named, s.candidate.effect, scores);
+        if (replaced.empty()) continue;
+        // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
+        const double margin = replaced.size() > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
         const double error = paired_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
-        if (named_count == 1 && s.assessment.gain - named_gain < 2 * error) continue;
+        if (!(s.assessment.gain > margin * named_gain) || (replaced.size() == 1 && s.assessment.gain - named_gain < 2 * error)) continue;
         beyond.shape = describe(s, first_screen.heldout_error());
-        beyond.alone = true, beyond.gain_squares = s.assessment.gain;
+        beyond.replaced = replaced, beyond.gain_squares = s.assessment.gain;
         return beyond;
     }
     return beyond;
