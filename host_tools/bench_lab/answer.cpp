@@ -42,7 +42,7 @@ json ask_lab(const std::string &log_file, const std::string &model_file) {
 
     json answer = {{"schema", "traction.lab/1"}, {"verb", "diagnose"}, {"candidates", json::array()}, {"classes", json::array()},
                    {"ladder", json::array()}, {"messages", found.messages}};
-    answer["verdict"] = {{"kind", found.kind}, {"effects", found.effects}, {"text", found.text}};
+    answer["verdict"] = {{"kind", found.kind}, {"effects", found.effects}, {"nearest", found.nearest}, {"text", found.text}};
     answer["seconds"] = {{"read", read_s}, {"diagnose", since(start) - read_s}};
     for (const lab::CandidateResult &one : found.ranking) answer["candidates"].push_back(candidate_json(one));
     for (const lab::CandidateResult &one : found.accepted) answer["accepted"].push_back(candidate_json(one));

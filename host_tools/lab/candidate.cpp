@@ -2,6 +2,7 @@
 
 #include "dataset.h"
 #include "forward.h"
+#include "knots.h"
 
 #include "sim/physics/effects/catalogue.h"
 
@@ -82,13 +83,6 @@ FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle 
     return free;
 }
 
-double quantile(std::vector<double> values, double q) {
-    if (values.empty()) return 0;
-    const auto i = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + i, values.end());
-    return values[static_cast<std::size_t>(i)];
-}
-
 struct ShapeKind {
     TermTarget target;
     Axis axis;
@@ -123,48 +117,12 @@ constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_friction, Axis::yaw_rate, "friction(yaw rate)"},
     {TermTarget::wheel_torque, Axis::reversal, "torque(wheel angle since reversal)"},
     {TermTarget::voltage, Axis::other_current, "voltage(current of the other motors)"},
+    {TermTarget::voltage, Axis::axle_current, "voltage(current of the motors of its axle)"},
+    {TermTarget::voltage, Axis::side_current, "voltage(current of the motors of its side)"},
+    {TermTarget::wheel_torque, Axis::current, "torque(motor current)"},
+    {TermTarget::wheel_friction, Axis::abs_wheel_speed, "friction(wheel speed)"},
+    {TermTarget::voltage, Axis::voltage, "voltage(motor voltage)"},
 };
-
-const std::vector<double> *axis_series(Axis axis, const Dataset &data, const Motion &motion, const std::vector<std::vector<double>> &current,
-                                       std::size_t wheel) {
-    switch (axis) {
-    case Axis::wheel_speed: return &data.wheel[wheel].speed_rad_s;
-    case Axis::slip: return &motion.wheel[wheel].slip;
-    case Axis::load: return &motion.wheel[wheel].load_N;
-    case Axis::accel: return &motion.accel_m_s2;
-    case Axis::path: return &motion.path_m;
-    case Axis::speed:
-    case Axis::abs_speed:
-    case Axis::direction: return &motion.v_m_s;
-    case Axis::current:
-    case Axis::other_current: return &current[wheel];
-    case Axis::yaw_rate: return &motion.yaw_rate_rad_s;
-    case Axis::reversal: return &data.wheel[wheel].travel_rad;
-    case Axis::place: return &motion.path_m;
-    case Axis::time:
-    case Axis::angle:
-    case Axis::count: break;
-    }
-    return nullptr;
-}
-
-// At quantiles; over even steps where most of the time is spent at one value; after a reversal where friction turns.
-std::vector<double> knots_of(Axis axis, const std::vector<double> &values) {
-    const double low = quantile(values, 0.02), high = quantile(values, 0.98);
-    std::vector<double> knots;
-    if (axis == Axis::reversal) {
-        for (const double x : {-1.0, -0.4, -0.1, -0.005, 0.005, 0.1, 0.4, 1.0}) // [rad] assumed
-            if (x > low && x < high) knots.push_back(x);
-        return knots;
-    }
-    if (axis == Axis::direction) return {-0.9, 0, 0.9};
-    const bool even = axis == Axis::yaw_rate || axis == Axis::other_current;
-    for (const double q : {0.02, 0.2, 0.4, 0.6, 0.8, 0.98}) {
-        const double knot = even ? low + (q - 0.02) / 0.96 * (high - low) : quantile(values, q);
-        if (knots.empty() || knot > knots.back() + 1e-6 + 0.02 * (high - low)) knots.push_back(knot);
-    }
-    return knots;
-}
 
 // Waves of the ground's strength along the path, at each wheel's place or the body's: half a cycle over the path apart.
 std::vector<Candidate> wave_candidates(const Motion &motion) {
@@ -258,9 +216,8 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
     return list;
 }
 
-std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const std::vector<std::vector<double>> &current_A) {
+std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const Physics &physics, const std::vector<std::vector<double>> &current_A) {
     std::vector<Candidate> list;
-    const int wheels = static_cast<int>(data.wheel.size());
     for (const ShapeKind &kind : shape_kinds) {
         Candidate c;
         c.effect = kind.name;
@@ -268,16 +225,10 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.axis = kind.axis;
         c.target = kind.target;
         c.touched = target_stages(kind.target);
-        std::vector<double> values;
-        for (int i = 0; i < wheels; ++i) {
-            const std::vector<double> *series = axis_series(kind.axis, data, motion, current_A, static_cast<std::size_t>(i));
-            if (kind.axis == Axis::time)
-                for (std::size_t k = 0; k < data.count; k += data.independent_rows ? 1 : 20) values.push_back(data.time(k));
-            else if (series != nullptr)
-                for (std::size_t k = 0; k < series->size(); k += data.independent_rows ? 1 : 10) values.push_back(kind.axis == Axis::abs_speed ? std::fabs((*series)[k]) : (*series)[k]);
-        }
-        if (values.empty()) continue;
-        c.knots = knots_of(kind.axis, values);
+        const AxisValues x = values_on(kind.axis, data, motion, physics, current_A);
+        if (x.values.empty()) continue;
+        c.parts_wheels = x.parts_wheels;
+        c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);
         if (c.knots.size() < 3) continue;
         for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();
         list.push_back(std::move(c));
@@ -341,7 +292,7 @@ EffectUse effect_of(const Candidate &candidate, const std::vector<double> &stren
 }
 
 std::string shape_expression(const Candidate &c, const std::vector<double> &y) {
-    static const char *names[] = {"t", "w", "v", "s", "Fn", "theta", "x", "a", "I", "v/sqrt(v*v+1e-4)", "abs(v)", "r", "X", "d", "Io"};
+    static const char *names[] = {"t", "w", "v", "s", "Fn", "theta", "x", "a", "I", "v/sqrt(v*v+1e-4)", "abs(v)", "r", "X", "d", "Io", "Ia", "Is", "abs(w)", "u"};
     const std::string x = names[static_cast<int>(c.axis)];
     char buffer[160];
     if (c.order > 0) {

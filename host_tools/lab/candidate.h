@@ -27,6 +27,7 @@ struct Candidate {
     TermTarget target = TermTarget::wheel_torque;
     std::vector<double> knots;
     double order = 0; // periodic in the wheel angle
+    bool parts_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
 
     std::string label() const; // "slip_sinkage", "wiring_resistance on wheel 2"
     // Puts the shape parameters (and for structure-free ones the term) into a physics so that the strengths can move.
@@ -37,7 +38,7 @@ struct Candidate {
 std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &data, const Motion &motion);
 
 // Structure-free shapes that this log can carry: axis x target, knots at quantiles of the axis.
-std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const std::vector<std::vector<double>> &current_A);
+std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const Physics &physics, const std::vector<std::vector<double>> &current_A);
 
 // The candidate as an effect of a model, with fitted strengths.
 EffectUse effect_of(const Candidate &candidate, const std::vector<double> &strengths);

@@ -178,6 +178,9 @@ class Search {
         return true;
     }
 
+    // Held-out error; where it lies below that of the fit, the linear step that left a block out went where a bound would have stopped it.
+    static double honest_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
+
     // The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
     // candidate must keep its size.
     std::optional<Problem> with(const Trial &t, const Problem &before) const {
@@ -187,7 +190,7 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || overall_heldout(problem) > 1.03 * overall_heldout(before)) return std::nullopt;
+        if (!large_enough(t.candidate, value) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
         return problem;
     }
 
@@ -278,26 +281,60 @@ class Search {
     void remove(std::size_t i, Model without, const Problem &problem) {
         const std::string label = d_.accepted[i].candidate.label();
         std::erase_if(d_.ladder, [&](const Rung &r) { return r.label == "+ " + label; });
-        std::erase_if(d_.classes, [&](const ConfoundedClass &c) { return c.members.front() == label; });
+        forget_class(label);
         if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = overall_heldout(problem);
         d_.model = std::move(without);
         d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
         refresh(problem, Screen(problem));
     }
 
-    // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that.
+    // The class that the label stands for, if there is one; those behind it move up.
+    void forget_class(const std::string &label) {
+        const auto found = std::find_if(d_.classes.begin(), d_.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
+        if (found == d_.classes.end()) return;
+        const auto gone = static_cast<int>(found - d_.classes.begin());
+        d_.classes.erase(found);
+        for (std::vector<CandidateResult> *list : {&d_.ranking, &d_.accepted})
+            for (CandidateResult &r : *list) {
+                if (!r.class_index) continue;
+                if (*r.class_index == gone) r.class_index.reset();
+                else if (*r.class_index > gone) --*r.class_index;
+            }
+    }
+
+    // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
+    // that is not needed beside a shape stood in for it. What goes is told as the nearest of the catalogue.
     void look_beyond(const Problem &first, Problem &last) {
-        Beyond beyond = find_unknown(first, last, d_.accepted.size(), options_);
-        d_.unknown = std::move(beyond.shape);
-        if (!d_.unknown || !beyond.alone) return;
-        while (d_.accepted.size() > 1 || (d_.accepted.size() == 1 && d_.accepted[0].gain_squares < 0.5 * beyond.gain_squares)) {
-            Model without = d_.model;
-            const Candidate &c = d_.accepted.back().candidate;
-            std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == c.effect && use.wheel == c.wheel; });
-            d_.messages.push_back(c.label() + " of the catalogue comes near, but " + d_.unknown->balance + " alone explains as much: not named");
-            last = fitted(without, &last);
-            remove(d_.accepted.size() - 1, std::move(without), last);
+        for (bool again = true; again;) {
+            again = false;
+            std::vector<Candidate> named;
+            for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
+            Beyond beyond = find_unknown(first, last, named, options_);
+            if (beyond.shape) d_.unknown = beyond.shape;
+            std::vector<std::size_t> &rest = beyond.replaced;
+            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * beyond.gain_squares); rest.pop_back()) {
+                demote(rest.back(), last);
+                again = true;
+            }
+            if (!again && beyond.stand_in) {
+                d_.unknown = beyond.cause;
+                demote(*beyond.stand_in, last);
+                again = true;
+            }
+            again = again && !d_.accepted.empty();
         }
+    }
+
+    void demote(std::size_t i, Problem &last) {
+        const CandidateResult one = d_.accepted[i];
+        Model without = d_.model;
+        std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+        d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance + " alone explains as much: not named");
+        for (CandidateResult &r : d_.ranking)
+            if (r.candidate.label() == one.candidate.label() || (one.class_index && r.class_index == one.class_index)) r.verdict = "nearest";
+        d_.nearest.push_back(one.candidate.label());
+        last = fitted(without, &last);
+        remove(i, std::move(without), last);
     }
 
     void conclude() {

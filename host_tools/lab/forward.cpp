@@ -85,9 +85,13 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
     s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
     s.x = motion.path_m[k] + physics.wheel[wheel].x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k];
     s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / (1 + physics.body.voltage_gain);
-    s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = 0;
-    for (std::size_t j = 0; j < base_current_.size(); ++j)
-        if (j != wheel && base_current_[j].size() == d.count) s.Io += base_current_[j][k];
+    s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = s.Ia = s.Is = 0;
+    for (std::size_t j = 0; j < base_current_.size(); ++j) {
+        if (j == wheel || base_current_[j].size() != d.count) continue;
+        s.Io += base_current_[j][k];
+        if (same_axle(physics.wheel[wheel], physics.wheel[j])) s.Ia += base_current_[j][k];
+        if (same_side(physics.wheel[wheel], physics.wheel[j])) s.Is += base_current_[j][k];
+    }
     return s;
 }
 

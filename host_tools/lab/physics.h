@@ -7,6 +7,7 @@
 #include "model.h"
 #include "terms.h"
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ struct WheelPhysics {
     double ripple_cos = 0, ripple_sin = 0, ripple_order = 1, heating = 0, heating_time = 60, wiring = 0, dead_voltage = 0;
     double constant_change = 0, rolling = 0, radius_change = 0, current_gain = 0, current_extra = 0, encoder_missed = 0;
 };
+
+// Motors that may share a lead.
+inline bool same_axle(const WheelPhysics &a, const WheelPhysics &b) { return std::fabs(a.x - b.x) < 0.01; } // 1 cm: assumed
+inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y * b.y > 0; }
 
 struct BodyPhysics {
     double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;

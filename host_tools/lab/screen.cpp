@@ -298,14 +298,23 @@ std::vector<Eigen::VectorXd> Screen::heldout_changes() const {
 }
 
 std::vector<ParameterError> Screen::parameter_errors() const {
-    const Eigen::Index n = nuisance_.cols(), count = fine_.count();
+    // what is correlated over more than a short block widens the error by long ones, whose fewer degrees of freedom widen the quantile
+    std::vector<ParameterError> errors = parameter_errors_by(fine_);
+    const std::vector<ParameterError> by_long = parameter_errors_by(coarse_);
+    for (std::size_t j = 0; j < errors.size(); ++j)
+        if (by_long[j].reach > errors[j].reach) errors[j] = by_long[j];
+    return errors;
+}
+
+std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of) const {
+    const Eigen::Index n = nuisance_.cols(), count = blocks_of.count();
     const Eigen::VectorXd whole = total_factor_.solve(moment_);
     const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(n, n));
     Eigen::MatrixXd deviation(n, count), information(n, count); // information: of a parameter beside the others, per block
     for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        deviation.col(b) = fine_.without[i].matrixU().solve(fine_.half[i]) - whole;
-        information.col(b) = (inverse * fine_.gram[i]).cwiseProduct(inverse).rowwise().sum();
+        deviation.col(b) = blocks_of.without[i].matrixU().solve(blocks_of.half[i]) - whole;
+        information.col(b) = (inverse * blocks_of.gram[i]).cwiseProduct(inverse).rowwise().sum();
     }
     std::vector<ParameterError> errors;
     for (Eigen::Index j = 0; j < n; ++j) {

@@ -89,6 +89,7 @@ class Screen {
     void factor(Blocks &blocks) const;
     void parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) const;
     Eigen::VectorXd projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const;
+    std::vector<ParameterError> parameter_errors_by(const Blocks &blocks) const;
 
     const Problem &problem_;
     std::vector<Segment> segments_;

@@ -1,6 +1,7 @@
 #include "shapes.h"
 
 #include "candidate.h"
+#include "distribution.h"
 #include "screen.h"
 
 #include <algorithm>
@@ -18,6 +19,7 @@ struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
     double p_value = 1, balance_fall = 0;
+    Eigen::MatrixXd columns; // kept for those that are no waves
 };
 
 // Columns of all shapes: those that move the body share the response to a unit of their target.
@@ -61,16 +63,25 @@ class ShapeColumns {
     std::map<TermTarget, std::vector<Forward::ElectricSeries>> electric_units_;
 };
 
-std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen) {
+// Two tests, corrected for their number and that of the shapes: of the coefficients (robust, but each costs a degree of freedom), and of the
+// held-out error's fall over blocks (Diebold and Mariano, J. Business & Economic Statistics 13 (1995) 253, of one mean).
+double corrected(const Assessment &a) {
+    const double blocks = static_cast<double>(a.block_gain.size()), t = a.gain_error > 0 ? a.gain / a.gain_error : 0;
+    const double falls = t > 0 && blocks > 1 ? 0.5 * f_tail(t * t, 1, blocks - 1) : 1;
+    return std::min(1.0, 2 * shapes_tried * std::min(a.p_value, falls));
+}
+
+std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keep = false) {
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
-    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.forward().winding_current_A())) {
+    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
         ShapeScore s;
         s.candidate = c;
         const Eigen::MatrixXd C = columns.of(c);
         s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false);
-        s.p_value = std::min(1.0, s.assessment.p_value * shapes_tried);
+        s.p_value = corrected(s.assessment);
         if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(C, s.assessment);
+        if (keep && c.order == 0) s.columns = C;
         list.push_back(std::move(s));
     }
     std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
@@ -107,9 +118,104 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     return u;
 }
 
+// A problem less one of its effects, at the same linearisation: its columns are handed out and what it contributes goes back into the
+// residual.
+Problem without(const Problem &last, const Candidate &effect, Eigen::MatrixXd &columns) {
+    Problem less = last;
+    std::vector<Eigen::Index> kept;
+    less.parameters.clear();
+    columns.resize(last.jacobian.rows(), 0);
+    for (std::size_t i = 0; i < last.parameters.size(); ++i) {
+        const FreeParameter &p = last.parameters[i];
+        const auto at = static_cast<Eigen::Index>(i);
+        if (p.owner != effect.effect || p.wheel != effect.wheel) {
+            kept.push_back(at);
+            less.parameters.push_back(p);
+            continue;
+        }
+        columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+        columns.rightCols(1) = last.jacobian.col(at);
+        less.residual += (last.jacobian.col(at) * (p.base + last.theta[at])).cwiseQuotient(last.row_scale);
+    }
+    less.jacobian = last.jacobian(Eigen::all, kept);
+    less.theta = last.theta(kept);
+    return less;
+}
+
+// What the effect still gains where the shape's coefficients are free beside it.
+Assessment beside(const Problem &less, const Eigen::MatrixXd &effect, const ShapeScore &shape) {
+    Problem with = less;
+    const Eigen::Index n = less.theta.size(), k = shape.columns.cols();
+    with.jacobian.conservativeResize(Eigen::NoChange, n + k);
+    with.jacobian.rightCols(k) = shape.columns;
+    with.theta.conservativeResize(n + k);
+    with.theta.tail(k).setZero();
+    with.parameters.insert(with.parameters.end(), shape.candidate.strengths.begin(), shape.candidate.strengths.end());
+    return Screen(with).assess(effect, Eigen::VectorXd::Zero(effect.cols()), false);
+}
+
+double paired_error(const Eigen::VectorXd &difference) {
+    const double n = static_cast<double>(difference.size());
+    return std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
+}
+
+// A curve through three values is no curve, and one over wheels that each keep to a value of X is none either: f(X) may stand for anything
+// that differed between them.
+bool is_curve(const Candidate &shape) { return shape.order == 0 && !shape.parts_wheels && (shape.knots.size() > 3 || shape.axis == Axis::direction || shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current); }
+
+// The shape in whose stead the effect was named, if there is one: needed beside the effect, and explaining more than it by itself, while
+// the effect is not needed beside the shape. A law that is right passes: no freer shape does better than it.
+std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &effect, const std::vector<ShapeScore> &shapes, const ShapeScore *flagged, const DiagnoseOptions &options) {
+    Eigen::MatrixXd columns;
+    const Problem less = without(last, effect, columns);
+    const Screen screen(less);
+    const Assessment own = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
+    std::optional<ShapeScore> best;
+    for (const ShapeScore &shape : shapes) {
+        if (shape.columns.cols() == 0 || !is_curve(shape.candidate) || !(shape.p_value < options.shape_p_limit)) continue;
+        ShapeScore s = shape;
+        s.assessment = screen.assess(shape.columns, Eigen::VectorXd::Zero(shape.columns.cols()), false);
+        s.p_value = corrected(s.assessment);
+        if (!(s.p_value < options.shape_p_limit) || (best && !(s.assessment.gain > best->assessment.gain))) continue;
+        const bool better = s.assessment.gain - own.gain > 2 * paired_error(s.assessment.block_gain - own.block_gain);
+        if (!better && &shape != flagged) continue;
+        const Assessment left = beside(less, columns, shape);
+        if (left.gain > 0 && left.p_value * shapes_tried < options.p_limit) continue; // needed beside the shape too
+        best = std::move(s);
+    }
+    if (!best) return std::nullopt;
+    return describe(*best, screen.heldout_error());
+}
+
+// The named effects that say the same as the shape. One that keeps more than half of what it gains beside it is about something else, and
+// neither stands nor falls with it. Waves keep no columns: all are taken to be in their way.
+std::vector<std::size_t> in_its_way(const Problem &last, const std::vector<Candidate> &named, const std::string &shape, const std::vector<ShapeScore> &scores) {
+    const auto found = std::find_if(scores.begin(), scores.end(), [&](const ShapeScore &s) { return s.candidate.effect == shape && s.columns.cols() > 0; });
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        Eigen::MatrixXd columns;
+        if (found != scores.end()) {
+            const Problem less = without(last, named[i], columns);
+            const double own = Screen(less).assess(columns, Eigen::VectorXd::Zero(columns.cols()), false).gain;
+            if (beside(less, columns, *found).gain > 0.5 * own) continue;
+        }
+        list.push_back(i);
+    }
+    return list;
+}
+
+// Evidence that repeats: sure beside its scatter over blocks, or very sure by the test and not the work of two blocks alone.
+bool repeats(const ShapeScore &s) {
+    if (s.assessment.gain > 2.5 * s.assessment.gain_error) return true;
+    Eigen::VectorXd gain = s.assessment.block_gain;
+    std::sort(gain.begin(), gain.end());
+    return s.p_value < 2e-3 && gain.size() > 2 && gain.head(gain.size() - 2).sum() > 0;
+}
+
 } // namespace
 
-Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named_count, const DiagnoseOptions &options) {
+Beyond find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
+    const std::size_t named_count = named.size();
     Beyond beyond;
     Problem at_last = last, at_first = first; // their forward models are moved about
     const Screen last_screen(at_last);
@@ -118,11 +224,11 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     const auto material = [&](const ShapeScore &s) {
         return s.assessment.gain > least * last_screen.heldout_error() || (s.balance_fall > 0.15 && s.p_value < 1e-4);
     };
-    const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen);
+    const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
     const ShapeScore *best = nullptr;
     double best_gain = 0;
     for (const ShapeScore &s : scores) {
-        if (!(s.p_value < options.shape_p_limit) || !material(s) || !(s.assessment.gain > 2.5 * s.assessment.gain_error)) continue;
+        if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())) continue;
         if (best == nullptr) best_gain = s.assessment.gain;
@@ -130,6 +236,8 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     }
     if (best != nullptr) beyond.shape = describe(*best, last_screen.heldout_error());
     if (named_count == 0) return beyond;
+    for (std::size_t i = named_count; i-- > 0 && !beyond.stand_in;)
+        if ((beyond.cause = shadowed_by(last, named[i], scores, best, options))) beyond.stand_in = i;
     // where nothing is left that any shape would explain, no shape can do better than what was named
     double left = 0;
     for (const ShapeScore &s : scores) left = std::max(left, s.assessment.gain);
@@ -139,16 +247,18 @@ Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named
     at_last.keep_scales(first);
     at_last.linearise();
     const Screen named_screen(at_last);
-    // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
-    const double margin = named_count > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
-        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > margin * named_gain)) continue;
-        const Eigen::VectorXd difference = s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error());
-        const double n = static_cast<double>(difference.size());
-        const double error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-        if (named_count == 1 && s.assessment.gain - named_gain < 2 * error) continue;
-        return {describe(s, first_screen.heldout_error()), true, s.assessment.gain};
+        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > 0.95 * named_gain)) continue;
+        const std::vector<std::size_t> replaced = in_its_way(last, named, s.candidate.effect, scores);
+        if (replaced.empty()) continue;
+        // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
+        const double margin = replaced.size() > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
+        const double error = paired_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
+        if (!(s.assessment.gain > margin * named_gain) || (replaced.size() == 1 && s.assessment.gain - named_gain < 2 * error)) continue;
+        beyond.shape = describe(s, first_screen.heldout_error());
+        beyond.replaced = replaced, beyond.gain_squares = s.assessment.gain;
+        return beyond;
     }
     return beyond;
 }

@@ -1,19 +1,23 @@
-// shapes.h - what no effect of the catalogue explains: structure-free shapes f(X), tested like any candidate.
+// shapes.h - what no effect of the catalogue explains: structure-free shapes f(X), tested like any candidate; and which of the named
+// effects were only standing in for such a shape.
 #pragma once
 
 #include "diagnose.h"
 
 #include <optional>
+#include <vector>
 
 namespace traction::lab {
 
 struct Beyond {
     std::optional<UnknownShape> shape;
-    bool alone = false;      // the shape in the stead of all that was named does better than they
-    double gain_squares = 0; // what it explains of the first problem's held-out error, where alone
+    std::vector<std::size_t> replaced; // of the named: the shape alone does better than they together
+    double gain_squares = 0; // what it explains of the first problem's held-out error, where it replaces any
+    std::optional<std::size_t> stand_in; // of the named: it is not needed beside a shape that is needed beside it
+    std::optional<UnknownShape> cause;   // that shape
 };
 
 // `first`: the baseline; `last`: with all that was named.
-Beyond find_unknown(const Problem &first, const Problem &last, std::size_t named_count, const DiagnoseOptions &options);
+Beyond find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options);
 
 } // namespace traction::lab

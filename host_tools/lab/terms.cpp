@@ -18,9 +18,9 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(TermTarget::coun
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_names = {
     "time", "wheel speed", "ground speed", "slip", "wheel load", "wheel angle", "path travelled", "acceleration",
-    "winding current (model)", "direction", "absolute speed", "yaw rate", "place on the path", "wheel angle since reversal", "current of the other motors (model)"};
+    "winding current (model)", "direction", "absolute speed", "yaw rate", "place on the path", "wheel angle since reversal", "current of the other motors (model)", "current of the motors of its axle (model)", "current of the motors of its side (model)", "absolute wheel speed", "motor voltage (duty times battery)"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_units = {
-    "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s", "rad/s", "m", "rad", "A"};
+    "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s", "rad/s", "m", "rad", "A", "A", "A", "rad/s", "V"};
 
 class Piecewise : public Term {
   public:
@@ -88,9 +88,9 @@ class Expression : public Term {
   public:
     Expression(const std::string &text, const std::vector<std::string> &parameters) : coefficients_(parameters.size()) {
         try {
-            const std::array<std::pair<const char *, double *>, 16> names = {{{"t", &s_.t}, {"w", &s_.w}, {"v", &s_.v},
+            const std::array<std::pair<const char *, double *>, 18> names = {{{"t", &s_.t}, {"w", &s_.w}, {"v", &s_.v},
                 {"s", &s_.s}, {"Fn", &s_.Fn}, {"theta", &s_.theta}, {"x", &s_.x}, {"a", &s_.a}, {"I", &s_.I}, {"u", &s_.u},
-                {"Ft", &s_.Ft}, {"V", &s_.V}, {"r", &s_.r}, {"X", &s_.X}, {"d", &s_.d}, {"Io", &s_.Io}}};
+                {"Ft", &s_.Ft}, {"V", &s_.V}, {"r", &s_.r}, {"X", &s_.X}, {"d", &s_.d}, {"Io", &s_.Io}, {"Ia", &s_.Ia}, {"Is", &s_.Is}}};
             for (const auto &[name, place] : names) parser_.DefineVar(name, place);
             for (std::size_t i = 0; i < parameters.size(); ++i) parser_.DefineVar(parameters[i], &coefficients_[i]);
             parser_.DefineConst("pi", M_PI);
@@ -174,6 +174,10 @@ double axis_value(Axis axis, const Signals &s) {
     case Axis::place: return s.X;
     case Axis::reversal: return s.d;
     case Axis::other_current: return s.Io;
+    case Axis::axle_current: return s.Ia;
+    case Axis::side_current: return s.Is;
+    case Axis::abs_wheel_speed: return std::fabs(s.w);
+    case Axis::voltage: return s.u;
     case Axis::count: break;
     }
     return 0;

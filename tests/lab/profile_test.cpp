@@ -71,7 +71,7 @@ TEST(Profile, does_not_depend_on_the_coordinate) {
 TEST(Profile, a_bent_coordinate_is_flagged_where_the_wald_interval_cannot_know) {
     Model model = sand();
     model.effects.push_back(own("grease", "exp(12*k)*2e-4*w", 0.1, -2, 2)); // e^12k: half its size and twice are not equally far
-    const Profile p = profile_likelihood(model, data_with("", 4, 8), {}).at(0);
+    const Profile p = profile_likelihood(model, data_with("viscous_friction:coefficient_Nms=0.0006", 4, 8), {}).at(0);
     expect_whole(p);
     EXPECT_NE(p.verdict, "identifiable") << profile_text({p});
     EXPECT_GT(p.value - p.low, 1.5 * (p.high - p.value)) << profile_text({p});

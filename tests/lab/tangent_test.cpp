@@ -57,7 +57,7 @@ TEST(Tangent, all_coefficients_of_a_shape_at_once_are_the_same_one_by_one) {
     const Physics physics = make_physics(model);
     Forward forward(data);
     forward.set_base(physics);
-    for (const Candidate &c : shape_candidates(data, forward.motion(), forward.winding_current_A())) {
+    for (const Candidate &c : shape_candidates(data, forward.motion(), physics, forward.winding_current_A())) {
         const std::size_t count = c.strengths.size();
         const bool moves = c.touched == stage_motion;
         if (!moves && (c.touched & stage_sensors) != 0) continue;
