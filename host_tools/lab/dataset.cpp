@@ -103,7 +103,7 @@ struct Builder : InputBuilder {
         }
         double scale = 0;
         if (motion_signal(i, scale) == nullptr) return;
-        Balance torque{BalanceKind::current_torque, static_cast<int>(i), "wheel" + std::to_string(i) + ".current_A", "current of wheel " + std::to_string(i) + ", torque balance", "A", 0, "", {}, {}, {}, {}};
+        Balance torque{BalanceKind::current_torque, static_cast<int>(i), "wheel" + std::to_string(i) + ".current_A", "current of wheel " + std::to_string(i) + ", torque balance", "A", 0, "", {}, {}, {}, {}, {}};
         const double noise = sample_noise(*current, "current.noise_A", torque.noise_source);
         Balance all = torque, powered_rows = torque;
         add_rows(all, *current, noise);
@@ -141,7 +141,7 @@ struct Builder : InputBuilder {
     void simple(const std::string &name, const std::string &title, const std::string &unit, BalanceKind kind, int wheel, const std::string &noise_key) {
         const log::Signal *s = signal(name);
         if (s == nullptr) return;
-        Balance balance{kind, wheel, name, title, unit, 0, "", {}, {}, {}, {}};
+        Balance balance{kind, wheel, name, title, unit, 0, "", {}, {}, {}, {}, {}};
         const double noise = sample_noise(*s, noise_key, balance.noise_source);
         add_rows(balance, *s, noise);
         add(std::move(balance));
@@ -163,7 +163,7 @@ struct Builder : InputBuilder {
             say(log.find("radar.adc_count") != nullptr ? "radar.adc_count is raw: no radar.speed_m_s, the radar balance is left out" : "radar.speed_m_s is missing: the radar balance is left out");
             return;
         }
-        Balance balance{BalanceKind::radar, -1, "radar.speed_m_s", "ground speed by radar", "m/s", 0, "", {}, {}, {}, {}};
+        Balance balance{BalanceKind::radar, -1, "radar.speed_m_s", "ground speed by radar", "m/s", 0, "", {}, {}, {}, {}, {}};
         balance.noise = sample_noise(*s, "radar.noise_m_s", balance.noise_source);
         const double relative = header("noise.radar.speed_m_s.relative");
         const double window = window_of(*s) > 0 ? window_of(*s) : parameter(model.sensors, "radar.window_s"), least = parameter(model.sensors, "radar.minimum_m_s");
@@ -188,7 +188,7 @@ struct Builder : InputBuilder {
             return;
         }
         const std::vector<double> yaw = angle != nullptr ? unwrapped(angle->value) : std::vector<double>();
-        Balance along{BalanceKind::camera_x, -1, "camera.forward_m", "camera displacement, forward", "m", 0, "", {}, {}, {}, {}};
+        Balance along{BalanceKind::camera_x, -1, "camera.forward_m", "camera displacement, forward", "m", 0, "", {}, {}, {}, {}, {}};
         const double noise = sample_noise(*x, "camera.noise_m", along.noise_source);
         along.noise = std::sqrt(2.0) * noise;
         Balance side = along, turn = along;

@@ -38,6 +38,7 @@ struct Balance {
     std::string noise_source;
     std::vector<double> t0_s, t1_s, measured; // one entry per row
     std::vector<double> noise_factor;         // of a row's noise, relative to `noise`; empty: all 1
+    std::vector<double> doubt;                // what the smoothing may cost a row's prediction, with its sign; empty: nothing
 };
 
 struct WheelInput {

@@ -216,7 +216,9 @@ class Search {
         const Trial &w = trials[winner];
         for (std::size_t i = 0; i < trials.size(); ++i) {
             const Trial &t = trials[i];
-            if (i == winner || t.verdict != "passes" || t.candidate.effect == w.candidate.effect) continue;
+            if (i == winner || t.verdict != "passes") continue;
+            // the same effect on two wheels is a question, on all of them or on one of them it is one answer
+            if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;
             const Eigen::VectorXd difference = w.block_gain - t.block_gain;
             const double n = static_cast<double>(difference.size()), error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
             const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;

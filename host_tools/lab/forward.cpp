@@ -168,6 +168,18 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
     if (with_bench) rows_of(bench_balance, electric_.shaft, 0, false, out);
 }
 
+// A Doppler radar whose window holds several speeds reads one that leans to the faster: the mean and a share of their range.
+void Forward::lead(std::size_t balance, const std::vector<double> &series, double share, double delay_s, Eigen::VectorXd &out) const {
+    const Balance &b = data_->balance[balance];
+    const auto place = [&](double t) {
+        return static_cast<std::ptrdiff_t>(std::clamp((t - delay_s - data_->start_s) / data_->step_s, 0.0, static_cast<double>(data_->count - 1)));
+    };
+    for (std::size_t r = 0; r < b.measured.size(); ++r) {
+        const auto [low, high] = std::minmax_element(series.begin() + place(b.t0_s[r]), series.begin() + place(b.t1_s[r]) + 1);
+        out[static_cast<Eigen::Index>(first_row_[balance] + r)] += share * (*high - *low);
+    }
+}
+
 void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const {
     const Dataset &d = *data_;
     const BodyPhysics &b = physics.body;
@@ -213,6 +225,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
             continue;
         }
         rows_of(i, x, delay, false, out);
+        if (kind == BalanceKind::radar && b.radar_lead != 0) lead(i, x, b.radar_lead, delay, out);
         if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw)
             for (std::size_t r = 0; r < d.balance[i].measured.size(); ++r)
                 out[static_cast<Eigen::Index>(first_row_[i] + r)] *= d.balance[i].t1_s[r] - d.balance[i].t0_s[r]; // a displacement, not a speed

@@ -53,6 +53,7 @@ class Forward {
                     Eigen::VectorXd &out) const;
     void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current, ElectricSeries &out) const;
     Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const; // of the torque and voltage terms, I left out
+    void lead(std::size_t balance, const std::vector<double> &series, double share, double delay_s, Eigen::VectorXd &out) const;
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
     void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;
     // out = (or, adding, +=) the series' mean over each row's window

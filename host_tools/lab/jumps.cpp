@@ -31,9 +31,9 @@ void doubt_jumps(const Model &model, Dataset &data) {
     Eigen::Index row = 0;
     for (Balance &b : data.balance) {
         Balance kept = b;
-        for (auto *series : {&kept.t0_s, &kept.t1_s, &kept.measured, &kept.noise_factor}) series->clear();
+        for (auto *series : {&kept.t0_s, &kept.t1_s, &kept.measured, &kept.noise_factor, &kept.doubt}) series->clear();
         for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
-            const double factor = b.noise_factor.empty() ? 1 : b.noise_factor[r], doubt = cubics_share * std::fabs(change[row]) / (b.noise * factor);
+            const double factor = b.noise_factor.empty() ? 1 : b.noise_factor[r], lost = cubics_share * change[row], doubt = std::fabs(lost) / (b.noise * factor);
             if (b.kind == BalanceKind::current_torque && !(doubt < most_doubt)) {
                 ++left_out;
                 continue;
@@ -41,6 +41,7 @@ void doubt_jumps(const Model &model, Dataset &data) {
             kept.t0_s.push_back(b.t0_s[r]);
             kept.t1_s.push_back(b.t1_s[r]);
             kept.measured.push_back(b.measured[r]);
+            kept.doubt.push_back(std::isfinite(lost) ? lost : 0);
             kept.noise_factor.push_back(factor * (std::isfinite(doubt) ? std::hypot(1.0, doubt) : most_doubt));
         }
         b = std::move(kept);

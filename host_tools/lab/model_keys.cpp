@@ -46,6 +46,7 @@ constexpr ModelKey sensors[] = {
     {"radar.window_s", "s", 0.5, 0, 10, 0, 0},
     {"radar.delay_s", "s", 0, -5, 5, 0, 0.02},
     {"radar.scale", "1", 0, -0.9, 5, 0, 0.004},
+    {"radar.lead", "1", 0, -1, 1, 0, 0.1},
     {"radar.minimum_m_s", "m/s", 0.1, 0, 10, 0, 0},
     {"camera.noise_m", "m", 0, 0, 10, 0, 0},
     {"camera.delay_s", "s", 0, -5, 5, 0, 0.004},

@@ -46,6 +46,7 @@ constexpr Key keys[] = {
     {"sensors", "gyro.bias_rad_s", nullptr, &B::gyro_bias, stage_sensors},
     {"sensors", "radar.scale", nullptr, &B::radar_scale0, stage_sensors},
     {"sensors", "radar.delay_s", nullptr, &B::radar_delay, stage_sensors},
+    {"sensors", "radar.lead", nullptr, &B::radar_lead, stage_sensors},
     {"sensors", "camera.scale", nullptr, &B::camera_scale0, stage_sensors},
     {"sensors", "camera.delay_s", nullptr, &B::camera_delay0, stage_sensors},
 };

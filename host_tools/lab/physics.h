@@ -35,7 +35,7 @@ inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y
 
 struct BodyPhysics {
     double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;
-    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, camera_scale0 = 0, camera_delay0 = 0;
+    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0, camera_scale0 = 0, camera_delay0 = 0;
     double slip_sinkage = 0, speed_resistance = 0, multi_pass = 0, load_height = 0, offset_x = 0, offset_y = 0;
     double patch_change = 0, patch_start = 0, patch_length = 1, soil_gradient = 0, relaxation = 0, sliding_loss = 0;
     double shear_change = 0, scrub = 0, grade = 0, grade_direction = 0, tether = 0, drag = 0;

@@ -36,6 +36,13 @@ Eigen::VectorXd Problem::noise_rows() const {
     return rows;
 }
 
+Eigen::VectorXd Problem::doubt_rows() const {
+    Eigen::VectorXd rows = Eigen::VectorXd::Zero(measured_.size());
+    for (std::size_t b = 0; b < data_->balance.size(); ++b)
+        for (std::size_t r = 0; r < data_->balance[b].doubt.size(); ++r) rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data_->balance[b].doubt[r];
+    return rows;
+}
+
 Physics Problem::physics_at(const Eigen::VectorXd &increments) const {
     Physics physics = base_;
     for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i].add(physics, increments[static_cast<Eigen::Index>(i)]);

@@ -43,6 +43,7 @@ class Problem {
     Eigen::VectorXd prior_precision() const;
 
     Eigen::VectorXd noise_rows() const; // measurement noise of each row
+    Eigen::VectorXd doubt_rows() const; // Balance::doubt of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
     Eigen::VectorXd scaled_residual(const Physics &at); // of another physics, on the present scales

@@ -25,6 +25,8 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
     // a parameter that the data do not see and no prior holds would make the system singular: a whisper holds it
     for (Eigen::Index j = 0; j < n; ++j) precision_[j] = std::max(precision_[j], 1e-9 * (1 + nuisance_.col(j).squaredNorm()));
     pull_ = -precision_.cwiseProduct(theta);
+    doubt_ = problem.doubt_rows().cwiseProduct(problem.row_scale);
+    doubt_moment_ = nuisance_.transpose() * doubt_;
     cut();
     total_ = precision_.asDiagonal();
     moment_ = pull_;
@@ -205,6 +207,8 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     const double blocks_that_inform = weight.squaredNorm() > 0 ? weight.sum() * weight.sum() / weight.squaredNorm() : 1;
     const double data_part = covariance.trace();
     covariance += prior_part;
+    const Eigen::VectorXd by_doubt = schur_factor.solve(columns.transpose() * doubt_ - absorb.transpose() * doubt_moment_); // what the smoothing alone would pass for
+    covariance += by_doubt * by_doubt.transpose();
     // never below what white residuals of unit scale would give
     const Eigen::MatrixXd least = schur_factor.solve(Eigen::MatrixXd::Identity(k, k));
     for (Eigen::Index j = 0; j < k; ++j)
@@ -247,7 +251,7 @@ Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::Ve
 
 double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const {
     const Eigen::Index n = nuisance_.cols();
-    const Eigen::VectorXd theta = problem_.theta.head(n), moment = problem_.jacobian.leftCols(n).transpose() * scaled_residual + pull_;
+    const Eigen::VectorXd theta = problem_.theta.head(n), moment = nuisance_.transpose() * scaled_residual + pull_;
     change = total_factor_.solve(moment);
     return scaled_residual.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(change);
 }
@@ -255,7 +259,7 @@ double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::Vec
 double Screen::best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const {
     const Dataset &data = problem_.data();
     const Eigen::VectorXd before = problem_.residual.cwiseProduct(problem_.row_scale);
-    const Eigen::VectorXd after = before - columns * step.strength - problem_.jacobian.leftCols(nuisance_.cols()) * step.change;
+    const Eigen::VectorXd after = before - columns * step.strength - nuisance_ * step.change;
     double best = 0;
     Eigen::Index first = 0;
     for (const Balance &balance : data.balance) {
@@ -310,6 +314,7 @@ std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of)
     const Eigen::Index n = nuisance_.cols(), count = blocks_of.count();
     const Eigen::VectorXd whole = total_factor_.solve(moment_);
     const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::VectorXd by_doubt = inverse * doubt_moment_;
     Eigen::MatrixXd deviation(n, count), information(n, count); // information: of a parameter beside the others, per block
     for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
@@ -320,7 +325,7 @@ std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of)
     for (Eigen::Index j = 0; j < n; ++j) {
         const double by_data = deviation.row(j).squaredNorm() * static_cast<double>(count - 1) / static_cast<double>(count);
         const double by_prior = inverse.row(j).cwiseAbs2().dot(precision_); // d theta / d prior mean = inverse * precision
-        const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j));
+        const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j)) + by_doubt[j] * by_doubt[j];
         const double blocks = information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;
         const double share = by_data > 0 ? (by_data + by_prior) / by_data : 1e3;
         const double freedom = std::clamp((blocks - 1) * share * share, 4.0, 1e3);

@@ -96,6 +96,7 @@ class Screen {
     Eigen::MatrixXd nuisance_;
     Eigen::VectorXd residual_;  // scaled
     Eigen::VectorXd moment_;    // N' r + pull
+    Eigen::VectorXd doubt_, doubt_moment_; // of the smoothing, scaled; N' doubt
     Eigen::VectorXd precision_; // of the priors
     Eigen::VectorXd pull_;      // -precision * theta
     Eigen::MatrixXd total_;
