@@ -9,14 +9,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 
 namespace traction::lab {
 
 namespace {
 
-std::string complete_message(const std::string &file, std::size_t line, const std::string &key, const std::string &wrong,
-                             const std::string &mend) {
+std::string complete_message(const std::string &file, std::size_t line, const std::string &key, const std::string &wrong, const std::string &mend) {
     std::string text = file;
     if (line > 0) text += ":" + std::to_string(line);
     if (!key.empty()) text += ": " + key;
@@ -25,8 +25,7 @@ std::string complete_message(const std::string &file, std::size_t line, const st
 
 std::string number_text(double value) {
     std::ostringstream stream;
-    stream.precision(10);
-    stream << value;
+    stream << std::setprecision(10) << value;
     return stream.str();
 }
 
@@ -353,8 +352,7 @@ void read_lineage(const toml::table &root, Model &model) {
 
 } // namespace
 
-ModelError::ModelError(const std::string &file, std::size_t line, const std::string &key, const std::string &what_is_wrong,
-                       const std::string &mend)
+ModelError::ModelError(const std::string &file, std::size_t line, const std::string &key, const std::string &what_is_wrong, const std::string &mend)
     : std::runtime_error(complete_message(file, line, key, what_is_wrong, mend)) {}
 
 const EffectUse *Model::find_effect(const std::string &effect, int wheel_index) const {

@@ -56,6 +56,14 @@ TEST(Diagnose, names_the_wheel_that_has_more_friction) {
     EXPECT_NEAR(d.accepted[0].value[0], 0.03, 0.004); // size of interest
 }
 
+TEST(Diagnose, two_wheels_of_one_side_that_a_log_cannot_tell_apart_are_a_class) {
+    const Diagnosis d = ask(Soil::sand, log_with(Soil::sand, "rolling_resistance:coefficient=0.1,wheel=1", 6));
+    ASSERT_FALSE(d.classes.empty()) << d.text;
+    const std::vector<std::string> &members = d.classes[0].members;
+    for (const char *wheel : {"rolling_resistance on wheel 1", "rolling_resistance on wheel 3"}) // both push on the right side: the same moment, the same sum
+        EXPECT_EQ(std::count(members.begin(), members.end(), wheel), 1) << d.text;
+}
+
 TEST(Diagnose, says_the_same_bytes_twice) {
     const log::Log log = log_with(Soil::sand, "accel_scale:change=0.2", 6, 40);
     const auto text = [&] {

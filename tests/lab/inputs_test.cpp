@@ -1,6 +1,7 @@
 // inputs_test.cpp - what a log becomes before the model is asked: wheels that jump, samples that are means, a command that comes late.
 #include "host_tools/lab/dataset.h"
 #include "host_tools/lab/forward.h"
+#include "host_tools/lab/screen.h"
 #include "host_tools/lab/smooth.h"
 #include "host_tools/simulate/simulate.h"
 
@@ -129,6 +130,49 @@ TEST(Inputs, a_planar_rover_with_a_gyro_has_its_yaw_rate_and_its_sideways_way_an
         if (b.kind != BalanceKind::yaw_rate) continue;
         EXPECT_LT(std::sqrt(e / static_cast<double>(b.measured.size())), 20); // of noise, before any fit; at rest it would be 110
     }
+}
+
+TEST(Inputs, a_radar_that_leads_reads_the_mean_of_its_window_and_a_share_of_the_range) {
+    const Model model = read_model("models/rover_concrete.toml");
+    const Dataset data = make_dataset(model, simulate(sim::read_scenario("scenarios/cruise.toml")).log);
+    Forward forward(data);
+    Physics physics = make_physics(model);
+    physics.body.radar_lead = 0; // windows of cruise and of the start alike
+    forward.set_base(physics);
+    const Eigen::VectorXd mean = forward.base();
+    physics.body.radar_lead = 0.2;
+    const Eigen::VectorXd leads = forward.predict(physics);
+    const std::vector<double> &v = forward.motion().v_m_s;
+    Eigen::Index row = 0;
+    double widest = 0;
+    for (const Balance &b : data.balance)
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            if (b.kind != BalanceKind::radar) {
+                ASSERT_NEAR(leads[row], mean[row], 1e-7) << b.name; // two searches for one motion
+                continue;
+            }
+            const auto place = [&](double t) { return v.begin() + static_cast<std::ptrdiff_t>((t - data.start_s) / data.step_s); };
+            const auto [low, high] = std::minmax_element(place(b.t0_s[r]), place(b.t1_s[r]) + 1);
+            EXPECT_NEAR(leads[row] - mean[row], 0.2 * (*high - *low), 1e-6);
+            widest = std::max(widest, *high - *low);
+        }
+    EXPECT_GT(widest, 0.05); // the start is in it
+}
+
+TEST(Inputs, a_parameter_that_the_smoothing_could_fake_has_the_wider_error) {
+    const Model model = read_model("models/rover_concrete.toml");
+    Dataset data = make_dataset(model, simulate(sim::read_scenario("scenarios/cruise.toml")).log);
+    const auto inertia_error = [&] {
+        Problem problem(data, make_physics(model), free_parameters(model, make_physics(model)));
+        problem.linearise();
+        const std::vector<ParameterError> errors = Screen(problem).parameter_errors();
+        for (std::size_t i = 0; i < errors.size(); ++i)
+            if (problem.parameters[i].key == "inertia_kg_m2") return errors[i].standard;
+        throw std::logic_error("the inertia is missing");
+    };
+    const double with = inertia_error();
+    for (Balance &b : data.balance) b.doubt.clear();
+    EXPECT_GT(with, inertia_error());
 }
 
 } // namespace
