@@ -82,10 +82,10 @@ void measured_run(const fs::path &root, Outcome &outcome) {
         std::printf("\nNo ../shared/data beside the project: the comparison with a measured Robotino run is left out.\n");
         return;
     }
-    const lab::Session session = lab::open_session({.model = (root / "models/robotino.toml").string(), .log = log.string(),
+    const lab::Session session = lab::open_session({.model = (root / "models/robotino_carpet.toml").string(), .log = log.string(),
                                                     .map = (root / "models/maps/robotino.toml").string(), .repeat = ""});
     const lab::Comparison comparison = lab::compare(session.model, session.data, false);
-    std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino.toml:\n%s",
+    std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino_carpet.toml:\n%s",
                 lab::comparison_text(comparison).c_str());
     outcome.json["measured"] = {{"log", log.filename().string()}, {"error", comparison.error}, {"floor", comparison.floor}};
 }
