@@ -121,7 +121,7 @@ Eigen::MatrixXd told_by(const Plan &plan, const std::string &scenario, const Dri
 struct Choice {
     std::vector<std::size_t> manoeuvres;
     int answered = 0;
-    double least = 0, rate = 0; // least d' over answerable questions, and per second
+    double least = 0, rate = 0; // least d' over answerable questions, and its square per second
 };
 
 void name_kinds(const Plan &plan, NextExperiment &next) {
@@ -221,7 +221,7 @@ void conclude(const Table &table, const Eigen::MatrixXd &after, NextExperiment &
     }
 }
 
-// Best set of up to three manoeuvres: most answers, then the largest least d' per second.
+// Best set of up to three manoeuvres: most answers, then the largest square of the least d' per second: d'^2 adds up over time, d' does not.
 Choice choose(const Table &table) {
     const std::size_t n = table.grams.size();
     Choice best;
@@ -236,7 +236,7 @@ Choice choose(const Table &table) {
             c.answered += answers(table.plan, table.before[q], after);
             c.least = std::min(c.least, after);
         }
-        c.rate = c.least / seconds;
+        c.rate = c.least * c.least / seconds; // squares add up over time
         if (c.answered > best.answered || (c.answered == best.answered && c.answered > 0 && c.rate > best.rate)) best = c;
     };
     const int all = static_cast<int>(std::count(table.answerable.begin(), table.answerable.end(), true));

@@ -5,7 +5,7 @@
 // class, at the sizes found) or "is it there at all" (an effect that was not excited, at three sizes of interest). It counts as
 // answered at d' >= 2 (and at least 2 more than before, in quadrature, where a log of d' 2 did not decide it). Effects asked for by
 // name have three sizes of interest, or, where the model's own parameters hide that, the size that stands out from them. Chosen: up
-// to three manoeuvres that answer most questions that any can answer; among these the largest least d' per second.
+// to three manoeuvres that answer most questions that any can answer; among these the largest square of the least d' per second (d'^2 adds up over time).
 #pragma once
 
 #include "diagnose.h"

@@ -197,7 +197,7 @@ TEST(Next, a_class_that_a_diagnosis_left_is_what_it_asks_about) {
 // The proof of the pudding: the proposed scenario is driven with one of the two hidden, and the diagnosis of that log holds it against the other.
 TEST(Next, the_drive_it_proposes_tells_the_two_apart) {
     const Model model = sand();
-    for (const auto &[one, other] : {std::pair<std::string, std::string>{"multi_pass:gain=0.4", "mass_offset_x:offset_m=-0.03"}}) {
+    for (const auto &[one, other] : {std::pair<std::string, std::string>{"multi_pass:gain=0.4", "mass_offset_x:offset_m=-0.03"}, {"mesh_loss:fraction=0.15", "slip_sinkage:coefficient=0.2"}}) {
         const std::vector<std::string> names = {one.substr(0, one.find(':')), other.substr(0, other.find(':'))};
         const NextExperiment next = next_experiment(names, model, &forward_only(), drive);
         ASSERT_EQ(next.questions[0].status, "answered") << next_text(next);
