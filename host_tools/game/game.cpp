@@ -50,7 +50,12 @@ json read_state(const std::string &folder) {
 
 void write_state(const std::string &folder, const json &state) { report::write_text(state.dump(1) + "\n", path_in(folder, "game.json")); }
 
-lab::Session session_of(const std::string &folder) { return lab::open_session({.model = path_in(folder, "model.toml"), .log = path_in(folder, "run.csv"), .map = "", .repeat = ""}); }
+// The rows are those that the baseline makes of the log, whatever the model has grown to: errors on other rows would not compare.
+lab::Session session_of(const std::string &folder) {
+    lab::Session session = lab::open_session({.model = path_in(folder, "baseline.toml"), .log = path_in(folder, "run.csv"), .map = "", .repeat = ""});
+    session.model = lab::read_model(path_in(folder, "model.toml"));
+    return session;
+}
 
 std::string label_of(const std::string &effect, int wheel) { return wheel < 0 ? effect : effect + " on wheel " + std::to_string(wheel); }
 

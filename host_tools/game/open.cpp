@@ -70,14 +70,15 @@ Turn open(const std::string &folder) {
     const json seal = read_json(path("sealed.json"));
     if (!seal.contains("effects") || seal["effects"].empty()) throw GameError(path("sealed.json") + ": is no seal; start again with --new SEED --replace");
     const lab::EffectUse truth = use_of(seal["effects"].at(0), path("sealed.json"));
-    const lab::Session session = lab::open_session({.model = path("model.toml"), .log = path("run.csv"), .map = "", .repeat = ""});
-    lab::Model told = lab::read_model(path("baseline.toml"));
+    const lab::Session session = lab::open_session({.model = path("baseline.toml"), .log = path("run.csv"), .map = "", .repeat = ""}); // the rows of every guess
+    lab::Model told = session.model;
+    const lab::Model kept = lab::read_model(path("model.toml"));
     told.effects.push_back(truth);
     Played played;
     played.error_before = state["ladder"].front()["heldout"].get<double>();
     played.error_after = state["ladder"].back()["heldout"].get<double>();
     played.floor = lab::fit_model(told, session.data, "truth").heldout;
-    for (const lab::EffectUse &use : session.model.effects)
+    for (const lab::EffectUse &use : kept.effects)
         if (use.name == truth.name) played.named = true, played.wheel_right = played.wheel_right || use.wheel == truth.wheel;
     std::vector<std::string> wrong;
     for (const json &g : state["guesses"])
