@@ -136,7 +136,7 @@ class Search {
         return next;
     }
 
-    // Those most sure by their linear step, then those whose scan saw more than the step did.
+    // Those most sure by their linear step, those that promise more than what passed, then those whose scan saw more than the step did.
     void refit_likely(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
         double best = 0; // of the held-out gains that passed: what explains less than half can be neither the winner nor of its class
@@ -156,8 +156,11 @@ class Search {
         };
         refit_some(options_.refits, [&](const Trial &t) { return t.p_value < 0.2 && t.promise > least_promise && t.promise > 0.5 * best; },
                    [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
+        const auto most_promise = [](const Trial &a, const Trial &b) { return a.promise > b.promise; };
+        // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
+        refit_some(3, [&](const Trial &t) { return (t.frees || t.p_value < 0.2) && t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : 0.7) * best); }, most_promise);
         refit_some(3, [&](const Trial &t) { return t.surprise > std::max(3 * least_promise, 0.3 * t.promise) && t.promise > 0.5 * best; },
-                   [](const Trial &a, const Trial &b) { return a.promise > b.promise; });
+                   most_promise);
     }
 
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.

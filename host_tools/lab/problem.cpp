@@ -71,6 +71,13 @@ void Problem::bounds(std::size_t i, double &low, double &high) const {
     if (p.prior > 0) low = std::max(low, -6 * p.prior), high = std::min(high, 6 * p.prior);
 }
 
+bool Problem::at_bound(std::size_t i) const {
+    double low = 0, high = 0;
+    bounds(i, low, high);
+    const double x = theta[static_cast<Eigen::Index>(i)], slack = 1e-6 * (high - low);
+    return x < low + slack || x > high - slack;
+}
+
 void Problem::linearise() {
     const Physics at = physics();
     settle();

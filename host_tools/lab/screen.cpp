@@ -256,6 +256,14 @@ double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::Vec
     return scaled_residual.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(change);
 }
 
+bool Screen::frees(const Eigen::VectorXd &change) const {
+    for (Eigen::Index i = 0; i < nuisance_.cols(); ++i) {
+        const double theta = problem_.theta[i], prior = problem_.parameters[static_cast<std::size_t>(i)].prior;
+        if (prior > 0 && problem_.at_bound(static_cast<std::size_t>(i)) && theta * change[i] < 0 && std::fabs(change[i]) > prior) return true;
+    }
+    return false;
+}
+
 double Screen::best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const {
     const Dataset &data = problem_.data();
     const Eigen::VectorXd before = problem_.residual.cwiseProduct(problem_.row_scale);

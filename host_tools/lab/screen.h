@@ -49,6 +49,8 @@ class Screen {
 
     // Error on all rows with this scaled residual, after what the baseline's parameters would then absorb: for a candidate moved alone.
     double error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const;
+    // Does this change of the baseline's parameters bring one back by more than its prior's deviation that lies at its bound?
+    bool frees(const Eigen::VectorXd &change) const;
     // Largest relative fall of one balance's error on all rows, by the linear step.
     double best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const;
     double error() const { return error_; } // on all rows, priors included, at the baseline's optimum

@@ -69,7 +69,9 @@ Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &column
     t.block_gain = t.assessment.block_gain;
     for (Eigen::Index j = 0; j < C.cols(); ++j) t.value.push_back(t.assessment.strength[j]);
     if (t.p_value < 0.01) t.best_balance_gain = screen.best_balance_fall(C, t.assessment);
-    if (plausible_sign(c, t.value)) t.promise = t.assessment.fall; // else its bound stops it
+    if (!plausible_sign(c, t.value)) return t; // its bound stops it
+    t.promise = t.assessment.fall;
+    t.frees = screen.frees(t.assessment.change);
     return t;
 }
 
@@ -102,7 +104,8 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
 }
 
 void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data) {
-    if (t.candidate.touched == stage_sensors || t.candidate.touched == stage_torque) { // linear: the step is the fit
+    const bool linear = t.candidate.touched == stage_sensors || t.candidate.touched == stage_torque;
+    if (linear && !t.frees) { // the step is the fit
         t.refitted = true;
         t.baseline = base.theta + t.assessment.change;
         return;
@@ -117,7 +120,8 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
         if (!t.candidate.of_interest.empty() && std::fabs(start) < 1e-3 * (p.maximum - p.minimum)) start = t.candidate.of_interest[i];
         problem.theta[n + j] = start;
     }
-    if ((t.candidate.touched & stage_motion) != 0) {
+    if ((t.candidate.touched & stage_motion) != 0 || t.frees) {
+        if (t.frees && t.start.empty()) t.start_change = t.assessment.change;
         if (t.start_change.size() == n) problem.theta.head(n) += t.start_change, problem.within_bounds();
         problem.polish(strongly_nonlinear(t.candidate.effect) ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
     } else {

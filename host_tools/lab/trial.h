@@ -15,6 +15,7 @@ struct Trial {
     Assessment assessment;
     double promise = 0;    // fall of the error on all rows, by the linear step or by a scan of sizes, whichever is more
     double surprise = 0;   // the part of it that the linear step does not see
+    bool frees = false;    // its step brings parameters back that lie at their bounds without it: far from where the step is linear
     double gain = 0;       // fall of the held-out error, squares
     double gain_error = 0;
     double p_value = 1;    // corrected for the number tried
