@@ -87,27 +87,28 @@ struct ShapeKind {
     TermTarget target;
     Axis axis;
     const char *name;
+    bool straight = false; // a straight line too: a free curve spends its certainty on its coefficients
 };
 // LAB.md section 2. Never measured current or PWM as an axis; "current" is the model's own.
 constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::wheel_speed, "torque(wheel speed)"},
     {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},
     {TermTarget::wheel_friction, Axis::load, "friction(wheel load)"},
-    {TermTarget::wheel_friction, Axis::time, "friction(time)"},
+    {TermTarget::wheel_friction, Axis::time, "friction(time)", true},
     {TermTarget::wheel_friction, Axis::direction, "friction(direction of travel)"},
     {TermTarget::wheel_torque, Axis::accel, "torque(acceleration)"},
     {TermTarget::rolling, Axis::speed, "resistance(ground speed)"},
     {TermTarget::rolling, Axis::slip, "resistance(slip)"},
-    {TermTarget::rolling, Axis::time, "resistance(time)"},
+    {TermTarget::rolling, Axis::time, "resistance(time)", true},
     {TermTarget::rolling, Axis::path, "resistance(path)"},
     {TermTarget::voltage, Axis::current, "voltage(motor current)"},
     {TermTarget::voltage, Axis::wheel_speed, "voltage(wheel speed)"},
     {TermTarget::voltage, Axis::time, "voltage(time)"},
-    {TermTarget::soil_strength, Axis::time, "soil strength(time)"},
+    {TermTarget::soil_strength, Axis::time, "soil strength(time)", true},
     {TermTarget::soil_strength, Axis::path, "soil strength(path)"},
-    {TermTarget::soil_strength, Axis::abs_speed, "soil strength(speed)"},
+    {TermTarget::soil_strength, Axis::abs_speed, "soil strength(speed)", true},
     {TermTarget::soil_strength, Axis::slip, "soil strength(slip)"},
-    {TermTarget::motor_constant, Axis::time, "motor constant(time)"},
+    {TermTarget::motor_constant, Axis::time, "motor constant(time)", true},
     {TermTarget::motor_constant, Axis::current, "motor constant(motor current)"},
     {TermTarget::resistance, Axis::time, "winding resistance(time)"},
     {TermTarget::accel, Axis::time, "accelerometer(time)"},
@@ -231,6 +232,11 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);
         if (c.knots.size() < 3) continue;
         for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();
+        list.push_back(c);
+        if (!kind.straight) continue;
+        c.effect += ", a straight line";
+        c.knots = {c.knots.front(), c.knots.back()};
+        c.strengths.resize(2);
         list.push_back(std::move(c));
     }
     for (const int order : {5, 7, 9, 10, 12}) { // the others are torque_ripple

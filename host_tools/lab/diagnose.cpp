@@ -213,27 +213,33 @@ class Search {
         }
     }
 
-    // Which passers the data cannot tell from the winner.
-    std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner) const {
+    // Which passers the data cannot tell from the winner. Where the rows alone would not have named it, the data sheet's tolerances did: of
+    // such the nearly sure are in the class too, and what explains half as much may be meant.
+    std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error) const {
         std::vector<std::size_t> members;
         const Trial &w = trials[winner];
+        const bool by_priors = w.gain - w.assessment.relief < options_.least_gain * base_error && w.best_balance_gain < options_.least_gain_one;
+        DiagnoseOptions nearly = options_;
+        if (by_priors) nearly.p_limit = 0.05;
         for (std::size_t i = 0; i < trials.size(); ++i) {
-            const Trial &t = trials[i];
-            if (i == winner || t.verdict != "passes") continue;
+            Trial t = trials[i];
+            if (i == winner || !t.refitted) continue;
+            judge(t, base_error, nearly);
+            if (t.verdict != "passes") continue;
             // the same effect on two wheels is a question, on all of them or on one of them it is one answer
             if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;
             const Eigen::VectorXd difference = w.block_gain - t.block_gain;
             const double n = static_cast<double>(difference.size()), error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
             const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
             const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
-            if (less < 0.1 * w.gain && (less < 2 * error || std::fabs(cosine) > options_.same_cosine)) members.push_back(i);
+            if (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options_.same_cosine)) members.push_back(i);
         }
         return members;
     }
 
     void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first) {
         const bool found = winner < trials.size();
-        const std::vector<std::size_t> members = found ? confounded(trials, winner) : std::vector<std::size_t>();
+        const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error) : std::vector<std::size_t>();
         for (std::size_t i = 0; i < trials.size(); ++i) {
             CandidateResult r = result_of(trials[i], base_error, screen);
             const bool member = std::find(members.begin(), members.end(), i) != members.end();

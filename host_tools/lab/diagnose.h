@@ -21,7 +21,7 @@ struct DiagnoseOptions {
     int refits = 5;                    // classes that are fitted in full
     int most_effects = 4;
     double same_cosine = 0.9;          // above it two candidates are one class
-    double shape_p_limit = 0.01;       // of the corrected p of a structure-free shape, which must also gain 2.5 standard errors
+    double shape_p_limit = 0.02;       // of the corrected p of a structure-free shape, which must also gain 2.5 standard errors
     double least_shape_gain = 0.02;    // a structure-free shape has many freedoms
     double shape_margin = 1.10;        // a shape must beat the winner by this factor
     bool shapes = true;

@@ -1,5 +1,6 @@
 #include "distribution.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -50,6 +51,25 @@ double t_quantile(double p, double freedom) {
         (f_tail(middle * middle, 1, freedom) > p ? low : high) = middle;
     }
     return 0.5 * (low + high);
+}
+
+double signed_rank_tail(std::vector<double> values) {
+    std::erase(values, 0.0);
+    std::stable_sort(values.begin(), values.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+    const std::size_t n = values.size();
+    std::size_t below = 0; // sum of the ranks of what is negative
+    for (std::size_t i = 0; i < n; ++i)
+        if (!(values[i] > 0)) below += i + 1;
+    const auto count = static_cast<double>(n);
+    if (n == 0) return 1;
+    if (n > 60) return 0.5 * std::erfc((0.25 * count * (count + 1) - static_cast<double>(below) - 0.5) / std::sqrt(count * (count + 1) * (2 * count + 1) / 12));
+    std::vector<double> share(below + 1, 0); // of all choices of signs: those whose ranks sum to the index
+    share[0] = std::ldexp(1.0, -static_cast<int>(n));
+    for (std::size_t rank = 1; rank <= n; ++rank)
+        for (std::size_t sum = below; sum >= rank; --sum) share[sum] += share[sum - rank];
+    double tail = 0;
+    for (const double s : share) tail += s;
+    return tail;
 }
 
 } // namespace traction::lab

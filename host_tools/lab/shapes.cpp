@@ -14,7 +14,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double shapes_tried = 60; // axes x targets, waves and periods, less those that are near copies
+constexpr double shapes_tried = 65; // axes x targets, straight lines, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -65,10 +65,16 @@ class ShapeColumns {
 };
 
 // Two tests, corrected for their number and that of the shapes: of the coefficients (robust, but each costs a degree of freedom), and of the
-// held-out error's fall over blocks (Diebold and Mariano, J. Business & Economic Statistics 13 (1995) 253, of one mean).
-double corrected(const Assessment &a) {
-    const double blocks = static_cast<double>(a.block_gain.size()), t = a.gain_error > 0 ? a.gain / a.gain_error : 0;
-    const double falls = t > 0 && blocks > 1 ? 0.5 * f_tail(t * t, 1, blocks - 1) : 1;
+// held-out error's fall over blocks (Diebold and Mariano, J. Business & Economic Statistics 13 (1995) 253). A curve is judged by the ranks of its
+// falls: it may matter in few blocks only, whose falls are large and unlike; a wave, which any uneven ground fits a little all along, by their mean.
+double corrected(const Candidate &c, const Assessment &a) {
+    double falls = 1;
+    if (c.order == 0) {
+        falls = signed_rank_tail({a.block_gain.begin(), a.block_gain.end()});
+    } else {
+        const double blocks = static_cast<double>(a.block_gain.size()), t = a.gain_error > 0 ? a.gain / a.gain_error : 0;
+        if (t > 0 && blocks > 1) falls = 0.5 * f_tail(t * t, 1, blocks - 1);
+    }
     return std::min(1.0, 2 * shapes_tried * std::min(a.p_value, falls));
 }
 
@@ -80,7 +86,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
         s.candidate = c;
         const Eigen::MatrixXd C = columns.of(c);
         s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false);
-        s.p_value = corrected(s.assessment);
+        s.p_value = corrected(s.candidate, s.assessment);
         if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(C, s.assessment);
         if (keep && c.order == 0) s.columns = C;
         list.push_back(std::move(s));
@@ -179,7 +185,7 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
         if (shape.columns.cols() == 0 || !is_curve(shape.candidate) || !(shape.p_value < options.shape_p_limit)) continue;
         ShapeScore s = shape;
         s.assessment = screen.assess(shape.columns, Eigen::VectorXd::Zero(shape.columns.cols()), false);
-        s.p_value = corrected(s.assessment);
+        s.p_value = corrected(s.candidate, s.assessment);
         if (!(s.p_value < options.shape_p_limit) || (best && !(s.assessment.gain > best->assessment.gain))) continue;
         const bool better = s.assessment.gain - own.gain > 2 * paired_error(s.assessment.block_gain - own.block_gain);
         if (!better && &shape != flagged) continue;
