@@ -14,7 +14,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double shapes_tried = 65; // axes x targets, straight lines, waves and periods, less those that are near copies
+constexpr double shapes_tried = 72; // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -78,18 +78,33 @@ double corrected(const Candidate &c, const Assessment &a) {
     return std::min(1.0, 2 * shapes_tried * std::min(a.p_value, falls));
 }
 
+ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Screen &screen, bool keep) {
+    ShapeScore s;
+    s.candidate = c;
+    s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
+    s.p_value = corrected(s.candidate, s.assessment);
+    if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(columns, s.assessment);
+    if (keep && c.order == 0) s.columns = columns;
+    return s;
+}
+
+// One value between two that are nothing: a resonance. What a curve of many values says of it is less sure.
+bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
+
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keep = false) {
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
     for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
-        ShapeScore s;
-        s.candidate = c;
         const Eigen::MatrixXd C = columns.of(c);
-        s.assessment = screen.assess(C, Eigen::VectorXd::Zero(C.cols()), false);
-        s.p_value = corrected(s.candidate, s.assessment);
-        if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(C, s.assessment);
-        if (keep && c.order == 0) s.columns = C;
-        list.push_back(std::move(s));
+        list.push_back(scored(c, C, screen, keep));
+        for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
+            Candidate bump = c;
+            bump.effect += ", a bump";
+            const auto at = c.knots.begin() + j;
+            bump.knots.assign(at - 1, at + 2);
+            bump.strengths = {c.strengths[static_cast<std::size_t>(j)]};
+            list.push_back(scored(bump, C.col(j), screen, keep));
+        }
     }
     std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
     return list;
@@ -108,7 +123,9 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     u.unit_y = units[static_cast<int>(s.candidate.target)];
     u.gain = base_error > 0 ? s.assessment.gain / base_error : 0;
     std::vector<double> y;
+    std::vector<double> error(s.assessment.standard_error.begin(), s.assessment.standard_error.end());
     for (Eigen::Index j = 0; j < s.assessment.strength.size(); ++j) y.push_back(s.assessment.strength[j]);
+    if (is_bump(s.candidate)) y = {0, y[0], 0}, error = {0, error[0], 0};
     u.expression = shape_expression(s.candidate, y);
     if (s.candidate.order > 0) {
         for (int i = 0; i <= 36; ++i) { // a turn of the wheel, or one wave
@@ -119,11 +136,10 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
         return u;
     }
     for (std::size_t j = 0; j < s.candidate.knots.size(); ++j) {
-        const double error = s.assessment.standard_error[static_cast<Eigen::Index>(j)];
         u.x.push_back(s.candidate.knots[j]);
         u.y.push_back(y[j]);
-        u.low.push_back(y[j] - 1.96 * error);
-        u.high.push_back(y[j] + 1.96 * error);
+        u.low.push_back(y[j] - 1.96 * error[j]);
+        u.high.push_back(y[j] + 1.96 * error[j]);
     }
     return u;
 }
@@ -169,9 +185,9 @@ double paired_error(const Eigen::VectorXd &difference) {
     return std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
 }
 
-// A curve through three values is no curve, and one over wheels that each keep to a value of X is none either: f(X) may stand for anything
+// A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none either: f(X) may stand for anything
 // that differed between them.
-bool is_curve(const Candidate &shape) { return shape.order == 0 && !shape.parts_wheels && (shape.knots.size() > 3 || shape.axis == Axis::direction || shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current); }
+bool is_curve(const Candidate &shape) { return shape.order == 0 && !shape.parts_wheels && (shape.knots.size() > 3 || shape.knots.size() == 2 || is_bump(shape) || shape.axis == Axis::direction || shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current); }
 
 // The shape in whose stead the effect was named, if there is one: needed beside the effect, and explaining more than it by itself, while
 // the effect is not needed beside the shape. A law that is right passes: no freer shape does better than it.

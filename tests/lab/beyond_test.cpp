@@ -74,6 +74,24 @@ TEST(Beyond, a_torque_that_saturates_shows_over_the_motors_current) {
     EXPECT_NE(d.unknown->variable.find("current"), std::string::npos) << d.text;
 }
 
+// A law that matters in few blocks: each gains, none much alike another.
+TEST(Beyond, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
+    const Diagnosis d = ask(Soil::sand, "friction_resonance:torque_Nm=0.05,speed_rad_s=6", 36);
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    ASSERT_TRUE(d.unknown);
+    EXPECT_NE(d.unknown->variable.find("wheel speed"), std::string::npos) << d.text;
+}
+
+TEST(Beyond, a_slow_drift_of_the_grip_shows_as_a_straight_line_over_time) {
+    const Diagnosis d = ask(Soil::gravel, "grip_drift:change=-0.4", 37);
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    ASSERT_TRUE(d.unknown);
+    EXPECT_EQ(d.unknown->variable, "time");
+    EXPECT_EQ(d.unknown->target, "soil_strength");
+    ASSERT_EQ(d.unknown->y.size(), 2U);
+    EXPECT_LT(d.unknown->y[1], d.unknown->y[0]);
+}
+
 TEST(Beyond, a_shape_takes_no_name_that_is_about_something_else) {
     GeneratorConfig config;
     config.soil = Soil::gravel;

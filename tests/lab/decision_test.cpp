@@ -64,6 +64,36 @@ TEST(Diagnose, two_wheels_of_one_side_that_a_log_cannot_tell_apart_are_a_class) 
         EXPECT_EQ(std::count(members.begin(), members.end(), wheel), 1) << d.text;
 }
 
+Diagnosis ask_campaign(std::uint64_t seed) {
+    const GeneratorConfig config = generator::draw_case(seed, 120).config;
+    const Model model = read_model("tests/lab/campaign/machine_" + generator::name_of(config.soil) + ".toml");
+    return diagnose(model, make_dataset(model, generator::generate(config)), {});
+}
+
+// The baseline's own Coulomb torque lies at its bound, and the weight, the rolling resistance and the viscous friction with it: linear steps from there
+// go nowhere.
+TEST(Diagnose, names_a_friction_that_drove_the_baseline_to_its_bounds) {
+    const Diagnosis d = ask_campaign(80009); // 0.0254 N m on concrete
+    ASSERT_EQ(d.effects.size(), 1U) << d.text;
+    EXPECT_EQ(d.effects[0], "coulomb_friction");
+    EXPECT_NEAR(d.accepted[0].value[0], 0.0254, 0.004); // size of interest
+}
+
+TEST(Diagnose, what_promises_most_is_tried_though_others_are_surer) {
+    const Diagnosis d = ask_campaign(80176); // rolling_resistance on wheel 1; friction on both wheels of that side is very sure too
+    ASSERT_EQ(d.effects.size(), 1U) << d.text;
+    EXPECT_EQ(d.accepted[0].candidate.effect, "rolling_resistance");
+    ASSERT_EQ(d.classes.size(), 1U) << d.text;
+    EXPECT_EQ(d.classes[0].members.size(), 2U) << d.text;
+}
+
+TEST(Diagnose, what_only_the_data_sheets_tolerances_decide_is_a_class) {
+    const Diagnosis d = ask_campaign(80109); // torque_constant; voltage_gain leaves no more, and moves other parameters as far
+    ASSERT_EQ(d.classes.size(), 1U) << d.text;
+    for (const char *effect : {"torque_constant", "voltage_gain"})
+        EXPECT_NE(std::find(d.classes[0].members.begin(), d.classes[0].members.end(), effect), d.classes[0].members.end()) << effect << ": " << d.text;
+}
+
 TEST(Diagnose, says_the_same_bytes_twice) {
     const log::Log log = log_with(Soil::sand, "accel_scale:change=0.2", 6, 40);
     const auto text = [&] {
