@@ -10,15 +10,6 @@ namespace traction::bench_lab {
 
 namespace {
 
-double quantile(std::vector<double> values, double q) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const double at = q * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(at);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
-}
-
 // Counts of one group of logs.
 struct Tally {
     Share right_first, right_first_visible, right_when_naming, wheel_right, clean_silent, both, either, false_terms, flagged, right_variable;
@@ -89,6 +80,15 @@ nlohmann::json line_json(const Line &line) {
 }
 
 } // namespace
+
+double quantile(std::vector<double> values, double q) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const double at = q * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+}
 
 std::pair<double, double> Share::interval() const {
     if (count == 0) return {0, 1};

@@ -26,6 +26,9 @@ struct Share {
     std::pair<double, double> interval() const;
 };
 
+// Linear between the two values beside it; 0 where there are none.
+double quantile(std::vector<double> values, double q);
+
 // One line of the table.
 struct Line {
     std::string key, title, goal;

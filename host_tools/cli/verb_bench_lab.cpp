@@ -42,7 +42,7 @@ void run(Request &request, Outcome &outcome) {
         return bench_lab::ask_lab(one.log, bench_lab::campaign_model(options.generator, one.soil));
     });
     nlohmann::json peers;
-    if (request.peers) peers = bench_lab::run_peers(logs, options.folder);
+    if (request.peers) peers = bench_lab::run_peers(logs, options);
     std::vector<bench_lab::Judged> judged = bench_lab::open_seals(logs); // only now
     bench_lab::add_floors(judged, logs, options, [&](const bench_lab::SealedLog &one, const nlohmann::json &seal) {
         return bench_lab::floor_with_truth(one.log, bench_lab::campaign_model(options.generator, one.soil), seal);
@@ -54,7 +54,7 @@ void run(Request &request, Outcome &outcome) {
     outcome.json = bench_lab::table_json(score);
     outcome.json["generator"] = options.generator;
     if (request.peers) {
-        outcome.json["peers"] = bench_lab::judge_peers(peers, logs);
+        outcome.json["peers"] = bench_lab::judge_peers(peers, judged);
         std::printf("\n%s", bench_lab::peers_text(outcome.json["peers"]).c_str());
     }
     if (temporary) std::filesystem::remove_all(options.folder);

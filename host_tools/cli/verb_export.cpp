@@ -1,6 +1,7 @@
-// verb_export.cpp - traction export: every residual as CSV, or the firmware's parameters from a fitted model.
+// verb_export.cpp - traction export: every residual as CSV, the firmware's parameters, or the regressors of every candidate.
 #include "verbs.h"
 
+#include "host_tools/bench_lab/regressors.h"
 #include "host_tools/lab/compare.h"
 #include "host_tools/lab/result.h"
 #include "host_tools/lab/session.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct ExportRequest {
     lab::Request input;
-    std::string residuals, firmware;
+    std::string residuals, firmware, regressors;
 };
 
 std::string line(const char *name, double value, const char *comment) {
@@ -52,9 +53,14 @@ void export_all(const ExportRequest &request, Outcome &outcome) {
         std::printf("wrote %s\n", request.firmware.c_str());
         outcome.json["firmware"] = text;
     }
-    if (request.residuals.empty()) return;
-    if (request.input.log.empty()) throw CLI::ValidationError("export", "--residuals needs --log LOG");
+    if (request.residuals.empty() && request.regressors.empty()) return;
+    if (request.input.log.empty()) throw CLI::ValidationError("export", "--residuals and --regressors need --log LOG");
     const lab::Session session = lab::open_session(request.input);
+    if (!request.regressors.empty()) {
+        bench_lab::write_regressors(session.model, session.data, request.regressors);
+        std::printf("wrote %s\n", request.regressors.c_str());
+    }
+    if (request.residuals.empty()) return;
     const lab::Comparison comparison = lab::compare(session.model, session.data, true);
     std::string text = "balance,t_s,measured,model,residual,noise,unit\n";
     for (const lab::BalanceComparison &b : comparison.balances)
@@ -81,9 +87,11 @@ void add_export(CLI::App &app, Outcome &outcome) {
     verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
     verb->add_option("--residuals", request->residuals, "write every residual to this CSV")->type_name("FILE");
     verb->add_option("--firmware", request->firmware, "write the firmware's parameters to this file")->type_name("FILE");
+    verb->add_option("--regressors", request->regressors, "fit, then write what every candidate effect would change (host_tools/bench_lab/regressors.h)")->type_name("FILE");
     add_json_option(verb, outcome);
     verb->callback([=, &outcome] {
-        if (request->residuals.empty() && request->firmware.empty()) throw CLI::ValidationError("export", "give --residuals FILE or --firmware FILE");
+        if (request->residuals.empty() && request->firmware.empty() && request->regressors.empty())
+            throw CLI::ValidationError("export", "give --residuals FILE, --firmware FILE or --regressors FILE");
         export_all(*request, outcome);
     });
 }

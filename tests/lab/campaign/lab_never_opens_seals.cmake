@@ -1,6 +1,6 @@
-# Nothing in the lab knows of seals, truth columns or scenarios' contents. Run: cmake -DFOLDER=host_tools/lab -P lab_never_opens_seals.cmake
+# Nothing in the lab, nor in its peers, knows of seals, truth columns or scenarios' contents. Run: cmake -DFOLDER=host_tools/lab -P lab_never_opens_seals.cmake
 cmake_minimum_required(VERSION 3.25)
-file(GLOB_RECURSE files ${FOLDER}/*.h ${FOLDER}/*.cpp)
+file(GLOB_RECURSE files ${FOLDER}/*.h ${FOLDER}/*.cpp ${FOLDER}/*.py)
 list(LENGTH files count)
 if(count EQUAL 0)
   message(FATAL_ERROR "no source files under ${FOLDER}: the rule was not checked")
