@@ -1,5 +1,6 @@
 #include "diagnose.h"
 
+#include "classes.h"
 #include "screen.h"
 #include "session.h"
 #include "shapes.h"
@@ -158,7 +159,7 @@ class Search {
                    [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
         const auto most_promise = [](const Trial &a, const Trial &b) { return a.promise > b.promise; };
         // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
-        refit_some(3, [&](const Trial &t) { return (t.frees || t.p_value < 0.2) && t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : 0.7) * best); }, most_promise);
+        refit_some(3, [&](const Trial &t) { return t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best); }, most_promise);
         refit_some(3, [&](const Trial &t) { return t.surprise > std::max(3 * least_promise, 0.3 * t.promise) && t.promise > 0.5 * best; },
                    most_promise);
     }
@@ -213,33 +214,9 @@ class Search {
         }
     }
 
-    // Which passers the data cannot tell from the winner. Where the rows alone would not have named it, the data sheet's tolerances did: of
-    // such the nearly sure are in the class too, and what explains half as much may be meant.
-    std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error) const {
-        std::vector<std::size_t> members;
-        const Trial &w = trials[winner];
-        const bool by_priors = w.gain - w.assessment.relief < options_.least_gain * base_error && w.best_balance_gain < options_.least_gain_one;
-        DiagnoseOptions nearly = options_;
-        if (by_priors) nearly.p_limit = 0.05;
-        for (std::size_t i = 0; i < trials.size(); ++i) {
-            Trial t = trials[i];
-            if (i == winner || !t.refitted) continue;
-            judge(t, base_error, nearly);
-            if (t.verdict != "passes") continue;
-            // the same effect on two wheels is a question, on all of them or on one of them it is one answer
-            if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;
-            const Eigen::VectorXd difference = w.block_gain - t.block_gain;
-            const double n = static_cast<double>(difference.size()), error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-            const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
-            const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
-            if (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options_.same_cosine)) members.push_back(i);
-        }
-        return members;
-    }
-
     void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first) {
         const bool found = winner < trials.size();
-        const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error) : std::vector<std::size_t>();
+        const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error, options_) : std::vector<std::size_t>();
         for (std::size_t i = 0; i < trials.size(); ++i) {
             CandidateResult r = result_of(trials[i], base_error, screen);
             const bool member = std::find(members.begin(), members.end(), i) != members.end();
@@ -292,25 +269,11 @@ class Search {
     void remove(std::size_t i, Model without, const Problem &problem) {
         const std::string label = d_.accepted[i].candidate.label();
         std::erase_if(d_.ladder, [&](const Rung &r) { return r.label == "+ " + label; });
-        forget_class(label);
+        forget_class(d_, label);
         if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = overall_heldout(problem);
         d_.model = std::move(without);
         d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
         refresh(problem, Screen(problem));
-    }
-
-    // The class that the label stands for, if there is one; those behind it move up.
-    void forget_class(const std::string &label) {
-        const auto found = std::find_if(d_.classes.begin(), d_.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
-        if (found == d_.classes.end()) return;
-        const auto gone = static_cast<int>(found - d_.classes.begin());
-        d_.classes.erase(found);
-        for (std::vector<CandidateResult> *list : {&d_.ranking, &d_.accepted})
-            for (CandidateResult &r : *list) {
-                if (!r.class_index) continue;
-                if (*r.class_index == gone) r.class_index.reset();
-                else if (*r.class_index > gone) --*r.class_index;
-            }
     }
 
     // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
@@ -349,6 +312,7 @@ class Search {
     }
 
     void conclude() {
+        part_classes(d_);
         for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
         if (d_.accepted.empty()) d_.kind = d_.unknown ? "unknown" : "nothing";
         else d_.kind = d_.unknown ? "partial" : !d_.classes.empty() ? "class" : "named";

@@ -20,7 +20,7 @@ struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
     double p_value = 1, balance_fall = 0;
-    Eigen::MatrixXd columns; // kept for those that are no waves
+    Eigen::MatrixXd columns;
 };
 
 // Columns of all shapes: those that move the body share the response to a unit of their target.
@@ -84,7 +84,7 @@ ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Scre
     s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
     s.p_value = corrected(s.candidate, s.assessment);
     if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(columns, s.assessment);
-    if (keep && c.order == 0) s.columns = columns;
+    if (keep) s.columns = columns;
     return s;
 }
 
@@ -214,7 +214,7 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
 }
 
 // The named effects that say the same as the shape. One that keeps more than half of what it gains beside it is about something else, and
-// neither stands nor falls with it. Waves keep no columns: all are taken to be in their way.
+// neither stands nor falls with it.
 std::vector<std::size_t> in_its_way(const Problem &last, const std::vector<Candidate> &named, const std::string &shape, const std::vector<ShapeScore> &scores) {
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const ShapeScore &s) { return s.candidate.effect == shape && s.columns.cols() > 0; });
     std::vector<std::size_t> list;

@@ -1,0 +1,65 @@
+#include "classes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::lab {
+
+std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error, const DiagnoseOptions &options) {
+    std::vector<std::size_t> members;
+    const Trial &w = trials[winner];
+    const bool by_priors = w.gain - w.assessment.relief < options.least_gain * base_error && w.best_balance_gain < options.least_gain_one;
+    DiagnoseOptions nearly = options;
+    nearly.p_limit = 0.05;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        if (i == winner || !trials[i].refitted) continue;
+        Trial t = trials[i];
+        const bool explains_more = t.promise > w.promise;
+        judge(t, base_error, by_priors || explains_more ? nearly : options);
+        if (t.verdict != "passes") continue;
+        // the same effect on two wheels is a question, on all of them or on one of them it is one answer
+        if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;
+        const Eigen::VectorXd difference = w.block_gain - t.block_gain;
+        const double n = static_cast<double>(difference.size()), error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
+        const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
+        const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
+        if (explains_more || (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options.same_cosine))) members.push_back(i);
+    }
+    return members;
+}
+
+void forget_class(Diagnosis &d, const std::string &label) {
+    const auto found = std::find_if(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
+    if (found == d.classes.end()) return;
+    const auto gone = static_cast<int>(found - d.classes.begin());
+    d.classes.erase(found);
+    for (std::vector<CandidateResult> *list : {&d.ranking, &d.accepted})
+        for (CandidateResult &r : *list) {
+            if (!r.class_index) continue;
+            if (*r.class_index == gone) r.class_index.reset();
+            else if (*r.class_index > gone) --*r.class_index;
+        }
+}
+
+void part_classes(Diagnosis &d) {
+    const auto accepted = [&](const std::string &label) {
+        return std::any_of(d.accepted.begin(), d.accepted.end(), [&](const CandidateResult &a) { return a.candidate.label() == label; });
+    };
+    std::vector<std::string> alone;
+    for (ConfoundedClass &c : d.classes) {
+        const std::string front = c.members.front();
+        std::erase_if(c.members, [&](const std::string &member) { return member != front && accepted(member); });
+        if (c.members.size() == 1) alone.push_back(front);
+    }
+    for (const std::string &label : alone) forget_class(d, label);
+    for (std::vector<CandidateResult> *list : {&d.ranking, &d.accepted})
+        for (CandidateResult &r : *list) {
+            const std::string label = r.candidate.label();
+            const bool stands = std::any_of(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
+            if (r.verdict != "class" || stands) continue;
+            if (accepted(label)) r.class_index.reset(), r.verdict = "named";
+            else if (!r.class_index) r.verdict = "not_significant";
+        }
+}
+
+} // namespace traction::lab
