@@ -185,9 +185,12 @@ double paired_error(const Eigen::VectorXd &difference) {
     return std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
 }
 
+// Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
+bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
+
 // A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none either: f(X) may stand for anything
 // that differed between them.
-bool is_curve(const Candidate &shape) { return shape.order == 0 && !shape.parts_wheels && (shape.knots.size() > 3 || shape.knots.size() == 2 || is_bump(shape) || shape.axis == Axis::direction || shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current); }
+bool is_curve(const Candidate &shape) { return shape.order == 0 && !shape.parts_wheels && (shape.knots.size() > 3 || is_straight(shape) || is_bump(shape) || shape.axis == Axis::direction || shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current); }
 
 // The shape in whose stead the effect was named, if there is one: needed beside the effect, and explaining more than it by itself, while
 // the effect is not needed beside the shape. A law that is right passes: no freer shape does better than it.
@@ -204,7 +207,7 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
         s.p_value = corrected(s.candidate, s.assessment);
         if (!(s.p_value < options.shape_p_limit) || (best && !(s.assessment.gain > best->assessment.gain))) continue;
         const bool better = s.assessment.gain - own.gain > 2 * paired_error(s.assessment.block_gain - own.block_gain);
-        if (!better && &shape != flagged) continue;
+        if (!better && (is_straight(shape.candidate) || &shape != flagged)) continue;
         const Assessment left = beside(less, columns, shape);
         if (left.gain > 0 && left.p_value * shapes_tried < options.p_limit) continue; // needed beside the shape too
         best = std::move(s);
@@ -275,7 +278,7 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
     const Screen named_screen(at_last);
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
-        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > 0.95 * named_gain)) continue;
+        if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > 0.95 * named_gain)) continue;
         const std::vector<std::size_t> replaced = in_its_way(last, named, s.candidate.effect, scores);
         if (replaced.empty()) continue;
         // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes

@@ -49,6 +49,18 @@ double clamped(const Candidate &c, std::size_t j, double value) {
     return std::clamp(value, std::max(p.minimum, c.minimum[j]), c.maximum[j]);
 }
 
+// A step from where the baseline lies at its bounds may go much too far: the best of a few parts of it.
+void shorten(Problem &problem, Eigen::Index first) {
+    const Eigen::VectorXd whole = problem.theta;
+    double least = problem.cost();
+    Eigen::VectorXd best = whole;
+    for (const double part : {0.5, 0.2, 0.05}) {
+        problem.theta.tail(whole.size() - first) = part * whole.tail(whole.size() - first);
+        if (const double cost = problem.cost(); cost < least) least = cost, best = problem.theta;
+    }
+    problem.theta = best;
+}
+
 } // namespace
 
 bool strongly_nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
@@ -121,9 +133,10 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
         problem.theta[n + j] = start;
     }
     if ((t.candidate.touched & stage_motion) != 0 || t.frees) {
-        if (t.frees && t.start.empty()) t.start_change = t.assessment.change;
+        if (linear) t.start_change = t.assessment.change;
+        else if (t.start.empty()) shorten(problem, n);
         if (t.start_change.size() == n) problem.theta.head(n) += t.start_change, problem.within_bounds();
-        problem.polish(strongly_nonlinear(t.candidate.effect) ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
+        problem.polish(strongly_nonlinear(t.candidate.effect) || t.frees ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
     } else {
         problem.quick_fit(base, 3);
     }
