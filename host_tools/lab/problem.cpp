@@ -356,7 +356,7 @@ void Problem::polish(int fresh) {
             if (fall < worth) break;
         }
         const Eigen::VectorXd moved = theta - start;
-        if (fresh <= 0 || moved.dot(normal * moved) < 1e-2) return settle(); // a tenth of a standard deviation: the sensitivities serve there too
+        if (fresh <= 0 || moved.dot(normal * moved) < 0.1) return settle(); // a third of a standard deviation: the sensitivities serve there too
         linearise();
         if (first - best < worth) return;
     }
