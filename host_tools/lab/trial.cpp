@@ -96,7 +96,7 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
         c.strengths[0].add(moved, size);
         Eigen::VectorXd change;
         const double error = screen.error_absorbed(base.scaled_residual(moved, c.touched), change);
-        if (error > clearly_worse * before) too_large = std::min(too_large, std::fabs(size));
+        if (error > clearly_worse * before && !strongly_nonlinear(c.effect)) too_large = std::min(too_large, std::fabs(size));
         if (!(error < best)) continue;
         best = error;
         t.start = {size};
