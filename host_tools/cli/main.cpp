@@ -10,6 +10,10 @@
 #include <ios>
 #include <system_error>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 namespace traction::cli {
 
 #define X(name) void add_##name(CLI::App &app, Outcome &outcome);
@@ -85,6 +89,10 @@ int run(int argc, char **argv) {
 } // namespace traction::cli
 
 int main(int argc, char **argv) {
+#if defined(__GLIBC__) // the lab's matrices, megabytes each, come and go: given back, each would be paged in anew
+    mallopt(M_MMAP_THRESHOLD, 64 << 20);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
     try {
         return traction::cli::run(argc, argv);
     } catch (const std::exception &error) {

@@ -162,7 +162,8 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     }
     const Physics physics = make_physics(model);
     Problem problem(data, physics, free_parameters(model, physics));
-    problem.linearise();
+    if (as_is) problem.linearise(); // its motion is shown
+    else problem.cost();
     out.error = overall_error(problem);
     Problem adjusted(data, physics, problem.parameters);
     adjusted.fit({.iterations = 4});

@@ -15,6 +15,10 @@ constexpr double copper_per_K = 0.0039;       // resistance of copper
 constexpr double magnet_per_K = -0.002;       // flux of ferrite magnets
 constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue's
 
+bool has_electric_terms(const Physics &physics) {
+    return std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
+}
+
 } // namespace
 
 Forward::Forward(const Dataset &data) : data_(&data) {
@@ -238,6 +242,26 @@ Eigen::VectorXd Forward::predict(const Physics &physics) {
     return observe(physics, scratch_);
 }
 
+Eigen::VectorXd Forward::predict(const Physics &physics, unsigned touched) {
+    if (base_motion_.tangent.empty() || physics.unsigned_current || (touched & stage_motion) == 0) return predict(physics);
+    integrate(*data_, physics, scratch_, &base_motion_, false);
+    Eigen::VectorXd out = base_prediction_;
+    observe_beside(physics, scratch_, touched, -1, out);
+    return out;
+}
+
+void Forward::observe_beside(const Physics &physics, const Motion &motion, unsigned touched, int wheel, Eigen::VectorXd &out) const {
+    const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0, terms = has_electric_terms(physics);
+    const unsigned stages = moves ? stage_torque | stage_voltage : touched;
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
+        const WheelPhysics &p = physics.wheel[i];
+        const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
+        if (whole || (moves && (terms || p.dead_voltage != 0 || p.heating != 0))) electrical(physics, motion, i, stages, current_, out);
+        else if (moves) torque_of_traction(physics, motion, i, out);
+    }
+    if (moves || (touched & stage_sensors) != 0) sensors(physics, motion, out);
+}
+
 Eigen::VectorXd Forward::observe(const Physics &physics, const Motion &motion) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, motion, i, stage_torque | stage_voltage, current_, out);
@@ -259,20 +283,11 @@ void Forward::set_base(const Physics &physics) {
 
 Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {
     if (data_->count < 3) return base_prediction_;
-    const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0;
+    const bool moves = (touched & stage_motion) != 0;
     if (moves && !(linear_base_ && has_neighbours(*data_, base_physics_, physics))) return predict(physics);
-    const bool terms = std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
-    if (moves) neighbour(*data_, physics, base_motion_, wheel, terms, scratch_);
-    const Motion &motion = moves ? scratch_ : base_motion_;
-    const unsigned stages = moves ? stage_torque | stage_voltage : touched;
+    if (moves) neighbour(*data_, physics, base_motion_, wheel, has_electric_terms(physics), scratch_);
     Eigen::VectorXd out = base_prediction_;
-    for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
-        const WheelPhysics &p = physics.wheel[i];
-        const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
-        if (whole || (moves && (terms || p.dead_voltage != 0 || p.heating != 0))) electrical(physics, motion, i, stages, current_, out);
-        else if (moves) torque_of_traction(physics, motion, i, out);
-    }
-    if (moves || (touched & stage_sensors) != 0) sensors(physics, motion, out);
+    observe_beside(physics, moves ? scratch_ : base_motion_, touched, wheel, out);
     return out;
 }
 

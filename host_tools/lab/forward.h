@@ -26,8 +26,10 @@ class Forward {
 
     // Predictions of every row of every balance, in the order of data.balance.
     Eigen::VectorXd predict(const Physics &physics);
+    // The same where only the stages in `touched` (see Stage) differ from the base's, by any amount.
+    Eigen::VectorXd predict(const Physics &physics, unsigned touched);
 
-    // The same when only the stages in `touched` (see Stage) differ from `base`, the prediction of the last set_base().
+    // The same to first order, beside `base`, the prediction of the last set_base().
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
     // What one unit of each coefficient of a shape f(X) changes in each row, beside the base: of a shape that moves the body, and of one of the
     // torque and voltage balances alone. Holds where nothing but the motion remembers (no heating, no other terms).
@@ -49,6 +51,8 @@ class Forward {
 
   private:
     Eigen::VectorXd observe(const Physics &physics, const Motion &motion) const;
+    // Rows of the base's prediction that another motion and the stages touched change.
+    void observe_beside(const Physics &physics, const Motion &motion, unsigned touched, int wheel, Eigen::VectorXd &out) const;
     void electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
                     Eigen::VectorXd &out) const;
     void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current, ElectricSeries &out) const;

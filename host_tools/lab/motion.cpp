@@ -239,10 +239,12 @@ class Solver {
     double reach_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
 };
 
-void record(const WheelStep &step, std::size_t k, Motion &m) {
+// whole: not the tractions alone, which are all that a plain prediction reads.
+void record(const WheelStep &step, std::size_t k, bool whole, Motion &m) {
     for (std::size_t i = 0; i < step.wheels(); ++i) {
         const auto &s = step.state(i);
         m.wheel[i].traction_N[k] = s.traction;
+        if (!whole) continue;
         m.wheel[i].rolling_N[k] = s.rolling;
         m.wheel[i].slip[k] = s.slip;
         m.wheel[i].load_N[k] = s.load;
@@ -258,6 +260,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();
+    const bool whole = keep || !p.terms.empty() || std::any_of(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::force; });
     const bool far = keep || p.body.tether != 0; // who else asks how far away it is?
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
@@ -295,7 +298,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         m.away_m[k] = away;
         m.rate[k] = rate;
         m.accel_m_s2[k] = rate[0] - solver.grade() - (freedom.vy ? q[2] * q[1] : 0);
-        record(solver.step(), k, m);
+        record(solver.step(), k, whole, m);
     }
 }
 
@@ -312,7 +315,7 @@ void integrate_imposed(const Dataset &data, const Physics &p, Motion &m) {
         m.v_m_s[k] = v;
         m.vy_m_s[k] = m.yaw_rate_rad_s[k] = m.accel_m_s2[k] = 0;
         m.path_m[k] = m.away_m[k] = path;
-        record(step, k, m);
+        record(step, k, true, m);
     }
 }
 

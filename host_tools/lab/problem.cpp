@@ -1,5 +1,6 @@
 #include "problem.h"
 
+#include "felt.h"
 #include "smooth.h"
 
 #include <ceres/ceres.h>
@@ -235,7 +236,7 @@ double Problem::cost() {
     return residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(prior_precision());
 }
 
-Eigen::VectorXd Problem::scaled_residual(const Physics &at) { return (measured_ - forward_.predict(at)).cwiseProduct(row_scale); }
+Eigen::VectorXd Problem::scaled_residual(const Physics &at, unsigned touched) { return (measured_ - forward_.predict(at, touched)).cwiseProduct(row_scale); }
 
 void Problem::within_bounds() {
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
@@ -335,14 +336,15 @@ void Problem::polish(int fresh) {
     const Eigen::VectorXd precision = prior_precision();
     if (jacobian.rows() != measured_.size() || jacobian.cols() != theta.size()) linearise(), --fresh;
     for (;; --fresh) {
-        Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+        const Felt felt(*data_, jacobian);
+        Eigen::MatrixXd normal = felt.gram();
         normal.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(theta.size(), 1e-12);
         const Eigen::VectorXd start = theta;
         const double first = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
         double best = first;
         for (int i = 0; i < steps; ++i) {
             const Eigen::VectorXd before = theta, residual_before = residual;
-            theta += bounded_step(normal, jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta));
+            theta += bounded_step(normal, felt.moment(residual.cwiseProduct(row_scale)) - precision.cwiseProduct(theta));
             double now = cost();
             for (int halving = 0; halving < 3 && !(now < best); ++halving) theta = 0.5 * (theta + before), now = cost();
             if (!(now < best)) {
@@ -354,7 +356,7 @@ void Problem::polish(int fresh) {
             if (fall < worth) break;
         }
         const Eigen::VectorXd moved = theta - start;
-        if (fresh <= 0 || moved.dot(normal * moved) < 1e-2) return settle(); // a tenth of a standard deviation: the sensitivities serve there too
+        if (fresh <= 0 || moved.dot(normal * moved) < 0.1) return settle(); // a third of a standard deviation: the sensitivities serve there too
         linearise();
         if (first - best < worth) return;
     }

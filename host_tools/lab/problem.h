@@ -46,7 +46,7 @@ class Problem {
     Eigen::VectorXd doubt_rows() const; // Balance::doubt of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
-    Eigen::VectorXd scaled_residual(const Physics &at); // of another physics, on the present scales
+    Eigen::VectorXd scaled_residual(const Physics &at, unsigned touched); // of a physics that differs in these stages, on the present scales
     bool at_bound(std::size_t parameter) const;
     void within_bounds();                               // moves increments that left their bounds back to them
     double cost(); // squares of all rows and priors at the present increments, where `residual` is then

@@ -20,13 +20,14 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
     const Eigen::Index n = leading < 0 ? problem.theta.size() : leading;
     const Eigen::VectorXd theta = problem.theta.head(n);
     nuisance_ = problem.jacobian.leftCols(n);
+    felt_ = Felt(problem.data(), nuisance_);
     residual_ = problem.residual.cwiseProduct(problem.row_scale);
     precision_ = problem.prior_precision().head(n);
     // a parameter that the data do not see and no prior holds would make the system singular: a whisper holds it
     for (Eigen::Index j = 0; j < n; ++j) precision_[j] = std::max(precision_[j], 1e-9 * (1 + nuisance_.col(j).squaredNorm()));
     pull_ = -precision_.cwiseProduct(theta);
     doubt_ = problem.doubt_rows().cwiseProduct(problem.row_scale);
-    doubt_moment_ = nuisance_.transpose() * doubt_;
+    doubt_moment_ = felt_.moment(doubt_);
     cut();
     total_ = precision_.asDiagonal();
     moment_ = pull_;
@@ -57,17 +58,19 @@ void Screen::cut() {
     std::map<double, std::size_t> fine, coarse;
     std::vector<std::pair<double, double>> place; // of each segment: its blocks
     Eigen::Index row = 0;
-    for (const Balance &b : data.balance)
+    for (std::size_t i = 0; i < data.balance.size(); ++i) {
+        const Balance &b = data.balance[i];
         for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
             const double time = 0.5 * (b.t0_s[r] + b.t1_s[r]) - start;
             const std::pair<double, double> here(std::floor(time / fine_s + 1e-9), std::floor(time / coarse_s + 1e-9));
             if (r == 0 || here != place.back()) {
-                segments_.push_back({row, 0, 0, 0});
+                segments_.push_back({row, 0, i, 0, 0});
                 place.push_back(here);
                 fine[here.first] = coarse[here.second] = 0;
             }
             ++segments_.back().size;
         }
+    }
     std::size_t count = 0;
     for (auto &[block, index] : fine) index = count++;
     count = 0;
@@ -82,12 +85,13 @@ void Screen::cut() {
     for (std::size_t i = 0; i < segments_.size(); ++i) {
         Segment &s = segments_[i];
         s.fine = fine.at(place[i].first), s.coarse = coarse.at(place[i].second);
-        const auto N = nuisance_.middleRows(s.first, s.size);
+        const Felt::Part &felt = felt_.parts()[s.balance];
+        const auto N = felt.value.middleRows(s.first - felt.first, s.size);
         const auto r = residual_.segment(s.first, s.size);
         const Eigen::MatrixXd gram = N.transpose() * N;
         const Eigen::VectorXd moment = N.transpose() * r;
-        fine_.gram[s.fine] += gram, coarse_.gram[s.coarse] += gram;
-        fine_.moment[s.fine] += moment, coarse_.moment[s.coarse] += moment;
+        fine_.gram[s.fine](felt.column, felt.column) += gram, coarse_.gram[s.coarse](felt.column, felt.column) += gram;
+        fine_.moment[s.fine](felt.column) += moment, coarse_.moment[s.coarse](felt.column) += moment;
         fine_.squares[s.fine] += r.squaredNorm(), coarse_.squares[s.coarse] += r.squaredNorm();
     }
 }
@@ -100,16 +104,17 @@ void Screen::factor(Blocks &blocks) const {
 }
 
 void Screen::parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) const {
-    const Eigen::Index k = columns.cols(), n = nuisance_.cols();
-    Eigen::VectorXd nc(n);
+    const Eigen::Index k = columns.cols();
+    Eigen::VectorXd nc;
     for (const Segment &s : segments_) {
-        const auto N = nuisance_.middleRows(s.first, s.size);
+        const Felt::Part &felt = felt_.parts()[s.balance];
+        const auto N = felt.value.middleRows(s.first - felt.first, s.size);
         const auto r = residual_.segment(s.first, s.size);
         for (Eigen::Index j = 0; j < k; ++j) {
             const auto c = columns.col(j).segment(s.first, s.size);
             if ((c.array() == 0).all()) continue; // most effects leave most balances alone
             nc.noalias() = N.transpose() * c;
-            fine.nc[s.fine].col(j) += nc, coarse.nc[s.coarse].col(j) += nc;
+            fine.nc[s.fine].col(j)(felt.column) += nc, coarse.nc[s.coarse].col(j)(felt.column) += nc;
             const double mc = c.dot(r);
             fine.mc[s.fine][j] += mc, coarse.mc[s.coarse][j] += mc;
             for (Eigen::Index i = 0; i <= j; ++i) {
@@ -241,7 +246,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     return out;
 }
 
-Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column) const { return projected(column, total_factor_.solve(nuisance_.transpose() * column)); }
+Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column) const { return projected(column, total_factor_.solve(felt_.moment(column))); }
 
 Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const {
     Eigen::VectorXd out(column.size() + absorb.size());
@@ -251,7 +256,7 @@ Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::Ve
 
 double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const {
     const Eigen::Index n = nuisance_.cols();
-    const Eigen::VectorXd theta = problem_.theta.head(n), moment = nuisance_.transpose() * scaled_residual + pull_;
+    const Eigen::VectorXd theta = problem_.theta.head(n), moment = felt_.moment(scaled_residual) + pull_;
     change = total_factor_.solve(moment);
     return scaled_residual.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(change);
 }

@@ -5,6 +5,7 @@
 // with leverage correction), the priors' own uncertainty added; degrees of freedom from how many blocks inform it.
 #pragma once
 
+#include "felt.h"
 #include "problem.h"
 
 #include <Eigen/Dense>
@@ -76,7 +77,7 @@ class Screen {
     // Rows of one balance that lie in one block of either length.
     struct Segment {
         Eigen::Index first = 0, size = 0;
-        std::size_t fine = 0, coarse = 0;
+        std::size_t balance = 0, fine = 0, coarse = 0;
     };
     // N' C, C' C and C' r of a candidate, per block.
     struct Part {
@@ -96,6 +97,7 @@ class Screen {
     const Problem &problem_;
     std::vector<Segment> segments_;
     Eigen::MatrixXd nuisance_;
+    Felt felt_; // the same
     Eigen::VectorXd residual_;  // scaled
     Eigen::VectorXd moment_;    // N' r + pull
     Eigen::VectorXd doubt_, doubt_moment_; // of the smoothing, scaled; N' doubt

@@ -23,6 +23,24 @@ struct ShapeScore {
     Eigen::MatrixXd columns;
 };
 
+// Several shapes of equally many coefficients side by side: one pass serves them all.
+class Beside : public Term {
+  public:
+    void add(std::shared_ptr<Term> term, std::size_t count) { part_.push_back(std::move(term)), count_ = count; }
+    double value(const Signals &signals, const double *c) const override {
+        double sum = 0;
+        for (std::size_t i = 0; i < part_.size(); ++i) sum += part_[i]->value(signals, c + i * count_);
+        return sum;
+    }
+    void weights(const Signals &signals, std::size_t, double *weight) const override {
+        for (std::size_t i = 0; i < part_.size(); ++i) part_[i]->weights(signals, count_, weight + i * count_);
+    }
+
+  private:
+    std::vector<std::shared_ptr<Term>> part_;
+    std::size_t count_ = 0;
+};
+
 // Columns of all shapes: those that move the body share the response to a unit of their target.
 class ShapeColumns {
   public:
@@ -43,6 +61,23 @@ class ShapeColumns {
         Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
         for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
         return columns;
+    }
+
+    // Of waves, which come many and alike: as many as one pass holds.
+    std::vector<Eigen::MatrixXd> of_waves(const std::vector<Candidate> &waves) {
+        std::vector<Eigen::MatrixXd> list;
+        for (std::size_t first = 0; first < waves.size(); first += most_shapes / 2) {
+            const std::size_t last = std::min(waves.size(), first + most_shapes / 2);
+            if (!plain_) {
+                for (std::size_t i = first; i < last; ++i) list.push_back(of(waves[i]));
+                continue;
+            }
+            Beside all;
+            for (std::size_t i = first; i < last; ++i) all.add(make_periodic(waves[i].axis, waves[i].order), 2);
+            const Eigen::MatrixXd columns = problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
+            for (Eigen::Index i = 0; i < columns.cols(); i += 2) list.push_back(columns.middleCols(i, 2));
+        }
+        return list;
     }
 
   private:
@@ -94,7 +129,12 @@ bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keep = false) {
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
+    std::vector<Candidate> waves;
     for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
+        if (c.order > 0 && c.target == TermTarget::soil_strength) {
+            waves.push_back(c);
+            continue;
+        }
         const Eigen::MatrixXd C = columns.of(c);
         list.push_back(scored(c, C, screen, keep));
         for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
@@ -106,6 +146,8 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
             list.push_back(scored(bump, C.col(j), screen, keep));
         }
     }
+    const std::vector<Eigen::MatrixXd> of_waves = columns.of_waves(waves);
+    for (std::size_t i = 0; i < waves.size(); ++i) list.push_back(scored(waves[i], of_waves[i], screen, keep));
     std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
     return list;
 }

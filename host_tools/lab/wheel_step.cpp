@@ -29,6 +29,7 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         s.sigma = w.relaxation + b.relaxation;
         s.plain_sc = std::max(1e-4, w.sc * (1 + b.shear_change));
         play_ = play_ || w.backlash > 0;
+        lags_ = lags_ || s.sigma > 0;
     }
     for (const ExtraTerm &term : p_.terms) motion_terms_ = motion_terms_ || (target_stages(term.target) & stage_motion) != 0;
     feels_path_ = feels_path_ || motion_terms_; // a user's expression may name x
@@ -262,6 +263,7 @@ Eigen::Vector2d WheelStep::grade_accel() const {
 }
 
 void WheelStep::commit() {
+    if (!play_ && !lags_) return;
     for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip), state_[i].play_before = state_[i].play;
 }
 

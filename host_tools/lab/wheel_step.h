@@ -80,7 +80,7 @@ class WheelStep {
     std::array<Four, most_wheels / 4> four_;
     bool plain_ = false; // the wheels' forces need no more than `four_`
     bool even_ = false;  // the ground is as strong everywhere
-    bool motion_terms_ = false, play_ = false, feels_path_ = false;
+    bool motion_terms_ = false, play_ = false, lags_ = false, feels_path_ = false;
 };
 
 } // namespace traction::lab

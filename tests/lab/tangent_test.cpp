@@ -1,6 +1,8 @@
 // Sensitivities by the linear recursion beside a known motion (tangent.cpp) against whole integrations.
 #include "host_tools/lab/candidate.h"
+#include "host_tools/lab/felt.h"
 #include "host_tools/lab/forward.h"
+#include "host_tools/lab/problem.h"
 #include "host_tools/lab/wheel_step.h"
 #include "tests/lab/generator/generator.h"
 
@@ -75,6 +77,41 @@ TEST(Tangent, all_coefficients_of_a_shape_at_once_are_the_same_one_by_one) {
             EXPECT_LT((all.col(col) - one).norm(), (moves ? 0.02 : 1e-5) * one.norm() + 1e-5) << c.effect << " " << j << ": " << all.col(col).norm() << " against " << one.norm();
         }
     }
+}
+
+TEST(Tangent, a_far_candidate_beside_the_base_reads_as_its_whole_prediction) {
+    generator::GeneratorConfig config;
+    config.seed = 7;
+    config.duration_s = 30;
+    const Model model = read_model("models/rover_sand.toml");
+    const Dataset data = make_dataset(model, generator::generate(config));
+    const Physics physics = make_physics(model);
+    Forward forward(data);
+    forward.set_base(physics);
+    for (const Candidate &c : catalogue_candidates(model, data, forward.motion())) {
+        if ((c.touched & stage_motion) == 0 || c.wheel >= 0) continue;
+        Physics moved = physics;
+        c.prepare(moved);
+        c.strengths[0].add(moved, 0.5 * c.maximum[0]);
+        const Eigen::VectorXd whole = forward.predict(moved), beside = forward.predict(moved, c.touched);
+        EXPECT_LT((whole - beside).norm(), 1e-9 * whole.norm()) << c.label(); // rounding; the search for the speed is the same
+    }
+}
+
+TEST(Tangent, products_that_skip_the_zeros_of_a_jacobian_are_those_of_all_its_entries) {
+    generator::GeneratorConfig config;
+    config.seed = 7;
+    config.duration_s = 20;
+    const Model model = read_model("models/rover_sand.toml");
+    const Dataset data = make_dataset(model, generator::generate(config));
+    const Physics physics = make_physics(model);
+    Problem problem(data, physics, free_parameters(model, physics));
+    problem.linearise();
+    const Eigen::MatrixXd &J = problem.jacobian, gram = J.transpose() * J;
+    const Eigen::VectorXd moment = J.transpose() * problem.residual;
+    const Felt felt(data, J);
+    EXPECT_LT((felt.gram() - gram).norm(), 1e-12 * gram.norm()); // rounding
+    EXPECT_LT((felt.moment(problem.residual) - moment).norm(), 1e-12 * moment.norm());
 }
 
 TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {

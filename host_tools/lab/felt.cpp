@@ -1,0 +1,37 @@
+#include "felt.h"
+
+namespace traction::lab {
+
+Felt::Felt(const Dataset &data, const Eigen::MatrixXd &jacobian) : columns_(jacobian.cols()) {
+    Eigen::Index first = 0;
+    for (const Balance &balance : data.balance) {
+        const auto rows = static_cast<Eigen::Index>(balance.measured.size());
+        Part part;
+        part.first = first;
+        for (Eigen::Index j = 0; j < columns_; ++j)
+            if ((jacobian.col(j).segment(first, rows).array() != 0).any()) part.column.push_back(j);
+        part.value = jacobian.middleRows(first, rows)(Eigen::all, part.column);
+        parts_.push_back(std::move(part));
+        first += rows;
+    }
+}
+
+Eigen::MatrixXd Felt::gram() const {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns_, columns_), own;
+    for (const Part &part : parts_) {
+        own.noalias() = part.value.transpose() * part.value;
+        sum(part.column, part.column) += own;
+    }
+    return sum;
+}
+
+Eigen::VectorXd Felt::moment(const Eigen::VectorXd &rows) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(columns_), own;
+    for (const Part &part : parts_) {
+        own.noalias() = part.value.transpose() * rows.segment(part.first, part.value.rows());
+        sum(part.column) += own;
+    }
+    return sum;
+}
+
+} // namespace traction::lab
