@@ -121,7 +121,8 @@ inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) co
     f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
     Lane Fm = f.Fm;
     if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
-    const Lane across = -f.grip * side_v / f.rim.abs().max(v.abs()).max(least_combined_m_s);
+    f.side_slip = state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v) : side_slip(f.rim, v, side_v, least_combined_m_s);
+    const Lane across = f.grip * f.side_slip;
     const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + across.square()).sqrt() * f.per_sc));
     f.traction = grip * f.slip;
     f.side = grip * across;
@@ -140,13 +141,14 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
     for (std::size_t g = 0; 4 * g < n_; ++g) {
         Four &f = four_[g];
         const Lane vx = q[0] - f.y * q[2], vy = q[1] + f.x * q[2];
-        contact_of(f, vx * f.c + vy * f.s, vy * f.c - vx * f.s);
+        const Lane side_v = vy * f.c - vx * f.s;
+        contact_of(f, vx * f.c + vy * f.s, side_v);
         const Lane forward = f.traction - f.rolling, fx = forward * f.c - f.side * f.s, fy = forward * f.s + f.side * f.c;
         const Lane moment = f.x * fy - f.y * fx - f.lateral * f.load * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
             const auto at = static_cast<Eigen::Index>(i % 4);
             State &s = state_[i];
-            s.v = f.v[at], s.slip = f.slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
+            s.v = f.v[at], s.side_v = side_v[at], s.slip = f.slip[at], s.side_slip = f.side_slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
             if (each != nullptr) (*each)[i] = {fx[at], 0, moment[at]};
         }
         sum += Eigen::Vector3d(fx.sum(), 0, moment.sum());
@@ -179,10 +181,18 @@ double WheelStep::slip_at(const State &s, double v) const {
     return lagging_slip(s.slip_before, data_.step_s / s.sigma, s.rim, v);
 }
 
+double WheelStep::side_slip_at(const State &s, double v, double side_v) const {
+    if (!(s.sigma > 0)) return side_slip(s.rim, v, side_v, least_combined_m_s);
+    return side_slip(s.side_slip_before, data_.step_s / s.sigma, s.rim, v, side_v);
+}
+
 void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N) {
     State &s = state_[i];
-    s.v += (change[0] - p_.wheel[i].y * change[2]) * s.c + (change[1] + p_.wheel[i].x * change[2]) * s.s;
+    const double vx = change[0] - p_.wheel[i].y * change[2], vy = change[1] + p_.wheel[i].x * change[2];
+    s.v += vx * s.c + vy * s.s;
+    s.side_v += vy * s.c - vx * s.s;
     s.slip = slip_at(s, s.v);
+    s.side_slip = side_slip_at(s, s.v, s.side_v);
     s.traction += traction_N;
 }
 
@@ -192,13 +202,15 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     State &s = state_[i];
     const BodyPhysics &b = p_.body;
     s.v = v;
+    s.side_v = side_v;
     s.slip = slip_at(s, v);
+    s.side_slip = p_.grips_sideways[i] ? side_slip_at(s, v, side_v) : 0;
     double Fm = s.Fm, sc = s.sc, extra = 0, extra_rolling = 0;
     if (b.sliding_loss != 0) Fm *= std::exp(-std::min(20.0, b.sliding_loss * std::fabs(s.rim - v)));
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
     s.side = 0;
-    if (side_v != 0 && p_.wheel[i].grip > 0 && p_.grips_sideways[i]) {
-        const double across = -p_.wheel[i].grip * side_v / std::max({std::fabs(s.rim), std::fabs(v), least_combined_m_s});
+    if (s.side_slip != 0 && p_.wheel[i].grip > 0) {
+        const double across = p_.wheel[i].grip * s.side_slip;
         const double grip = Fm / sc * traction_slope(p_.soil_law, length(s.slip, across) / sc);
         s.traction = grip * s.slip;
         s.side = grip * across;
@@ -262,7 +274,7 @@ Eigen::Vector2d WheelStep::grade_accel() const {
 }
 
 void WheelStep::commit() {
-    for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip), state_[i].play_before = state_[i].play;
+    for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip, state_[i].side_slip), state_[i].play_before = state_[i].play;
 }
 
 void WheelStep::loads() {

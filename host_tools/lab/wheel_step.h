@@ -35,18 +35,21 @@ class WheelStep {
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
     Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                      // the step is found: slip and play become the next step's memory
-    void remember(std::size_t i, double slip) { state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip; }
+    void remember(std::size_t i, double slip, double side_slip) {
+        state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip;
+        state_[i].side_slip_before = four_[i / 4].side_slip_before[static_cast<Eigen::Index>(i % 4)] = side_slip;
+    }
 
     struct State {
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0;
         double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1;
-        double slip_before = 0, play_before = 0;
-        double v = 0, slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
+        double slip_before = 0, side_slip_before = 0, play_before = 0;
+        double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
     };
     const State &state(std::size_t i) const { return state_[i]; }
     std::size_t wheels() const { return n_; }
     double load(std::size_t i, double accel_m_s2) const; // without a measured load
-    bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slip is carried from step to step: a relaxation length
+    bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slips are carried from step to step: a relaxation length
     bool has_play() const { return play_; }
     bool feels_path() const { return feels_path_; }  // some force depends on the path travelled
 
@@ -54,10 +57,10 @@ class WheelStep {
     // Four wheels side by side; where there are fewer, the last carry nothing.
     struct Four {
         Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(), lateral = Lane::Zero();
-        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero();
+        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero(), side_slip_before = Lane::Zero();
         Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero();
         Lane rim = Lane::Zero(), load = Lane::Zero(), Fm = Lane::Zero();
-        Lane v, slip, traction, rolling, side;
+        Lane v, slip, side_slip, traction, rolling, side;
     };
     void gather();
     void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
@@ -66,6 +69,7 @@ class WheelStep {
     double strength(std::size_t i, double v_before) const;
     double pull(std::size_t i, double v, double body_v, double side_v);
     double slip_at(const State &s, double v) const;
+    double side_slip_at(const State &s, double v, double side_v) const;
     double contact(std::size_t i, double v);
     void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
     void loads();
