@@ -18,7 +18,7 @@ Freedom freedom_of(const Dataset &data, const Physics &physics) {
 }
 
 void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool lags) {
-    for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m, &m.away_m}) series->resize(count);
+    for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m, &m.away_m, &m.twist_N}) series->resize(count);
     m.rate.resize(count);
     m.tangent.resize(keep ? count : 0);
     m.wheel.resize(wheels);
@@ -247,6 +247,7 @@ class Solver {
 };
 
 void record(const WheelStep &step, std::size_t k, Motion &m) {
+    m.twist_N[k] = step.twist();
     for (std::size_t i = 0; i < step.wheels(); ++i) {
         const auto &s = step.state(i);
         m.wheel[i].traction_N[k] = s.traction;
@@ -262,7 +263,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
     Solver solver(data, p, keep);
     const detail::Freedom freedom = solver.freedom();
     Vector3d q = Vector3d::Zero(), before = q, shift = q, shift_before = q; // shift: from the guess
-    if (!freedom.vy)
+    if (!freedom.omni)
         for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();

@@ -29,6 +29,7 @@ struct Motion {
     std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, path_m;
     std::vector<double> away_m;     // of the way from the start, the part along the heading (omni wheels: the path); with the tangents or a tether only
     std::vector<double> accel_m_s2; // specific force along x: what an accelerometer feels
+    std::vector<double> twist_N;    // half of what the left wheels pull more than the right ones
     std::vector<Eigen::Vector3d> rate; // of (vx, vy, yaw rate)
     struct Wheel {
         std::vector<double> traction_N, rolling_N, slip, side_slip, load_N, ground_speed_m_s;

@@ -20,6 +20,7 @@ class Moved {
         : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
 
     Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
+        step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
         Vector3d force = Vector3d::Zero();
@@ -109,10 +110,9 @@ void neighbour(const Dataset &data, const Physics &moved, const Motion &known, i
     if (!whole) return;
     const WheelStep &step = change.step();
     for (std::size_t i = 0; i < wheels; ++i) {
-        const WheelPhysics &p = moved.wheel[i];
         for (std::size_t k = 0; k < data.count; ++k) {
             const auto &s = step.state(i);
-            const double along = (m.v_m_s[k] - p.y * m.yaw_rate_rad_s[k]) * s.c + (m.vy_m_s[k] + p.x * m.yaw_rate_rad_s[k]) * s.s;
+            const double along = (m.v_m_s[k] - s.y * m.yaw_rate_rad_s[k]) * s.c + (m.vy_m_s[k] + s.x * m.yaw_rate_rad_s[k]) * s.s;
             m.wheel[i].ground_speed_m_s[k] = along;
             m.wheel[i].side_slip[k] = known.wheel[i].side_slip[k];
             m.wheel[i].slip[k] = step.lags(i) ? known.wheel[i].slip[k] : slip_of(s.radius * s.gain * data.wheel[i].speed_rad_s[k], along);
@@ -131,6 +131,7 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
     unit.traction.resize(base.wheel.size());
     for (std::size_t k = 0; k < data.count; ++k) {
         const std::size_t j = k == 0 ? 0 : k - 1;
+        step.remember_twist(k == 0 ? 0 : known.twist_N[j]);
         step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j], k == 0 ? 0 : known.away_m[j]);
         for (std::size_t i = 0; i < base.wheel.size(); ++i) {
             step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j], k == 0 ? 0 : known.wheel[i].side_slip[j]);
