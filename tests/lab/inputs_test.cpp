@@ -109,6 +109,15 @@ TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
     }
 }
 
+TEST(Inputs, wheels_that_swing_at_4_Hz_are_integrated_in_steps_of_10_ms) {
+    for (const auto &[hertz, step_s] : {std::pair{1.0, 0.02}, {4.0, 0.01}}) {
+        log::Log log = motor(0);
+        const double omega = 2 * std::numbers::pi * hertz;
+        for (std::size_t i = 0; i < log.signals[0].value.size(); ++i) log.signals[0].value[i] = std::floor(counts_per_rad * (6 * tick_s * static_cast<double>(i) - 3 / omega * std::cos(omega * tick_s * static_cast<double>(i))));
+        EXPECT_DOUBLE_EQ(make_dataset(bench(), log).step_s, step_s) << hertz; // (omega h)^2 / 3 is 0.5 % and 8 %
+    }
+}
+
 // I = (e - Vd sgn I)/Ra has a solution with a current only beyond e = Vd: nothing flows below, whatever the shaft does.
 TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_nothing_below_it) {
     const Dataset data = make_dataset(bench(), motor(0));
