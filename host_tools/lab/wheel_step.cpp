@@ -128,7 +128,7 @@ inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) co
     f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
     Lane Fm = f.Fm;
     if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
-    f.side_slip = state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v) : side_slip(f.rim, v, side_v, least_combined_m_s);
+    f.side_slip = sideways_ && state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v) : side_slip(f.rim, v, side_v, least_combined_m_s);
     const Lane across = f.grip * f.side_slip, felt = sideways_ ? f.side_slip : across;
     const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + felt.square()).sqrt() * f.per_sc));
     f.traction = grip * f.slip;
@@ -191,7 +191,7 @@ double WheelStep::slip_at(const State &s, double v) const {
 }
 
 double WheelStep::side_slip_at(const State &s, double v, double side_v) const {
-    if (!(s.sigma > 0)) return side_slip(s.rim, v, side_v, least_combined_m_s);
+    if (!(sideways_ && s.sigma > 0)) return side_slip(s.rim, v, side_v, least_combined_m_s); // a presumed sideways speed has no memory
     return side_slip(s.side_slip_before, data_.step_s / s.sigma, s.rim, v, side_v);
 }
 
