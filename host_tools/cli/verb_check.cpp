@@ -29,10 +29,10 @@ check::Machine machine_of(const lab::Model &model) {
     machine.back_emf_Vs = value_of(model.wheel[0].motor, "back_emf_Vs_rad");
     if (std::isnan(machine.back_emf_Vs)) machine.back_emf_Vs = value_of(model.wheel[0].motor, "torque_constant_Nm_A");
     machine.resistance_ohm = value_of(model.wheel[0].motor, "resistance_ohm");
-    machine.wheels_point_forward = model.motion != lab::BodyMotion::planar && model.motion != lab::BodyMotion::none;
+    machine.wheels_point_forward = model.motion != lab::BodyMotion::none;
     for (const lab::WheelSpec &wheel : model.wheel) {
         const auto heading = wheel.geometry.find("heading_rad");
-        if (heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01) machine.wheels_point_forward = false;
+        if (!wheel.grips_sideways || (heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01)) machine.wheels_point_forward = false;
     }
     return machine;
 }

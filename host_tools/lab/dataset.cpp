@@ -243,12 +243,10 @@ struct Builder : InputBuilder {
 
     void build() {
         header_of_log();
-        data.wheel.resize(model.wheel.size());
-        if (!set_grid()) {
+        if (!grid_and_wheels()) {
             data.count = 0;
             return;
         }
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) wheel_motion(i), travel(data.wheel[i]);
         voltages();
         yaw();
         imposed_motion();

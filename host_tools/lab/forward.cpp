@@ -10,7 +10,8 @@ namespace traction::lab {
 namespace {
 
 constexpr double friction_speed_rad_s = 0.05; // friction reverses over this speed: assumed, rows near standstill are left out
-constexpr double bridge_current_A = 0.01;     // the bridge's dead time reverses over this current: assumed
+constexpr double bridge_current_A = 0.01;     // the bridge's dead time reverses over this current at least: assumed
+constexpr double voltage_part_s = 0.01;       // dead time bends the voltage balance: it is taken over parts of a row as long as this, a control tick
 constexpr double copper_per_K = 0.0039;       // resistance of copper
 constexpr double magnet_per_K = -0.002;       // flux of ferrite magnets
 constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue's
@@ -18,6 +19,8 @@ constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue
 bool has_electric_terms(const Physics &physics) {
     return std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
 }
+
+std::size_t parts_of(double row_s) { return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(row_s / voltage_part_s))); }
 
 } // namespace
 
@@ -54,6 +57,53 @@ const Eigen::VectorXd &Forward::mean_voltage(std::size_t balance, double delay_s
         known.mean_V[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
     }
     return known.mean_V;
+}
+
+// The same over parts of each row.
+std::vector<double> Forward::voltage_parts(std::size_t balance, double delay_s, double lag_s) const {
+    const Balance &b = data_->balance[balance];
+    const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
+    const std::vector<double> &t = in.voltage_t_s, sum = data_->voltage_integral(in, lag_s);
+    std::vector<double> out;
+    std::size_t j = 0;
+    const auto integral_to = [&](double at) {
+        while (j + 2 < t.size() && t[j + 1] <= at) ++j;
+        while (j > 0 && t[j] > at) --j;
+        return sum[j] + (sum[j + 1] - sum[j]) / (t[j + 1] - t[j]) * (at - t[j]);
+    };
+    for (std::size_t r = 0; r < b.measured.size(); ++r) {
+        const std::size_t parts = parts_of(b.t1_s[r] - b.t0_s[r]);
+        const double t0 = b.t0_s[r] - delay_s - lag_s, part = std::max((b.t1_s[r] - b.t0_s[r]) / static_cast<double>(parts), 1e-6);
+        for (std::size_t n = 0; n < parts; ++n) {
+            const double from = integral_to(t0 + static_cast<double>(n) * part);
+            out.push_back((integral_to(t0 + static_cast<double>(n + 1) * part) - from) / part);
+        }
+    }
+    return out;
+}
+
+// (3) of forward.h: takes from the rows what dead time takes from the current. What flows follows from voltage and speed alone.
+void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t balance, Eigen::Ref<Eigen::VectorXd> rows) const {
+    const Dataset &d = *data_;
+    const Balance &b = d.balance[balance];
+    const WheelPhysics &p = physics.wheel[wheel];
+    const std::vector<double> voltage = voltage_parts(balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
+    const double offset = p.current_offset + p.current_extra, last = static_cast<double>(d.count - 2);
+    std::size_t at = 0;
+    for (std::size_t r = 0; r < b.measured.size(); ++r) {
+        const std::size_t parts = parts_of(b.t1_s[r] - b.t0_s[r]);
+        double taken = 0;
+        for (std::size_t n = 0; n < parts; ++n, ++at) {
+            const double t = b.t0_s[r] + (static_cast<double>(n) + 0.5) / static_cast<double>(parts) * (b.t1_s[r] - b.t0_s[r]) - physics.body.current_delay;
+            const double x = std::clamp((t - d.start_s) / d.step_s, 0.0, last);
+            const auto k = static_cast<std::size_t>(x);
+            const double f = x - static_cast<double>(k);
+            const double per_V = electric_.per_V[k] + f * (electric_.per_V[k + 1] - electric_.per_V[k]), lost = electric_.lost[k] + f * (electric_.lost[k + 1] - electric_.lost[k]);
+            const double free = per_V * voltage[at] - lost - offset, most = per_V * (1 + physics.body.voltage_gain) * p.dead_voltage;
+            taken += most * std::clamp(free / std::max(std::fabs(most), bridge_current_A), -1.0, 1.0);
+        }
+        rows[static_cast<Eigen::Index>(r)] -= taken / static_cast<double>(parts);
+    }
 }
 
 std::size_t Forward::balance_of(BalanceKind kind, std::size_t wheel) const {
@@ -143,7 +193,6 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
         out.shaft[k] = radius * traction[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
         const double I_read = current_factor * I + p.current_offset + p.current_extra;
         out.reading[k] = physics.unsigned_current ? std::fabs(I_read) : I_read;
-        if (p.dead_voltage != 0) u_lost += p.dead_voltage * soft_sign(I, bridge_current_A);
         const double per_V = Ra + p.wiring > 0 ? current_factor / (Ra + p.wiring) : 0;
         out.per_V[k] = per_V / (1 + physics.body.voltage_gain);
         out.lost[k] = per_V * (u_lost + ke * w) - p.current_offset - p.current_extra;
@@ -167,6 +216,7 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
         const Eigen::VectorXd through = rows.cwiseProduct(voltage);
         rows_of(voltage_balance, electric_.lost, physics.body.current_delay, false, out);
         rows = through - rows;
+        if (physics.wheel[wheel].dead_voltage != 0) dead_zone(physics, wheel, voltage_balance, rows);
         if (physics.unsigned_current) rows = rows.cwiseAbs();
     }
     if (with_bench) rows_of(bench_balance, electric_.shaft, 0, false, out);
@@ -256,7 +306,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         const WheelPhysics &p = physics.wheel[i];
         const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
-        if (whole || (moves && (terms || p.dead_voltage != 0 || p.heating != 0))) electrical(physics, motion, i, stages, current_, out);
+        if (whole || (moves && (terms || p.heating != 0))) electrical(physics, motion, i, stages, current_, out);
         else if (moves) torque_of_traction(physics, motion, i, out);
     }
     if (moves || (touched & stage_sensors) != 0) sensors(physics, motion, out);

@@ -4,6 +4,7 @@
 //   M dv/dt = sum_i (Ft_i - Rr_i) + F_body, motion.h                                                                      (1)
 //   torque balance:  KG*I = Gr(w) + J*dw/dt + R*Ft                                               (17) Lhomme-Desages
 //   voltage balance: I = (duty*V - ke*w)/Ra, from clean voltage and speed, never from the noisy current              (2)
+//     with dead time Vd of the bridge: I = e - Vd sgn(I) over Ra, e = duty*V - ke*w; hence none for |e| < Vd              (3)
 // Stages are cached: a parameter that leaves the motion alone costs only the balances it touches; one that does not costs a linear
 // recursion beside the base motion (tangent.cpp), unless wheels carry a memory (backlash, relaxation length).
 #pragma once
@@ -63,6 +64,8 @@ class Forward {
     // out = (or, adding, +=) the series' mean over each row's window
     void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const;
     const Eigen::VectorXd &mean_voltage(std::size_t balance, double delay_s, double lag_s) const;
+    std::vector<double> voltage_parts(std::size_t balance, double delay_s, double lag_s) const;
+    void dead_zone(const Physics &physics, std::size_t wheel, std::size_t balance, Eigen::Ref<Eigen::VectorXd> rows) const;
     std::size_t balance_of(BalanceKind kind, std::size_t wheel) const; // balance.size() when there is none
 
     const Dataset *data_;

@@ -28,7 +28,11 @@ struct InputBuilder {
     void header_of_log();
     // The signal that tells wheel i's motion best: counts, then angle, then speed.
     const log::Signal *motion_signal(std::size_t i, double &angle_scale) const;
-    bool set_grid();
+    bool set_grid(double step_s);
+    // Steps of 20 ms, of 10 ms where the wheels swing so quickly that the integration would lose more of it than it may. False: no grid.
+    bool grid_and_wheels();
+    double swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
+    double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel
     void wheel_motion(std::size_t i);
     void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
     static double rounding_noise(const std::vector<double> &angle_rad, double period_s, double half_s);

@@ -119,13 +119,12 @@ const std::vector<Manoeuvre> &manoeuvres() {
 std::string cannot_drive(const Model &model) {
     if (model.motion == BodyMotion::imposed) return "a carriage imposes its motion";
     if (model.motion == BodyMotion::none) return "its wheels turn in the air";
-    if (model.motion == BodyMotion::planar) return "it moves sideways (planar motion)";
     if (model.wheel.size() != 4) return "it has " + std::to_string(model.wheel.size()) + (model.wheel.size() == 1 ? " wheel" : " wheels") + ", the simulated rover has 4";
     for (std::size_t i = 0; i < 4; ++i) {
         const WheelSpec &w = model.wheel[i];
         const double x = number_of(w.geometry, "x_m"), y = number_of(w.geometry, "y_m");
         const bool place = (i < 2 ? x < 0 : x > 0) && (i % 2 == 0 ? y > 0 : y < 0);
-        if (!place || !w.driven || number_of(w.geometry, "heading_rad") != 0) return "its wheel " + std::to_string(i) + " is not a driven wheel where the simulated rover has its own (0 rear left, 1 rear right, 2 front left, 3 front right)";
+        if (!place || !w.driven || !w.grips_sideways || number_of(w.geometry, "heading_rad") != 0) return "its wheel " + std::to_string(i) + " is not a driven wheel where the simulated rover has its own (0 rear left, 1 rear right, 2 front left, 3 front right)";
     }
     if (!(number_of(model.rover, "mass_kg") > 0) || !(number_of(model.wheel[0].motor, "resistance_ohm") > 0) || !(number_of(model.wheel[0].motor, "torque_constant_Nm_A") > 0))
         return "its mass, motor constant or winding resistance is not given";

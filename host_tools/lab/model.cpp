@@ -211,13 +211,13 @@ void read_soil(const Reader &reader, const toml::table &source, const std::strin
 
 void read_rover(const Reader &reader, const toml::table &root, Model &model) {
     if (const toml::table *rover = root["rover"].as_table()) {
-        reader.table(*rover, "rover", rover_keys(), model.rover, {"motion"});
+        reader.table(*rover, "rover", rover_keys(), model.rover, {"motion", "halves"});
         const std::string motion = (*rover)["motion"].value_or(std::string("longitudinal"));
-        if (motion == "longitudinal") model.motion = BodyMotion::longitudinal;
-        else if (motion == "planar") model.motion = BodyMotion::planar;
-        else if (motion == "imposed") model.motion = BodyMotion::imposed;
-        else if (motion == "none") model.motion = BodyMotion::none;
-        else reader.fail(*rover->get("motion"), "rover.motion", "is \"" + motion + "\"", "use \"longitudinal\", \"planar\", \"imposed\" or \"none\"");
+        static const char *names[] = {"longitudinal", "planar", "imposed", "none"}; // as BodyMotion has them
+        const auto found = std::find(std::begin(names), std::end(names), motion);
+        if (found == std::end(names)) reader.fail(*rover->get("motion"), "rover.motion", "is \"" + motion + "\"", "use \"longitudinal\", \"planar\", \"imposed\" or \"none\"");
+        model.motion = static_cast<BodyMotion>(found - names);
+        model.halves = (*rover)["halves"].value_or(false);
     }
     fill_defaults(rover_keys(), model.rover);
     const bool moves = model.motion == BodyMotion::longitudinal || model.motion == BodyMotion::planar;

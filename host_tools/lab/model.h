@@ -75,6 +75,7 @@ struct Model {
     std::string name;
     std::string file;
     BodyMotion motion = BodyMotion::longitudinal;
+    bool halves = false; // of the chassis, left and right, on a revolute joint across: each finds its own pitch
     SoilLaw soil_law = SoilLaw::janosi;
     Parameters rover;   // mass_kg, yaw_inertia_kg_m2, centre_height_m, gravity_m_s2, battery_voltage_V
     std::vector<WheelSpec> wheel;

@@ -70,6 +70,7 @@ std::string model_text(const Model &model) {
     static const char *motions[] = {"longitudinal", "planar", "imposed", "none"};
     std::string out = "format = \"traction.model/1\"\nname = " + quoted(model.name) + "\n\n[rover]\nmotion = ";
     out += quoted(motions[static_cast<int>(model.motion)]) + "\n";
+    if (model.halves) out += "halves = true\n";
     write_table(out, model.rover);
     const WheelSpec &first = model.wheel.front();
     out += "\n[motor]\n";

@@ -18,16 +18,16 @@ Freedom freedom_of(const Dataset &data, const Physics &physics) {
 }
 
 void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool lags) {
-    for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m, &m.away_m}) series->resize(count);
+    for (auto *series : {&m.v_m_s, &m.vy_m_s, &m.yaw_rate_rad_s, &m.accel_m_s2, &m.path_m, &m.away_m, &m.twist_N}) series->resize(count);
     m.rate.resize(count);
     m.tangent.resize(keep ? count : 0);
     m.wheel.resize(wheels);
     for (Motion::Wheel &w : m.wheel) {
-        for (auto *series : {&w.traction_N, &w.rolling_N, &w.slip, &w.load_N, &w.ground_speed_m_s}) series->resize(count);
+        for (auto *series : {&w.traction_N, &w.rolling_N, &w.slip, &w.side_slip, &w.load_N, &w.ground_speed_m_s}) series->resize(count);
         for (auto *series : {&w.force, &w.traction_by_speed}) series->resize(keep ? count : 0);
         for (auto *series : {&w.traction_by_accel, &w.traction_by_path}) series->resize(keep ? count : 0);
-        for (auto *series : {&w.force_by_slip, &w.slip_by_speed}) series->resize(keep && lags ? count : 0);
-        for (auto *series : {&w.traction_by_slip, &w.slip_by_slip}) series->resize(keep && lags ? count : 0);
+        for (auto *series : {&w.force_by_slip, &w.slip_by_speed, &w.force_by_side, &w.side_by_speed}) series->resize(keep && lags ? count : 0);
+        for (auto *series : {&w.traction_by_slip, &w.slip_by_slip, &w.traction_by_side, &w.side_by_side}) series->resize(keep && lags ? count : 0);
     }
 }
 
@@ -133,10 +133,11 @@ class Solver {
     void differentiate(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path, double away, Motion &m) {
         StepTangent &t = m.tangent[k];
         const Vector3d at = rate_; // the search ended here
-        std::array<double, most_wheels> traction{}, slip{};
+        std::array<double, most_wheels> traction{}, slip{}, side{};
         for (std::size_t i = 0; i < step_.wheels(); ++i) {
             traction[i] = step_.state(i).traction;
             slip[i] = step_.state(i).slip;
+            side[i] = step_.state(i).side_slip;
             m.wheel[i].force[k] = force_[i];
         }
         for (std::size_t i = 0; i < step_.wheels(); ++i)
@@ -149,7 +150,9 @@ class Solver {
             if (free[c]) J.col(c) -= reach_ * (rate(moved) - at) / step_speed;
             for (std::size_t i = 0; i < step_.wheels(); ++i) {
                 m.wheel[i].traction_by_speed[k][c] = free[c] ? (step_.state(i).traction - traction[i]) / step_speed : 0;
-                if (step_.lags(i)) m.wheel[i].slip_by_speed[k][c] = free[c] ? (step_.state(i).slip - slip[i]) / step_speed : 0;
+                if (!step_.lags(i)) continue;
+                m.wheel[i].slip_by_speed[k][c] = free[c] ? (step_.state(i).slip - slip[i]) / step_speed : 0;
+                m.wheel[i].side_by_speed[k][c] = free[c] ? (step_.state(i).side_slip - side[i]) / step_speed : 0;
             }
         }
         t.inverse = J.inverse();
@@ -172,11 +175,15 @@ class Solver {
     void by_slip(std::size_t i, std::size_t k, const Vector3d &q, Motion::Wheel &w) {
         const WheelStep::State before = step_.state(i);
         const Vector3d force = force_[i];
-        step_.remember(i, before.slip_before + step_slip);
+        step_.remember(i, before.slip_before + step_slip, before.side_slip_before);
         w.force_by_slip[k] = (step_.force(i, q) - force) / step_slip;
         w.traction_by_slip[k] = (step_.state(i).traction - before.traction) / step_slip;
         w.slip_by_slip[k] = (step_.state(i).slip - before.slip) / step_slip;
-        step_.remember(i, before.slip_before);
+        step_.remember(i, before.slip_before, before.side_slip_before + step_slip);
+        w.force_by_side[k] = (step_.force(i, q) - force) / step_slip;
+        w.traction_by_side[k] = (step_.state(i).traction - before.traction) / step_slip;
+        w.side_by_side[k] = (step_.state(i).side_slip - before.side_slip) / step_slip;
+        step_.remember(i, before.slip_before, before.side_slip_before);
     }
 
     Vector3d with_body(Vector3d force, const Vector3d &q) const {
@@ -241,12 +248,14 @@ class Solver {
 
 // whole: not the tractions alone, which are all that a plain prediction reads.
 void record(const WheelStep &step, std::size_t k, bool whole, Motion &m) {
+    m.twist_N[k] = step.twist();
     for (std::size_t i = 0; i < step.wheels(); ++i) {
         const auto &s = step.state(i);
         m.wheel[i].traction_N[k] = s.traction;
         if (!whole) continue;
         m.wheel[i].rolling_N[k] = s.rolling;
         m.wheel[i].slip[k] = s.slip;
+        m.wheel[i].side_slip[k] = s.side_slip;
         m.wheel[i].load_N[k] = s.load;
         m.wheel[i].ground_speed_m_s[k] = s.v;
     }
@@ -256,7 +265,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
     Solver solver(data, p, keep);
     const detail::Freedom freedom = solver.freedom();
     Vector3d q = Vector3d::Zero(), before = q, shift = q, shift_before = q; // shift: from the guess
-    if (!freedom.vy)
+    if (!freedom.omni)
         for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();

@@ -6,7 +6,7 @@
 // ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull is not felt.
 // Neighbours of a known motion by one linear recursion, tangent.cpp:
 //   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1} + rate_s ds_{k-1}))      (3)
-// where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips.
+// where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips (along and across).
 #pragma once
 
 #include "dataset.h"
@@ -29,14 +29,17 @@ struct Motion {
     std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, path_m;
     std::vector<double> away_m;     // of the way from the start, the part along the heading (omni wheels: the path); with the tangents or a tether only
     std::vector<double> accel_m_s2; // specific force along x: what an accelerometer feels
+    std::vector<double> twist_N;    // half of what the left wheels pull more than the right ones
     std::vector<Eigen::Vector3d> rate; // of (vx, vy, yaw rate)
     struct Wheel {
-        std::vector<double> traction_N, rolling_N, slip, load_N, ground_speed_m_s;
+        std::vector<double> traction_N, rolling_N, slip, side_slip, load_N, ground_speed_m_s;
         std::vector<Eigen::Vector3d> force;             // contribution to (Fx, Fy, Mz); with the tangents only
         std::vector<Eigen::Vector3d> traction_by_speed; // with the tangents only, as are the next
         std::vector<double> traction_by_accel, traction_by_path;
         std::vector<Eigen::Vector3d> force_by_slip, slip_by_speed; // by the slip a step before, where it lags
         std::vector<double> traction_by_slip, slip_by_slip;
+        std::vector<Eigen::Vector3d> force_by_side, side_by_speed; // the same of the slip across
+        std::vector<double> traction_by_side, side_by_side;
     };
     std::vector<Wheel> wheel;
     std::vector<StepTangent> tangent; // where asked for

@@ -181,6 +181,7 @@ Physics make_physics(const Model &model) {
     physics.soil_law = model.soil_law;
     physics.motion = model.motion;
     physics.unsigned_current = model.unsigned_current;
+    physics.halves = model.halves;
     for (const WheelSpec &spec : model.wheel) {
         WheelPhysics wheel;
         wheel.x = value_of(spec.geometry, "x_m");

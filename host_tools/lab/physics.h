@@ -54,7 +54,7 @@ struct ExtraTerm {
 struct Physics {
     SoilLaw soil_law = SoilLaw::janosi;
     BodyMotion motion = BodyMotion::longitudinal;
-    bool unsigned_current = false;
+    bool unsigned_current = false, halves = false;
     std::vector<WheelPhysics> wheel;
     std::vector<bool> driven, grips_sideways;
     BodyPhysics body;

@@ -20,8 +20,9 @@ class Moved {
         : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
 
     Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
+        step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
-        for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1]);
+        for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
         Vector3d force = Vector3d::Zero();
         if (first_ == 0 && last_ == p_.wheel.size()) force = step_.forces(q, nullptr);
         else
@@ -35,6 +36,7 @@ class Moved {
         return i >= first_ && i < last_ ? step_.state(i).traction - known_.wheel[i].traction_N[k] : 0;
     }
     double slip_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).slip - known_.wheel[i].slip[k] : 0; }
+    double side_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).side_slip - known_.wheel[i].side_slip[k] : 0; }
     double grade_accel(std::size_t) const { return step_.grade_accel()[0]; }
     const WheelStep &step() const { return step_; }
 
@@ -53,7 +55,7 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
     const detail::Freedom freedom = detail::freedom_of(data, moved);
     Vector3d q = Vector3d::Zero(), before = q; // of the change, as are the next
     double accel = 0, path = 0;
-    std::array<double, most_wheels> slip{};
+    std::array<double, most_wheels> slip{}, side{};
     for (std::size_t k = 0; k < data.count; ++k) {
         const Vector3d at(known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]);
         const std::size_t j = k == 0 ? 0 : k - 1;
@@ -64,7 +66,7 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
         if (!freedom.yaw) right[2] = 0;
         Vector3d by_slip = Vector3d::Zero();
         for (std::size_t i = 0; i < wheels; ++i)
-            if (change.step().lags(i)) by_slip += known.wheel[i].force_by_slip[k] * slip[i];
+            if (change.step().lags(i)) by_slip += known.wheel[i].force_by_slip[k] * slip[i] + known.wheel[i].force_by_side[k] * side[i];
         by_slip = by_slip.cwiseProduct(Vector3d(1 / moved.body.mass, freedom.vy ? 1 / moved.body.mass : 0, freedom.yaw ? 1 / moved.body.yaw_inertia : 0));
         const Vector3d next = t.inverse * (right + reach * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path + by_slip));
         for (std::size_t i = 0; i < wheels; ++i) {
@@ -72,8 +74,9 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
             m.wheel[i].traction_N[k] = w.traction_N[k] + change.traction_change(i, k) + w.traction_by_speed[k].dot(next) +
                                        w.traction_by_accel[k] * accel + w.traction_by_path[k] * path;
             if (!change.step().lags(i)) continue;
-            m.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip[i];
+            m.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip[i] + w.traction_by_side[k] * side[i];
             slip[i] = change.slip_change(i, k) + w.slip_by_speed[k].dot(next) + w.slip_by_slip[k] * slip[i];
+            side[i] = change.side_change(i, k) + w.side_by_speed[k].dot(next) + w.side_by_side[k] * side[i];
         }
         before = q;
         q = next;
@@ -107,11 +110,11 @@ void neighbour(const Dataset &data, const Physics &moved, const Motion &known, i
     if (!whole) return;
     const WheelStep &step = change.step();
     for (std::size_t i = 0; i < wheels; ++i) {
-        const WheelPhysics &p = moved.wheel[i];
         for (std::size_t k = 0; k < data.count; ++k) {
             const auto &s = step.state(i);
-            const double along = (m.v_m_s[k] - p.y * m.yaw_rate_rad_s[k]) * s.c + (m.vy_m_s[k] + p.x * m.yaw_rate_rad_s[k]) * s.s;
+            const double along = (m.v_m_s[k] - s.y * m.yaw_rate_rad_s[k]) * s.c + (m.vy_m_s[k] + s.x * m.yaw_rate_rad_s[k]) * s.s;
             m.wheel[i].ground_speed_m_s[k] = along;
+            m.wheel[i].side_slip[k] = known.wheel[i].side_slip[k];
             m.wheel[i].slip[k] = step.lags(i) ? known.wheel[i].slip[k] : slip_of(s.radius * s.gain * data.wheel[i].speed_rad_s[k], along);
             m.wheel[i].load_N[k] = known.wheel[i].load_N[k];
         }
@@ -128,9 +131,10 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
     unit.traction.resize(base.wheel.size());
     for (std::size_t k = 0; k < data.count; ++k) {
         const std::size_t j = k == 0 ? 0 : k - 1;
+        step.remember_twist(k == 0 ? 0 : known.twist_N[j]);
         step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j], k == 0 ? 0 : known.away_m[j]);
         for (std::size_t i = 0; i < base.wheel.size(); ++i) {
-            step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j]);
+            step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j], k == 0 ? 0 : known.wheel[i].side_slip[j]);
             unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) / size);
             unit.traction[i].push_back((step.state(i).traction - known.wheel[i].traction_N[k]) / size);
         }

@@ -24,6 +24,7 @@ template <int Lanes> class Shapes {
         for (std::size_t i = 0; i < physics.wheel.size(); ++i) lags_[i] = step.lags(i);
         for (Lane3 *x : {&q_, &before_}) x->fill(Lane::Zero());
         slip_.fill(Lane::Zero());
+        side_.fill(Lane::Zero());
     }
 
     // share: of this step, wheel by wheel.
@@ -39,7 +40,7 @@ template <int Lanes> class Shapes {
             for (std::size_t c = 0; c < 3; ++c) {
                 const auto at = static_cast<Eigen::Index>(c);
                 force[c] += unit_.force[i][k][at] * f[i];
-                if (lags_[i]) force[c] += known_.wheel[i].force_by_slip[k][at] * slip_[i];
+                if (lags_[i]) force[c] += known_.wheel[i].force_by_slip[k][at] * slip_[i] + known_.wheel[i].force_by_side[k][at] * side_[i];
             }
         }
         for (std::size_t c = 0; c < 3; ++c) {
@@ -64,9 +65,13 @@ template <int Lanes> class Shapes {
         Lane traction = w.traction_N[k] + unit_.traction[i][k] * f + w.traction_by_accel[k] * accel_ + w.traction_by_path[k] * path_;
         for (std::size_t c = 0; c < 3; ++c) traction += w.traction_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
         if (lags_[i]) {
-            traction += w.traction_by_slip[k] * slip_[i];
+            traction += w.traction_by_slip[k] * slip_[i] + w.traction_by_side[k] * side_[i];
             slip_[i] *= w.slip_by_slip[k];
-            for (std::size_t c = 0; c < 3; ++c) slip_[i] += w.slip_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
+            side_[i] *= w.side_by_side[k];
+            for (std::size_t c = 0; c < 3; ++c) {
+                slip_[i] += w.slip_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
+                side_[i] += w.side_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
+            }
         }
         for (std::size_t j = 0; j < motions.size(); ++j) motions[j].wheel[i].traction_N[k] = traction[static_cast<Eigen::Index>(j)];
     }
@@ -97,7 +102,7 @@ template <int Lanes> class Shapes {
     std::array<bool, most_wheels> lags_{};
     Lane3 q_, before_; // changes, as are the next
     Lane accel_ = Lane::Zero(), path_ = Lane::Zero();
-    std::array<Lane, most_wheels> slip_;
+    std::array<Lane, most_wheels> slip_, side_;
 };
 
 template <int Lanes>

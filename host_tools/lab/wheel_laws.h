@@ -2,6 +2,7 @@
 //
 //   s = (R w - v) / max(|R w|, |v|)                 slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest        (1)
 //   s = (s' + h (R w - v)) / (1 + h max(|R w|, |v|))  where it lags, h = step over relaxation length                       (2)
+//   sy = (sy' - h vy) / (1 + h max(|R w|, |v|)),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
 //   Ft / Fm = 1 - (1 - exp(-x)) / x, x = |s| / sc   (20) janosi;  1 - exp(-x)  (21) burckhardt                             (3)
 #pragma once
 
@@ -18,6 +19,8 @@ using Lane = Eigen::Array<double, 4, 1>;
 
 inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
                                                // would be too stiff for any step; assumed
+
+inline constexpr double most_side_slip = 4;     // a lagging one stays within: beyond it the ground slides whatever it is
 
 namespace law {
 
@@ -49,6 +52,16 @@ inline Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v);
 // (2); h_1_m: 0 where it does not lag.
 template <typename T> inline T lagging_slip(const T &slip_before, const T &h_1_m, const T &rim, const T &v) {
     return law::within(T((slip_before + h_1_m * (rim - v)) / (1 + h_1_m * law::larger(law::magnitude(rim), law::magnitude(v)))), -1, 1);
+}
+
+// (4), of a wheel centre that moves sideways at vy, where it lags ...
+template <typename T> inline T side_slip(const T &side_before, const T &h_1_m, const T &rim, const T &v, const T &vy) {
+    const T faster = law::larger(law::magnitude(rim), law::magnitude(v));
+    return law::within(T((side_before - h_1_m * vy) / (1 + h_1_m * faster)), -most_side_slip, most_side_slip);
+}
+// ... and where it does not: against least_m_s at least.
+template <typename T> inline T side_slip(const T &rim, const T &v, const T &vy, double least_m_s) {
+    return -vy / law::larger(law::larger(law::magnitude(rim), law::magnitude(v)), least_m_s);
 }
 
 // (3) over x, for x > 0; constant below 1e-4, where the quotient would lose digits and the curve is straight.

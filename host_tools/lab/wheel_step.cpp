@@ -7,7 +7,8 @@ namespace traction::lab {
 namespace {
 
 constexpr double resist_speed_m_s = 5e-3; // rolling resistance reverses over this speed: assumed, below any sensor's resolution
-constexpr double scrub_speed_m_s = 5e-3;  // and sideways scrub over this one
+constexpr double scrub_speed_m_s = 5e-3;  // and sideways scrub over this one, where the wheels' sideways speed is that of turning alone;
+constexpr double drift_speed_m_s = 15e-3; // over this one where the body drifts as well: every small swerve would meet all of it otherwise; assumed
 constexpr double least_combined_m_s = 0.02; // combined slip is taken against at least this speed: assumed
 
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
@@ -15,6 +16,7 @@ double length(double a, double b) { return std::sqrt(a * a + b * b); }
 } // namespace
 
 WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data), p_(physics), n_(physics.wheel.size()) {
+    sideways_ = p_.motion == BodyMotion::planar;
     loads();
     followers();
     const BodyPhysics &b = p_.body;
@@ -22,6 +24,8 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
     for (std::size_t i = 0; i < n_; ++i) {
         const WheelPhysics &w = p_.wheel[i];
         State &s = state_[i];
+        s.x = w.x - (sideways_ ? b.offset_x : 0);
+        s.y = w.y - (sideways_ ? b.offset_y : 0);
         s.c = std::cos(w.heading);
         s.s = std::sin(w.heading);
         s.radius = w.radius * (1 + w.radius_change);
@@ -43,16 +47,18 @@ void WheelStep::gather() {
         const State &s = state_[i];
         Four &four = four_[i / 4];
         const auto at = static_cast<Eigen::Index>(i % 4);
-        four.c[at] = s.c, four.s[at] = s.s, four.x[at] = w.x, four.y[at] = w.y, four.per_sc[at] = 1 / s.plain_sc;
+        four.c[at] = s.c, four.s[at] = s.s, four.x[at] = s.x, four.y[at] = s.y, four.per_sc[at] = 1 / s.plain_sc;
         four.grip[at] = w.grip, four.resistance[at] = w.crr + w.rolling, four.lateral[at] = w.lateral + p_.body.scrub;
         four.per_speed_m[at] = s.radius * s.gain, four.adhesion[at] = w.adhesion, four.mu[at] = w.mu;
         four.load_0[at] = w.load > 0 ? w.load : s.load_0, four.load_per_accel[at] = w.load > 0 ? 0 : s.load_per_accel;
+        four.load_per_side[at] = w.load > 0 ? 0 : s.load_per_side;
+        four.load_per_twist[at] = w.load > 0 ? 0 : s.load_per_twist;
         four.lag_1_m[at] = s.sigma > 0 ? data_.step_s / s.sigma : 0;
         all_grip = all_grip && p_.grips_sideways[i];
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
     }
     even_ = p_.body.patch_change == 0 && p_.body.soil_gradient == 0 && p_.body.multi_pass == 0;
-    plain_ = p_.motion == BodyMotion::longitudinal && all_grip && (all_lag || none_lags) && !motion_terms_ && !play_;
+    plain_ = (p_.motion == BodyMotion::longitudinal || sideways_) && all_grip && (all_lag || none_lags) && !motion_terms_ && !play_;
 }
 
 void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first, std::size_t last) {
@@ -60,6 +66,7 @@ void WheelStep::prepare(std::size_t k, double v_before, double accel_before, dou
     path_ = path_m;
     away_ = away_m;
     accel_ = accel_before;
+    side_accel_ = sideways_ && !data_.yaw_rate_rad_s.empty() ? v_before * data_.yaw_rate_rad_s[k] : 0;
     yaw_ = data_.yaw_rad.empty() ? 0 : data_.yaw_rad[k];
     if (plain_ && data_.load_N.empty() && first == 0 && last >= n_) {
         for (std::size_t g = 0; 4 * g < n_; ++g) prepare_four(g, k, v_before);
@@ -91,7 +98,7 @@ void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
         s.theta = s.gain * data_.wheel[i].angle_rad[k];
         s.travel = data_.wheel[i].travel_rad.empty() ? 0 : s.gain * data_.wheel[i].travel_rad[k];
     }
-    s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i, accel_) : data_.load_N[i][k];
+    s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i) : data_.load_N[i][k];
     s.Fm = std::max(0.0, (w.adhesion + w.mu * s.load) * (even_ ? 1 : strength(i, v_before)));
     s.sc = s.plain_sc;
     const auto at = static_cast<Eigen::Index>(i % 4);
@@ -104,7 +111,7 @@ void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
     const std::size_t first = 4 * g, count = std::min<std::size_t>(4, n_ - first);
     const auto speed = [&](std::size_t at) { return at < count ? data_.wheel[first + at].speed_rad_s[k] : 0; };
     f.rim = f.per_speed_m * Lane(speed(0), speed(1), speed(2), speed(3));
-    f.load = (f.load_0 + f.load_per_accel * accel_).max(0.0);
+    f.load = (f.load_0 + f.load_per_accel * accel_ + f.load_per_side * side_accel_ + f.load_per_twist * twist_).max(0.0);
     f.Fm = f.adhesion + f.mu * f.load;
     for (std::size_t i = 0; i < count && !even_; ++i) f.Fm[static_cast<Eigen::Index>(i)] *= strength(first + i, v_before);
     f.Fm = f.Fm.max(0.0);
@@ -122,8 +129,9 @@ inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) co
     f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
     Lane Fm = f.Fm;
     if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
-    const Lane across = -f.grip * side_v / f.rim.abs().max(v.abs()).max(least_combined_m_s);
-    const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + across.square()).sqrt() * f.per_sc));
+    f.side_slip = sideways_ && state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v) : side_slip(f.rim, v, side_v, least_combined_m_s);
+    const Lane across = f.grip * f.side_slip, felt = sideways_ ? f.side_slip : across;
+    const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + felt.square()).sqrt() * f.per_sc));
     f.traction = grip * f.slip;
     f.side = grip * across;
     const Lane resist = f.load * (f.resistance + b.slip_sinkage * f.slip.abs() + b.speed_resistance * v.abs());
@@ -141,16 +149,19 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
     for (std::size_t g = 0; 4 * g < n_; ++g) {
         Four &f = four_[g];
         const Lane vx = q[0] - f.y * q[2], vy = q[1] + f.x * q[2];
-        contact_of(f, vx * f.c + vy * f.s, vy * f.c - vx * f.s);
+        const Lane side_v = vy * f.c - vx * f.s;
+        contact_of(f, vx * f.c + vy * f.s, side_v);
+        if (sideways_) f.side -= f.lateral * f.load * soft_sign(side_v, drift_speed_m_s);
         const Lane forward = f.traction - f.rolling, fx = forward * f.c - f.side * f.s, fy = forward * f.s + f.side * f.c;
-        const Lane moment = f.x * fy - f.y * fx - f.lateral * f.load * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
+        Lane moment = f.x * fy - f.y * fx;
+        if (!sideways_) moment -= f.lateral * f.load * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
             const auto at = static_cast<Eigen::Index>(i % 4);
             State &s = state_[i];
-            s.v = f.v[at], s.slip = f.slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
-            if (each != nullptr) (*each)[i] = {fx[at], 0, moment[at]};
+            s.v = f.v[at], s.side_v = side_v[at], s.slip = f.slip[at], s.side_slip = f.side_slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
+            if (each != nullptr) (*each)[i] = {fx[at], sideways_ ? fy[at] : 0, moment[at]};
         }
-        sum += Eigen::Vector3d(fx.sum(), 0, moment.sum());
+        sum += Eigen::Vector3d(fx.sum(), sideways_ ? fy.sum() : 0, moment.sum());
     }
     return sum;
 }
@@ -159,18 +170,18 @@ Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     const State &s = state_[i];
     const WheelPhysics &w = p_.wheel[i];
     yaw_rate_ = q[2];
-    const double vx = q[0] - w.y * q[2], vy = q[1] + w.x * q[2];
+    const double vx = q[0] - s.y * q[2], vy = q[1] + s.x * q[2];
     const double along = vx * s.c + vy * s.s, across = -vx * s.s + vy * s.c;
     const double forward = pull(i, along, q[0], across);
     const double fx = forward * s.c - s.side * s.s, fy = forward * s.s + s.side * s.c;
-    double moment = w.x * fy - w.y * fx;
+    double moment = s.x * fy - s.y * fx;
     if (p_.motion == BodyMotion::longitudinal) { // vy = 0: skid steer turns about its middle
-        moment -= (w.lateral + p_.body.scrub) * s.load * w.x * soft_sign(w.x * q[2], scrub_speed_m_s);
+        moment -= (w.lateral + p_.body.scrub) * s.load * s.x * soft_sign(s.x * q[2], scrub_speed_m_s);
         return {fx, 0, moment};
     }
-    if (p_.motion == BodyMotion::planar && p_.grips_sideways[i]) {
-        const double scrub = -(w.lateral + p_.body.scrub) * s.load * soft_sign(across, scrub_speed_m_s);
-        return {fx - scrub * s.s, fy + scrub * s.c, moment + scrub * (w.x * s.c + w.y * s.s)};
+    if (sideways_ && p_.grips_sideways[i]) {
+        const double scrub = -(w.lateral + p_.body.scrub) * s.load * soft_sign(across, drift_speed_m_s);
+        return {fx - scrub * s.s, fy + scrub * s.c, moment + scrub * (s.x * s.c + s.y * s.s)};
     }
     return {fx, fy, moment};
 }
@@ -180,27 +191,38 @@ double WheelStep::slip_at(const State &s, double v) const {
     return lagging_slip(s.slip_before, data_.step_s / s.sigma, s.rim, v);
 }
 
+double WheelStep::side_slip_at(const State &s, double v, double side_v) const {
+    if (!(sideways_ && s.sigma > 0)) return side_slip(s.rim, v, side_v, least_combined_m_s); // a presumed sideways speed has no memory
+    return side_slip(s.side_slip_before, data_.step_s / s.sigma, s.rim, v, side_v);
+}
+
 void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N) {
     State &s = state_[i];
-    s.v += (change[0] - p_.wheel[i].y * change[2]) * s.c + (change[1] + p_.wheel[i].x * change[2]) * s.s;
+    const double vx = change[0] - s.y * change[2], vy = change[1] + s.x * change[2];
+    s.v += vx * s.c + vy * s.s;
+    s.side_v += vy * s.c - vx * s.s;
     s.slip = slip_at(s, s.v);
+    s.side_slip = side_slip_at(s, s.v, s.side_v);
     s.traction += traction_N;
 }
 
-// Force along the heading at wheel-centre speed v; side_v across it. Combined slip: the grip acts against the whole sliding
-// velocity, sideways with the share lateral_grip.
+// Force along the heading at wheel-centre speed v; side_v across it. Combined slip S = |(s, sy)|, (Ft, Fy) = f(S)/S (Fm s, Fym sy) inside the
+// friction ellipse, Fym = lateral_grip Fm (Pacejka's similarity). Where the body is not followed sideways its sideways speed is only presumed, and
+// lateral_grip is the share of it that slides: S = |(s, lateral_grip sy)|.
 double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     State &s = state_[i];
     const BodyPhysics &b = p_.body;
     s.v = v;
+    s.side_v = side_v;
     s.slip = slip_at(s, v);
+    s.side_slip = p_.grips_sideways[i] ? side_slip_at(s, v, side_v) : 0;
     double Fm = s.Fm, sc = s.sc, extra = 0, extra_rolling = 0;
     if (b.sliding_loss != 0) Fm *= std::exp(-std::min(20.0, b.sliding_loss * std::fabs(s.rim - v)));
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
     s.side = 0;
-    if (side_v != 0 && p_.wheel[i].grip > 0 && p_.grips_sideways[i]) {
-        const double across = -p_.wheel[i].grip * side_v / std::max({std::fabs(s.rim), std::fabs(v), least_combined_m_s});
-        const double grip = Fm / sc * traction_slope(p_.soil_law, length(s.slip, across) / sc);
+    if (s.side_slip != 0 && p_.wheel[i].grip > 0) {
+        const double across = p_.wheel[i].grip * s.side_slip;
+        const double grip = Fm / sc * traction_slope(p_.soil_law, length(s.slip, sideways_ ? s.side_slip : across) / sc);
         s.traction = grip * s.slip;
         s.side = grip * across;
     } else {
@@ -263,8 +285,11 @@ Eigen::Vector2d WheelStep::grade_accel() const {
 }
 
 void WheelStep::commit() {
-    if (!play_ && !lags_) return;
-    for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip), state_[i].play_before = state_[i].play;
+    if (play_ || lags_)
+        for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip, state_[i].side_slip), state_[i].play_before = state_[i].play;
+    if (!p_.halves) return;
+    twist_ = 0;
+    for (std::size_t i = 0; i < n_; ++i) twist_ += 0.5 * soft_sign(p_.wheel[i].y, 1e-6) * (state_[i].traction - state_[i].rolling);
 }
 
 void WheelStep::loads() {
@@ -279,13 +304,20 @@ void WheelStep::loads() {
     for (std::size_t i = 0; i < n_; ++i) {
         const Eigen::Vector3d X(1, p_.wheel[i].x, p_.wheel[i].y);
         state_[i].load_0 = X.dot(share * Eigen::Vector3d(W, W * b.offset_x, W * b.offset_y));
-        state_[i].load_per_accel = X.dot(share * Eigen::Vector3d(0, -b.mass * (b.centre_height + b.load_height), 0));
+        const double M_h = b.mass * (b.centre_height + b.load_height);
+        if (p_.halves) {
+            double reach = 0; // of this half
+            for (const WheelPhysics &w : p_.wheel) reach += same_side(w, p_.wheel[i]) ? w.x * w.x : 0;
+            state_[i].load_per_twist = reach > 0 ? -(b.centre_height + b.load_height) * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / reach : 0;
+        }
+        state_[i].load_per_side = X.dot(share * Eigen::Vector3d(0, 0, -M_h));
+        state_[i].load_per_accel = X.dot(share * Eigen::Vector3d(0, -M_h, 0));
     }
 }
 
-double WheelStep::load(std::size_t i, double accel) const {
+double WheelStep::load(std::size_t i) const {
     const WheelPhysics &w = p_.wheel[i];
-    return w.load > 0 ? w.load : std::max(0.0, state_[i].load_0 + state_[i].load_per_accel * accel);
+    return w.load > 0 ? w.load : std::max(0.0, state_[i].load_0 + state_[i].load_per_accel * accel_ + state_[i].load_per_side * side_accel_ + state_[i].load_per_twist * twist_);
 }
 
 void WheelStep::followers() {

@@ -1,7 +1,8 @@
 // wheel_step.h - the wheels of one time step: loads, slip, traction, resistance of each, at a body velocity that is being sought.
 //
 // Slip (1), traction (20) janosi or (21) burckhardt, combined slip sideways; the catalogue's ground and wheel effects and the user's
-// terms act here. Loads: the least-norm solution of sum Fn = W, sum Fn x = W ox - M a h, sum Fn y = W oy.
+// terms act here. Loads: the least-norm solution of sum Fn = W, sum Fn x = W ox - M a h, sum Fn y = W oy - M ay h
+// (ay = v r, planar motion). Halves on a joint: each half's own pull F tips it, sum over the half Fn x = W ox / 2 - F h.
 #pragma once
 
 #include "dataset.h"
@@ -35,18 +36,25 @@ class WheelStep {
     double body_force(double v) const;  // along the velocity: drag, tether, the user's
     Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                      // the step is found: slip and play become the next step's memory
-    void remember(std::size_t i, double slip) { state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip; }
+    void remember(std::size_t i, double slip, double side_slip) {
+        state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip;
+        state_[i].side_slip_before = four_[i / 4].side_slip_before[static_cast<Eigen::Index>(i % 4)] = side_slip;
+    }
+
+    // Where the chassis is two halves: what turns one against the other, half the difference of their pulls a step before.
+    void remember_twist(double twist_N) { twist_ = twist_N; }
+    double twist() const { return twist_; }
 
     struct State {
-        double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0;
+        double x = 0, y = 0; // place from the centre of mass (longitudinal motion: from the middle)
+        double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0, load_per_side = 0, load_per_twist = 0;
         double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1;
-        double slip_before = 0, play_before = 0;
-        double v = 0, slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
+        double slip_before = 0, side_slip_before = 0, play_before = 0;
+        double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
     };
     const State &state(std::size_t i) const { return state_[i]; }
     std::size_t wheels() const { return n_; }
-    double load(std::size_t i, double accel_m_s2) const; // without a measured load
-    bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slip is carried from step to step: a relaxation length
+    bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slips are carried from step to step: a relaxation length
     bool has_play() const { return play_; }
     bool feels_path() const { return feels_path_; }  // some force depends on the path travelled
 
@@ -54,10 +62,10 @@ class WheelStep {
     // Four wheels side by side; where there are fewer, the last carry nothing.
     struct Four {
         Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(), lateral = Lane::Zero();
-        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero();
-        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero();
+        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero(), side_slip_before = Lane::Zero();
+        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero(), load_per_side = Lane::Zero(), load_per_twist = Lane::Zero();
         Lane rim = Lane::Zero(), load = Lane::Zero(), Fm = Lane::Zero();
-        Lane v, slip, traction, rolling, side;
+        Lane v, slip, side_slip, traction, rolling, side;
     };
     void gather();
     void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
@@ -66,8 +74,10 @@ class WheelStep {
     double strength(std::size_t i, double v_before) const;
     double pull(std::size_t i, double v, double body_v, double side_v);
     double slip_at(const State &s, double v) const;
+    double side_slip_at(const State &s, double v, double side_v) const;
     double contact(std::size_t i, double v);
     void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
+    double load(std::size_t i) const; // without a measured load
     void loads();
     void followers();
 
@@ -76,8 +86,9 @@ class WheelStep {
     std::size_t n_;
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
-    double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, yaw_ = 0, yaw_rate_ = 0;
+    double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, side_accel_ = 0, twist_ = 0, yaw_ = 0, yaw_rate_ = 0;
     std::array<Four, most_wheels / 4> four_;
+    bool sideways_ = false; // the body moves sideways as the forces have it, on wheels that grip
     bool plain_ = false; // the wheels' forces need no more than `four_`
     bool even_ = false;  // the ground is as strong everywhere
     bool motion_terms_ = false, play_ = false, lags_ = false, feels_path_ = false;

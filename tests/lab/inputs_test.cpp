@@ -109,6 +109,33 @@ TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
     }
 }
 
+TEST(Inputs, wheels_that_swing_at_4_Hz_are_integrated_in_steps_of_10_ms) {
+    for (const auto &[hertz, step_s] : {std::pair{1.0, 0.02}, {4.0, 0.01}}) {
+        log::Log log = motor(0);
+        const double omega = 2 * std::numbers::pi * hertz;
+        for (std::size_t i = 0; i < log.signals[0].value.size(); ++i) log.signals[0].value[i] = std::floor(counts_per_rad * (6 * tick_s * static_cast<double>(i) - 3 / omega * std::cos(omega * tick_s * static_cast<double>(i))));
+        EXPECT_DOUBLE_EQ(make_dataset(bench(), log).step_s, step_s) << hertz; // (omega h)^2 / 3 is 0.5 % and 8 %
+    }
+}
+
+// I = (e - Vd sgn I)/Ra has a solution with a current only beyond e = Vd: nothing flows below, whatever the shaft does.
+TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_nothing_below_it) {
+    const Dataset data = make_dataset(bench(), motor(0));
+    Physics physics = make_physics(bench());
+    for (const double dead_V : {0.0, 0.5, 1.3, 1.6}) {
+        physics.wheel[0].dead_voltage = dead_V;
+        const Eigen::VectorXd predicted = Forward(data).predict(physics);
+        Eigen::Index row = 0;
+        for (const Balance &b : data.balance)
+            for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+                const double t = 0.5 * (b.t0_s[r] + b.t1_s[r]);
+                if (b.kind != BalanceKind::current_voltage || t < 0.5 || t > 2.8) continue; // duty 0.25, 2 rad/s
+                const double e = 0.25 * (8 - 0.1 * t) - 0.265 * 2;
+                EXPECT_NEAR(predicted[row], std::max(0.0, e - dead_V) / 3.24, 0.003) << dead_V; // a count's rounding in the speed: 3e-3 rad/s; the supply between two samples
+            }
+    }
+}
+
 TEST(Inputs, a_planar_rover_with_a_gyro_has_its_yaw_rate_and_its_sideways_way_and_a_path_with_a_sign) {
     Model model = read_model("models/rover_concrete.toml");
     model.motion = BodyMotion::planar;

@@ -118,16 +118,17 @@ TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
     generator::GeneratorConfig config;
     config.seed = 7;
     config.duration_s = 20;
-    for (const double relaxation_m : {0.0, 0.02}) {
-        const Model model = read_model("models/rover_gravel.toml");
+    for (const auto &[relaxation_m, motion] : {std::pair{0.0, BodyMotion::planar}, {0.02, BodyMotion::planar}, {0.02, BodyMotion::longitudinal}}) {
+        Model model = read_model("models/rover_gravel.toml");
+        model.motion = motion;
         const Dataset data = make_dataset(model, generator::generate(config));
         Physics physics = make_physics(model);
-        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1;
+        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1, physics.body.load_height = 0.1, physics.body.offset_x = 0.01;
         for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.grip = 0.8;
         WheelStep four(data, physics), one(data, physics);
         std::array<Eigen::Vector3d, most_wheels> each{};
         for (std::size_t k = 0; k < data.count; k += 7) {
-            const Eigen::Vector3d q(0.09 * data.wheel[0].speed_rad_s[k], 0, 0.05);
+            const Eigen::Vector3d q(0.09 * data.wheel[0].speed_rad_s[k], motion == BodyMotion::planar ? 0.02 : 0, 0.05);
             four.prepare(k, q[0], 0.1, 0.5, 0.5);
             one.prepare(k, q[0], 0.1, 0.5, 0.5);
             const Eigen::Vector3d sum = four.forces(q, &each);
@@ -137,6 +138,7 @@ TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
                 expected += force;
                 EXPECT_LT((each[i] - force).norm(), 1e-12 * (1 + force.norm())); // rounding
                 EXPECT_NEAR(four.state(i).slip, one.state(i).slip, 1e-14);
+                EXPECT_NEAR(four.state(i).side_slip, one.state(i).side_slip, 1e-14);
                 EXPECT_NEAR(four.state(i).traction, one.state(i).traction, 1e-12 * (1 + std::fabs(one.state(i).traction)));
             }
             EXPECT_LT((sum - expected).norm(), 1e-12 * (1 + expected.norm()));

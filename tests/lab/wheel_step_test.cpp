@@ -1,0 +1,103 @@
+// The wheels of one step against closed forms: slip that lags, loads of a chassis in two halves, a body that slides sideways.
+#include "host_tools/lab/forward.h"
+#include "host_tools/lab/wheel_step.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <gtest/gtest.h>
+
+namespace traction::lab {
+namespace {
+
+constexpr double speed_m_s = 0.4, radius_m = 0.057;
+
+// The rover followed sideways, its chassis in two halves.
+Model sliding(const std::string &soil) {
+    Model model = read_model("models/rover_" + soil + ".toml");
+    model.motion = BodyMotion::planar;
+    model.halves = true;
+    return model;
+}
+
+// All wheels roll at speed_m_s, the body turns at yaw_rad_s.
+Dataset rolling(double yaw_rad_s, std::size_t count) {
+    Dataset data;
+    data.step_s = 0.02;
+    data.count = count;
+    data.wheel.resize(4);
+    for (WheelInput &w : data.wheel) w.speed_rad_s.assign(count, speed_m_s / radius_m), w.accel_rad_s2.assign(count, 0), w.angle_rad.assign(count, 0);
+    data.yaw_rate_rad_s.assign(count, yaw_rad_s);
+    data.gyro = true;
+    return data;
+}
+
+TEST(WheelStep, slip_across_comes_over_the_relaxation_length) {
+    const Dataset data = rolling(0, 40);
+    Physics physics = make_physics(sliding("gravel"));
+    constexpr double relaxation_m = 0.1, aside_m_s = 0.02;
+    for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.radius = radius_m, w.lateral = 0;
+    WheelStep step(data, physics);
+    const double reach = data.step_s * speed_m_s / relaxation_m; // of the length, a step; implicit Euler forgets 1/(1 + reach)
+    double left = 1;
+    for (std::size_t k = 0; k < data.count; ++k) {
+        step.prepare(k, speed_m_s, 0, 0, 0);
+        step.forces({speed_m_s, aside_m_s, 0}, nullptr);
+        left /= 1 + reach;
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).side_slip, -aside_m_s / speed_m_s * (1 - left), 1e-12); // (4) of wheel_laws.h, rounding
+        step.commit();
+    }
+    EXPECT_NEAR(left, std::exp(-static_cast<double>(data.count) * reach), 0.1); // of the length's own law, first order in reach = 0.08
+}
+
+TEST(WheelStep, in_a_turn_the_outer_wheels_carry_what_the_height_of_the_mass_asks) {
+    const double yaw_rad_s = 0.8;
+    const Dataset data = rolling(yaw_rad_s, 3);
+    Physics physics = make_physics(sliding("gravel"));
+    physics.body.load_height = 0.1;
+    WheelStep step(data, physics);
+    step.prepare(1, speed_m_s, 0, 0, 0);
+    step.forces({speed_m_s, 0, yaw_rad_s}, nullptr); // to the left: the right wheels are outside
+    const BodyPhysics &b = physics.body;
+    const double outer = b.mass * speed_m_s * yaw_rad_s * 0.1 / (4 * 0.12), rest = b.mass * b.gravity / 4; // moments about the track's middle
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).load, rest + (i % 2 == 1 ? outer : -outer), 1e-9);
+}
+
+TEST(WheelStep, each_half_of_the_chassis_is_tipped_by_its_own_pull) {
+    const Dataset data = rolling(0, 3);
+    Physics physics = make_physics(sliding("gravel"));
+    physics.body.load_height = 0.1;
+    for (const bool halves : {false, true}) {
+        physics.halves = halves;
+        WheelStep step(data, physics);
+        step.remember_twist(3); // N: the left wheels pull 3 N, the right ones -3 N
+        step.prepare(1, speed_m_s, 0, 0, 0);
+        step.forces({speed_m_s, 0, 0}, nullptr);
+        const double shift = halves ? 3 * 0.1 / (2 * 0.083) : 0; // moments about the joint; rigid: the two cancel
+        const double rest = physics.body.mass * physics.body.gravity / 4, sign[4] = {1, -1, -1, 1}; // rear left, rear right, front left, front right
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).load, rest + sign[i] * shift, 1e-9);
+        step.commit();
+        if (!halves) continue;
+        EXPECT_NEAR(step.twist(), 0, 1e-9); // both sides pull alike now
+    }
+}
+
+// The ODE plant on even ground, by a baseline that knows its numbers: what the sensors read is predicted to their noise.
+TEST(Forward, turns_of_the_plant_on_even_ground_are_predicted_to_the_gyros_noise) {
+    const sim::Scenario scenario = sim::parse_scenario("title = \"turns\"\nduration_s = 20\n[ground]\nsoil = \"concrete\"\ngrip_noise = 0\n[[drive]]\nfor_s = 3\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n"
+                                                       "[[drive]]\nfor_s = 9\nmode = \"platform_speed\"\nspeed_m_s = 0.4\nyaw_rate_rad_s = { amplitude = 0.6, period_s = 3.0 }\n"
+                                                       "[[drive]]\nfor_s = 8\nmode = \"platform_speed\"\nspeed_m_s = 0.3\nyaw_rate_rad_s = 0.8\n", "turns");
+    Model model = sliding("concrete");
+    for (WheelSpec &w : model.wheel) w.soil.at("lateral_grip").value = 1; // as the plant's concrete has it
+    const Dataset data = make_dataset(model, simulate(scenario, {}).log);
+    const Eigen::VectorXd predicted = Forward(data).predict(make_physics(model));
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance) {
+        double e = 0;
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) e += std::pow((b.measured[r] - predicted[row]) / b.noise, 2);
+        if (b.kind != BalanceKind::yaw_rate) continue;
+        // 1 is the noise itself; the gyro holds the model over 0.3 s, what is left of the sideways motion's start may double its variance
+        EXPECT_LT(std::sqrt(e / static_cast<double>(b.measured.size())), 1.4);
+    }
+}
+
+} // namespace
+} // namespace traction::lab
