@@ -19,6 +19,7 @@ struct Trial {
     double gain = 0;       // fall of the held-out error, squares
     double gain_error = 0;
     double p_value = 1;    // corrected for the number tried
+    double own_p_value = 1; // of the coefficient alone
     double best_balance_gain = 0; // largest relative fall in one balance
     Eigen::VectorXd block_gain;
     std::vector<double> value, error, reach; // reach: half of the 95 % interval

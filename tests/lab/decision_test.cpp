@@ -87,6 +87,14 @@ TEST(Diagnose, what_promises_most_is_tried_though_others_are_surer) {
     EXPECT_EQ(d.classes[0].members.size(), 2U) << d.text;
 }
 
+// A sliding wheel is rare: its effect helps in all blocks, but what its coefficient says scatters over them.
+TEST(Diagnose, names_an_effect_that_acts_in_few_blocks) {
+    const Diagnosis d = ask_campaign(80000); // sliding_speed_loss, and coulomb_friction on wheel 0
+    ASSERT_EQ(d.effects.size(), 2U) << d.text;
+    EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), "sliding_speed_loss"), d.effects.end()) << d.text;
+    EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), "coulomb_friction on wheel 0"), d.effects.end()) << d.text;
+}
+
 TEST(Diagnose, what_only_the_data_sheets_tolerances_decide_is_a_class) {
     const Diagnosis d = ask_campaign(80109); // torque_constant; voltage_gain leaves no more, and moves other parameters as far
     ASSERT_EQ(d.classes.size(), 1U) << d.text;
