@@ -64,7 +64,7 @@ std::string verdict_text(const Diagnosis &d) {
     if (d.unknown) {
         if (!text.empty()) text += " That explains it only partly:";
         else text += "Unknown: no effect of the catalogue explains it:";
-        text += " what is left in " + d.unknown->balance + " depends on " + d.unknown->variable + '.';
+        text += " what is left depends on " + d.unknown->variable + ": " + d.unknown->balance + '.';
         for (std::size_t i = 0; i < d.nearest.size(); ++i) text += (i == 0 ? " Nearest in the catalogue, not the cause: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
     }
     return text;

@@ -96,7 +96,7 @@ function unknown(result) {
   const u = result.unknown;
   if (!u) return null;
   return section('unknown', 'Unexplained', `Unexplained: depends on ${u.variable}`,
-    h('p', {}, `No known effect has this shape. In ${u.balance ?? 'the residual'} it depends on ${u.variable}`,
+    h('p', {}, `No known effect has this shape: ${u.balance ?? 'what is left'}, over ${u.variable}`,
       isNumber(u.gain) ? `; a free shape would lower the held-out error by ${percent(u.gain)}.` : '.'),
     list(u.x).length ? shape(u) : null,
     u.expression && [h('p', {}, 'As an expression for an effect of your own:'), copyable(u.expression, 'expression')]);
