@@ -23,6 +23,12 @@ std::string one_decimal(double value) {
     return buffer;
 }
 
+std::string figures(double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.3g", value);
+    return buffer;
+}
+
 // Forward selection, round by round, then each effect tried without.
 class Search {
   public:
@@ -133,8 +139,17 @@ class Search {
             else trials[i].verdict = "not_significant";
         }
         if (is_first) note_unseen(trials);
+        note_beyond(trials, winner, base_error);
         record(trials, winner, base_error, screen, is_first);
         return next;
+    }
+
+    // What would explain more than the winner, if it could be as large as that.
+    void note_beyond(const std::vector<Trial> &trials, std::size_t winner, double base_error) {
+        for (const Trial &t : trials)
+            if (t.verdict == "beyond_range" && (winner == trials.size() || t.gain > trials[winner].gain))
+                d_.messages.push_back(t.candidate.label() + " would explain " + figures(100 * t.gain / base_error) + " % of the held-out error, but only beyond its range (" +
+                                      t.candidate.strengths[0].key + " at " + figures(t.value[0]) + "): not named");
     }
 
     // Those most sure by their linear step, those that promise more than what passed, then those whose scan saw more than the step did.
@@ -194,7 +209,7 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
+        if (!large_enough(t.candidate, value) || beyond_range(t.candidate, value) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
         return problem;
     }
 

@@ -80,6 +80,15 @@ bool large_enough(const Candidate &c, const std::vector<double> &value) {
     return std::sqrt(size) >= least;
 }
 
+bool beyond_range(const Candidate &c, const std::vector<double> &value) {
+    for (std::size_t j = 0; j < value.size(); ++j) {
+        const FreeParameter &p = c.strengths[j];
+        const double slack = 1e-6 * (p.maximum - p.minimum);
+        if (value[j] > p.maximum - slack || (p.minimum < 0 && value[j] < p.minimum + slack)) return true;
+    }
+    return false;
+}
+
 Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &columns) {
     Trial t;
     t.candidate = c;
@@ -179,6 +188,7 @@ void judge(Trial &t, double base_error, const DiagnoseOptions &options) {
     if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains) t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value)) t.verdict = "wrong_sign";
     else if (!large_enough(t.candidate, t.value)) t.verdict = "too_small";
+    else if (t.refitted && beyond_range(t.candidate, t.value)) t.verdict = "beyond_range";
     else t.verdict = "passes";
 }
 

@@ -42,6 +42,7 @@ void refit(Trial &trial, const Problem &base, const Screen &base_screen, const M
 
 void judge(Trial &trial, double base_error, const DiagnoseOptions &options);
 bool large_enough(const Candidate &candidate, const std::vector<double> &value);
+bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
 bool strongly_nonlinear(const std::string &effect); // its slope at zero says little of its size
 
 CandidateResult result_of(const Trial &trial, double base_error, const Screen &screen);

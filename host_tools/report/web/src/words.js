@@ -57,6 +57,7 @@ const verdicts = {
   class: ['≈', 'cannot be told apart'],
   not_significant: ['·', 'not significant'],
   too_small: ['·', 'too small to matter'],
+  beyond_range: ['·', 'only beyond its range'],
   wrong_sign: ['✘', 'unphysical sign'],
   not_excited: ['?', 'this log cannot show it'],
 };
