@@ -127,6 +127,7 @@ class Search {
         for (Trial &t : trials) judge(t, base_error, options_);
         refit_likely(trials, problem, screen);
         if (may_rebase && rebase(trials, problem)) return try_all(problem, Screen(problem), is_first, false);
+        weigh_beyond(trials, base_error);
         for (Trial &t : trials)
             if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
         std::stable_sort(trials.begin(), trials.end(), [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
@@ -139,17 +140,23 @@ class Search {
             else trials[i].verdict = "not_significant";
         }
         if (is_first) note_unseen(trials);
-        note_beyond(trials, winner, base_error);
         record(trials, winner, base_error, screen, is_first);
         return next;
     }
 
-    // What would explain more than the winner, if it could be as large as that.
-    void note_beyond(const std::vector<Trial> &trials, std::size_t winner, double base_error) {
-        for (const Trial &t : trials)
-            if (t.verdict == "beyond_range" && (winner == trials.size() || t.gain > trials[winner].gain))
-                d_.messages.push_back(t.candidate.label() + " would explain " + figures(100 * t.gain / base_error) + " % of the held-out error, but only beyond its range (" +
-                                      t.candidate.strengths[0].key + " at " + figures(t.value[0]) + "): not named");
+    // A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range.
+    void weigh_beyond(std::vector<Trial> &trials, double base_error) {
+        double most = 0;
+        Trial *best = nullptr;
+        for (Trial &t : trials) {
+            if (t.verdict == "passes" && t.refitted) most = std::max(most, t.gain);
+            if (t.verdict == "beyond_range" && (best == nullptr || t.gain > best->gain)) best = &t;
+        }
+        if (best == nullptr || !(best->gain > most)) return;
+        const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
+        if (much) best->at_least = true, best->verdict = "passes";
+        d_.messages.push_back(best->candidate.label() + " explains " + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
+                              best->candidate.strengths[0].key + " at " + figures(best->value[0]) + (much ? "): read its size as at least that" : "): not named"));
     }
 
     // Those most sure by their linear step, those that promise more than what passed, then those whose scan saw more than the step did.
@@ -209,7 +216,7 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || beyond_range(t.candidate, value) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
+        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
         return problem;
     }
 
@@ -274,7 +281,7 @@ class Search {
             t.start = one.value;
             refit(t, problem, screen, without, data_);
             judge(t, screen.heldout_error(), options_);
-            if (t.verdict == "passes" && solid) continue;
+            if ((t.verdict == "passes" || t.verdict == "beyond_range") && solid) continue; // accepted as a least size, it stays one
             d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");
             remove(i, std::move(without), problem);
             last = std::move(problem);

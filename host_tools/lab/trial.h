@@ -27,6 +27,7 @@ struct Trial {
     Eigen::VectorXd start_change; // of the baseline's parameters there
     std::string verdict;
     bool refitted = false;
+    bool at_least = false; // its size lies where the fit may go no further, yet nothing else explains as much
     Eigen::VectorXd baseline; // increments of the baseline's parameters, where refitted
 };
 

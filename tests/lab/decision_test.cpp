@@ -102,6 +102,15 @@ TEST(Diagnose, what_only_the_data_sheets_tolerances_decide_is_a_class) {
         EXPECT_NE(std::find(d.classes[0].members.begin(), d.classes[0].members.end(), effect), d.classes[0].members.end()) << effect << ": " << d.text;
 }
 
+// Twice the range: nothing smaller does as well, so it is named as a least size; what it dwarfs is not named at the end of its own range.
+TEST(Diagnose, a_size_beyond_its_range_is_told_as_a_least_one) {
+    const Diagnosis d = ask(Soil::concrete, log_with(Soil::concrete, "body_drag:force_N=11", 38, 60));
+    ASSERT_EQ(d.effects.size(), 1U) << d.text;
+    EXPECT_EQ(d.effects[0], "body_drag");
+    EXPECT_NEAR(d.accepted[0].value[0], 7.5, 0.01); // the catalogue's 5 N and half of it
+    EXPECT_TRUE(std::any_of(d.messages.begin(), d.messages.end(), [](const std::string &m) { return m.find("at least that") != std::string::npos; }));
+}
+
 TEST(Diagnose, says_the_same_bytes_twice) {
     const log::Log log = log_with(Soil::sand, "accel_scale:change=0.2", 6, 40);
     const auto text = [&] {
