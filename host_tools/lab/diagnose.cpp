@@ -155,7 +155,9 @@ class Search {
         if (best == nullptr || !(best->gain > most)) return;
         const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
         if (much) best->at_least = true, best->verdict = "passes";
-        d_.messages.push_back(best->candidate.label() + " explains " + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
+        const std::string told = best->candidate.label() + " explains ";
+        if (std::any_of(d_.messages.begin(), d_.messages.end(), [&](const std::string &m) { return m.starts_with(told); })) return; // in an earlier round
+        d_.messages.push_back(told + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
                               best->candidate.strengths[0].key + " at " + figures(best->value[0]) + (much ? "): read its size as at least that" : "): not named"));
     }
 
