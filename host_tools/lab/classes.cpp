@@ -19,8 +19,7 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
         if (t.verdict != "passes") continue;
         // the same effect on two wheels is a question, on all of them or on one of them it is one answer
         if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;
-        const Eigen::VectorXd difference = w.block_gain - t.block_gain;
-        const double n = static_cast<double>(difference.size()), error = std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
+        const double error = sum_error(w.block_gain - t.block_gain);
         const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
         const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
         if (explains_more || (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options.same_cosine))) members.push_back(i);

@@ -20,6 +20,22 @@ bool has_electric_terms(const Physics &physics) {
     return std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
 }
 
+// Of a piecewise constant voltage up to a time; times asked for one after the other are found at once.
+class VoltageIntegral {
+  public:
+    VoltageIntegral(const std::vector<double> &t_s, std::vector<double> sum_Vs) : t_(t_s), sum_(std::move(sum_Vs)) {}
+    double operator()(double at) {
+        while (j_ + 2 < t_.size() && t_[j_ + 1] <= at) ++j_;
+        while (j_ > 0 && t_[j_] > at) --j_;
+        return sum_[j_] + (sum_[j_ + 1] - sum_[j_]) / (t_[j_ + 1] - t_[j_]) * (at - t_[j_]);
+    }
+
+  private:
+    const std::vector<double> &t_;
+    std::vector<double> sum_;
+    std::size_t j_ = 0;
+};
+
 std::size_t parts_of(double row_s) { return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(row_s / voltage_part_s))); }
 
 } // namespace
@@ -45,13 +61,7 @@ const Eigen::VectorXd &Forward::mean_voltage(std::size_t balance, double delay_s
     MeanVoltage &known = mean_voltage_[static_cast<std::size_t>(b.wheel)];
     if (known.mean_V.size() != 0 && known.delay_s == delay_s && known.lag_s == lag_s) return known.mean_V;
     known = {delay_s, lag_s, Eigen::VectorXd(static_cast<Eigen::Index>(b.measured.size()))};
-    const std::vector<double> &t = in.voltage_t_s, sum = data_->voltage_integral(in, lag_s);
-    std::size_t j = 0;
-    const auto integral_to = [&](double at) {
-        while (j + 2 < t.size() && t[j + 1] <= at) ++j;
-        while (j > 0 && t[j] > at) --j;
-        return sum[j] + (sum[j + 1] - sum[j]) / (t[j + 1] - t[j]) * (at - t[j]);
-    };
+    VoltageIntegral integral_to(in.voltage_t_s, data_->voltage_integral(in, lag_s));
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const double t0 = b.t0_s[r] - delay_s - lag_s, t1 = std::max(b.t1_s[r] - delay_s - lag_s, t0 + 1e-6), from = integral_to(t0);
         known.mean_V[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
@@ -63,14 +73,8 @@ const Eigen::VectorXd &Forward::mean_voltage(std::size_t balance, double delay_s
 std::vector<double> Forward::voltage_parts(std::size_t balance, double delay_s, double lag_s) const {
     const Balance &b = data_->balance[balance];
     const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
-    const std::vector<double> &t = in.voltage_t_s, sum = data_->voltage_integral(in, lag_s);
+    VoltageIntegral integral_to(in.voltage_t_s, data_->voltage_integral(in, lag_s));
     std::vector<double> out;
-    std::size_t j = 0;
-    const auto integral_to = [&](double at) {
-        while (j + 2 < t.size() && t[j + 1] <= at) ++j;
-        while (j > 0 && t[j] > at) --j;
-        return sum[j] + (sum[j + 1] - sum[j]) / (t[j + 1] - t[j]) * (at - t[j]);
-    };
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const std::size_t parts = parts_of(b.t1_s[r] - b.t0_s[r]);
         const double t0 = b.t0_s[r] - delay_s - lag_s, part = std::max((b.t1_s[r] - b.t0_s[r]) / static_cast<double>(parts), 1e-6);

@@ -16,6 +16,11 @@ constexpr double most_heldout = 4;      // a block's held-out error counts up to
                                         // step that leaves it out is not to be believed
 } // namespace
 
+double sum_error(const Eigen::VectorXd &of_blocks) {
+    const double n = static_cast<double>(of_blocks.size());
+    return std::sqrt((of_blocks.array() - of_blocks.mean()).square().sum() * n / std::max(1.0, n - 1));
+}
+
 Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem) {
     const Eigen::Index n = leading < 0 ? problem.theta.size() : leading;
     const Eigen::VectorXd theta = problem.theta.head(n);
@@ -239,8 +244,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     const Eigen::VectorXd final_theta = problem_.theta.head(n) + out.change;
     out.relief = base_penalty_ - final_theta.cwiseProduct(final_theta).dot(precision_);
     out.gain = out.block_gain.sum() + out.relief;
-    const double mean = out.block_gain.mean();
-    out.gain_error = std::sqrt((out.block_gain.array() - mean).square().sum() * static_cast<double>(coarse_.count()) / std::max<double>(1, static_cast<double>(coarse_.count() - 1)));
+    out.gain_error = sum_error(out.block_gain);
     out.strength = whole;
     if (full) out.projected = projected(columns.col(0), a0);
     return out;

@@ -14,6 +14,9 @@
 
 namespace traction::lab {
 
+// Standard error of the sum of the blocks' values, by their scatter.
+double sum_error(const Eigen::VectorXd &of_blocks);
+
 struct Assessment {
     Eigen::VectorXd strength;       // estimate, what is present included
     Eigen::VectorXd standard_error;

@@ -222,11 +222,6 @@ Assessment beside(const Problem &less, const Eigen::MatrixXd &effect, const Shap
     return Screen(with).assess(effect, Eigen::VectorXd::Zero(effect.cols()), false);
 }
 
-double paired_error(const Eigen::VectorXd &difference) {
-    const double n = static_cast<double>(difference.size());
-    return std::sqrt((difference.array() - difference.mean()).square().sum() * n / std::max(1.0, n - 1));
-}
-
 // Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
 bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
 
@@ -248,7 +243,7 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
         s.assessment = screen.assess(shape.columns, Eigen::VectorXd::Zero(shape.columns.cols()), false);
         s.p_value = corrected(s.candidate, s.assessment);
         if (!(s.p_value < options.shape_p_limit) || (best && !(s.assessment.gain > best->assessment.gain))) continue;
-        const bool better = s.assessment.gain - own.gain > 2 * paired_error(s.assessment.block_gain - own.block_gain);
+        const bool better = s.assessment.gain - own.gain > 2 * sum_error(s.assessment.block_gain - own.block_gain);
         if (!better && (is_straight(shape.candidate) || &shape != flagged)) continue;
         const Assessment left = beside(less, columns, shape);
         if (left.gain > 0 && left.p_value * shapes_tried < options.p_limit) continue; // needed beside the shape too
@@ -325,7 +320,7 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
         if (replaced.empty()) continue;
         // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
         const double margin = replaced.size() > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
-        const double error = paired_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
+        const double error = sum_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
         if (!(s.assessment.gain > margin * named_gain) || (replaced.size() == 1 && s.assessment.gain - named_gain < 2 * error)) continue;
         beyond.shape = describe(s, first_screen.heldout_error());
         beyond.replaced = replaced, beyond.gain_squares = s.assessment.gain;

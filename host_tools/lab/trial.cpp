@@ -12,7 +12,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double clearly_worse = 1.02; // of the baseline's error: none of 800 scanned sizes lay beyond such a one and was better
+constexpr double clearly_worse = 1.02; // of the baseline's error: beyond such a size no better one is sought (assumed)
 constexpr double classes_tried = 20; // catalogue effects that are not near copies of one another: about half of the catalogue
 
 bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
@@ -171,8 +171,7 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
     t.assessment.relief += base_screen.penalty() - screen.penalty();
     t.block_gain = base_screen.block_error() - (screen.block_error() - t.assessment.block_gain);
     test(t);
-    const double blocks = static_cast<double>(t.block_gain.size()), mean = t.block_gain.mean();
-    t.gain_error = std::sqrt((t.block_gain.array() - mean).square().sum() * blocks / std::max(1.0, blocks - 1));
+    t.gain_error = sum_error(t.block_gain);
     const Screen with(problem);
     t.promise = base_screen.error() - with.error();
     t.best_balance_gain = 0;

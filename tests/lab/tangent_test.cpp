@@ -50,13 +50,22 @@ TEST(Tangent, agrees_with_whole_integrations_for_every_parameter_and_effect) {
     }
 }
 
-TEST(Tangent, all_coefficients_of_a_shape_at_once_are_the_same_one_by_one) {
+struct Sand {
+    Model model;
+    Dataset data;
+    Physics physics;
+};
+
+Sand sand(double duration_s) {
     generator::GeneratorConfig config;
     config.seed = 7;
-    config.duration_s = 30;
+    config.duration_s = duration_s;
     const Model model = read_model("models/rover_sand.toml");
-    const Dataset data = make_dataset(model, generator::generate(config));
-    const Physics physics = make_physics(model);
+    return {model, make_dataset(model, generator::generate(config)), make_physics(model)};
+}
+
+TEST(Tangent, all_coefficients_of_a_shape_at_once_are_the_same_one_by_one) {
+    const auto [model, data, physics] = sand(30);
     Forward forward(data);
     forward.set_base(physics);
     for (const Candidate &c : shape_candidates(data, forward.motion(), physics, forward.winding_current_A())) {
@@ -80,12 +89,7 @@ TEST(Tangent, all_coefficients_of_a_shape_at_once_are_the_same_one_by_one) {
 }
 
 TEST(Tangent, a_far_candidate_beside_the_base_reads_as_its_whole_prediction) {
-    generator::GeneratorConfig config;
-    config.seed = 7;
-    config.duration_s = 30;
-    const Model model = read_model("models/rover_sand.toml");
-    const Dataset data = make_dataset(model, generator::generate(config));
-    const Physics physics = make_physics(model);
+    const auto [model, data, physics] = sand(30);
     Forward forward(data);
     forward.set_base(physics);
     for (const Candidate &c : catalogue_candidates(model, data, forward.motion())) {
@@ -99,12 +103,7 @@ TEST(Tangent, a_far_candidate_beside_the_base_reads_as_its_whole_prediction) {
 }
 
 TEST(Tangent, products_that_skip_the_zeros_of_a_jacobian_are_those_of_all_its_entries) {
-    generator::GeneratorConfig config;
-    config.seed = 7;
-    config.duration_s = 20;
-    const Model model = read_model("models/rover_sand.toml");
-    const Dataset data = make_dataset(model, generator::generate(config));
-    const Physics physics = make_physics(model);
+    const auto [model, data, physics] = sand(20);
     Problem problem(data, physics, free_parameters(model, physics));
     problem.linearise();
     const Eigen::MatrixXd &J = problem.jacobian, gram = J.transpose() * J;
