@@ -17,16 +17,11 @@ typedef struct {
 } known_t;
 
 static const known_t known[KNOWN] = {
-    [RADIUS] = {"wheel_radius_m", 0.01f, 0.5f},
-    [TORQUE_CONSTANT] = {"torque_constant_Nm_A", 0.001f, 20.0f},
-    [VISCOUS] = {"viscous_Nms", 0.0f, 1.0f},
-    [COULOMB] = {"coulomb_Nm", 0.0f, 5.0f},
-    [INERTIA] = {"inertia_kg_m2", 1e-5f, 1.0f},
-    [RESISTANCE] = {"resistance_ohm", 0.01f, 100.0f},
-    [MASS] = {"mass_kg", 0.1f, 200.0f},
-    [DOPPLER_SCALE] = {"doppler_scale", 0.5f, 2.0f},
-    [WHEEL_KP] = {"wheel_kp_s", 0.0f, 10.0f},
-    [WHEEL_KI] = {"wheel_ki_1", 0.0f, 200.0f},
+    [RADIUS] = {"wheel_radius_m", 0.01f, 0.5f}, [TORQUE_CONSTANT] = {"torque_constant_Nm_A", 0.001f, 20.0f},
+    [VISCOUS] = {"viscous_Nms", 0.0f, 1.0f},    [COULOMB] = {"coulomb_Nm", 0.0f, 5.0f},
+    [INERTIA] = {"inertia_kg_m2", 1e-5f, 1.0f}, [RESISTANCE] = {"resistance_ohm", 0.01f, 100.0f},
+    [MASS] = {"mass_kg", 0.1f, 200.0f},         [DOPPLER_SCALE] = {"doppler_scale", 0.5f, 2.0f},
+    [WHEEL_KP] = {"wheel_kp_s", 0.0f, 10.0f},   [WHEEL_KI] = {"wheel_ki_1", 0.0f, 200.0f},
 };
 
 typedef struct {

@@ -76,10 +76,9 @@ static void estimate_wheels(const control_config_t *config, estimate_t *estimate
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
         const sense_output_t *sense = estimate->sense;
-        const motor_output_t motor =
-            motor_measure(&config->motor, sense->current_A[i], sense->speed_rad_s[i], sense->accel_rad_s2[i]);
-        estimate->slip[i] = slip_measure(&config->slip, sense->speed_rad_s[i],
-                                         wheel_ground_m_s(config, i, estimate->speed_m_s, sense->gyro_z_rad_s));
+        const motor_output_t motor = motor_measure(&config->motor, sense->current_A[i], sense->speed_rad_s[i], sense->accel_rad_s2[i]);
+        estimate->slip[i] =
+            slip_measure(&config->slip, sense->speed_rad_s[i], wheel_ground_m_s(config, i, estimate->speed_m_s, sense->gyro_z_rad_s));
         wheel->speed_rad_s = sense->speed_rad_s[i];
         wheel->accel_rad_s2 = sense->accel_rad_s2[i];
         wheel->current_A = sense->current_A[i];
@@ -112,8 +111,8 @@ static void drive_wheel_speed(const control_config_t *config, control_state_t *s
     wheel->saturated = out.saturated;
 }
 
-static void drive_wheel_slip(const control_config_t *config, control_state_t *state, const estimate_t *estimate, int i,
-                             float slip_ref, bool fresh_loop, wheel_trace_t *wheel)
+static void drive_wheel_slip(const control_config_t *config, control_state_t *state, const estimate_t *estimate, int i, float slip_ref,
+                             bool fresh_loop, wheel_trace_t *wheel)
 {
     const slip_pi_input_t input = {.slip_ref = slip_ref, .slip = estimate->slip[i].slip, .speed_m_s = estimate->speed_m_s};
     if (fresh_loop) {

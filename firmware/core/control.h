@@ -42,7 +42,7 @@ typedef struct {
     soil_sweep_config_t soil_sweep;
     safety_config_t safety;
     bool feed_forward; // the wheel loops know the motor; false is a plain PID
-} control_config_t; // constant while running
+} control_config_t;    // constant while running
 
 typedef struct {
     sense_state_t sense;
@@ -53,18 +53,17 @@ typedef struct {
     speed_control_state_t speed_control;
     soil_sweep_state_t soil_sweep;
     safety_state_t safety;
-    control_mode_t mode;             // in force in the last tick
-    uint8_t slip_active;             // bit i: wheel i was driven by its slip loop in the last tick
-    float duty[WHEEL_COUNT];         // written in the last tick
-    bool saturated;                  // a wheel had no duty left in the last tick
-    float doppler_m_s;               // last Doppler value
+    control_mode_t mode;     // in force in the last tick
+    uint8_t slip_active;     // bit i: wheel i was driven by its slip loop in the last tick
+    float duty[WHEEL_COUNT]; // written in the last tick
+    bool saturated;          // a wheel had no duty left in the last tick
+    float doppler_m_s;       // last Doppler value
 } control_state_t;
 
 void control_reset(const control_config_t *config, control_state_t *state);
 
 // Any frame and any command are accepted. Ensures |duty| <= 1, and duty 0 with the bridges released while a stopping fault is latched.
-trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command,
-                     const sensor_frame_t *frame);
+trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command, const sensor_frame_t *frame);
 
 #ifdef __cplusplus
 }

@@ -102,8 +102,8 @@ static void measure(const doppler_config_t *config, const uint64_t *power, doppl
     uint64_t energy = 0;
     bool white = false;
     const int32_t total = reduce(config->beam, power, reduced, &energy);
-    const float speed_m_s = config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, reduced, total, &white)
-                                                                 : argmax_speed(config->beam, power);
+    const float speed_m_s =
+        config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, reduced, total, &white) : argmax_speed(config->beam, power);
     out->speed_m_s = config->scale * speed_m_s;
     out->quiet = white || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
     out->fresh = true;
@@ -124,7 +124,8 @@ static void slide(doppler_state_t *state, int32_t hop)
     state->filled = FFT_LENGTH - hop;
 }
 
-static const float halved_least_m_s = 0.085f; // [m/s] just above twice the grid's lowest speed, where half a window hears the converter's offset
+static const float halved_least_m_s =
+    0.085f; // [m/s] just above twice the grid's lowest speed, where half a window hears the converter's offset
 
 static void mirror(doppler_state_t *state)
 {

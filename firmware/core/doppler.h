@@ -8,7 +8,8 @@
 // geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
 // ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
 // below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each
-// taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours alone).
+// taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours
+// alone).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -28,24 +29,25 @@ typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 // Arrays, not pointers: a pointer in a constant must be relocated, hence lies in writable memory.
 // Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
 typedef struct {
-    float log_step;           // ln of the ratio of neighbouring grid speeds
-    float paper_m_s_per_Hz;   // c / (2 f0 cos theta_d) of (11)
+    float log_step;         // ln of the ratio of neighbouring grid speeds
+    float paper_m_s_per_Hz; // c / (2 f0 cos theta_d) of (11)
     float sample_rate_Hz;
-    int32_t speeds;           // grid size
-    int32_t first_bin;        // spectral bins used: first_bin .. first_bin + bins - 1
+    int32_t speeds;    // grid size
+    int32_t first_bin; // spectral bins used: first_bin .. first_bin + bins - 1
     int32_t bins;
     float speed_m_s[DOPPLER_SPEEDS_MAX]; // the grid, rising: the speeds at which (2) has its minimum there on average
-    int16_t inverse[DOPPLER_SPEEDS_MAX * DOPPLER_BINS_MAX] __attribute__((aligned(8))); // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
-    int32_t volume[DOPPLER_SPEEDS_MAX];  // q * sum_k ln S_v[k]
-    int32_t quiet[DOPPLER_SPEEDS_MAX];   // q * expected J/a of an echo of which half is white noise
+    int16_t inverse[DOPPLER_SPEEDS_MAX * DOPPLER_BINS_MAX]
+        __attribute__((aligned(8)));    // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
+    int32_t volume[DOPPLER_SPEEDS_MAX]; // q * sum_k ln S_v[k]
+    int32_t quiet[DOPPLER_SPEEDS_MAX];  // q * expected J/a of an echo of which half is white noise
 } doppler_template_t;
 
 typedef struct {
     const doppler_template_t *beam;
     doppler_method_t method;
-    int32_t offset_count;     // ADC value of no signal
-    int32_t hop;              // samples between values, 1..256
-    float scale;              // calibrated speed over geometric speed [1]
+    int32_t offset_count;        // ADC value of no signal
+    int32_t hop;                 // samples between values, 1..256
+    float scale;                 // calibrated speed over geometric speed [1]
     uint32_t quiet_power_count2; // variance of the band below which there is no echo [ADC count^2]
 } doppler_config_t;
 
@@ -56,19 +58,19 @@ typedef struct {
             int16_t sample[4];
         } __attribute__((aligned(8))) four[FFT_LENGTH / 4];
     } window;
-    int16_t twice[FFT_LENGTH];  // the first 128 samples, each twice
-    int32_t filled;             // valid samples so far
-    uint64_t power[FFT_BINS];   // of the last full window
-    int32_t late_samples;       // samples since that window's end
-    bool pending;               // its speed is not made yet
-    bool halved;                // that window is `twice`: it reads half the speed
-    bool full;                  // the window has been filled once
-} doppler_state_t; // zeroed = reset
+    int16_t twice[FFT_LENGTH]; // the first 128 samples, each twice
+    int32_t filled;            // valid samples so far
+    uint64_t power[FFT_BINS];  // of the last full window
+    int32_t late_samples;      // samples since that window's end
+    bool pending;              // its speed is not made yet
+    bool halved;               // that window is `twice`: it reads half the speed
+    bool full;                 // the window has been filled once
+} doppler_state_t;             // zeroed = reset
 
 typedef struct {
-    bool fresh;         // a value was made in this call
-    bool quiet;         // no echo above the noise: the speed means nothing
-    float speed_m_s;    // magnitude
+    bool fresh;           // a value was made in this call
+    bool quiet;           // no echo above the noise: the speed means nothing
+    float speed_m_s;      // magnitude
     int32_t late_samples; // samples that arrived after the window's end; less for the first two values, whose window is shorter
 } doppler_output_t;
 

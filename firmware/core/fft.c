@@ -20,12 +20,12 @@ static inline word_t load(const word_t *from)
 }
 static inline void store(word_t *to, word_t word) { __asm__("strd %1, %H1, [%2]" : "=m"(*to) : "r"(word), "r"(to)); }
 static inline void store_power(uint64_t *to, uint64_t power) { store(to, power); }
-#define WORD_OF(name, first, second)                                                                                   \
-    static inline word_t name(int32_t a, int32_t b, int32_t c, int32_t d)                                              \
-    {                                                                                                                  \
-        word_t word;                                                                                                   \
-        __asm__(first " %Q0, %1, %2\n\t" second " %R0, %3, %4" : "=&r"(word) : "r"(a), "r"(b), "r"(c), "r"(d));        \
-        return word;                                                                                                   \
+#define WORD_OF(name, first, second)                                                                                                       \
+    static inline word_t name(int32_t a, int32_t b, int32_t c, int32_t d)                                                                  \
+    {                                                                                                                                      \
+        word_t word;                                                                                                                       \
+        __asm__(first " %Q0, %1, %2\n\t" second " %R0, %3, %4" : "=&r"(word) : "r"(a), "r"(b), "r"(c), "r"(d));                            \
+        return word;                                                                                                                       \
     }
 WORD_OF(add_add, "add", "add")
 WORD_OF(add_sub, "add", "sub")
@@ -55,10 +55,7 @@ static inline word_t add_add(int32_t a, int32_t b, int32_t c, int32_t d) { retur
 static inline word_t add_sub(int32_t a, int32_t b, int32_t c, int32_t d) { return word_of(a + b, c - d); }
 static inline word_t sub_add(int32_t a, int32_t b, int32_t c, int32_t d) { return word_of(a - b, c + d); }
 static inline word_t sub_sub(int32_t a, int32_t b, int32_t c, int32_t d) { return word_of(a - b, c - d); }
-static inline uint64_t square_sum(int32_t re, int32_t im)
-{
-    return (uint64_t)((int64_t)re * re) + (uint64_t)((int64_t)im * im);
-}
+static inline uint64_t square_sum(int32_t re, int32_t im) { return (uint64_t)((int64_t)re * re) + (uint64_t)((int64_t)im * im); }
 #endif
 
 // Stage 1: window, and 64 transforms of length 4 over x[n], x[n + 64], x[n + 128], x[n + 192]. h[n + 128] = 1 - h[n].
@@ -104,8 +101,14 @@ static inline butterfly_t twiddle(const word_t *in, const uint32_t *w)
     const int32_t s0r = first_of(s0);
     const int32_t s0i = second_of(s0);
     const butterfly_t out = {
-        .ar = t2r + (s0r >> 1), .ai = t2i + (s0i >> 1), .br = (s0r >> 1) - t2r, .bi = (s0i >> 1) - t2i,
-        .cr = t1r + t3r, .ci = t1i + t3i, .dr = t3r - t1r, .di = t3i - t1i,
+        .ar = t2r + (s0r >> 1),
+        .ai = t2i + (s0i >> 1),
+        .br = (s0r >> 1) - t2r,
+        .bi = (s0i >> 1) - t2i,
+        .cr = t1r + t3r,
+        .ci = t1i + t3i,
+        .dr = t3r - t1r,
+        .di = t3i - t1i,
     };
     return out;
 }
@@ -127,9 +130,14 @@ static inline edge_t edge(const word_t *in)
     const int32_t q1 = fixed_mul_low(second_of(s1), COS_45_Q15);
     const int32_t q3 = fixed_mul_low(second_of(s3), COS_45_Q15);
     const edge_t out = {
-        .r02_sum = r0 + (first_of(s2) >> 1), .r02_difference = r0 - (first_of(s2) >> 1),
-        .r13_sum = r1 + (first_of(s3) >> 1), .r31_difference = (first_of(s3) >> 1) - r1,
-        .q0 = second_of(s0) >> 1, .q2 = second_of(s2) >> 1, .u = q1 - q3, .v = q1 + q3,
+        .r02_sum = r0 + (first_of(s2) >> 1),
+        .r02_difference = r0 - (first_of(s2) >> 1),
+        .r13_sum = r1 + (first_of(s3) >> 1),
+        .r31_difference = (first_of(s3) >> 1) - r1,
+        .q0 = second_of(s0) >> 1,
+        .q2 = second_of(s2) >> 1,
+        .u = q1 - q3,
+        .v = q1 + q3,
     };
     return out;
 }

@@ -38,18 +38,9 @@ static inline int32_t fixed_mac_high(int32_t sum, int32_t value, uint32_t q15)
     return out;
 }
 #else
-static inline int32_t fixed_mul_low(int32_t value, uint32_t q15)
-{
-    return (int32_t)(((int64_t)value * (int16_t)(q15 & 0xffffu)) >> 16);
-}
-static inline int32_t fixed_mul_high(int32_t value, uint32_t q15)
-{
-    return (int32_t)(((int64_t)value * (int16_t)(q15 >> 16)) >> 16);
-}
-static inline int32_t fixed_mac_high(int32_t sum, int32_t value, uint32_t q15)
-{
-    return sum + fixed_mul_high(value, q15);
-}
+static inline int32_t fixed_mul_low(int32_t value, uint32_t q15) { return (int32_t)(((int64_t)value * (int16_t)(q15 & 0xffffu)) >> 16); }
+static inline int32_t fixed_mul_high(int32_t value, uint32_t q15) { return (int32_t)(((int64_t)value * (int16_t)(q15 >> 16)) >> 16); }
+static inline int32_t fixed_mac_high(int32_t sum, int32_t value, uint32_t q15) { return sum + fixed_mul_high(value, q15); }
 #endif
 
 // 1: compare floats as whole numbers, as a machine without a floating-point unit must: one instruction, not 40. 0: plain C.
@@ -78,16 +69,10 @@ static inline int32_t fixed_order(float value)
 }
 
 // a > b; a NaN is above every number when positive, below when negative.
-static inline int fixed_greater(float a, float b)
-{
-    return fixed_order(a) > fixed_order(b);
-}
+static inline int fixed_greater(float a, float b) { return fixed_order(a) > fixed_order(b); }
 
 // True for every finite number.
-static inline int fixed_is_finite(float value)
-{
-    return (fixed_bits(value) & 0x7f800000u) != 0x7f800000u;
-}
+static inline int fixed_is_finite(float value) { return (fixed_bits(value) & 0x7f800000u) != 0x7f800000u; }
 
 // fixed_clamp: value limited to [low, high]; NaN gives low. Requires low <= high.
 // fixed_finite: the value, or 0 when it is NaN or infinite.

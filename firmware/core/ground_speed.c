@@ -9,9 +9,9 @@ enum { WINDOW_TICKS = 51 }; // ticks that a window of 256 samples at 512 Hz cove
 // w_j of (3): the square of the Hann window over its age in ticks, Q15, sum 32768. A sample's weight is shared between the two
 // ticks around it, so the mean age is the window's own. ground_speed_test: no lag with exact sensors.
 static const int16_t weight_q15[WINDOW_TICKS] = {
-    0, 0, 1, 3, 8, 18, 35, 61, 99, 151, 217, 298, 396, 507, 629, 762, 902, 1044, 1184, 1317, 1440, 1551, 1632, 1695, 1733,
-    1745, 1728, 1685, 1617, 1532, 1417, 1291, 1157, 1016, 874, 736, 604, 484, 375, 281, 203, 140, 91, 55, 31, 15, 6, 2, 0, 0,
-    0,
+    0,    0,    1,    3,    8,    18,   35,   61,   99,   151,  217,  298,  396,  507,  629,  762,  902,
+    1044, 1184, 1317, 1440, 1551, 1632, 1695, 1733, 1745, 1728, 1685, 1617, 1532, 1417, 1291, 1157, 1016,
+    874,  736,  604,  484,  375,  281,  203,  140,  91,   55,   31,   15,   6,    2,    0,    0,    0,
 };
 static const float window_tau_s = 0.249f; // [s] mean age: 127.5 samples at 512 Hz, the newest half a sample old on average
 static const float window_tau_ticks = 24.9f;
@@ -58,7 +58,8 @@ static void watch_noise(const ground_speed_config_t *config, ground_speed_state_
     int32_t middle = state->integral_q20[((uint32_t)state->head - 1u) % GROUND_SPEED_HISTORY];
     for (uint32_t j = 2; j < NOISE_TICKS + 2; j++) {
         const int32_t older = state->integral_q20[((uint32_t)state->head - j) % GROUND_SPEED_HISTORY];
-        const int32_t bend = fixed_wrap_difference(fixed_wrap_difference(newer, middle), fixed_wrap_difference(middle, older)) >> NOISE_LOST_BITS;
+        const int32_t bend =
+            fixed_wrap_difference(fixed_wrap_difference(newer, middle), fixed_wrap_difference(middle, older)) >> NOISE_LOST_BITS;
         const int32_t limited = bend < -NOISE_LIMIT ? -NOISE_LIMIT : bend > NOISE_LIMIT ? NOISE_LIMIT : bend;
         sum += (uint32_t)(limited * limited);
         newer = middle;
@@ -122,7 +123,7 @@ static window_t look_back(const ground_speed_state_t *state, float accel, float 
     const window_t out = {
         .tau_s = tau,
         .middle_m_s = state->speed_m_s + tau * state->bias_m_s2 - window_change_m_s(state) - accel * late_s, // (3)
-        .accel_m_s2 = span * 2.0f - state->bias_m_s2,                                                       // over 0.5 s
+        .accel_m_s2 = span * 2.0f - state->bias_m_s2,                                                        // over 0.5 s
     };
     return out;
 }
@@ -153,7 +154,9 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     if (early && fabsf(window.accel_m_s2) > early_accel_m_s2) {
         return; // w of (3) is that of a full window
     }
-    const float shorter = early ? 2.5f : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
+    const float shorter =
+        early ? 2.5f
+              : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
     const float noise = shorter * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured) +
                         config->doppler_accel_s2 * window.accel_m_s2 * window.accel_m_s2;
     const float innovation = sign * measured - window.middle_m_s;

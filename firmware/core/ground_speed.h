@@ -27,39 +27,39 @@ typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t
 
 typedef struct {
     ground_speed_method_t method;
-    float tick_s;                  // T
-    float speed_noise_m2_s2;       // Qv per tick, at least
-    float speed_noise_max_m2_s2;   // and at most; at or below the other, (6) is off
-    float bias_noise_m2_s4;        // Qb per tick
-    float bias_start_m_s2;         // standard deviation of the bias at reset
-    float bias_max_m_s2;           // |b| limit
-    float doppler_noise_m2_s2;     // R, constant part
-    float doppler_noise_m_s;       // R per |v|
-    float doppler_accel_s2;        // R per a^2
-    float gate_sigma;              // values further than this from the prediction are refused
-    int32_t gate_patience;         // refusals in a row after which the next value is taken as the truth
-    float jump_share;              // c of (4)
-    float jump_limit;              // |m| of (4) that tells of a jump of the bias
-    float jump_m2_s4;              // by how much its variance grows then
-    int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
-    float quiet_noise_m2_s2;       // R of that speed, taken as 0
-    float still_m_s;               // rim speed below which the wheels are at rest
-    int32_t still_needed;          // ticks of rest before the rover can be standing
-    float standing_noise_m2_s2;    // R of speed 0 in each standing tick
-    float sign_hysteresis_m_s;     // |v| below which the wheels decide the sign, and standing needs no quiet echo
+    float tick_s;                // T
+    float speed_noise_m2_s2;     // Qv per tick, at least
+    float speed_noise_max_m2_s2; // and at most; at or below the other, (6) is off
+    float bias_noise_m2_s4;      // Qb per tick
+    float bias_start_m_s2;       // standard deviation of the bias at reset
+    float bias_max_m_s2;         // |b| limit
+    float doppler_noise_m2_s2;   // R, constant part
+    float doppler_noise_m_s;     // R per |v|
+    float doppler_accel_s2;      // R per a^2
+    float gate_sigma;            // values further than this from the prediction are refused
+    int32_t gate_patience;       // refusals in a row after which the next value is taken as the truth
+    float jump_share;            // c of (4)
+    float jump_limit;            // |m| of (4) that tells of a jump of the bias
+    float jump_m2_s4;            // by how much its variance grows then
+    int32_t quiet_needed;        // quiet Doppler values in a row that mean a speed too low to be heard
+    float quiet_noise_m2_s2;     // R of that speed, taken as 0
+    float still_m_s;             // rim speed below which the wheels are at rest
+    int32_t still_needed;        // ticks of rest before the rover can be standing
+    float standing_noise_m2_s2;  // R of speed 0 in each standing tick
+    float sign_hysteresis_m_s;   // |v| below which the wheels decide the sign, and standing needs no quiet echo
 } ground_speed_config_t;
 
 typedef struct {
     float speed_m_s;
     float bias_m_s2;
-    float p_vv, p_vb, p_bb;        // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
-    float std_m_s;                 // of the speed, at the last measurement
-    float accel_noise_m2_s2;       // mean of (6) per tick
-    float speed_noise_m2_s2;       // Qv in force
+    float p_vv, p_vb, p_bb;                     // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
+    float std_m_s;                              // of the speed, at the last measurement
+    float accel_noise_m2_s2;                    // mean of (6) per tick
+    float speed_noise_m2_s2;                    // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
-    float integral_rest_m_s;       // part of V below one unit
-    float one_sided;               // m of (4)
+    float integral_rest_m_s; // part of V below one unit
+    float one_sided;         // m of (4)
     int32_t refused;
     int32_t quiet;
     int32_t still_ticks;
@@ -68,9 +68,9 @@ typedef struct {
 
 typedef struct {
     float accel_x_m_s2;
-    float doppler_m_s;             // magnitude
-    float doppler_late_s;          // age of the window's end; negative for a shorter window
-    float wheel_m_s;               // rim speed of the wheels as a hint for the sign
+    float doppler_m_s;    // magnitude
+    float doppler_late_s; // age of the window's end; negative for a shorter window
+    float wheel_m_s;      // rim speed of the wheels as a hint for the sign
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;

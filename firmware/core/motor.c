@@ -20,15 +20,13 @@ motor_output_t motor_measure(const motor_config_t *config, float current_A, floa
     return out;
 }
 
-float motor_per_supply(float supply_V)
-{
-    return supply_V > supply_min_V && fixed_is_finite(supply_V) ? 1.0f / supply_V : 0.0f;
-}
+float motor_per_supply(float supply_V) { return supply_V > supply_min_V && fixed_is_finite(supply_V) ? 1.0f / supply_V : 0.0f; }
 
 float motor_duty_for_speed(const motor_config_t *config, float speed_rad_s, float per_supply_1_V)
 {
     const float w = fixed_finite(speed_rad_s);
-    const float voltage_V = config->volt_per_speed_Vs * w + config->volt_dry_V * fixed_clamp(w * config->per_dry_speed_s, -1.0f, 1.0f); // (a), (18)
+    const float voltage_V =
+        config->volt_per_speed_Vs * w + config->volt_dry_V * fixed_clamp(w * config->per_dry_speed_s, -1.0f, 1.0f); // (a), (18)
     return fixed_clamp(fixed_finite(voltage_V * fixed_finite(per_supply_1_V)), -1.0f, 1.0f);
 }
 

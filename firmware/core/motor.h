@@ -16,16 +16,16 @@ extern "C" {
 #endif
 
 typedef struct {
-    float torque_constant_Nm_A;   // KG, at the wheel
-    float volt_per_speed_Vs;      // Ra b/KG + ke: steady voltage per wheel speed
-    float volt_dry_V;             // Ra t0/KG: voltage that overcomes dry friction
-    float back_emf_Vs;            // ke, at the wheel
-    float resistance_ohm;         // Ra, > 0
-    float viscous_Nms;            // b of (18)
-    float dry_Nm;                 // t0 of (18)
-    float per_dry_speed_s;        // 1/w_dry
-    float inertia_kg_m2;          // J
-    float per_radius_1_m;         // 1/R
+    float torque_constant_Nm_A; // KG, at the wheel
+    float volt_per_speed_Vs;    // Ra b/KG + ke: steady voltage per wheel speed
+    float volt_dry_V;           // Ra t0/KG: voltage that overcomes dry friction
+    float back_emf_Vs;          // ke, at the wheel
+    float resistance_ohm;       // Ra, > 0
+    float viscous_Nms;          // b of (18)
+    float dry_Nm;               // t0 of (18)
+    float per_dry_speed_s;      // 1/w_dry
+    float inertia_kg_m2;        // J
+    float per_radius_1_m;       // 1/R
 } motor_config_t;
 
 typedef struct {

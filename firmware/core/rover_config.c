@@ -3,17 +3,17 @@
 #include "doppler_template.h"
 
 // --- SPEC table I and text
-static const float wheel_radius_m = 0.057f;      // [m] under load, table I
-static const float half_wheelbase_m = 0.083f;    // [m] table I
-static const float half_track_m = 0.12f;         // [m] table I
-static const float mass_kg = 2.88f;              // [kg] table I
-static const float wheel_inertia_kg_m2 = 5e-3f;  // [kg m^2] identified, section 3
-static const float torque_constant_Nm_A = 0.265f;// [N m/A] at the wheel, (17)
-static const float viscous_Nms = 1.6e-3f;        // [N m s] (18)
-static const float dry_Nm = 0.03f;               // [N m] (18)
-static const float resistance_ohm = 3.24f;       // [ohm] assumed: V^2/(4 Ra) = 4 W at 7.2 V
-static const float speed_max_m_s = 1.0f;         // [m/s] table I
-static const float tick_s = 0.01f;               // [s] dT of (13)
+static const float wheel_radius_m = 0.057f;                       // [m] under load, table I
+static const float half_wheelbase_m = 0.083f;                     // [m] table I
+static const float half_track_m = 0.12f;                          // [m] table I
+static const float mass_kg = 2.88f;                               // [kg] table I
+static const float wheel_inertia_kg_m2 = 5e-3f;                   // [kg m^2] identified, section 3
+static const float torque_constant_Nm_A = 0.265f;                 // [N m/A] at the wheel, (17)
+static const float viscous_Nms = 1.6e-3f;                         // [N m s] (18)
+static const float dry_Nm = 0.03f;                                // [N m] (18)
+static const float resistance_ohm = 3.24f;                        // [ohm] assumed: V^2/(4 Ra) = 4 W at 7.2 V
+static const float speed_max_m_s = 1.0f;                          // [m/s] table I
+static const float tick_s = 0.01f;                                // [s] dT of (13)
 static const float encoder_rad_per_count = 6.28318531f / 6000.0f; // [rad] 120 pulses x gear 50, section 3
 
 static sense_config_t sense_default(void)
@@ -42,7 +42,7 @@ static doppler_config_t doppler_default(void)
         .method = DOPPLER_LIKELIHOOD,
         .offset_count = 512, // [count] assumed: mid-scale of 10 bit
         .hop = 64,
-        .scale = 1.0f,       // until `traction calibrate` has measured it
+        .scale = 1.0f,           // until `traction calibrate` has measured it
         .quiet_power_count2 = 2, // [count^2] assumed
     };
     return doppler;
@@ -53,9 +53,9 @@ static ground_speed_config_t ground_speed_default(void)
     const ground_speed_config_t ground_speed = {
         .method = GROUND_SPEED_BIAS,
         .tick_s = tick_s,
-        .speed_noise_m2_s2 = 4e-6f, // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
+        .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
-        .bias_noise_m2_s4 = 5e-7f,  // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
+        .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .bias_start_m_s2 = 0.1f,
         .bias_max_m_s2 = 1.0f,
         .doppler_noise_m2_s2 = 3e-5f,
@@ -63,9 +63,9 @@ static ground_speed_config_t ground_speed_default(void)
         .doppler_accel_s2 = 0.0125f,
         .gate_sigma = 3.5f,
         .gate_patience = 8,
-        .jump_share = 0.25f,         // half a second of values 0.125 s apart
-        .jump_limit = 2.0f,          // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
-        .jump_m2_s4 = 0.002f,        // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
+        .jump_share = 0.25f,  // half a second of values 0.125 s apart
+        .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
+        .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
         .quiet_needed = 3,
         .quiet_noise_m2_s2 = 9e-4f,    // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = 0.006f,           // one encoder pulse a tick
@@ -87,18 +87,18 @@ static safety_config_t safety_default(void)
         .missed_forget_ticks = 100,  // assumed: 1 % missed ticks are tolerated for ever
         .current_continuous_A2 = 2.25f,
         .current_continuous_A = 1.5f, // [A] assumed: above the 1.35 A of full traction on concrete (5.6 N R + Gr)/KG
-        .i2t_max_A2_ticks = 800.0f, // 8 A^2 s assumed: 3 s of stall at 2.2 A
-        .stall_current_A = 1.4f,     // [A] assumed: above the current of a wheel held by full traction
-        .stall_speed_rad_s = 0.3f,   // [rad/s] assumed
-        .stall_s = 1.0f,             // [s] assumed
+        .i2t_max_A2_ticks = 800.0f,   // 8 A^2 s assumed: 3 s of stall at 2.2 A
+        .stall_current_A = 1.4f,      // [A] assumed: above the current of a wheel held by full traction
+        .stall_speed_rad_s = 0.3f,    // [rad/s] assumed
+        .stall_s = 1.0f,              // [s] assumed
         .heating_K_A2 = 4.0f * tick_s * resistance_ohm / 5.0f, // C_th = 5 J/K assumed
-        .keeping = 1.0f - 4.0f * tick_s / (12.0f * 5.0f),   // R_th = 12 K/W assumed: time constant 60 s
-        .temperature_rise_max_K = 95.0f, // [K] assumed: class B winding at 35 C
-        .battery_min_V = 5.4f,       // [V] assumed: 0.9 V per cell of 6
-        .battery_s = 0.5f,           // [s] assumed
-        .disagree_m_s = 0.15f,       // [m/s] assumed
-        .disagree_ratio = 1.5f,      // [1] assumed
-        .disagree_s = 1.0f,          // [s] assumed
+        .keeping = 1.0f - 4.0f * tick_s / (12.0f * 5.0f),      // R_th = 12 K/W assumed: time constant 60 s
+        .temperature_rise_max_K = 95.0f,                       // [K] assumed: class B winding at 35 C
+        .battery_min_V = 5.4f,                                 // [V] assumed: 0.9 V per cell of 6
+        .battery_s = 0.5f,                                     // [s] assumed
+        .disagree_m_s = 0.15f,                                 // [m/s] assumed
+        .disagree_ratio = 1.5f,                                // [1] assumed
+        .disagree_s = 1.0f,                                    // [s] assumed
     };
     return safety;
 }
@@ -106,7 +106,10 @@ static safety_config_t safety_default(void)
 control_config_t rover_config_default(void)
 {
     const control_config_t config = {
-        .geometry = {.wheel_radius_m = wheel_radius_m, .half_wheelbase_m = half_wheelbase_m, .half_track_m = half_track_m, .mass_kg = mass_kg},
+        .geometry = {.wheel_radius_m = wheel_radius_m,
+                     .half_wheelbase_m = half_wheelbase_m,
+                     .half_track_m = half_track_m,
+                     .mass_kg = mass_kg},
         .sense = sense_default(),
         .doppler = doppler_default(),
         .ground_speed = ground_speed_default(),
@@ -121,7 +124,7 @@ control_config_t rover_config_default(void)
                   .per_dry_speed_s = 5.0f, // 1/0.2 [rad/s] assumed: five steps of the speed's rounding noise
                   .inertia_kg_m2 = wheel_inertia_kg_m2,
                   .per_radius_1_m = 1.0f / wheel_radius_m},
-        .wheel_pid = {.kp_s = 0.2f, // docs/firmware.md: crossover 24 rad/s free, 16 rad/s gripping
+        .wheel_pid = {.kp_s = 0.2f,     // docs/firmware.md: crossover 24 rad/s free, 16 rad/s gripping
                       .ki_T_s = 0.009f, // zero of the PI on the motor's pole 4.6 rad/s
                       .kd_s2 = 0.0f,
                       .slew_T_rad_s = 0.6f, // 60 rad/s^2: half of what stall torque gives a free wheel
@@ -130,14 +133,15 @@ control_config_t rover_config_default(void)
         .slip_pi = {.kp = 2.0f, .ki_T = 0.09f, .duty_max = 1.0f, .per_speed_s_m = 5.0f, .gain_min = 0.25f, .gain_max = 2.5f},
         .speed_control = {.per_radius_1_m = 1.0f / wheel_radius_m,
                           .half_track_per_radius = half_track_m / wheel_radius_m,
-                          .kv_rad_m = 17.5f,     // 1/R: halves the error, docs/firmware.md
-                          .ki_T_rad_m = 0.35f,   // 35 rad/s per m/s per s
+                          .kv_rad_m = 17.5f,   // 1/R: halves the error, docs/firmware.md
+                          .ki_T_rad_m = 0.35f, // 35 rad/s per m/s per s
                           .integral_max_rad_s = 6.0f,
                           .speed_max_m_s = speed_max_m_s,
-                          .yaw_rate_max_rad_s = 4.0f, // [rad/s] assumed
-                          .wheel_max_rad_s = 25.0f},  // [rad/s] below the no-load speed of 27
+                          .yaw_rate_max_rad_s = 4.0f,                 // [rad/s] assumed
+                          .wheel_max_rad_s = 25.0f},                  // [rad/s] below the no-load speed of 27
         .soil_sweep = {.ramp_1_m = tick_s / (wheel_radius_m * 10.0f), // t_zero = 10 s, section 6
-                       .duration_ticks = 2000, .wheel_max_rad_s = 25.0f},
+                       .duration_ticks = 2000,
+                       .wheel_max_rad_s = 25.0f},
         .safety = safety_default(),
         .feed_forward = true,
     };

@@ -83,9 +83,8 @@ static uint32_t check_wheel(const safety_config_t *config, safety_state_t *state
     if (fixed_greater(state->rise_K[wheel], config->temperature_rise_max_K)) {
         faults |= FAULT_OVER_TEMPERATURE;
     }
-    const bool stalled =
-        fixed_greater(fabsf(current_A), config->stall_current_A) &&
-        fixed_greater(config->stall_speed_rad_s, fabsf(input->speed_rad_s[wheel]));
+    const bool stalled = fixed_greater(fabsf(current_A), config->stall_current_A) &&
+                         fixed_greater(config->stall_speed_rad_s, fabsf(input->speed_rad_s[wheel]));
     if (lasted(&state->stall_s[wheel], stalled, config->tick_s, config->stall_s)) {
         faults |= FAULT_STALL;
         *limit |= 1u << (uint32_t)wheel;

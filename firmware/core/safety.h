@@ -22,66 +22,66 @@ enum {
 
 typedef struct {
     float tick_s;
-    uint32_t required;              // FRAME_* bits that the rover must have
-    uint32_t patience_ticks;        // silent or absurd ticks in a row that are forgiven
-    uint32_t command_patience_ticks;// age of a command that is forgiven
-    uint32_t missed_ticks_max;      // missed ticks that are forgiven
-    uint32_t missed_forget_ticks;   // one missed tick is forgotten per this many good ones
-    float current_continuous_A;     // I_cont
-    float current_continuous_A2;    // I_cont^2
-    float i2t_max_A2_ticks;         // x_max/T
+    uint32_t required;               // FRAME_* bits that the rover must have
+    uint32_t patience_ticks;         // silent or absurd ticks in a row that are forgiven
+    uint32_t command_patience_ticks; // age of a command that is forgiven
+    uint32_t missed_ticks_max;       // missed ticks that are forgiven
+    uint32_t missed_forget_ticks;    // one missed tick is forgotten per this many good ones
+    float current_continuous_A;      // I_cont
+    float current_continuous_A2;     // I_cont^2
+    float i2t_max_A2_ticks;          // x_max/T
     float stall_current_A;
     float stall_speed_rad_s;
     float stall_s;
-    float heating_K_A2;             // 4T Ra/C_th of (2)
-    float keeping;                  // 1 - 4T/(R_th C_th) of (2)
+    float heating_K_A2; // 4T Ra/C_th of (2)
+    float keeping;      // 1 - 4T/(R_th C_th) of (2)
     float temperature_rise_max_K;
     float battery_min_V;
-    float battery_s;                // how long the battery must be low
-    float disagree_m_s;             // ground speed beyond what the fastest wheel explains, absolute part
-    float disagree_ratio;           // and relative part
+    float battery_s;      // how long the battery must be low
+    float disagree_m_s;   // ground speed beyond what the fastest wheel explains, absolute part
+    float disagree_ratio; // and relative part
     float disagree_s;
 } safety_config_t;
 
 enum { SAFETY_SENSORS = 12 }; // one per FRAME_* bit
 
 typedef struct {
-    uint32_t faults;                // latched
-    uint32_t limited;               // bit i: wheel i is limited to the continuous current
+    uint32_t faults;  // latched
+    uint32_t limited; // bit i: wheel i is limited to the continuous current
     uint32_t bad_ticks[SAFETY_SENSORS];
     uint32_t absurd_ticks[SAFETY_SENSORS];
     uint32_t last_tick;
     uint32_t missed;
     uint32_t good_ticks;
-    float i2t_A2_ticks[WHEEL_COUNT];// x/T of (1)
-    uint32_t turn;                  // wheel whose temperature is due
+    float i2t_A2_ticks[WHEEL_COUNT]; // x/T of (1)
+    uint32_t turn;                   // wheel whose temperature is due
     float rise_K[WHEEL_COUNT];
     float stall_s[WHEEL_COUNT];
     float low_battery_s;
     float disagree_s;
     uint16_t radar_last_count;
-    float radar_frozen_s;           // how long the radar repeated one value while the wheels turned
+    float radar_frozen_s; // how long the radar repeated one value while the wheels turned
     bool started;
 } safety_state_t; // zeroed = reset
 
 typedef struct {
     const sensor_frame_t *frame;
     uint32_t command_age_ticks;
-    bool command_stop;              // the user commands MODE_STOP
-    uint32_t usable;                // FRAME_* bits of sense_output_t
+    bool command_stop; // the user commands MODE_STOP
+    uint32_t usable;   // FRAME_* bits of sense_output_t
     uint32_t absurd;
     float speed_rad_s[WHEEL_COUNT];
     float current_A[WHEEL_COUNT];
     float battery_V;
     float ground_speed_m_s;
-    float rim_max_m_s;              // largest |R w| of the wheels
-    float rim_min_m_s;              // smallest |R w|
+    float rim_max_m_s; // largest |R w| of the wheels
+    float rim_min_m_s; // smallest |R w|
 } safety_input_t;
 
 typedef struct {
     uint32_t faults;
     bool motors_off;
-    uint32_t limited;               // bit i: wheel i only gets the continuous current
+    uint32_t limited; // bit i: wheel i only gets the continuous current
 } safety_output_t;
 
 // Any value is accepted; a NaN counts as a cause where it is compared.

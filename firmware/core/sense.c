@@ -3,8 +3,7 @@
 #include "fixed.h"
 
 // (1) and (2) for one wheel.
-static void measure_wheel(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, int wheel,
-                          sense_output_t *out)
+static void measure_wheel(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, int wheel, sense_output_t *out)
 {
     const uint32_t bit = FRAME_ENCODER_0 << (uint32_t)wheel;
     int32_t *ring = state->count[wheel];
@@ -47,8 +46,7 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
     ring[state->head] = now;
 }
 
-static void measure_current(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, int wheel,
-                            sense_output_t *out)
+static void measure_current(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, int wheel, sense_output_t *out)
 {
     const uint32_t bit = FRAME_CURRENT_0 << (uint32_t)wheel;
     if ((frame->present & bit) != 0u) {

@@ -28,20 +28,20 @@ typedef struct {
     int32_t current_max_count;    // the converter's rail
     int32_t battery_max_count;
     int32_t radar_max_count;
-    int32_t encoder_step_max;     // more pulses in one tick than any wheel can make
+    int32_t encoder_step_max; // more pulses in one tick than any wheel can make
 } sense_config_t;
 
 typedef struct {
     int32_t count[WHEEL_COUNT][SENSE_HISTORY]; // ring of past counts
     int32_t head;
     float speed_rad_s[WHEEL_COUNT];
-    int32_t step[WHEEL_COUNT];    // pulses of the last good tick
+    int32_t step[WHEEL_COUNT]; // pulses of the last good tick
     float current_A[WHEEL_COUNT];
     float battery_V;
     float accel_x_m_s2;
     float gyro_z_rad_s;
-    uint32_t encoder_seen;        // bit i: wheel i has had a first count
-} sense_state_t; // zeroed = reset
+    uint32_t encoder_seen; // bit i: wheel i has had a first count
+} sense_state_t;           // zeroed = reset
 
 typedef struct {
     float speed_rad_s[WHEEL_COUNT];
@@ -50,8 +50,8 @@ typedef struct {
     float battery_V;
     float accel_x_m_s2;
     float gyro_z_rad_s;
-    uint32_t usable;              // FRAME_* bits that are present and sane
-    uint32_t absurd;              // FRAME_* bits that are present and impossible
+    uint32_t usable; // FRAME_* bits that are present and sane
+    uint32_t absurd; // FRAME_* bits that are present and impossible
 } sense_output_t;
 
 // Any frame is accepted. A part that is absent or absurd keeps its last value.

@@ -29,16 +29,16 @@ enum {
 // What the HAL reads in one tick: raw counts, exactly as the devices give them. A field whose bit in `present` is clear keeps
 // no meaning and must not be used.
 typedef struct {
-    uint32_t tick;                     // number of this tick, from 0; a jump of more than 1 means missed ticks
-    uint32_t present;                  // FRAME_* bits
-    int32_t encoder_count[WHEEL_COUNT]; // cumulative encoder pulses, wraps at 2^32
-    uint16_t current_count[WHEEL_COUNT]; // bridge current, offset binary, 12 bit: 0..4095
-    uint16_t battery_count;            // battery divider, 12 bit: 0..4095
-    int16_t accel_x_count;             // longitudinal specific force, two's complement
-    int16_t gyro_z_count;              // yaw rate, two's complement
+    uint32_t tick;                                    // number of this tick, from 0; a jump of more than 1 means missed ticks
+    uint32_t present;                                 // FRAME_* bits
+    int32_t encoder_count[WHEEL_COUNT];               // cumulative encoder pulses, wraps at 2^32
+    uint16_t current_count[WHEEL_COUNT];              // bridge current, offset binary, 12 bit: 0..4095
+    uint16_t battery_count;                           // battery divider, 12 bit: 0..4095
+    int16_t accel_x_count;                            // longitudinal specific force, two's complement
+    int16_t gyro_z_count;                             // yaw rate, two's complement
     uint16_t radar_count[RADAR_SAMPLES_PER_TICK_MAX]; // radar ADC, offset binary, 10 bit: 0..1023, oldest first
-    uint8_t radar_samples;             // how many of radar_count are filled, 0..8 (512 Hz gives 5 or 6)
-    bool emergency_stop;               // true while the emergency-stop line is active
+    uint8_t radar_samples;                            // how many of radar_count are filled, 0..8 (512 Hz gives 5 or 6)
+    bool emergency_stop;                              // true while the emergency-stop line is active
 } sensor_frame_t;
 
 // What the HAL writes in one tick.
@@ -90,33 +90,33 @@ typedef enum {
 } fault_t;
 
 typedef struct {
-    float speed_rad_s;       // encoder speed
-    float accel_rad_s2;      // causal derivative of the encoder speed
-    float set_speed_rad_s;   // reference of the speed loop; 0 when the loop is off
-    float current_A;         // scaled measurement
-    float torque_Nm;         // KG*I
-    float traction_N;        // (19)
-    float slip;              // (1), extended
-    float duty;              // after safety, what was written
-    bool slip_valid;         // fast enough for slip to mean something
-    bool saturated;          // the controller wanted more than full duty
+    float speed_rad_s;     // encoder speed
+    float accel_rad_s2;    // causal derivative of the encoder speed
+    float set_speed_rad_s; // reference of the speed loop; 0 when the loop is off
+    float current_A;       // scaled measurement
+    float torque_Nm;       // KG*I
+    float traction_N;      // (19)
+    float slip;            // (1), extended
+    float duty;            // after safety, what was written
+    bool slip_valid;       // fast enough for slip to mean something
+    bool saturated;        // the controller wanted more than full duty
 } wheel_trace_t;
 
 // Every signal of one tick. This is what the log records.
 typedef struct {
     uint32_t tick;
-    control_mode_t mode;     // mode in force after safety
-    uint32_t faults;         // fault_t bits, latched
-    uint32_t present;        // FRAME_* bits of the frame
+    control_mode_t mode; // mode in force after safety
+    uint32_t faults;     // fault_t bits, latched
+    uint32_t present;    // FRAME_* bits of the frame
     wheel_trace_t wheel[WHEEL_COUNT];
     float battery_voltage_V;
-    float accel_x_m_s2;      // scaled measurement
-    float gyro_z_rad_s;      // scaled measurement
-    float radar_speed_m_s;   // last Doppler value
-    bool radar_fresh;        // a new Doppler value with an echo behind it was made in this tick
-    float speed_m_s;         // fused ground speed estimate
-    float speed_std_m_s;     // its standard deviation as the filter believes it
-    float accel_bias_m_s2;   // estimated accelerometer bias (0 in the paper's filter)
+    float accel_x_m_s2;    // scaled measurement
+    float gyro_z_rad_s;    // scaled measurement
+    float radar_speed_m_s; // last Doppler value
+    bool radar_fresh;      // a new Doppler value with an echo behind it was made in this tick
+    float speed_m_s;       // fused ground speed estimate
+    float speed_std_m_s;   // its standard deviation as the filter believes it
+    float accel_bias_m_s2; // estimated accelerometer bias (0 in the paper's filter)
     bool standstill;
     actuator_frame_t actuator; // what is written in this tick
 } trace_t;

@@ -17,13 +17,13 @@ extern "C" {
 #endif
 
 typedef struct {
-    float kp;              // Kp   [duty per unit slip] >= 0
-    float ki_T;            // Ki*T [duty per unit slip] >= 0, T = control period
-    float duty_max;        // u_max [1], 0..1
-    float per_speed_s_m;   // 1/v0 [s/m] >= 0
-    float gain_min;        // g_min [1] >= 0
-    float gain_max;        // g_max [1] >= g_min
-} slip_pi_config_t; // constant while running
+    float kp;            // Kp   [duty per unit slip] >= 0
+    float ki_T;          // Ki*T [duty per unit slip] >= 0, T = control period
+    float duty_max;      // u_max [1], 0..1
+    float per_speed_s_m; // 1/v0 [s/m] >= 0
+    float gain_min;      // g_min [1] >= 0
+    float gain_max;      // g_max [1] >= g_min
+} slip_pi_config_t;      // constant while running
 
 typedef struct {
     float integral;

@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 typedef struct {
-    float ramp_1_m;         // T / (R t_zero): dw_a T per unit of v*
+    float ramp_1_m; // T / (R t_zero): dw_a T per unit of v*
     uint32_t duration_ticks;
     float wheel_max_rad_s;
 } soil_sweep_config_t;

@@ -15,14 +15,14 @@ extern "C" {
 #endif
 
 typedef struct {
-    float per_radius_1_m;      // 1/R
+    float per_radius_1_m;        // 1/R
     float half_track_per_radius; // b/R
-    float kv_rad_m;            // Kv [rad/s per m/s]
-    float ki_T_rad_m;          // Ki*T [rad/s per m/s]
-    float integral_max_rad_s;  // I_max
-    float speed_max_m_s;       // |v*| limit
-    float yaw_rate_max_rad_s;  // |psi*| limit
-    float wheel_max_rad_s;     // |w*| limit
+    float kv_rad_m;              // Kv [rad/s per m/s]
+    float ki_T_rad_m;            // Ki*T [rad/s per m/s]
+    float integral_max_rad_s;    // I_max
+    float speed_max_m_s;         // |v*| limit
+    float yaw_rate_max_rad_s;    // |psi*| limit
+    float wheel_max_rad_s;       // |w*| limit
 } speed_control_config_t;
 
 typedef struct {
@@ -30,10 +30,10 @@ typedef struct {
 } speed_control_state_t; // zeroed = reset
 
 typedef struct {
-    float speed_ref_m_s;    // v*
+    float speed_ref_m_s;      // v*
     float yaw_rate_ref_rad_s; // psi*
-    float speed_m_s;        // v, estimated
-    bool saturated;         // a wheel had no duty left in the last tick
+    float speed_m_s;          // v, estimated
+    bool saturated;           // a wheel had no duty left in the last tick
 } speed_control_input_t;
 
 typedef struct {

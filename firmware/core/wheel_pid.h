@@ -16,23 +16,23 @@ extern "C" {
 #endif
 
 typedef struct {
-    float kp_s;           // Kp   [duty per rad/s] >= 0
-    float ki_T_s;         // Ki*T [duty per rad/s] >= 0
-    float kd_s2;          // Kd   [duty per rad/s^2] >= 0
-    float slew_T_rad_s;   // largest change of the reference in one tick, >= 0
-    float integral_max;   // bound of |I| [duty]
-    float duty_max;       // u_max [1], 0..1
+    float kp_s;         // Kp   [duty per rad/s] >= 0
+    float ki_T_s;       // Ki*T [duty per rad/s] >= 0
+    float kd_s2;        // Kd   [duty per rad/s^2] >= 0
+    float slew_T_rad_s; // largest change of the reference in one tick, >= 0
+    float integral_max; // bound of |I| [duty]
+    float duty_max;     // u_max [1], 0..1
 } wheel_pid_config_t;
 
 typedef struct {
     float integral;        // I [duty]
     float reference_rad_s; // r
-} wheel_pid_state_t; // zeroed = reset
+} wheel_pid_state_t;       // zeroed = reset
 
 typedef struct {
     float speed_rad_s;
     float accel_rad_s2;
-    float feed_forward;    // ff at the slewed reference [duty]
+    float feed_forward; // ff at the slewed reference [duty]
 } wheel_pid_input_t;
 
 typedef struct {

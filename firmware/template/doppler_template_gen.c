@@ -35,19 +35,20 @@ static const radar_t radars[] = {
 
 static const double pi = 3.14159265358979323846;
 static const double c_m_s = 299792458.0;
-static const double mounting_deg = 20;      // theta_d, section 4; for the others assumed
-static const double ground_exponent = 1;    // n, assumed: middle of 0..2
-static const double sample_rate_Hz = 512;   // section 4
-static const double band_low_Hz = 3;        // section 4
-static const double band_high_Hz = 80;      // section 4, at 9.9 GHz; scales with f0 for the other radars
-static const double noise_share = 0.05;     // e, assumed
+static const double mounting_deg = 20;    // theta_d, section 4; for the others assumed
+static const double ground_exponent = 1;  // n, assumed: middle of 0..2
+static const double sample_rate_Hz = 512; // section 4
+static const double band_low_Hz = 3;      // section 4
+static const double band_high_Hz = 80;    // section 4, at 9.9 GHz; scales with f0 for the other radars
+static const double noise_share = 0.05;   // e, assumed
 static const double speed_low_m_s = 0.04;
 static const double speed_high_m_s = 1.35;
 
-static const double calm_share = 0.004;     // white noise in (4), assumed: 20 dB below the echo at the converter, 48 of 128 bins of it in the band
+static const double calm_share =
+    0.004; // white noise in (4), assumed: 20 dB below the echo at the converter, 48 of 128 bins of it in the band
 
 enum { LENGTH = 256, SPEEDS = 96, FINE = 2000, FIRST_BIN = 1, BINS = 120 };
-enum { COARSE = 4 };                           // of doppler.c: where it searches first
+enum { COARSE = 4 };                                                                // of doppler.c: where it searches first
 enum { QUARTERS = 4 * (BINS + 8), DRAWS = 1500, REACH = 20, EDGE = 8, SMOOTH = 4 }; // REACH: (4) is cut 5 bins from f, 1e-4 of its peak
 
 // Histogram of cos(th) cos(ph) weighted by (1): the echo's spectrum at unit speed.
@@ -85,10 +86,7 @@ static double hann_power(double d)
 }
 
 // Second-order Butterworth on both sides (order assumed).
-static double band_power(double f, double high)
-{
-    return f <= 0 ? 0 : 1 / (1 + pow(band_low_Hz / f, 4)) / (1 + pow(f / high, 4));
-}
+static double band_power(double f, double high) { return f <= 0 ? 0 : 1 / (1 + pow(band_low_Hz / f, 4)) / (1 + pow(f / high, 4)); }
 
 static void spectrum(const radar_t *radar, const double *weight, double v, int bins, double *S)
 {
@@ -126,8 +124,9 @@ static void describe(const radar_t *radar, const double *weight, FILE *out)
         mode = weight[i] > weight[mode] ? i : mode;
     }
     mean /= sum;
-    fprintf(out, "// %s, %.0f deg below horizontal, ground exponent %.0f. Mean shift over that of the axis: %.3f, mode %.3f;\n"
-                 "// standard deviation over mean: %.3f.\n",
+    fprintf(out,
+            "// %s, %.0f deg below horizontal, ground exponent %.0f. Mean shift over that of the axis: %.3f, mode %.3f;\n"
+            "// standard deviation over mean: %.3f.\n",
             radar->title, mounting_deg, ground_exponent, mean / cos(mounting_deg * pi / 180),
             (mode + 0.5) / FINE / cos(mounting_deg * pi / 180), sqrt(square / sum - mean * mean) / mean);
 }
@@ -305,9 +304,10 @@ static int write_template(const radar_t *radar, FILE *out)
     mean_found(radar, weight, &table, ratio);
     fprintf(out, "// Made by doppler_template_gen from the radar's geometry; do not edit.\n");
     describe(radar, weight, out);
-    fprintf(out, "#include \"firmware/core/doppler_template.h\"\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n"
-                 "    .paper_m_s_per_Hz = %.8ef,\n    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n"
-                 "    .speed_m_s = {",
+    fprintf(out,
+            "#include \"firmware/core/doppler_template.h\"\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n"
+            "    .paper_m_s_per_Hz = %.8ef,\n    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n"
+            "    .speed_m_s = {",
             radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
     for (int i = 0; i < SPEEDS; i++) {
         fprintf(out, "%.8ef, ", speed_low_m_s * exp(step * i) / ratio[i]); // (5)

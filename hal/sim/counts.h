@@ -11,12 +11,12 @@
 namespace traction::hal {
 
 struct CountScale {
-    double current_A = 0.002;      // [A/count] 12 bit over +-4.1 A, assumed
-    double battery_V = 0.004;      // [V/count] 12 bit over 16.4 V, assumed
-    double accel_m_s2 = 0.004;     // [m/s^2/count] assumed, about 0.4 mg
-    double gyro_rad_s = 0.0005;    // [rad/s/count] assumed
-    int current_offset = 2048;     // offset binary
-    int converter_max = 4095;      // 12 bit
+    double current_A = 0.002;   // [A/count] 12 bit over +-4.1 A, assumed
+    double battery_V = 0.004;   // [V/count] 12 bit over 16.4 V, assumed
+    double accel_m_s2 = 0.004;  // [m/s^2/count] assumed, about 0.4 mg
+    double gyro_rad_s = 0.0005; // [rad/s/count] assumed
+    int current_offset = 2048;  // offset binary
+    int converter_max = 4095;   // 12 bit
 };
 
 // Fills every field of the frame but tick and emergency_stop; all of it present. Radar samples beyond the frame's 8 are lost

@@ -20,13 +20,20 @@ std::uint32_t bits_of(const sim::SensorFault &fault) {
         return fault.wheel < 0 ? first * 0xfu : first << static_cast<unsigned>(fault.wheel);
     };
     switch (fault.sensor) {
-    case sim::FaultySensor::encoder: return per_wheel(FRAME_ENCODER_0);
-    case sim::FaultySensor::current: return per_wheel(FRAME_CURRENT_0);
-    case sim::FaultySensor::battery: return FRAME_BATTERY;
-    case sim::FaultySensor::accel: return FRAME_ACCEL;
-    case sim::FaultySensor::gyro: return FRAME_GYRO;
-    case sim::FaultySensor::radar: return FRAME_RADAR;
-    case sim::FaultySensor::camera: return 0;
+    case sim::FaultySensor::encoder:
+        return per_wheel(FRAME_ENCODER_0);
+    case sim::FaultySensor::current:
+        return per_wheel(FRAME_CURRENT_0);
+    case sim::FaultySensor::battery:
+        return FRAME_BATTERY;
+    case sim::FaultySensor::accel:
+        return FRAME_ACCEL;
+    case sim::FaultySensor::gyro:
+        return FRAME_GYRO;
+    case sim::FaultySensor::radar:
+        return FRAME_RADAR;
+    case sim::FaultySensor::camera:
+        return 0;
     }
     return 0;
 }
@@ -48,8 +55,8 @@ hal_result_t wait_inner(hal_t *inner) { return inner->wait_tick(inner->context);
 } // namespace
 
 FaultHal::FaultHal(const hal_t &inner, FaultScript script, const CountScale &scale, std::uint64_t seed)
-    : inner_(inner), script_(std::move(script)), scale_(scale), random_(seed, "faults"),
-      holding_(script_.sensors.size()), held_(script_.sensors.size()) {}
+    : inner_(inner), script_(std::move(script)), scale_(scale), random_(seed, "faults"), holding_(script_.sensors.size()),
+      held_(script_.sensors.size()) {}
 
 void FaultHal::add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame) {
     const auto noisy = [&](double count, double unit, int low, int high) {
@@ -58,18 +65,14 @@ void FaultHal::add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame
     for (unsigned i = 0; i < WHEEL_COUNT; i++) {
         if (bit == encoder_bit(i)) frame->encoder_count[i] = noisy(frame->encoder_count[i], 1, INT32_MIN, INT32_MAX);
         if (bit == current_bit(i))
-            frame->current_count[i] =
-                static_cast<std::uint16_t>(noisy(frame->current_count[i], scale_.current_A, 0, scale_.converter_max));
+            frame->current_count[i] = static_cast<std::uint16_t>(noisy(frame->current_count[i], scale_.current_A, 0, scale_.converter_max));
     }
     if (bit == FRAME_BATTERY)
-        frame->battery_count =
-            static_cast<std::uint16_t>(noisy(frame->battery_count, scale_.battery_V, 0, scale_.converter_max));
+        frame->battery_count = static_cast<std::uint16_t>(noisy(frame->battery_count, scale_.battery_V, 0, scale_.converter_max));
     if (bit == FRAME_ACCEL)
-        frame->accel_x_count =
-            static_cast<std::int16_t>(noisy(frame->accel_x_count, scale_.accel_m_s2, INT16_MIN, INT16_MAX));
+        frame->accel_x_count = static_cast<std::int16_t>(noisy(frame->accel_x_count, scale_.accel_m_s2, INT16_MIN, INT16_MAX));
     if (bit == FRAME_GYRO)
-        frame->gyro_z_count =
-            static_cast<std::int16_t>(noisy(frame->gyro_z_count, scale_.gyro_rad_s, INT16_MIN, INT16_MAX));
+        frame->gyro_z_count = static_cast<std::int16_t>(noisy(frame->gyro_z_count, scale_.gyro_rad_s, INT16_MIN, INT16_MAX));
 }
 
 void FaultHal::apply_radar(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame) {
@@ -113,8 +116,7 @@ void FaultHal::apply(std::size_t index, const sim::SensorFault &fault, sensor_fr
         if (fault.kind == sim::FaultKind::dropped) frame->present &= ~bit;
         if (fault.kind == sim::FaultKind::stuck) copy_field(bit, held_[index], frame);
         if (fault.kind == sim::FaultKind::noisy) add_noise(bit, fault.amount, frame);
-        if (fault.kind == sim::FaultKind::delayed)
-            copy_field(bit, past_[past_.size() > late ? past_.size() - 1 - late : 0], frame);
+        if (fault.kind == sim::FaultKind::delayed) copy_field(bit, past_[past_.size() > late ? past_.size() - 1 - late : 0], frame);
     }
 }
 

@@ -16,7 +16,7 @@
 namespace traction::hal {
 
 struct FaultScript {
-    std::vector<sim::SensorFault> sensors; // camera faults are not the HAL's: it carries no camera
+    std::vector<sim::SensorFault> sensors;                   // camera faults are not the HAL's: it carries no camera
     std::vector<std::pair<double, double>> emergency_stop_s; // [from, to)
 };
 
@@ -39,9 +39,9 @@ class FaultHal {
     FaultScript script_;
     CountScale scale_;
     sim::Random random_;
-    std::deque<sensor_frame_t> past_;        // as the inner HAL gave them, newest last
-    std::deque<std::uint16_t> past_radar_;   // samples likewise
-    std::vector<bool> holding_;              // per fault: `held_` is filled
+    std::deque<sensor_frame_t> past_;      // as the inner HAL gave them, newest last
+    std::deque<std::uint16_t> past_radar_; // samples likewise
+    std::vector<bool> holding_;            // per fault: `held_` is filled
     std::vector<sensor_frame_t> held_;
 };
 

@@ -6,8 +6,7 @@ namespace {
 constexpr int steps_per_tick = TICK_US / 1000; // the plant's step is 1 ms
 } // namespace
 
-SimHal::SimHal(const SimHalConfig &config)
-    : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()) {}
+SimHal::SimHal(const SimHalConfig &config) : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()) {}
 
 // One tick of the world under the orders that have come into effect.
 void SimHal::advance() {

@@ -23,8 +23,13 @@ json candidate_json(const lab::CandidateResult &result) {
     }
     json variant = json::object();
     for (const auto &[key, value] : result.candidate.variant) variant[key] = value;
-    return {{"effect", result.candidate.effect}, {"wheel", result.candidate.wheel}, {"variant", variant}, {"parameters", parameters},
-            {"verdict", result.verdict}, {"heldout_gain", finite(result.heldout_gain)}, {"p_value", finite(result.p_value)},
+    return {{"effect", result.candidate.effect},
+            {"wheel", result.candidate.wheel},
+            {"variant", variant},
+            {"parameters", parameters},
+            {"verdict", result.verdict},
+            {"heldout_gain", finite(result.heldout_gain)},
+            {"p_value", finite(result.p_value)},
             {"detectability", finite(result.detectability)}};
 }
 
@@ -40,17 +45,21 @@ json ask_lab(const std::string &log_file, const std::string &model_file) {
     const lab::Dataset data = lab::make_dataset(model, log);
     const lab::Diagnosis found = lab::diagnose(model, data, lab::DiagnoseOptions{});
 
-    json answer = {{"schema", "traction.lab/1"}, {"verb", "diagnose"}, {"candidates", json::array()}, {"classes", json::array()},
-                   {"ladder", json::array()}, {"messages", found.messages}};
+    json answer = {{"schema", "traction.lab/1"}, {"verb", "diagnose"},      {"candidates", json::array()},
+                   {"classes", json::array()},   {"ladder", json::array()}, {"messages", found.messages}};
     answer["verdict"] = {{"kind", found.kind}, {"effects", found.effects}, {"nearest", found.nearest}, {"text", found.text}};
     answer["seconds"] = {{"read", read_s}, {"diagnose", since(start) - read_s}};
     for (const lab::CandidateResult &one : found.ranking) answer["candidates"].push_back(candidate_json(one));
     for (const lab::CandidateResult &one : found.accepted) answer["accepted"].push_back(candidate_json(one));
-    for (const lab::ConfoundedClass &one : found.classes) answer["classes"].push_back({{"members", one.members}, {"separate_by", one.separate_by}});
+    for (const lab::ConfoundedClass &one : found.classes)
+        answer["classes"].push_back({{"members", one.members}, {"separate_by", one.separate_by}});
     for (const lab::Rung &rung : found.ladder)
-        answer["ladder"].push_back({{"label", rung.label}, {"train", finite(rung.train)}, {"heldout", finite(rung.heldout)}, {"floor", finite(rung.floor)}});
+        answer["ladder"].push_back(
+            {{"label", rung.label}, {"train", finite(rung.train)}, {"heldout", finite(rung.heldout)}, {"floor", finite(rung.floor)}});
     if (found.unknown)
-        answer["unknown"] = {{"variable", found.unknown->variable}, {"balance", found.unknown->balance}, {"gain", finite(found.unknown->gain)},
+        answer["unknown"] = {{"variable", found.unknown->variable},
+                             {"balance", found.unknown->balance},
+                             {"gain", finite(found.unknown->gain)},
                              {"expression", found.unknown->expression}};
     for (const auto &[effect, why] : found.not_excited) answer["not_excited"].push_back({{"effect", effect}, {"why", why}});
     return answer;

@@ -33,7 +33,8 @@ void run(const std::vector<std::string> &command) {
     if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0)
         throw std::runtime_error("cannot start " + command[0] + "; to mend: build everything (./traction build)");
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error("this failed: " + line);
 }
 
@@ -126,8 +127,10 @@ std::vector<SealedLog> make_logs(const CampaignOptions &options) {
         SealedLog &one = logs[i];
         one.log = options.folder + "/log_" + seed + ".csv";
         one.seal = options.folder + "/seals/seal_" + seed + ".json";
-        if (options.generator == "plant") make_plant(options, options.seed + i, one);
-        else make_independent(options, seed, one);
+        if (options.generator == "plant")
+            make_plant(options, options.seed + i, one);
+        else
+            make_independent(options, seed, one);
         if (options.step) options.step();
     });
     return logs;

@@ -16,14 +16,14 @@ namespace traction::bench_lab {
 struct CampaignOptions {
     int logs = 250;
     int jobs = 2;
-    std::uint64_t seed = 1000;       // of the first log; the others follow
+    std::uint64_t seed = 1000; // of the first log; the others follow
     double duration_s = 120;
     std::string generator = "independent"; // or "plant"
-    std::string folder;              // logs, seals and answers are kept here
-    std::string lab_generate;        // the generator's program
-    std::string traction;            // this program, for the plant
-    std::string scenario;            // the plant's drive
-    std::function<void()> step;      // one log made, or one answered
+    std::string folder;                    // logs, seals and answers are kept here
+    std::string lab_generate;              // the generator's program
+    std::string traction;                  // this program, for the plant
+    std::string scenario;                  // the plant's drive
+    std::function<void()> step;            // one log made, or one answered
 };
 
 struct SealedLog {

@@ -38,8 +38,12 @@ struct Row {
             return nlohmann::json{{"value", s.value()}, {"count", s.count}, {"low", s.interval().first}, {"high", s.interval().second}};
         };
         const double logs = std::max(1.0, static_cast<double>(seconds.size()));
-        return {{"right_first", line(first)}, {"exact_model", line(exact)}, {"clean_named", line(clean_named)}, {"terms_a_log", terms / logs},
-                {"seconds_median", quantile(seconds, 0.5)}, {"seconds_p95", quantile(seconds, 0.95)}};
+        return {{"right_first", line(first)},
+                {"exact_model", line(exact)},
+                {"clean_named", line(clean_named)},
+                {"terms_a_log", terms / logs},
+                {"seconds_median", quantile(seconds, 0.5)},
+                {"seconds_p95", quantile(seconds, 0.95)}};
     }
 };
 
@@ -53,7 +57,8 @@ nlohmann::json run_peers(const std::vector<SealedLog> &logs, const CampaignOptio
     for (const SealedLog &one : logs) files.push_back({{"log", one.log}, {"model", campaign_model(options.generator, one.soil)}});
     std::ofstream(list) << files.dump(1) << '\n';
     std::filesystem::remove(answer);
-    const std::string command = "sh " + quoted(script) + " " + quoted(list) + " " + quoted(answer) + " " + quoted(options.traction) + " > " + quoted(said) + " 2>&1";
+    const std::string command = "sh " + quoted(script) + " " + quoted(list) + " " + quoted(answer) + " " + quoted(options.traction) +
+                                " > " + quoted(said) + " 2>&1";
     const int status = std::system(command.c_str());
     std::ifstream file(answer);
     if (status != 0 || !file.is_open()) {
@@ -94,9 +99,10 @@ std::string peers_text(const nlohmann::json &rows) {
     std::string text = "on the same logs              right first   exact model   named on clean   terms a log   s a log   (95 %)\n";
     char row[160];
     for (const auto &[name, one] : rows.items()) {
-        std::snprintf(row, sizeof row, "%-28s %12.2f %13.2f %16.2f %13.1f %9.2f %8.2f\n", name.c_str(), one.at("right_first").at("value").get<double>(),
-                      one.at("exact_model").at("value").get<double>(), one.at("clean_named").at("value").get<double>(),
-                      one.at("terms_a_log").get<double>(), one.at("seconds_median").get<double>(), one.at("seconds_p95").get<double>());
+        std::snprintf(row, sizeof row, "%-28s %12.2f %13.2f %16.2f %13.1f %9.2f %8.2f\n", name.c_str(),
+                      one.at("right_first").at("value").get<double>(), one.at("exact_model").at("value").get<double>(),
+                      one.at("clean_named").at("value").get<double>(), one.at("terms_a_log").get<double>(),
+                      one.at("seconds_median").get<double>(), one.at("seconds_p95").get<double>());
         text += row;
     }
     return text;

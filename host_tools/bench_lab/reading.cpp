@@ -40,7 +40,8 @@ std::set<std::string> class_of(const std::string &name, const json &result) {
     std::set<std::string> members = {name};
     for (const json &one : list_of(result, "classes")) {
         const json &names = list_of(one, "members");
-        const bool inside = std::any_of(names.begin(), names.end(), [&](const json &n) { return n.is_string() && plain(n.get<std::string>()) == name; });
+        const bool inside =
+            std::any_of(names.begin(), names.end(), [&](const json &n) { return n.is_string() && plain(n.get<std::string>()) == name; });
         if (!inside) continue;
         for (const json &n : names)
             if (n.is_string()) members.insert(plain(n.get<std::string>()));
@@ -51,7 +52,8 @@ std::set<std::string> class_of(const std::string &name, const json &result) {
 void coverage(const json &effect, const json &result, Reading &reading) {
     const std::string name = text(effect, "name");
     for (const json &candidate : list_of(result, "accepted")) { // the joint fit's values, which the user is shown
-        if (plain(text(candidate, "effect")) != name || static_cast<int>(number(candidate, "wheel", -1)) != effect.value("wheel", -1)) continue;
+        if (plain(text(candidate, "effect")) != name || static_cast<int>(number(candidate, "wheel", -1)) != effect.value("wheel", -1))
+            continue;
         const auto parameters = candidate.find("parameters");
         if (parameters == candidate.end() || !parameters->is_object()) continue;
         for (const auto &[key, value] : effect.at("parameters").items()) {
@@ -121,8 +123,10 @@ Reading read_case(const json &seal, const json &result) {
         r.named_right.push_back(right);
     }
     // one class among several names of a "class" verdict counts once
-    if (kind == "class" && std::find(r.named_right.begin(), r.named_right.end(), true) != r.named_right.end()) r.named_right.assign(1, true);
-    else if (kind == "class" && !r.named_right.empty()) r.named_right.assign(1, false);
+    if (kind == "class" && std::find(r.named_right.begin(), r.named_right.end(), true) != r.named_right.end())
+        r.named_right.assign(1, true);
+    else if (kind == "class" && !r.named_right.empty())
+        r.named_right.assign(1, false);
     r.truths_named = static_cast<int>(found.size());
     r.first_named_right = !r.named_right.empty() && r.named_right.front();
     const json &candidates = list_of(result, "candidates");
@@ -144,8 +148,12 @@ Reading read_case(const json &seal, const json &result) {
     r.visible = r.detectability >= 2;
     if (r.category == "outside" && r.flagged_unknown) r.variable_right = variable_right(text(hidden[0], "variable"), result);
 
-    r.said = r.named.empty() ? (r.flagged_unknown ? "(unknown: " + (unknown != result.end() && unknown->is_object() ? text(*unknown, "variable") : std::string("?")) + ")" : "(nothing)")
-                             : (r.first_named_right && !r.truth.empty() ? r.truth : r.named.front());
+    r.said =
+        r.named.empty()
+            ? (r.flagged_unknown
+                   ? "(unknown: " + (unknown != result.end() && unknown->is_object() ? text(*unknown, "variable") : std::string("?")) + ")"
+                   : "(nothing)")
+            : (r.first_named_right && !r.truth.empty() ? r.truth : r.named.front());
     const json &ladder = list_of(result, "ladder");
     const double floor = number(result, "floor_with_truth");
     if (!ladder.empty() && floor > 0) r.error_over_floor = number(ladder.back(), "train") / floor;
@@ -153,10 +161,21 @@ Reading read_case(const json &seal, const json &result) {
 }
 
 json reading_json(const Reading &r) {
-    return {{"category", r.category}, {"truth", r.truth}, {"truth_wheel", r.truth_wheel}, {"detectability", r.detectability},
-            {"said", r.said}, {"named", r.named}, {"named_right", r.named_right}, {"covered", r.covered}, {"first_right", r.first_right},
-            {"first_named_right", r.first_named_right}, {"wheel_right", r.wheel_right}, {"truths_named", r.truths_named},
-            {"flagged_unknown", r.flagged_unknown}, {"variable_right", r.variable_right}, {"error_over_floor", r.error_over_floor}};
+    return {{"category", r.category},
+            {"truth", r.truth},
+            {"truth_wheel", r.truth_wheel},
+            {"detectability", r.detectability},
+            {"said", r.said},
+            {"named", r.named},
+            {"named_right", r.named_right},
+            {"covered", r.covered},
+            {"first_right", r.first_right},
+            {"first_named_right", r.first_named_right},
+            {"wheel_right", r.wheel_right},
+            {"truths_named", r.truths_named},
+            {"flagged_unknown", r.flagged_unknown},
+            {"variable_right", r.variable_right},
+            {"error_over_floor", r.error_over_floor}};
 }
 
 } // namespace traction::bench_lab

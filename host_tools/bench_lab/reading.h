@@ -9,23 +9,23 @@
 namespace traction::bench_lab {
 
 struct Reading {
-    std::string category;             // clean, one, two, outside
-    std::string truth;                // name of the first hidden effect, or empty
+    std::string category; // clean, one, two, outside
+    std::string truth;    // name of the first hidden effect, or empty
     int truth_wheel = -1;
-    double detectability = 0;         // d' of the hidden size: hidden size / the lab's standard error for it; 0 unknown
-    bool visible = false;             // d' >= 2
-    std::string said;                 // first effect named, "(unknown: X)", or "(nothing)"
-    std::vector<std::string> named;   // every effect in the verdict
-    std::vector<bool> named_right;    // each of them: hidden, or in one class with a hidden one
-    std::vector<bool> covered;        // per strength parameter of rightly named effects: interval holds the truth
-    bool first_right = false;         // the first candidate of the ranking is the hidden one, or shares a class with it
+    double detectability = 0;       // d' of the hidden size: hidden size / the lab's standard error for it; 0 unknown
+    bool visible = false;           // d' >= 2
+    std::string said;               // first effect named, "(unknown: X)", or "(nothing)"
+    std::vector<std::string> named; // every effect in the verdict
+    std::vector<bool> named_right;  // each of them: hidden, or in one class with a hidden one
+    std::vector<bool> covered;      // per strength parameter of rightly named effects: interval holds the truth
+    bool first_right = false;       // the first candidate of the ranking is the hidden one, or shares a class with it
     bool first_named_right = false;
     bool wheel_right = false;
     int truths_named = 0;
-    bool flagged_unknown = false;     // "depends on X", alone or beside named effects
+    bool flagged_unknown = false; // "depends on X", alone or beside named effects
     bool variable_right = false;
-    bool has_lag = false;             // backlash or relaxation length hidden
-    double error_over_floor = 0;      // error of the lab's last model / error of the fit that holds every true effect; 0 unknown
+    bool has_lag = false;        // backlash or relaxation length hidden
+    double error_over_floor = 0; // error of the lab's last model / error of the fit that holds every true effect; 0 unknown
 };
 
 Reading read_case(const nlohmann::json &seal, const nlohmann::json &result);

@@ -57,7 +57,10 @@ void write_regressors(const lab::Model &model, const lab::Dataset &data, const s
     table.put(problem.residual.cwiseProduct(problem.row_scale));
     for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
         const lab::FreeParameter &p = problem.parameters[i];
-        table.add({{"own", p.owner + "." + p.key}, {"wheel", p.wheel}, {"prior", p.prior}, {"increment", problem.theta[static_cast<Eigen::Index>(i)]}},
+        table.add({{"own", p.owner + "." + p.key},
+                   {"wheel", p.wheel},
+                   {"prior", p.prior},
+                   {"increment", problem.theta[static_cast<Eigen::Index>(i)]}},
                   problem.jacobian.col(static_cast<Eigen::Index>(i)));
     }
     lab::Columns::Cache cache;
@@ -67,8 +70,13 @@ void write_regressors(const lab::Model &model, const lab::Dataset &data, const s
         json shape = json::object();
         for (const auto &[key, value] : c.variant) shape[key] = value;
         for (std::size_t j = 0; j < c.strengths.size(); ++j)
-            table.add({{"effect", c.effect}, {"wheel", c.wheel}, {"shape", shape}, {"strength", c.strengths[j].key}, {"of_interest", c.of_interest[j]},
-                       {"minimum", c.minimum[j]}, {"maximum", c.maximum[j]}},
+            table.add({{"effect", c.effect},
+                       {"wheel", c.wheel},
+                       {"shape", shape},
+                       {"strength", c.strengths[j].key},
+                       {"of_interest", c.of_interest[j]},
+                       {"minimum", c.minimum[j]},
+                       {"maximum", c.maximum[j]}},
                       values.col(static_cast<Eigen::Index>(j)));
     }
     table.write({{"schema", "traction.regressors/1"}, {"rows", row}, {"balances", balances}}, file);

@@ -12,7 +12,8 @@ namespace {
 
 // Counts of one group of logs.
 struct Tally {
-    Share right_first, right_first_visible, right_when_naming, wheel_right, clean_silent, both, either, false_terms, flagged, right_variable;
+    Share right_first, right_first_visible, right_when_naming, wheel_right, clean_silent, both, either, false_terms, flagged,
+        right_variable;
     Share outside_misnamed, covered, beyond_floor;
     std::vector<double> error_over_floor, error_over_floor_lag, seconds;
 
@@ -26,7 +27,8 @@ struct Tally {
             if (r.visible) right_first_visible.add(r.first_right);
             if (!r.named.empty()) right_when_naming.add(r.first_named_right);
             if (r.first_right && r.truth_wheel >= 0) wheel_right.add(r.wheel_right);
-            if (r.first_named_right && r.error_over_floor > 0) (r.has_lag ? error_over_floor_lag : error_over_floor).push_back(r.error_over_floor);
+            if (r.first_named_right && r.error_over_floor > 0)
+                (r.has_lag ? error_over_floor_lag : error_over_floor).push_back(r.error_over_floor);
         }
         if (r.category == "two") {
             both.add(r.truths_named == 2);
@@ -64,8 +66,10 @@ struct Tally {
         share("outside_misnamed", "outside: misnamed and not flagged", outside_misnamed, "0", 0, false);
         share("coverage", "2-sigma intervals that hold the truth", covered, ">= 0.92", 0.92, true);
         number("error_median", "error after / floor, median", quantile(error_over_floor, 0.5), error_over_floor.size(), "<= 1.02", 1.02);
-        number("error_p95", "error after / floor, 95th percentile", quantile(error_over_floor, 0.95), error_over_floor.size(), "<= 1.05", 1.05);
-        number("error_lag_p95", "  backlash and relaxation, 95th percentile", quantile(error_over_floor_lag, 0.95), error_over_floor_lag.size(), "<= 1.15", 1.15);
+        number("error_p95", "error after / floor, 95th percentile", quantile(error_over_floor, 0.95), error_over_floor.size(), "<= 1.05",
+               1.05);
+        number("error_lag_p95", "  backlash and relaxation, 95th percentile", quantile(error_over_floor_lag, 0.95),
+               error_over_floor_lag.size(), "<= 1.15", 1.15);
         number("seconds_median", "seconds a log, median", quantile(seconds, 0.5), seconds.size(), "<= 1", 1.0);
         number("seconds_p95", "seconds a log, 95th percentile", quantile(seconds, 0.95), seconds.size(), "", 1e9);
         return list;
@@ -140,7 +144,8 @@ std::string table_text(const Score &score) {
         char value[16] = "-";
         if (line.count > 0) std::snprintf(value, sizeof value, "%.3f", line.value);
         const char *mark = line.goal.empty() || line.count == 0 ? "" : line.met ? " met" : " NOT";
-        std::snprintf(row, sizeof row, "%-44s %7s  %-15s %5d  %-8s", line.title.c_str(), value, interval, line.count, (line.goal + mark).c_str());
+        std::snprintf(row, sizeof row, "%-44s %7s  %-15s %5d  %-8s", line.title.c_str(), value, interval, line.count,
+                      (line.goal + mark).c_str());
         text += row;
         for (const auto &[soil, lines] : score.by_soil) {
             char part[32] = "-";
@@ -159,8 +164,11 @@ std::string table_text(const Score &score) {
 }
 
 nlohmann::json table_json(const Score &score) {
-    nlohmann::json json = {{"schema", "traction.bench_lab/1"}, {"lines", nlohmann::json::array()}, {"confusion", score.confusion},
-                           {"cases", score.cases}, {"failures", score.failures}};
+    nlohmann::json json = {{"schema", "traction.bench_lab/1"},
+                           {"lines", nlohmann::json::array()},
+                           {"confusion", score.confusion},
+                           {"cases", score.cases},
+                           {"failures", score.failures}};
     for (const Line &line : score.lines) json["lines"].push_back(line_json(line));
     for (const auto &[soil, lines] : score.by_soil)
         for (const Line &line : lines) json["by_soil"][soil].push_back(line_json(line));

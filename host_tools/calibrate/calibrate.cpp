@@ -19,9 +19,9 @@ namespace traction {
 namespace {
 
 constexpr int window_samples = 256;
-constexpr double slowest_m_s = 0.15;  // below, 1 mm of camera noise at 7 Hz is more than 5 %, and the band-pass blinds the radar
-constexpr double steady_share = 0.12; // largest spread of the true speed within a window
-constexpr double model_std = 0.003;   // [1] of the scale: (2)'s radar against the tests' and the simulator's, measured 0 to 0.3 %
+constexpr double slowest_m_s = 0.15;   // below, 1 mm of camera noise at 7 Hz is more than 5 %, and the band-pass blinds the radar
+constexpr double steady_share = 0.12;  // largest spread of the true speed within a window
+constexpr double model_std = 0.003;    // [1] of the scale: (2)'s radar against the tests' and the simulator's, measured 0 to 0.3 %
 constexpr int modelled_windows = 2000; // 2.5 % of spread each: 0.06 % of the scale
 constexpr int blocks = 10;
 
@@ -120,12 +120,16 @@ std::vector<double> speeds_of(const std::vector<Pair> &pairs) {
 
 Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_radius_m) {
     const log::Signal *adc = log.find("radar.adc_count");
-    if (adc == nullptr) throw log::LogError(log.source, 0, 0, "no column radar.adc_count", "record the radar's samples: the speed alone cannot be calibrated");
+    if (adc == nullptr)
+        throw log::LogError(log.source, 0, 0, "no column radar.adc_count",
+                            "record the radar's samples: the speed alone cannot be calibrated");
     std::optional<Speed> speed;
     Calibration out;
     if (truth != CalibrationTruth::wheels && (speed = camera_speed(log))) out.truth = "camera";
     if (!speed && truth != CalibrationTruth::camera && (speed = wheel_speed(log, wheel_radius_m))) out.truth = "wheels";
-    if (!speed) throw log::LogError(log.source, 0, 0, "no true speed", "give camera.x_m and camera.y_m, or the four wheel speeds of a drive on firm ground");
+    if (!speed)
+        throw log::LogError(log.source, 0, 0, "no true speed",
+                            "give camera.x_m and camera.y_m, or the four wheel speeds of a drive on firm ground");
 
     control_config_t config = rover_config_default();
     config.doppler.scale = 1;
@@ -146,7 +150,8 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
     out.scale = ratio(pairs, 0, 0);
     std::array<double, blocks> without{};
     double mean = 0;
-    for (std::size_t b = 0; b < blocks; b++) mean += (without[b] = ratio(pairs, pairs.size() * b / blocks, pairs.size() * (b + 1) / blocks)) / blocks;
+    for (std::size_t b = 0; b < blocks; b++)
+        mean += (without[b] = ratio(pairs, pairs.size() * b / blocks, pairs.size() * (b + 1) / blocks)) / blocks;
     for (const double value : without) out.scale_std += (value - mean) * (value - mean);
     out.scale_std = std::sqrt(out.scale_std * (blocks - 1) / blocks); // jackknife: blocks are longer than a window's memory
     const std::vector<double> speeds = speeds_of(pairs);
@@ -157,7 +162,8 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
         if (n == 1) out.angle_known_ground_std_deg = 0.5 * (table.angle_deg(out.scale + spread) - table.angle_deg(out.scale - spread));
     }
     out.angle_deg = out.angle_by_exponent_deg[1];
-    const double ground = (out.angle_by_exponent_deg[0] - out.angle_by_exponent_deg[2]) / std::sqrt(12.0); // exponent 0 to 2, all as likely (assumed)
+    const double ground =
+        (out.angle_by_exponent_deg[0] - out.angle_by_exponent_deg[2]) / std::sqrt(12.0); // exponent 0 to 2, all as likely (assumed)
     out.angle_std_deg = std::hypot(out.angle_known_ground_std_deg, ground);
     return out;
 }

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double f0_Hz = 9.9e9, c_m_s = 299792458.0; // MDU1130, table II (Lhomme-Desages)
 constexpr double bin_Hz = 2, shift_Hz_per_m_s = 2 * f0_Hz / c_m_s;
-constexpr double low_Hz = 3, high_Hz = 80;           // band-pass, section IV
-constexpr double calm_share = 0.004;                 // white noise in the band, as firmware/template assumes it
-constexpr int cells = 1000;                          // of the shift's share of the largest
-constexpr int reach = 20;                            // quarters of a bin beyond which (1) is cut: 1e-4 of its peak
+constexpr double low_Hz = 3, high_Hz = 80; // band-pass, section IV
+constexpr double calm_share = 0.004;       // white noise in the band, as firmware/template assumes it
+constexpr int cells = 1000;                // of the shift's share of the largest
+constexpr int reach = 20;                  // quarters of a bin beyond which (1) is cut: 1e-4 of its peak
 
 // Power over cos(theta) cos(psi): (1) of firmware/template.
 std::vector<double> beam_histogram(const RadarGuess &guess) {
@@ -27,8 +27,8 @@ std::vector<double> beam_histogram(const RadarGuess &guess) {
             const double along = x * c - z * s, up = x * s + z * c;
             if (along <= 0) continue;
             const double el = std::asin(up) / rad / 36, az = std::atan2(y, along) / rad / 72;
-            power[static_cast<std::size_t>(x * cells)] +=
-                std::exp(-8 * std::log(2.0) * (el * el + az * az)) * std::pow(std::sin(th * rad), guess.ground_exponent + 1) * std::cos(th * rad);
+            power[static_cast<std::size_t>(x * cells)] += std::exp(-8 * std::log(2.0) * (el * el + az * az)) *
+                                                          std::pow(std::sin(th * rad), guess.ground_exponent + 1) * std::cos(th * rad);
         }
     return power;
 }
@@ -77,7 +77,8 @@ Powers draw(const std::vector<double> &amplitude, int bins, std::mt19937_64 &ran
     Powers power{};
     for (int k = 1; k <= bins; k++) {
         const auto at = static_cast<std::size_t>(k);
-        double re = 0.5 * noise[at][0] + 0.25 * (noise[at - 1][0] + noise[at + 1][0]), im = 0.5 * noise[at][1] + 0.25 * (noise[at - 1][1] + noise[at + 1][1]);
+        double re = 0.5 * noise[at][0] + 0.25 * (noise[at - 1][0] + noise[at + 1][0]),
+               im = 0.5 * noise[at][1] + 0.25 * (noise[at - 1][1] + noise[at + 1][1]);
         for (int m = std::max(1, 4 * k - reach); m <= 4 * k + reach && m < static_cast<int>(z.size()); m++) {
             const double w = hann(4 * k - m), mirrored = hann(4 * k + m);
             re += z[static_cast<std::size_t>(m)][0] * (w + mirrored);

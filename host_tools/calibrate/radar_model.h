@@ -3,8 +3,9 @@
 //   X[k] = sum_m sqrt(dP_m) |H| (z_m W(k - f_m/df) + z_m* W(k + f_m/df)),  z_m complex normal               (1)
 //   modelled scale = sum_i v_i / sum_i heard_i  over windows i of (1) at the speeds v_i                     (2)
 //
-// (1): the spectrum of firmware/template for the MDU1130, with its speckle. The expected spectrum in place of drawn windows gives another answer: the
-// likelihood's minimum is not linear in the powers, and where the expected echo equals a template it hardly moves with the angle.
+// (1): the spectrum of firmware/template for the MDU1130, with its speckle. The expected spectrum in place of drawn windows gives another
+// answer: the likelihood's minimum is not linear in the powers, and where the expected echo equals a template it hardly moves with the
+// angle.
 #pragma once
 
 #include "firmware/core/doppler.h"
@@ -14,8 +15,8 @@
 namespace traction {
 
 struct RadarGuess {
-    double angle_deg = 20;       // below horizontal
-    double ground_exponent = 1;  // sigma0 ~ sin^n
+    double angle_deg = 20;      // below horizontal
+    double ground_exponent = 1; // sigma0 ~ sin^n
 };
 
 // (2) for windows at these speeds, each drawn `repeats` times; the same random numbers for every guess, so differences are smooth.

@@ -37,8 +37,9 @@ struct Fit {
         rows++;
     }
     std::array<double, 3> solve() const { // Cramer's rule
-        const auto det = [](const double (&m)[3][3]) {
-            return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+        const auto det = [](const double(&m)[3][3]) {
+            return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                   m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
         };
         std::array<double, 3> x{};
         for (std::size_t k = 0; k < 3; k++) {
@@ -58,25 +59,31 @@ class Experiment {
     // Drives all wheels with `duty` for `seconds`, less where (3) would pass the torque limit. Without (3), the probe: as it is.
     void pulse(double duty, double seconds) {
         for (double t = 0; t < seconds; t += tick_s) {
-            if (used_s_ >= limits_.time_s) throw std::runtime_error("tune: the time limit is over before the experiment is; give more --time-s");
+            if (used_s_ >= limits_.time_s)
+                throw std::runtime_error("tune: the time limit is over before the experiment is; give more --time-s");
             if (hal_.wait_tick(hal_.context) != HAL_OK) throw std::runtime_error("tune: the rover's loop ended before the experiment did");
             sensor_frame_t frame{};
             if (hal_.read(hal_.context, &frame) < 0) throw std::runtime_error("tune: a device was lost");
             if (frame.emergency_stop) throw std::runtime_error("tune: emergency stop");
             const sense_output_t sense = sense_measure(&config_.sense, &sense_, &frame);
-            if ((sense.usable & 0x1ffu) != 0x1ffu) throw std::runtime_error("tune: an encoder, a current or the battery is silent or absurd");
+            if ((sense.usable & 0x1ffu) != 0x1ffu)
+                throw std::runtime_error("tune: an encoder, a current or the battery is silent or absurd");
             used_s_ += tick_s;
             battery_V_ = static_cast<double>(sense.battery_V);
             actuator_frame_t out{};
             for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
                 const double w = static_cast<double>(sense.speed_rad_s[i]);
-                const double torque = static_cast<double>(config_.motor.torque_constant_Nm_A) * std::fabs(static_cast<double>(sense.current_A[i]));
+                const double torque =
+                    static_cast<double>(config_.motor.torque_constant_Nm_A) * std::fabs(static_cast<double>(sense.current_A[i]));
                 largest_Nm_ = std::max(largest_Nm_, torque);
                 if (torque > limits_.torque_Nm * largest_excess)
-                    throw std::runtime_error("tune: wheel " + std::to_string(i) + " took more torque than allowed; check its current sensor, or raise --torque-Nm");
+                    throw std::runtime_error("tune: wheel " + std::to_string(i) +
+                                             " took more torque than allowed; check its current sensor, or raise --torque-Nm");
                 learn_circuit(i, w, static_cast<double>(sense.current_A[i]));
-                // duty of the tick before last acts over the difference that the encoder shows now: half of each; only turning wheels obey (1)
-                const bool turning = std::fabs(w) > 0.5 && std::fabs(last_w_[i]) > 0.5 && last_duty_[i] * w > 0 && last_duty_[i] == older_duty_[i];
+                // duty of the tick before last acts over the difference that the encoder shows now: half of each; only turning wheels obey
+                // (1)
+                const bool turning =
+                    std::fabs(w) > 0.5 && std::fabs(last_w_[i]) > 0.5 && last_duty_[i] * w > 0 && last_duty_[i] == older_duty_[i];
                 if (turning) fit_[i].add({last_w_[i], last_duty_[i] * battery_V_, last_duty_[i] > 0 ? 1.0 : -1.0}, w);
                 older_duty_[i] = last_duty_[i];
                 last_duty_[i] = within_torque(i, duty, w);
@@ -95,7 +102,8 @@ class Experiment {
             if (fit_[i].rows < 50)
                 throw std::runtime_error("tune: wheel " + std::to_string(i) + " hardly turned; raise --duty or --torque-Nm, or free it");
             const auto [a, b, c] = fit_[i].solve();
-            if (!(a > 0.2 && a < 0.9999 && b > 0)) throw std::runtime_error("tune: wheel " + std::to_string(i) + " does not answer like a motor; check its encoder's sign");
+            if (!(a > 0.2 && a < 0.9999 && b > 0))
+                throw std::runtime_error("tune: wheel " + std::to_string(i) + " does not answer like a motor; check its encoder's sign");
             r.pole_1_s[i] = -std::log(a) / tick_s;
             r.gain_rad_s2[i] = b * battery_V_ / tick_s;
             if (r.gain_rad_s2[i] > largest) {

@@ -18,15 +18,15 @@
 namespace traction {
 
 struct TuneLimits {
-    double torque_Nm = 0.3;     // at the wheel, driving or braking, by (3) with Ra and ke found in the experiment itself
-    double duty = 0.6;          // largest pulse
-    double time_s = 20;         // of the whole experiment
-    double margin_deg = 62;     // phase margin asked for
+    double torque_Nm = 0.3; // at the wheel, driving or braking, by (3) with Ra and ke found in the experiment itself
+    double duty = 0.6;      // largest pulse
+    double time_s = 20;     // of the whole experiment
+    double margin_deg = 62; // phase margin asked for
 };
 
 struct TuneResult {
     std::array<double, WHEEL_COUNT> pole_1_s{}, gain_rad_s2{}; // p; acceleration per unit of duty
-    double kp_s = 0, ki_1 = 0; // of the wheel with the largest gain: the others have more margin
+    double kp_s = 0, ki_1 = 0;                                 // of the wheel with the largest gain: the others have more margin
     double battery_V = 0, largest_torque_Nm = 0, used_s = 0;
 };
 

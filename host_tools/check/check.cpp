@@ -18,9 +18,12 @@ const Finding *Report::find(const std::string &id, const std::string &signal) co
 
 const char *severity_name(Severity severity) {
     switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
+    case Severity::note:
+        return "note";
+    case Severity::warning:
+        return "warning";
+    case Severity::error:
+        return "error";
     }
     return "";
 }
@@ -35,7 +38,8 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
         report.excitation = measure_excitation(grid);
         judge_excitation(report.excitation, grid, report.findings);
     }
-    std::stable_sort(report.findings.begin(), report.findings.end(), [](const Finding &a, const Finding &b) { return a.severity > b.severity; });
+    std::stable_sort(report.findings.begin(), report.findings.end(),
+                     [](const Finding &a, const Finding &b) { return a.severity > b.severity; });
     return report;
 }
 

@@ -14,19 +14,19 @@ namespace traction::check {
 enum class Severity { note, warning, error };
 
 struct Finding {
-    std::string id;      // "sign", "unit", "swapped_wheels", "gap", ...; the list is in docs/log_format.md
+    std::string id; // "sign", "unit", "swapped_wheels", "gap", ...; the list is in docs/log_format.md
     Severity severity = Severity::note;
-    std::string signal;  // the column it concerns; empty: the log
-    std::string text;    // what was found, with its number
+    std::string signal; // the column it concerns; empty: the log
+    std::string text;   // what was found, with its number
     std::string mend;
-    double value = 0;    // the number found
+    double value = 0;                                                                                        // the number found
     double t0_s = std::numeric_limits<double>::quiet_NaN(), t1_s = std::numeric_limits<double>::quiet_NaN(); // where, if at one place
 };
 
 // What is known of the machine beforehand; NaN: unknown. With it, a unit error is told by its factor, without it by absurdity.
 struct Machine {
     double wheel_radius_m = std::numeric_limits<double>::quiet_NaN();
-    double back_emf_Vs = std::numeric_limits<double>::quiet_NaN();   // at the wheel
+    double back_emf_Vs = std::numeric_limits<double>::quiet_NaN(); // at the wheel
     double resistance_ohm = std::numeric_limits<double>::quiet_NaN();
     bool wheels_point_forward = true; // false (omni): wheel speeds are not compared with the body's
 };
@@ -34,16 +34,16 @@ struct Machine {
 struct Rate {
     std::string signal;
     std::size_t samples = 0;
-    double median_s = 0;   // time from sample to sample
-    double jitter = 0;     // half the spread of the middle 90 % of it, relative to the median
-    double missing = 0;    // share of samples missing
+    double median_s = 0; // time from sample to sample
+    double jitter = 0;   // half the spread of the middle 90 % of it, relative to the median
+    double missing = 0;  // share of samples missing
     double largest_gap_s = 0;
 };
 
 struct WheelExcitation {
     int wheel = 0;
     double speed_min_rad_s = 0, speed_max_rad_s = 0;
-    double slip_low = 0, slip_high = 0;     // 2 % and 98 % quantiles; NaN without a ground speed
+    double slip_low = 0, slip_high = 0; // 2 % and 98 % quantiles; NaN without a ground speed
     double accel_rms_rad_s2 = 0;
     double current_low_A = 0, current_high_A = 0;
 };
@@ -51,20 +51,20 @@ struct WheelExcitation {
 // What the drive did: the lab reads from it which effects this log cannot show. NaN: the signals for it are missing.
 struct Excitation {
     double duration_s = 0;
-    double speed_min_m_s = 0, speed_max_m_s = 0;  // body, along x
-    double reverse_s = 0;            // time spent in reverse
-    double accel_rms_m_s2 = 0;       // of the body, over 0.5 s
-    int starts = 0;                  // times the machine set off from standstill
-    double standstill_s = 0;         // longest standstill
+    double speed_min_m_s = 0, speed_max_m_s = 0; // body, along x
+    double reverse_s = 0;                        // time spent in reverse
+    double accel_rms_m_s2 = 0;                   // of the body, over 0.5 s
+    int starts = 0;                              // times the machine set off from standstill
+    double standstill_s = 0;                     // longest standstill
     double moving_s = 0;
-    double turning_s = 0;            // time with a yaw rate above 0.1 rad/s
+    double turning_s = 0; // time with a yaw rate above 0.1 rad/s
     double yaw_rate_max_rad_s = 0;
-    double revisited = 0;            // share of the path within 5 cm of a place passed more than 5 s before; NaN without a camera
+    double revisited = 0; // share of the path within 5 cm of a place passed more than 5 s before; NaN without a camera
     double path_m = 0;
-    double wheels_apart = 0;         // rms spread of wheel speeds over their rms: 0 when all turn alike
+    double wheels_apart = 0; // rms spread of wheel speeds over their rms: 0 when all turn alike
     double slip_low = 0, slip_high = 0;
-    double constant_input = 0;       // share of the moving time in which no wheel speed changes
-    double duty_saturated = 0;       // share of the time at full duty
+    double constant_input = 0; // share of the moving time in which no wheel speed changes
+    double duty_saturated = 0; // share of the time at full duty
     std::vector<WheelExcitation> wheel;
 };
 
@@ -72,7 +72,7 @@ struct Report {
     std::vector<Finding> findings; // errors first
     Excitation excitation;
     std::vector<Rate> rates;
-    bool passed() const;           // no finding is an error
+    bool passed() const;                                                              // no finding is an error
     const Finding *find(const std::string &id, const std::string &signal = "") const; // nullptr when there is none
 };
 

@@ -16,7 +16,8 @@ struct Law {
 
 std::string name_of(const Wheel &wheel, const char *quantity) { return "wheel" + std::to_string(wheel.index) + "." + quantity; }
 
-void add(Findings &findings, const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value) {
+void add(Findings &findings, const char *id, Severity severity, const std::string &signal, std::string text, std::string mend,
+         double value) {
     findings.push_back({id, severity, signal, std::move(text), std::move(mend), value});
 }
 
@@ -29,23 +30,32 @@ void check_ranges(const Grid &grid, Findings &findings) {
         const double duty = quantile(size, 0.995);
         if (duty > 1.05) {
             const double scale = duty < 101 ? 100 : duty < 256 ? 255 : duty < 1025 ? 1023 : 32767;
-            add(findings, "unit", Severity::error, name_of(wheel, "duty"), say("'%s' reaches %.4g, but a duty lies within -1..1", name_of(wheel, "duty").c_str(), duty), say("divide it by %.0f", scale), duty);
+            add(findings, "unit", Severity::error, name_of(wheel, "duty"),
+                say("'%s' reaches %.4g, but a duty lies within -1..1", name_of(wheel, "duty").c_str(), duty),
+                say("divide it by %.0f", scale), duty);
         }
         size = wheel.current;
         for (double &v : size) v = std::fabs(v);
         const double current = quantile(size, 0.99);
         if (current > 100) { // [A] assumed: no rover of this class draws it
-            add(findings, "unit", Severity::error, name_of(wheel, "current_A"), say("'%s' reaches %.4g A: it looks like mA", name_of(wheel, "current_A").c_str(), current), "multiply it by 0.001", current);
+            add(findings, "unit", Severity::error, name_of(wheel, "current_A"),
+                say("'%s' reaches %.4g A: it looks like mA", name_of(wheel, "current_A").c_str(), current), "multiply it by 0.001",
+                current);
         }
     }
     const double battery = quantile(grid.battery, 0.5), spread = quantile(grid.battery, 0.99) - quantile(grid.battery, 0.01);
     if (grid.battery.empty()) return;
     if (battery <= 0) {
-        add(findings, "sign", Severity::error, "battery.voltage_V", say("the battery voltage is %.4g V", battery), "turn its sign round, or check the wiring", battery);
+        add(findings, "sign", Severity::error, "battery.voltage_V", say("the battery voltage is %.4g V", battery),
+            "turn its sign round, or check the wiring", battery);
     } else if (battery > 100 || battery < 1.5) { // [V] assumed
-        add(findings, "unit", Severity::error, "battery.voltage_V", say("the battery voltage is %.4g V: it looks like %s", battery, battery > 100 ? "mV" : "kV or a ratio"), battery > 100 ? "multiply it by 0.001" : "scale it to volts", battery);
+        add(findings, "unit", Severity::error, "battery.voltage_V",
+            say("the battery voltage is %.4g V: it looks like %s", battery, battery > 100 ? "mV" : "kV or a ratio"),
+            battery > 100 ? "multiply it by 0.001" : "scale it to volts", battery);
     } else if (spread > 0.6 * battery) {
-        add(findings, "battery_unsteady", Severity::warning, "battery.voltage_V", say("the battery voltage spreads over %.3g V around %.3g V", spread, battery), "charge the battery, or check the divider", spread);
+        add(findings, "battery_unsteady", Severity::warning, "battery.voltage_V",
+            say("the battery voltage spreads over %.3g V around %.3g V", spread, battery), "charge the battery, or check the divider",
+            spread);
     }
 }
 
@@ -64,14 +74,17 @@ void check_swaps(std::vector<Law> &laws, Findings &findings) {
                 const char *quantity;
                 double power;
             } best{"", std::numeric_limits<double>::infinity()};
-            for (const Hypothesis &tried : {Hypothesis{"current_A", power(fit(a.voltage, a.speed, b.current), fit(b.voltage, b.speed, a.current))},
-                                            Hypothesis{"speed_rad_s", power(fit(a.voltage, b.speed, a.current), fit(b.voltage, a.speed, b.current))},
-                                            Hypothesis{"duty", power(fit(b.voltage, a.speed, a.current), fit(a.voltage, b.speed, b.current))}}) {
+            for (const Hypothesis &tried :
+                 {Hypothesis{"current_A", power(fit(a.voltage, a.speed, b.current), fit(b.voltage, b.speed, a.current))},
+                  Hypothesis{"speed_rad_s", power(fit(a.voltage, b.speed, a.current), fit(b.voltage, a.speed, b.current))},
+                  Hypothesis{"duty", power(fit(b.voltage, a.speed, a.current), fit(a.voltage, b.speed, b.current))}}) {
                 if (tried.power < best.power) best = tried;
             }
             if (!(best.power < 0.25 * as_is)) continue;
             const std::string first = name_of(a, best.quantity), second = name_of(b, best.quantity);
-            add(findings, "swapped_wheels", Severity::error, first, say("'%s' and '%s' are exchanged: the motors' voltages fit %.1f times better with them swapped", first.c_str(), second.c_str(), std::sqrt(as_is / best.power)),
+            add(findings, "swapped_wheels", Severity::error, first,
+                say("'%s' and '%s' are exchanged: the motors' voltages fit %.1f times better with them swapped", first.c_str(),
+                    second.c_str(), std::sqrt(as_is / best.power)),
                 "exchange the two columns", std::sqrt(as_is / best.power));
             laws[i].tells = laws[j].tells = false; // nothing more can be said of these two
         }
@@ -83,16 +96,24 @@ void check_signs(std::vector<Law> &laws, Findings &findings) {
         if (!law.tells) continue;
         const bool back_emf = law.fit.a > 4 * law.fit.error_a, winding = law.fit.b > 4 * law.fit.error_b;
         const bool no_back_emf = law.fit.a < -4 * law.fit.error_a, no_winding = law.fit.b < -4 * law.fit.error_b;
-        const char *wrong = no_back_emf && no_winding ? "duty" : no_back_emf && winding ? "speed_rad_s" : back_emf && no_winding ? "current_A" : nullptr;
+        const char *wrong = no_back_emf && no_winding ? "duty"
+                            : no_back_emf && winding  ? "speed_rad_s"
+                            : back_emf && no_winding  ? "current_A"
+                                                      : nullptr;
         if (wrong == nullptr) continue;
         law.tells = false;
         const std::string name = name_of(*law.wheel, wrong);
-        add(findings, "sign", Severity::error, name, say("'%s' has the wrong sign: the motor's voltage is %.3g*speed %+.3g*current, both must be above 0", name.c_str(), law.fit.a, law.fit.b), "turn its sign round (map: sign = -1)", law.fit.a);
+        add(findings, "sign", Severity::error, name,
+            say("'%s' has the wrong sign: the motor's voltage is %.3g*speed %+.3g*current, both must be above 0", name.c_str(), law.fit.a,
+                law.fit.b),
+            "turn its sign round (map: sign = -1)", law.fit.a);
     }
 }
 
 void check_units(const std::vector<Law> &laws, const Machine &machine, Findings &findings) {
-    const auto reported = [&](const std::string &name) { return std::any_of(findings.begin(), findings.end(), [&](const Finding &f) { return f.id == "unit" && f.signal == name; }); };
+    const auto reported = [&](const std::string &name) {
+        return std::any_of(findings.begin(), findings.end(), [&](const Finding &f) { return f.id == "unit" && f.signal == name; });
+    };
     for (const Law &law : laws) {
         if (!law.tells) continue;
         std::vector<double> other_a, other_b;
@@ -100,16 +121,31 @@ void check_units(const std::vector<Law> &laws, const Machine &machine, Findings 
             if (&other != &law && other.tells) other_a.push_back(other.fit.a), other_b.push_back(other.fit.b);
         }
         const bool in_volts = law.wheel->in_volts;
-        const double ke = in_volts && std::isfinite(machine.back_emf_Vs) ? machine.back_emf_Vs : other_a.size() >= 2 ? quantile(other_a, 0.5) : not_known;
-        const double resistance = in_volts && std::isfinite(machine.resistance_ohm) ? machine.resistance_ohm : other_b.size() >= 2 ? quantile(other_b, 0.5) : not_known;
+        const double ke = in_volts && std::isfinite(machine.back_emf_Vs) ? machine.back_emf_Vs
+                          : other_a.size() >= 2                          ? quantile(other_a, 0.5)
+                                                                         : not_known;
+        const double resistance = in_volts && std::isfinite(machine.resistance_ohm) ? machine.resistance_ohm
+                                  : other_b.size() >= 2                             ? quantile(other_b, 0.5)
+                                                                                    : not_known;
         const std::string speed = name_of(*law.wheel, "speed_rad_s"), current = name_of(*law.wheel, "current_A");
-        if (const UnitSlip *slip = law.fit.a > 4 * law.fit.error_a ? unit_slip('w', ke / law.fit.a) : nullptr; slip != nullptr && !reported(speed)) {
-            add(findings, "unit", Severity::error, speed, say("'%s' is %.3g times too large for its motor's back-EMF: it looks like %s", speed.c_str(), ke / law.fit.a, slip->written), say("multiply it by %.6g", 1 / slip->factor), ke / law.fit.a);
+        if (const UnitSlip *slip = law.fit.a > 4 * law.fit.error_a ? unit_slip('w', ke / law.fit.a) : nullptr;
+            slip != nullptr && !reported(speed)) {
+            add(findings, "unit", Severity::error, speed,
+                say("'%s' is %.3g times too large for its motor's back-EMF: it looks like %s", speed.c_str(), ke / law.fit.a,
+                    slip->written),
+                say("multiply it by %.6g", 1 / slip->factor), ke / law.fit.a);
         }
-        if (const UnitSlip *slip = law.fit.b > 4 * law.fit.error_b ? unit_slip('I', resistance / law.fit.b) : nullptr; slip != nullptr && !reported(current)) {
-            add(findings, "unit", Severity::error, current, say("'%s' is %.3g times too large for its winding: it looks like %s", current.c_str(), resistance / law.fit.b, slip->written), say("multiply it by %.6g", 1 / slip->factor), resistance / law.fit.b);
-        } else if (in_volts && law.fit.b > 4 * law.fit.error_b && law.fit.b < 0.02 && !reported(current)) { // [ohm] assumed: no small motor has less
-            add(findings, "unit", Severity::error, current, say("'%s' would mean a winding of %.3g ohm: it looks like mA", current.c_str(), law.fit.b), "multiply it by 0.001", law.fit.b);
+        if (const UnitSlip *slip = law.fit.b > 4 * law.fit.error_b ? unit_slip('I', resistance / law.fit.b) : nullptr;
+            slip != nullptr && !reported(current)) {
+            add(findings, "unit", Severity::error, current,
+                say("'%s' is %.3g times too large for its winding: it looks like %s", current.c_str(), resistance / law.fit.b,
+                    slip->written),
+                say("multiply it by %.6g", 1 / slip->factor), resistance / law.fit.b);
+        } else if (in_volts && law.fit.b > 4 * law.fit.error_b && law.fit.b < 0.02 &&
+                   !reported(current)) { // [ohm] assumed: no small motor has less
+            add(findings, "unit", Severity::error, current,
+                say("'%s' would mean a winding of %.3g ohm: it looks like mA", current.c_str(), law.fit.b), "multiply it by 0.001",
+                law.fit.b);
         }
     }
 }
@@ -119,7 +155,8 @@ void check_units(const std::vector<Law> &laws, const Machine &machine, Findings 
 void check_drives(const Grid &grid, const Machine &machine, Findings &findings) {
     check_ranges(grid, findings);
     std::vector<Law> laws;
-    const bool no_volts = std::any_of(findings.begin(), findings.end(), [](const Finding &f) { return f.severity == Severity::error && f.signal == "battery.voltage_V"; });
+    const bool no_volts = std::any_of(findings.begin(), findings.end(),
+                                      [](const Finding &f) { return f.severity == Severity::error && f.signal == "battery.voltage_V"; });
     if (no_volts) return; // every law below would be off by the same factor
     for (const Wheel &wheel : grid.wheel) {
         if (wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty() || wheel.unsigned_current) continue;
@@ -132,10 +169,13 @@ void check_drives(const Grid &grid, const Machine &machine, Findings &findings) 
     check_units(laws, machine, findings);
     for (const Law &law : laws) {
         if (law.tells || !law.fit.good || law.fit.y_rms == 0 || share_explained(law.fit) > 0.8) continue;
-        const bool explained = std::any_of(findings.begin(), findings.end(), [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind("wheel" + std::to_string(law.wheel->index) + ".", 0) == 0; });
+        const bool explained = std::any_of(findings.begin(), findings.end(), [&](const Finding &f) {
+            return f.severity == Severity::error && f.signal.rfind("wheel" + std::to_string(law.wheel->index) + ".", 0) == 0;
+        });
         const bool swapped = std::any_of(findings.begin(), findings.end(), [](const Finding &f) { return f.id == "swapped_wheels"; });
         if (explained || swapped) continue;
-        add(findings, "drive_unexplained", Severity::warning, name_of(*law.wheel, "current_A"), say("speed and current explain only %.0f %% of the voltage of wheel %d", 100 * share_explained(law.fit), law.wheel->index),
+        add(findings, "drive_unexplained", Severity::warning, name_of(*law.wheel, "current_A"),
+            say("speed and current explain only %.0f %% of the voltage of wheel %d", 100 * share_explained(law.fit), law.wheel->index),
             "check that duty, speed and current are of the same wheel and the same time", share_explained(law.fit));
     }
     // Without a voltage: the reference of the speed loop says which wheel, sign and unit.
@@ -145,9 +185,12 @@ void check_drives(const Grid &grid, const Machine &machine, Findings &findings) 
         const double alike = correlation(wheel.speed, wheel.set_speed);
         const std::string name = name_of(wheel, "speed_rad_s");
         if (line.good && share_explained(line) > 0.7 && line.a < 0) {
-            add(findings, "sign", Severity::error, name, say("'%s' runs against its own reference (slope %.3g)", name.c_str(), line.a), "turn its sign round (map: sign = -1)", line.a);
+            add(findings, "sign", Severity::error, name, say("'%s' runs against its own reference (slope %.3g)", name.c_str(), line.a),
+                "turn its sign round (map: sign = -1)", line.a);
         } else if (const UnitSlip *slip = line.good && (share_explained(line) > 0.7 || alike > 0.8) ? unit_slip('w', line.a) : nullptr) {
-            add(findings, "unit", Severity::error, name, say("'%s' is %.3g times its reference: it looks like %s", name.c_str(), line.a, slip->written), say("multiply it by %.6g", 1 / slip->factor), line.a);
+            add(findings, "unit", Severity::error, name,
+                say("'%s' is %.3g times its reference: it looks like %s", name.c_str(), line.a, slip->written),
+                say("multiply it by %.6g", 1 / slip->factor), line.a);
         }
     }
     for (std::size_t i = 0; i < grid.wheel.size(); ++i) {
@@ -161,9 +204,13 @@ void check_drives(const Grid &grid, const Machine &machine, Findings &findings) 
                 }
                 return n > 40 ? sum / n : not_known;
             };
-            const double as_is = distance(a.speed, a.set_speed) + distance(b.speed, b.set_speed), swapped = distance(a.speed, b.set_speed) + distance(b.speed, a.set_speed);
+            const double as_is = distance(a.speed, a.set_speed) + distance(b.speed, b.set_speed),
+                         swapped = distance(a.speed, b.set_speed) + distance(b.speed, a.set_speed);
             if (!(swapped < 0.25 * as_is)) continue;
-            add(findings, "swapped_wheels", Severity::error, name_of(a, "speed_rad_s"), say("'%s' and '%s' are exchanged: each follows the other's reference", name_of(a, "speed_rad_s").c_str(), name_of(b, "speed_rad_s").c_str()), "exchange the two columns", std::sqrt(as_is / swapped));
+            add(findings, "swapped_wheels", Severity::error, name_of(a, "speed_rad_s"),
+                say("'%s' and '%s' are exchanged: each follows the other's reference", name_of(a, "speed_rad_s").c_str(),
+                    name_of(b, "speed_rad_s").c_str()),
+                "exchange the two columns", std::sqrt(as_is / swapped));
         }
     }
 }

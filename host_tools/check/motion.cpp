@@ -12,7 +12,8 @@ constexpr double pi = 3.141592653589793;
 
 class Motion {
   public:
-    Motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) : log_(log), grid_(grid), machine_(machine), findings_(findings) {}
+    Motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings)
+        : log_(log), grid_(grid), machine_(machine), findings_(findings) {}
     void run() {
         encoders();
         heading();
@@ -33,12 +34,17 @@ class Motion {
     bool straight(std::size_t k) const; // the wheels agree, so the body moves along its heading
     double radius_from(const std::vector<double> &speed, double &alike) const;
     bool blamed(const std::string &start) const {
-        return std::any_of(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
+        return std::any_of(findings_.begin(), findings_.end(),
+                           [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
     }
     bool wheels_blamed() const {
-        return std::any_of(findings_.begin(), findings_.end(), [](const Finding &f) { return f.severity == Severity::error && f.signal.find(".speed_rad_s") != std::string::npos && f.signal.rfind("wheel", 0) == 0; });
+        return std::any_of(findings_.begin(), findings_.end(), [](const Finding &f) {
+            return f.severity == Severity::error && f.signal.find(".speed_rad_s") != std::string::npos && f.signal.rfind("wheel", 0) == 0;
+        });
     }
-    void add(const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value) { findings_.push_back({id, severity, signal, std::move(text), std::move(mend), value}); }
+    void add(const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value) {
+        findings_.push_back({id, severity, signal, std::move(text), std::move(mend), value});
+    }
 
     const log::Log &log_;
     const Grid &grid_;
@@ -68,7 +74,9 @@ bool Motion::stands(const std::vector<double> &rate, const std::vector<double> &
     const double lasts = static_cast<double>(longest) * step_s;
     if (lasts < 1.5) return false;
     const bool whole = longest > turning / 2;
-    add(whole ? "dead_sensor" : "stuck_sensor", Severity::error, column, say("'%s' stands for %.3g s until t = %.3f s while its wheel turns", column.c_str(), lasts, grid_.time(end)), "check its wiring; or take the column out of the log", lasts);
+    add(whole ? "dead_sensor" : "stuck_sensor", Severity::error, column,
+        say("'%s' stands for %.3g s until t = %.3f s while its wheel turns", column.c_str(), lasts, grid_.time(end)),
+        "check its wiring; or take the column out of the log", lasts);
     return true;
 }
 
@@ -84,11 +92,16 @@ void Motion::radar_beside_camera() {
     if (ratio.size() < 40 || (middle > 0.5 && middle < 2)) return;
     const UnitSlip *radar = unit_slip('v', middle), *camera = unit_slip('v', 1 / middle);
     if (radar != nullptr && radar->factor > 1) {
-        add("unit", Severity::error, "radar.speed_m_s", say("the radar reads %.4g times the camera's speed: it looks like %s", middle, radar->written), say("multiply it by %.6g", 1 / radar->factor), middle);
+        add("unit", Severity::error, "radar.speed_m_s",
+            say("the radar reads %.4g times the camera's speed: it looks like %s", middle, radar->written),
+            say("multiply it by %.6g", 1 / radar->factor), middle);
     } else if (camera != nullptr && camera->factor > 1) {
-        add("unit", Severity::error, "camera.x_m", say("the camera's speed is %.4g times the radar's: its positions look like %s", 1 / middle, camera->written), say("multiply x and y by %.6g", 1 / camera->factor), 1 / middle);
+        add("unit", Severity::error, "camera.x_m",
+            say("the camera's speed is %.4g times the radar's: its positions look like %s", 1 / middle, camera->written),
+            say("multiply x and y by %.6g", 1 / camera->factor), 1 / middle);
     } else {
-        add("scale", Severity::warning, "radar.speed_m_s", say("the radar reads %.3g times the camera's speed", middle), "check the radar's mounting angle, and the camera's scale", middle);
+        add("scale", Severity::warning, "radar.speed_m_s", say("the radar reads %.3g times the camera's speed", middle),
+            "check the radar's mounting angle, and the camera's scale", middle);
     }
 }
 
@@ -106,12 +119,16 @@ void Motion::encoders() {
             const Fit line = rate.empty() ? Fit{} : fit(rate, speed);
             if (!line.good || line.rms > 0.5 * line.y_rms) continue;
             if (line.a < 0) {
-                add("sign", Severity::error, column, say("'%s' falls while '%s.speed_rad_s' is positive", column.c_str(), name.c_str()), "turn the sign of one of them round", line.a);
+                add("sign", Severity::error, column, say("'%s' falls while '%s.speed_rad_s' is positive", column.c_str(), name.c_str()),
+                    "turn the sign of one of them round", line.a);
             } else if (!count && (line.a < 0.8 || line.a > 1.25)) {
                 const UnitSlip *slip = unit_slip('w', line.a), *inverse = unit_slip('w', 1 / line.a);
                 add("unit", Severity::error, inverse != nullptr ? name + ".speed_rad_s" : column,
-                    say("'%s' advances %.4g times as fast as '%s.speed_rad_s' says%s%s", column.c_str(), line.a, name.c_str(), slip != nullptr || inverse != nullptr ? ": one of them looks like " : "",
-                        slip != nullptr ? slip->written : inverse != nullptr ? inverse->written : ""),
+                    say("'%s' advances %.4g times as fast as '%s.speed_rad_s' says%s%s", column.c_str(), line.a, name.c_str(),
+                        slip != nullptr || inverse != nullptr ? ": one of them looks like " : "",
+                        slip != nullptr      ? slip->written
+                        : inverse != nullptr ? inverse->written
+                                             : ""),
                     "bring both to rad and rad/s", line.a);
             } else if (count) {
                 per_rad.push_back(line.a);
@@ -125,7 +142,9 @@ void Motion::encoders() {
         const UnitSlip *slip = unit_slip('w', ratio);
         const std::string name = "wheel" + std::to_string(wheels[i]->index) + ".speed_rad_s";
         if (!blamed(name)) {
-            add("unit", Severity::error, name, say("'%s' has %.4g counts for a radian, the other wheels %.4g%s%s", name.c_str(), per_rad[i], quantile(per_rad, 0.5), slip != nullptr ? ": it looks like " : "", slip != nullptr ? slip->written : ""),
+            add("unit", Severity::error, name,
+                say("'%s' has %.4g counts for a radian, the other wheels %.4g%s%s", name.c_str(), per_rad[i], quantile(per_rad, 0.5),
+                    slip != nullptr ? ": it looks like " : "", slip != nullptr ? slip->written : ""),
                 "bring it to rad/s", ratio);
         }
     }
@@ -153,15 +172,24 @@ void Motion::heading() {
     if (heading_fits_) return;
     const double widest = std::max(std::fabs(quantile(grid_.camera_yaw, 0.01)), std::fabs(quantile(grid_.camera_yaw, 0.99)));
     if (together > 0.9 && std::fabs(offset) > 2.8) {
-        add("sign", Severity::error, "camera.yaw_rad", say("the camera sees the machine drive backwards when its wheels turn forwards (heading off by %.2f rad)", offset), "add pi to the heading, or turn the sign of all wheel speeds round", offset);
+        add("sign", Severity::error, "camera.yaw_rad",
+            say("the camera sees the machine drive backwards when its wheels turn forwards (heading off by %.2f rad)", offset),
+            "add pi to the heading, or turn the sign of all wheel speeds round", offset);
     } else if (together > 0.9) {
-        add("heading", Severity::error, "camera.yaw_rad", say("the camera's heading is %.2f rad away from the direction of travel", -offset), say("add %.4f to it (map: offset)", offset), -offset);
+        add("heading", Severity::error, "camera.yaw_rad",
+            say("the camera's heading is %.2f rad away from the direction of travel", -offset), say("add %.4f to it (map: offset)", offset),
+            -offset);
     } else if (turned > 0.5 && mirrored > 0.9) {
-        add("sign", Severity::error, "camera.y_m", "the camera's path is the mirror image of the one that its heading describes", "turn the sign of camera.y_m round (an image has y down), or of the heading", mirrored);
+        add("sign", Severity::error, "camera.y_m", "the camera's path is the mirror image of the one that its heading describes",
+            "turn the sign of camera.y_m round (an image has y down), or of the heading", mirrored);
     } else if (widest > 15) {
-        add("unit", Severity::error, "camera.yaw_rad", say("'camera.yaw_rad' reaches %.4g and does not point along the path: it looks like degrees", widest), "multiply it by 0.0174533", widest);
+        add("unit", Severity::error, "camera.yaw_rad",
+            say("'camera.yaw_rad' reaches %.4g and does not point along the path: it looks like degrees", widest),
+            "multiply it by 0.0174533", widest);
     } else if (together < 0.6) {
-        add("heading", Severity::warning, "camera.yaw_rad", say("the camera's heading does not point along the path (agreement %.2f of 1)", together), "check the camera's axes, and that wheels 0.. all push forward", together);
+        add("heading", Severity::warning, "camera.yaw_rad",
+            say("the camera's heading does not point along the path (agreement %.2f of 1)", together),
+            "check the camera's axes, and that wheels 0.. all push forward", together);
     }
 }
 
@@ -197,19 +225,27 @@ void Motion::ground() {
         source.radius = radius_from(*source.speed, source.alike);
         const double ratio = source.radius / known;
         const bool is_unit = unit_slip('v', ratio) != nullptr || unit_slip('w', 1 / ratio) != nullptr;
-        source.absurd = std::isfinite(known) ? is_unit : source.radius < 0.012 || source.radius > 1.0; // [m] assumed: wheels of 24 mm to 2 m
-        if (source.speed == &grid_.carriage) source.absurd = source.radius > 1.0; // the carriage imposes slip: 0.9 is no mistake
+        source.absurd =
+            std::isfinite(known) ? is_unit : source.radius < 0.012 || source.radius > 1.0; // [m] assumed: wheels of 24 mm to 2 m
+        if (source.speed == &grid_.carriage) source.absurd = source.radius > 1.0;          // the carriage imposes slip: 0.9 is no mistake
         const bool judged = blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); // beside the camera
         if (judged) source.absurd = false;
         if (source.has_sign && source.alike < -0.3) {
-            add("sign", Severity::error, source.name, say("'%s' is negative when the wheels turn forwards", source.name), "turn its sign round (map: sign = -1)", source.alike);
+            add("sign", Severity::error, source.name, say("'%s' is negative when the wheels turn forwards", source.name),
+                "turn its sign round (map: sign = -1)", source.alike);
         }
     }
-    std::erase_if(sources, [&](const Source &source) { return !std::isfinite(source.radius) || blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); });
-    const std::size_t absurd = static_cast<std::size_t>(std::count_if(sources.begin(), sources.end(), [](const Source &source) { return source.absurd; }));
+    std::erase_if(sources, [&](const Source &source) {
+        return !std::isfinite(source.radius) || blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty());
+    });
+    const std::size_t absurd =
+        static_cast<std::size_t>(std::count_if(sources.begin(), sources.end(), [](const Source &source) { return source.absurd; }));
     if (absurd == 0) return;
     const double expected = std::isfinite(known) ? known : 0.06; // [m] assumed, to name the likeliest unit
-    const auto describe = [&](const Source &source) { return say("'%s' and the wheel speeds together mean a wheel radius of %.4g m%s", source.name, source.radius, std::isfinite(known) ? say(" (known: %.4g m)", known).c_str() : ""); };
+    const auto describe = [&](const Source &source) {
+        return say("'%s' and the wheel speeds together mean a wheel radius of %.4g m%s", source.name, source.radius,
+                   std::isfinite(known) ? say(" (known: %.4g m)", known).c_str() : "");
+    };
     for (const Source &source : sources) {
         if (!source.absurd) continue;
         const UnitSlip *linear = nullptr, *angular = nullptr;
@@ -220,10 +256,15 @@ void Motion::ground() {
         }
         const bool wheels = absurd == sources.size() && (linear == nullptr || (angular != nullptr && source.radius < expected));
         if (wheels) {
-            add("unit", Severity::error, "wheel.speed_rad_s", describe(source) + (angular != nullptr ? std::string(": the wheel speeds look like ") + angular->written : ""), angular != nullptr ? say("multiply all wheel speeds by %.6g", 1 / angular->factor) : "check the units of both", source.radius);
+            add("unit", Severity::error, "wheel.speed_rad_s",
+                describe(source) + (angular != nullptr ? std::string(": the wheel speeds look like ") + angular->written : ""),
+                angular != nullptr ? say("multiply all wheel speeds by %.6g", 1 / angular->factor) : "check the units of both",
+                source.radius);
             return;
         }
-        add("unit", Severity::error, source.name, describe(source) + (linear != nullptr ? std::string(": it looks like ") + linear->written : ""), linear != nullptr ? say("multiply it by %.6g", 1 / linear->factor) : "check its unit", source.radius);
+        add("unit", Severity::error, source.name,
+            describe(source) + (linear != nullptr ? std::string(": it looks like ") + linear->written : ""),
+            linear != nullptr ? say("multiply it by %.6g", 1 / linear->factor) : "check its unit", source.radius);
     }
 }
 
@@ -231,9 +272,12 @@ void Motion::yaw() {
     if (grid_.gyro.empty()) return;
     const double fastest = std::max(std::fabs(quantile(grid_.gyro, 0.01)), std::fabs(quantile(grid_.gyro, 0.99)));
     std::vector<double> apart(grid_.count, not_known); // right minus left: wheels 1, 3 and 0, 2
-    const bool four = grid_.wheel.size() == 4 && std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
-    for (std::size_t k = 0; four && k < grid_.count; ++k) apart[k] = 0.5 * (grid_.wheel[1].speed[k] + grid_.wheel[3].speed[k] - grid_.wheel[0].speed[k] - grid_.wheel[2].speed[k]);
-    const double with_wheels = four && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
+    const bool four = grid_.wheel.size() == 4 &&
+                      std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
+    for (std::size_t k = 0; four && k < grid_.count; ++k)
+        apart[k] = 0.5 * (grid_.wheel[1].speed[k] + grid_.wheel[3].speed[k] - grid_.wheel[0].speed[k] - grid_.wheel[2].speed[k]);
+    const double with_wheels =
+        four && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
     if (!grid_.camera_yaw_rate.empty() && !blamed("camera.yaw")) {
         const std::vector<double> gyro = smooth(grid_.gyro, 5);
         const Fit line = fit(gyro, grid_.camera_yaw_rate);
@@ -241,31 +285,48 @@ void Motion::yaw() {
         if (line.good && std::fabs(alike) > 0.7) {
             const UnitSlip *gyro_unit = unit_slip('w', std::fabs(line.a)), *yaw_unit = unit_slip('w', 1 / std::fabs(line.a));
             if (gyro_unit != nullptr) {
-                add("unit", Severity::error, "imu.gyro_z_rad_s", say("the gyro reads %.3g times the camera's yaw rate: it looks like %s", line.a, gyro_unit->written), say("multiply it by %.6g", 1 / gyro_unit->factor), line.a);
+                add("unit", Severity::error, "imu.gyro_z_rad_s",
+                    say("the gyro reads %.3g times the camera's yaw rate: it looks like %s", line.a, gyro_unit->written),
+                    say("multiply it by %.6g", 1 / gyro_unit->factor), line.a);
             } else if (yaw_unit != nullptr) {
-                add("unit", Severity::error, "camera.yaw_rad", say("the camera's yaw rate is %.3g times the gyro's: it looks like %s", 1 / line.a, yaw_unit->factor > 50 ? "degrees" : yaw_unit->written), say("multiply it by %.6g", 1 / yaw_unit->factor), 1 / line.a);
+                add("unit", Severity::error, "camera.yaw_rad",
+                    say("the camera's yaw rate is %.3g times the gyro's: it looks like %s", 1 / line.a,
+                        yaw_unit->factor > 50 ? "degrees" : yaw_unit->written),
+                    say("multiply it by %.6g", 1 / yaw_unit->factor), 1 / line.a);
             } else if (line.a < 0) {
                 const bool gyro_wrong = heading_fits_ || with_wheels < -0.5;
-                add("sign", Severity::error, gyro_wrong ? "imu.gyro_z_rad_s" : "camera.yaw_rad", say("gyro and camera turn in opposite directions (slope %.3g)", line.a), "turn its sign round: a turn to the left is positive", line.a);
+                add("sign", Severity::error, gyro_wrong ? "imu.gyro_z_rad_s" : "camera.yaw_rad",
+                    say("gyro and camera turn in opposite directions (slope %.3g)", line.a),
+                    "turn its sign round: a turn to the left is positive", line.a);
             } else if (std::fabs(alike) > 0.9 && (line.a < 0.7 || line.a > 1.4)) {
-                add("scale", Severity::warning, "imu.gyro_z_rad_s", say("the gyro reads %.3g times the camera's yaw rate", line.a), "calibrate the gyro", line.a);
+                add("scale", Severity::warning, "imu.gyro_z_rad_s", say("the gyro reads %.3g times the camera's yaw rate", line.a),
+                    "calibrate the gyro", line.a);
             }
             if (line.a > 0 && with_wheels < -0.9) { // on a steep side slope, gravity alone was seen to reach -0.8
-                add("swapped_wheels", Severity::error, "wheel.speed_rad_s", say("gyro and camera agree, but the wheels turn the other way (correlation %.2f): left and right are exchanged", with_wheels), "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
+                add("swapped_wheels", Severity::error, "wheel.speed_rad_s",
+                    say("gyro and camera agree, but the wheels turn the other way (correlation %.2f): left and right are exchanged",
+                        with_wheels),
+                    "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
             }
             return;
         }
     }
     if (fastest > 20) { // [rad/s] assumed: three turns a second
-        add("unit", Severity::error, "imu.gyro_z_rad_s", say("the gyro reaches %.4g rad/s: it looks like deg/s", fastest), "multiply it by 0.0174533", fastest);
+        add("unit", Severity::error, "imu.gyro_z_rad_s", say("the gyro reaches %.4g rad/s: it looks like deg/s", fastest),
+            "multiply it by 0.0174533", fastest);
         return;
     }
     if (std::fabs(with_wheels) < 0.7) return;
     const Fit line = fit(smooth(grid_.gyro, 5), smooth(apart, 5));
     if (line.a < 0) {
-        add("sign", Severity::error, "imu.gyro_z_rad_s", say("the gyro turns against the wheels (correlation %.2f): its sign is wrong, or left and right wheels are exchanged", with_wheels), "turn its sign round: a turn to the left is positive", with_wheels);
+        add("sign", Severity::error, "imu.gyro_z_rad_s",
+            say("the gyro turns against the wheels (correlation %.2f): its sign is wrong, or left and right wheels are exchanged",
+                with_wheels),
+            "turn its sign round: a turn to the left is positive", with_wheels);
     } else if (line.a > 2) { // wheel radius over track is below 1 on any rover
-        add("unit", Severity::error, "imu.gyro_z_rad_s", say("the gyro reads %.3g times the wheels' difference in speed: it looks like deg/s", line.a), "multiply it by 0.0174533", line.a);
+        add("unit", Severity::error, "imu.gyro_z_rad_s",
+            say("the gyro reads %.3g times the wheels' difference in speed: it looks like deg/s", line.a), "multiply it by 0.0174533",
+            line.a);
     }
 }
 
@@ -273,13 +334,15 @@ void Motion::accel() {
     if (grid_.accel.empty()) return;
     const double middle = quantile(grid_.accel, 0.5);
     if (std::fabs(middle) > 5) {
-        add("axis", Severity::error, "imu.accel_x_m_s2", say("'imu.accel_x_m_s2' stands at %.3g m/s^2: gravity is in it", middle), "log the longitudinal axis", middle);
+        add("axis", Severity::error, "imu.accel_x_m_s2", say("'imu.accel_x_m_s2' stands at %.3g m/s^2: gravity is in it", middle),
+            "log the longitudinal axis", middle);
         return;
     }
     const bool camera = !grid_.camera_forward.empty() && heading_fits_ && !blamed("camera");
     const double radius = std::isfinite(machine_.wheel_radius_m) ? machine_.wheel_radius_m : grid_.effective_radius_m;
     if (!camera && (!std::isfinite(radius) || blamed("wheel.speed") || wheels_blamed() || !machine_.wheels_point_forward)) return;
-    std::vector<double> reference = slope(camera ? grid_.camera_forward : smooth(grid_.mean_speed, 5), 5), measured = smooth(smooth(grid_.accel, 5), 5);
+    std::vector<double> reference = slope(camera ? grid_.camera_forward : smooth(grid_.mean_speed, 5), 5),
+                        measured = smooth(smooth(grid_.accel, 5), 5);
     for (double &v : reference) v *= camera ? 1.0 : radius;
     for (double &v : measured) v -= middle;
     const double alike = correlation(measured, reference);
@@ -287,16 +350,24 @@ void Motion::accel() {
     if (!line.good || std::fabs(alike) < 0.6) return;
     const UnitSlip *slip = unit_slip('a', std::fabs(line.a));
     if (slip != nullptr && camera) {
-        add("unit", Severity::error, "imu.accel_x_m_s2", say("the accelerometer reads %.3g of the acceleration that the camera sees: it looks like %s", line.a, slip->written), say("multiply it by %.6g", 1 / slip->factor), line.a);
+        add("unit", Severity::error, "imu.accel_x_m_s2",
+            say("the accelerometer reads %.3g of the acceleration that the camera sees: it looks like %s", line.a, slip->written),
+            say("multiply it by %.6g", 1 / slip->factor), line.a);
     } else if (line.a < 0) {
-        add("sign", Severity::error, "imu.accel_x_m_s2", say("the accelerometer is negative when the machine speeds up (slope %.3g)", line.a), "turn its sign round (map: sign = -1)", line.a);
+        add("sign", Severity::error, "imu.accel_x_m_s2",
+            say("the accelerometer is negative when the machine speeds up (slope %.3g)", line.a), "turn its sign round (map: sign = -1)",
+            line.a);
     } else if (slip != nullptr) {
-        add("unit", Severity::error, "imu.accel_x_m_s2", say("the accelerometer reads %.3g of the wheels' acceleration: it looks like %s", line.a, slip->written), say("multiply it by %.6g", 1 / slip->factor), line.a);
+        add("unit", Severity::error, "imu.accel_x_m_s2",
+            say("the accelerometer reads %.3g of the wheels' acceleration: it looks like %s", line.a, slip->written),
+            say("multiply it by %.6g", 1 / slip->factor), line.a);
     }
 }
 
 } // namespace
 
-void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) { Motion(log, grid, machine, findings).run(); }
+void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) {
+    Motion(log, grid, machine, findings).run();
+}
 
 } // namespace traction::check

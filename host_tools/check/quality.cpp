@@ -12,7 +12,9 @@ namespace traction::check {
 namespace {
 
 bool is_sensor(const log::Quantity &entry) { return entry.kind == log::Kind::measured || entry.kind == log::Kind::raw; }
-bool one_of(std::string_view quantity, std::initializer_list<std::string_view> list) { return std::find(list.begin(), list.end(), quantity) != list.end(); }
+bool one_of(std::string_view quantity, std::initializer_list<std::string_view> list) {
+    return std::find(list.begin(), list.end(), quantity) != list.end();
+}
 
 class Quality {
   public:
@@ -37,7 +39,8 @@ class Quality {
     bool active_at(const log::Signal &signal, double t_s) const;
     bool electrics_agree(int wheel, double t0_s, double t1_s, bool &known) const;
     bool constant_by_design(const log::Signal &signal) const { return log_.header.count("constant." + signal.name) != 0; }
-    void add(const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value, double t0_s = not_known, double t1_s = not_known) {
+    void add(const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value,
+             double t0_s = not_known, double t1_s = not_known) {
         findings_.push_back({id, severity, signal, std::move(text), std::move(mend), value, t0_s, t1_s});
     }
 
@@ -53,13 +56,17 @@ void Quality::repairs() {
     for (const log::Repair &repair : repairs_) {
         if (repair.id == "not_finite") {
             const log::Signal *signal = log_.find(repair.signal);
-            const double share = static_cast<double>(repair.count) / static_cast<double>(repair.count + (signal != nullptr ? signal->value.size() : 0));
-            add("not_finite", share > 0.2 ? Severity::error : Severity::warning, repair.signal, repair.text + say(" (%.1f %% of the column)", 100 * share),
+            const double share =
+                static_cast<double>(repair.count) / static_cast<double>(repair.count + (signal != nullptr ? signal->value.size() : 0));
+            add("not_finite", share > 0.2 ? Severity::error : Severity::warning, repair.signal,
+                repair.text + say(" (%.1f %% of the column)", 100 * share),
                 "find out why the sensor gave no number, and leave such cells empty", share);
         } else if (one_of(repair.id, {"unsorted", "duplicate_time", "time_not_finite", "cut_last_line", "out_of_range"})) {
-            add(repair.id.c_str(), Severity::warning, repair.signal, repair.text, "mend the recording, so that nothing has to be guessed", static_cast<double>(repair.count));
+            add(repair.id.c_str(), Severity::warning, repair.signal, repair.text, "mend the recording, so that nothing has to be guessed",
+                static_cast<double>(repair.count));
         } else {
-            add(repair.id.c_str(), Severity::note, repair.signal, repair.text, "nothing to do if this is what was meant", static_cast<double>(repair.count));
+            add(repair.id.c_str(), Severity::note, repair.signal, repair.text, "nothing to do if this is what was meant",
+                static_cast<double>(repair.count));
         }
     }
 }
@@ -83,7 +90,8 @@ void Quality::rate(const log::Signal &signal) {
             continue;
         }
         expected += 1;
-        auto same = std::find_if(gaps_.begin(), gaps_.end(), [&](const Gap &gap) { return std::fabs(gap.t0_s - t[i]) < 0.6 && std::fabs(gap.t1_s - t[i + 1]) < 0.6; });
+        auto same = std::find_if(gaps_.begin(), gaps_.end(),
+                                 [&](const Gap &gap) { return std::fabs(gap.t0_s - t[i]) < 0.6 && std::fabs(gap.t1_s - t[i + 1]) < 0.6; });
         if (same == gaps_.end()) same = gaps_.insert(gaps_.end(), Gap{t[i], t[i + 1], {}});
         same->t0_s = std::max(same->t0_s, t[i]); // the fastest signal knows best
         same->t1_s = std::min(same->t1_s, t[i + 1]);
@@ -92,12 +100,16 @@ void Quality::rate(const log::Signal &signal) {
     const bool is_regular = regular > 0.8 * static_cast<double>(step.size());
     rate.missing = is_regular ? 1 - static_cast<double>(step.size()) / expected : 0;
     rate.jitter = (quantile(step, 0.95) - quantile(step, 0.05)) / (2 * rate.median_s);
-    const bool said = std::any_of(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.id == "not_finite" && f.signal == signal.name; });
+    const bool said =
+        std::any_of(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.id == "not_finite" && f.signal == signal.name; });
     if (rate.missing > 0.03 && !said) {
-        add("samples_missing", rate.missing > 0.2 ? Severity::error : Severity::warning, signal.name, say("'%s' lacks %.0f %% of its samples (one every %.4g s expected)", signal.name.c_str(), 100 * rate.missing, rate.median_s),
+        add("samples_missing", rate.missing > 0.2 ? Severity::error : Severity::warning, signal.name,
+            say("'%s' lacks %.0f %% of its samples (one every %.4g s expected)", signal.name.c_str(), 100 * rate.missing, rate.median_s),
             "look for an overloaded logger or a bad link; record again", rate.missing);
     } else if (rate.jitter > 0.3 && !said) {
-        add("jitter", Severity::warning, signal.name, say("the time from sample to sample of '%s' varies by +-%.0f %% around %.4g s", signal.name.c_str(), 100 * rate.jitter, rate.median_s),
+        add("jitter", Severity::warning, signal.name,
+            say("the time from sample to sample of '%s' varies by +-%.0f %% around %.4g s", signal.name.c_str(), 100 * rate.jitter,
+                rate.median_s),
             "stamp samples where they are measured, not where they are written", rate.jitter);
     }
     rates_.push_back(rate);
@@ -108,7 +120,9 @@ bool Quality::frozen_over(const Gap &gap, std::string &evidence) const {
     int moving = 0, frozen = 0;
     for (const log::Signal &signal : log_.signals) {
         const log::Quantity *entry = log::find_quantity(signal.name);
-        if (entry == nullptr || !(entry->quantity == "angle" || entry->quantity == "encoder" || (entry->object == "camera" && entry->quantity != "yaw"))) continue;
+        if (entry == nullptr ||
+            !(entry->quantity == "angle" || entry->quantity == "encoder" || (entry->object == "camera" && entry->quantity != "yaw")))
+            continue;
         const std::vector<double> &t = signal.t_s, &v = signal.value;
         const auto after = std::upper_bound(t.begin(), t.end(), 0.5 * (gap.t0_s + gap.t1_s));
         const std::size_t b = static_cast<std::size_t>(after - t.begin());
@@ -116,7 +130,8 @@ bool Quality::frozen_over(const Gap &gap, std::string &evidence) const {
         std::size_t start = b - 1;
         while (start > 0 && t[b - 1] - t[start] < 0.5) --start;
         if (b - start < 3) continue;
-        const double speed = (v[b - 1] - v[start]) / (t[b - 1] - t[start]), one_step = speed * (t[b - 1] - t[start]) / static_cast<double>(b - 1 - start);
+        const double speed = (v[b - 1] - v[start]) / (t[b - 1] - t[start]),
+                     one_step = speed * (t[b - 1] - t[start]) / static_cast<double>(b - 1 - start);
         double noise = 0; // of one step around the mean step
         for (std::size_t i = start + 1; i < b; ++i) noise = std::max(noise, std::fabs(v[i] - v[i - 1] - one_step));
         const double predicted = speed * (t[b] - t[b - 1]), moved = v[b] - v[b - 1];
@@ -144,14 +159,18 @@ void Quality::gaps() {
         }
         std::string evidence;
         if (frozen_over(gap, evidence)) {
-            add("clock_jump", Severity::error, "", say("the clock jumps by %.3g s at t = %.3f s: ", size, gap.t0_s) + evidence, "take the jump out of all later times, or cut the log there", size, gap.t0_s, gap.t1_s);
+            add("clock_jump", Severity::error, "", say("the clock jumps by %.3g s at t = %.3f s: ", size, gap.t0_s) + evidence,
+                "take the jump out of all later times, or cut the log there", size, gap.t0_s, gap.t1_s);
         } else {
-            add("gap", Severity::warning, "", say("%zu signals have no sample for %.3g s from t = %.3f s (or the clock jumped while the machine stood)", gap.signals.size(), size, gap.t0_s),
+            add("gap", Severity::warning, "",
+                say("%zu signals have no sample for %.3g s from t = %.3f s (or the clock jumped while the machine stood)",
+                    gap.signals.size(), size, gap.t0_s),
                 "cut the log there, or accept that nothing is learnt from that span", size, gap.t0_s, gap.t1_s);
         }
     }
     for (const auto &[signal, gap] : own) {
-        add("gap", Severity::warning, signal, say("'%s' has %d gap(s), the longest %.3g s", signal.c_str(), gap.first, gap.second), "look for an overloaded logger or a bad link", gap.second);
+        add("gap", Severity::warning, signal, say("'%s' has %d gap(s), the longest %.3g s", signal.c_str(), gap.first, gap.second),
+            "look for an overloaded logger or a bad link", gap.second);
     }
 }
 
@@ -172,7 +191,9 @@ void Quality::clipped(const log::Signal &signal) {
         }
         const double share = static_cast<double>(at) / static_cast<double>(v.size());
         if (at < 10 || share < 0.003 || at < 3 * near) continue;
-        add("clipped", Severity::error, signal.name, say("'%s' stands at its %s value %.5g in %.1f %% of the samples: the sensor's range ends there", signal.name.c_str(), edge == low ? "smallest" : "largest", edge, 100 * share),
+        add("clipped", Severity::error, signal.name,
+            say("'%s' stands at its %s value %.5g in %.1f %% of the samples: the sensor's range ends there", signal.name.c_str(),
+                edge == low ? "smallest" : "largest", edge, 100 * share),
             "use a wider range of the sensor, or a gentler drive", share);
     }
 }
@@ -203,7 +224,8 @@ bool Quality::active_at(const log::Signal &signal, double t_s) const {
 bool Quality::electrics_agree(int index, double t0_s, double t1_s, bool &known) const {
     known = false;
     for (const Wheel &wheel : grid_.wheel) {
-        if (wheel.index != index || wheel.voltage.empty() || wheel.current.empty() || wheel.speed.empty() || wheel.unsigned_current) continue;
+        if (wheel.index != index || wheel.voltage.empty() || wheel.current.empty() || wheel.speed.empty() || wheel.unsigned_current)
+            continue;
         std::vector<double> y = wheel.voltage;
         for (std::size_t k = 0; k < y.size(); ++k) {
             if (grid_.time(k) >= t0_s && grid_.time(k) <= t1_s) y[k] = not_known;
@@ -213,7 +235,8 @@ bool Quality::electrics_agree(int index, double t0_s, double t1_s, bool &known) 
         double left = 0, size = 0;
         int n = 0;
         for (std::size_t k = 0; k < y.size(); ++k) {
-            if (grid_.time(k) < t0_s || grid_.time(k) > t1_s || !std::isfinite(wheel.voltage[k] + wheel.speed[k] + wheel.current[k])) continue;
+            if (grid_.time(k) < t0_s || grid_.time(k) > t1_s || !std::isfinite(wheel.voltage[k] + wheel.speed[k] + wheel.current[k]))
+                continue;
             left += std::fabs(wheel.voltage[k] - law.a * wheel.speed[k] - law.b * wheel.current[k]);
             size += std::fabs(wheel.voltage[k]);
             ++n;
@@ -254,9 +277,13 @@ void Quality::dead_or_stuck(const log::Signal &signal, const log::Quantity &entr
     const bool may_stand = v[longest.first] == 0 || !lively; // noise that stops on a number other than 0 needs no second witness
     if ((agrees && may_stand) || (!known && !lively && !whole)) return;
     if (whole) {
-        add("dead_sensor", Severity::error, signal.name, say("'%s' stands at %.5g through the whole drive", signal.name.c_str(), v[longest.first]), "check its wiring; or take the column out of the log", t1 - t0, t0, t1);
+        add("dead_sensor", Severity::error, signal.name,
+            say("'%s' stands at %.5g through the whole drive", signal.name.c_str(), v[longest.first]),
+            "check its wiring; or take the column out of the log", t1 - t0, t0, t1);
     } else {
-        add("stuck_sensor", Severity::error, signal.name, say("'%s' stands at %.5g for %.3g s from t = %.3f s while the machine is driven", signal.name.c_str(), v[longest.first], t1 - t0, t0),
+        add("stuck_sensor", Severity::error, signal.name,
+            say("'%s' stands at %.5g for %.3g s from t = %.3f s while the machine is driven", signal.name.c_str(), v[longest.first],
+                t1 - t0, t0),
             "check its wiring; cut the span out of the log", t1 - t0, t0, t1);
     }
 }
@@ -281,7 +308,9 @@ void Quality::outliers(const log::Signal &signal) {
         if (count++ == 0 || std::fabs(signal.value[i] - middle) > std::fabs(signal.value[worst] - middle)) worst = i;
     }
     if (count == 0 || count > signal.value.size() / 100 + 1) return;
-    add("outlier", Severity::warning, signal.name, say("%zu sample(s) of '%s' lie far outside the rest, the worst %.5g at t = %.3f s", count, signal.name.c_str(), signal.value[worst], signal.t_s[worst]),
+    add("outlier", Severity::warning, signal.name,
+        say("%zu sample(s) of '%s' lie far outside the rest, the worst %.5g at t = %.3f s", count, signal.name.c_str(), signal.value[worst],
+            signal.t_s[worst]),
         "leave these cells empty", signal.value[worst], signal.t_s[worst], signal.t_s[worst]);
 }
 
@@ -294,7 +323,9 @@ void Quality::coarse(const log::Signal &signal) {
     for (std::size_t i = 0; i + 1 < sorted.size(); ++i) step[i] = sorted[i + 1] - sorted[i];
     const double quantum = quantile(step, 0.1), range = quantile(signal.value, 0.99) - quantile(signal.value, 0.01);
     if (!(quantum > 0.05 * range) || sorted.size() > 40) return;
-    add("coarse", Severity::note, signal.name, say("'%s' comes in steps of %.4g, %.0f %% of its range", signal.name.c_str(), quantum, 100 * quantum / range), "where there is a count or a finer sensor, log that as well", quantum);
+    add("coarse", Severity::note, signal.name,
+        say("'%s' comes in steps of %.4g, %.0f %% of its range", signal.name.c_str(), quantum, 100 * quantum / range),
+        "where there is a count or a finer sensor, log that as well", quantum);
 }
 
 void Quality::run() {
@@ -306,7 +337,8 @@ void Quality::run() {
         const log::Quantity *entry = log::find_quantity(signal.name);
         if (entry == nullptr || !is_sensor(*entry) || signal.name.rfind("truth.", 0) == 0) continue;
         if (signal.value.empty()) {
-            add("empty", Severity::warning, signal.name, say("'%s' has no sample", signal.name.c_str()), "take the column out, or find out why nothing was recorded", 0);
+            add("empty", Severity::warning, signal.name, say("'%s' has no sample", signal.name.c_str()),
+                "take the column out, or find out why nothing was recorded", 0);
             continue;
         }
         ++known;
@@ -317,27 +349,32 @@ void Quality::run() {
         fastest = std::min(fastest, rates_.back().median_s);
         if (one_of(entry->quantity, {"current", "accel_x", "gyro_z", "adc", "drawbar_pull", "torque"})) clipped(signal);
         const bool is_clipped = !findings_.empty() && findings_.back().id == "clipped" && findings_.back().signal == signal.name;
-        if (!is_clipped && entry->kind == log::Kind::measured && (one_of(entry->quantity, {"current", "accel_x", "gyro_z"}) || (entry->quantity == "speed" && entry->object != "carriage"))) {
+        if (!is_clipped && entry->kind == log::Kind::measured &&
+            (one_of(entry->quantity, {"current", "accel_x", "gyro_z"}) || (entry->quantity == "speed" && entry->object != "carriage"))) {
             dead_or_stuck(signal, *entry);
         }
         if (signal.name == "camera.x_m") dead_or_stuck(whole_pose(signal), *entry);
         if (one_of(entry->quantity, {"current", "speed"}) && entry->kind == log::Kind::measured) coarse(signal);
     }
     if (known == 0) {
-        add("nothing_to_use", Severity::error, "", "no column is a measured quantity of the vocabulary", "read the file through a map (--map), or name the columns as docs/log_format.md does", 0);
+        add("nothing_to_use", Severity::error, "", "no column is a measured quantity of the vocabulary",
+            "read the file through a map (--map), or name the columns as docs/log_format.md does", 0);
         return;
     }
     if (!trials && fastest >= 2 && std::isfinite(fastest)) {
-        add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.4g s: the times look like milliseconds", fastest), "divide the times by 1000 (map: time.scale = 0.001)", fastest);
+        add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.4g s: the times look like milliseconds", fastest),
+            "divide the times by 1000 (map: time.scale = 0.001)", fastest);
     } else if (!trials && log_.duration_s() < 5) {
-        add("short", Severity::warning, "", say("the log lasts %.3g s", log_.duration_s()), "record at least half a minute with starts, stops and turns", log_.duration_s());
+        add("short", Severity::warning, "", say("the log lasts %.3g s", log_.duration_s()),
+            "record at least half a minute with starts, stops and turns", log_.duration_s());
     }
     if (!trials) gaps();
 }
 
 } // namespace
 
-void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings, std::vector<Rate> &rates) {
+void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings,
+                   std::vector<Rate> &rates) {
     Quality(log, repairs, grid, findings, rates).run();
 }
 

@@ -65,7 +65,8 @@ double correlation(const std::vector<double> &a, const std::vector<double> &b) {
 
 std::vector<double> slope(const std::vector<double> &x, std::size_t half_span) {
     std::vector<double> out(x.size(), not_known);
-    for (std::size_t k = half_span; k + half_span < x.size(); ++k) out[k] = (x[k + half_span] - x[k - half_span]) / (2 * static_cast<double>(half_span) * step_s);
+    for (std::size_t k = half_span; k + half_span < x.size(); ++k)
+        out[k] = (x[k + half_span] - x[k - half_span]) / (2 * static_cast<double>(half_span) * step_s);
     return out;
 }
 
@@ -80,7 +81,8 @@ std::vector<double> smooth(const std::vector<double> &x, std::size_t half_span) 
 }
 
 const UnitSlip *unit_slip(char kind, double factor) {
-    static constexpr UnitSlip angular[] = {{60 / 6.283185307179586, "rpm"}, {57.29577951308232, "deg/s"}, {1 / 6.283185307179586, "turns/s"}};
+    static constexpr UnitSlip angular[] = {
+        {60 / 6.283185307179586, "rpm"}, {57.29577951308232, "deg/s"}, {1 / 6.283185307179586, "turns/s"}};
     static constexpr UnitSlip current[] = {{1000, "mA"}, {0.001, "kA"}};
     static constexpr UnitSlip linear[] = {{1000, "mm"}, {100, "cm"}, {3.6, "km/h"}, {0.001, "km"}};
     static constexpr UnitSlip accel[] = {{1 / 9.80665, "g"}, {101.97, "mg"}, {1000, "mm/s^2"}};
@@ -91,10 +93,14 @@ const UnitSlip *unit_slip(char kind, double factor) {
         return nullptr;
     };
     switch (kind) {
-    case 'w': return search(angular);
-    case 'I': return search(current);
-    case 'v': return search(linear);
-    default: return search(accel);
+    case 'w':
+        return search(angular);
+    case 'I':
+        return search(current);
+    case 'v':
+        return search(linear);
+    default:
+        return search(accel);
     }
 }
 
@@ -155,7 +161,8 @@ void add_camera(const log::Log &log, Grid &grid) {
     for (std::size_t k = 0; k < grid.count; ++k) grid.camera_speed[k] = std::hypot(vx[k], vy[k]);
     if (grid.camera_yaw.empty()) return;
     grid.camera_forward.assign(grid.count, not_known);
-    for (std::size_t k = 0; k < grid.count; ++k) grid.camera_forward[k] = vx[k] * std::cos(grid.camera_yaw[k]) + vy[k] * std::sin(grid.camera_yaw[k]);
+    for (std::size_t k = 0; k < grid.count; ++k)
+        grid.camera_forward[k] = vx[k] * std::cos(grid.camera_yaw[k]) + vy[k] * std::sin(grid.camera_yaw[k]);
 }
 
 void add_wheels(const log::Log &log, Grid &grid) {

@@ -20,7 +20,7 @@ struct Fit {
     double error_a = 0, error_b = 0; // standard errors, widened by `design_effect` for rows that are not independent
     double rms = 0, y_rms = 0;       // of what is left over, of y
     std::size_t rows = 0;
-    bool good = false;               // enough rows, and x1 and x2 tell apart
+    bool good = false; // enough rows, and x1 and x2 tell apart
 };
 constexpr double design_effect = 25; // [1] variance ratio, assumed: soil noise makes neighbouring rows alike (LAB.md: 20-100)
 Fit fit(const std::vector<double> &y, const std::vector<double> &x1, const std::vector<double> &x2 = {});
@@ -41,11 +41,11 @@ struct Grid {
     std::vector<double> battery, accel, gyro, radar, carriage;
     std::vector<double> camera_x, camera_y, camera_yaw;
     std::vector<double> camera_forward, camera_speed, camera_yaw_rate; // over +-0.25 s; forward is along the heading
-    std::vector<double> mean_speed;   // of the wheels
-    std::vector<double> ground_speed; // camera, else radar with the wheels' sign, else carriage; empty: unknown
-    std::string ground_source;        // the column it comes from
+    std::vector<double> mean_speed;                                    // of the wheels
+    std::vector<double> ground_speed;      // camera, else radar with the wheels' sign, else carriage; empty: unknown
+    std::string ground_source;             // the column it comes from
     double effective_radius_m = not_known; // ground speed over wheel speed where slip is least
-    std::vector<char> active;         // 1 where a wheel turns or is driven
+    std::vector<char> active;              // 1 where a wheel turns or is driven
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
 Grid make_grid(const log::Log &log, const Machine &machine);
@@ -68,8 +68,9 @@ const UnitSlip *unit_slip(char kind, double factor);
 std::string say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 using Findings = std::vector<Finding>;
-void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings, std::vector<Rate> &rates);
-void check_drives(const Grid &grid, const Machine &machine, Findings &findings);  // duty, speed, current: units, signs, swaps
+void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings,
+                   std::vector<Rate> &rates);
+void check_drives(const Grid &grid, const Machine &machine, Findings &findings); // duty, speed, current: units, signs, swaps
 void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // encoder, camera, radar, imu
 Excitation measure_excitation(const Grid &grid);
 void judge_excitation(const Excitation &excitation, const Grid &grid, Findings &findings);

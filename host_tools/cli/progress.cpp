@@ -9,8 +9,7 @@ namespace traction::cli {
 using clock = std::chrono::steady_clock;
 
 Progress::Progress(std::string what, long total)
-    : what_(std::move(what)), total_(total > 0 ? total : 1), terminal_(isatty(STDERR_FILENO) == 1), start_(clock::now()),
-      drawn_(start_) {}
+    : what_(std::move(what)), total_(total > 0 ? total : 1), terminal_(isatty(STDERR_FILENO) == 1), start_(clock::now()), drawn_(start_) {}
 
 Progress::~Progress() {
     if (terminal_) std::fputs("\r\033[K", stderr);

@@ -34,7 +34,8 @@ int run_program(const std::string &program, int rounds, const std::string &json)
     while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR) return exit_internal;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-        throw std::filesystem::filesystem_error("cannot run; build it with ninja sim_bench", program, std::error_code(ENOENT, std::generic_category()));
+        throw std::filesystem::filesystem_error("cannot run; build it with ninja sim_bench", program,
+                                                std::error_code(ENOENT, std::generic_category()));
     return WIFEXITED(status) ? WEXITSTATUS(status) : exit_internal;
 }
 
@@ -46,7 +47,8 @@ void add_bench_sim(CLI::App &app, Outcome &outcome) {
     verb->add_option("--rounds", *rounds, "interleaved rounds; the median is shown")->check(CLI::Range(1, 1000))->capture_default_str();
     add_json_option(verb, outcome);
     verb->callback([rounds, &outcome] {
-        const std::filesystem::path json = std::filesystem::temp_directory_path() / ("traction_bench_sim_" + std::to_string(getpid()) + ".json");
+        const std::filesystem::path json =
+            std::filesystem::temp_directory_path() / ("traction_bench_sim_" + std::to_string(getpid()) + ".json");
         outcome.exit_code = run_program(bench_program().string(), *rounds, json.string());
         std::ifstream file(json);
         if (file) outcome.json = nlohmann::json::parse(file);

@@ -34,19 +34,24 @@ int run_program(const std::string &program, int seeds, const std::string &json) 
     while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR) return exit_internal;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-        throw std::filesystem::filesystem_error("cannot run; build it with ninja speed_bench", program, std::error_code(ENOENT, std::generic_category()));
+        throw std::filesystem::filesystem_error("cannot run; build it with ninja speed_bench", program,
+                                                std::error_code(ENOENT, std::generic_category()));
     return WIFEXITED(status) ? WEXITSTATUS(status) : exit_internal;
 }
 
 } // namespace
 
 void add_bench_speed(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = bench_group(app)->add_subcommand("speed", "ground speed from the radar: the paper's method and ours, by profile; exit 1 when a goal is missed");
+    CLI::App *verb = bench_group(app)->add_subcommand(
+        "speed", "ground speed from the radar: the paper's method and ours, by profile; exit 1 when a goal is missed");
     const auto seeds = std::make_shared<int>(12);
-    verb->add_option("--seeds", *seeds, "radar tracks of each profile; a third of them for the misfits")->check(CLI::Range(1, 1000))->capture_default_str();
+    verb->add_option("--seeds", *seeds, "radar tracks of each profile; a third of them for the misfits")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     add_json_option(verb, outcome);
     verb->callback([seeds, &outcome] {
-        const std::filesystem::path json = std::filesystem::temp_directory_path() / ("traction_bench_speed_" + std::to_string(getpid()) + ".json");
+        const std::filesystem::path json =
+            std::filesystem::temp_directory_path() / ("traction_bench_speed_" + std::to_string(getpid()) + ".json");
         outcome.exit_code = run_program(bench_program().string(), *seeds, json.string());
         std::ifstream file(json);
         if (file) outcome.json = nlohmann::json::parse(file);

@@ -32,7 +32,8 @@ check::Machine machine_of(const lab::Model &model) {
     machine.wheels_point_forward = model.motion != lab::BodyMotion::none;
     for (const lab::WheelSpec &wheel : model.wheel) {
         const auto heading = wheel.geometry.find("heading_rad");
-        if (!wheel.grips_sideways || (heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01)) machine.wheels_point_forward = false;
+        if (!wheel.grips_sideways || (heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01))
+            machine.wheels_point_forward = false;
     }
     return machine;
 }
@@ -40,37 +41,68 @@ check::Machine machine_of(const lab::Model &model) {
 nlohmann::json excitation_json(const check::Excitation &e) {
     nlohmann::json wheels = nlohmann::json::array();
     for (const check::WheelExcitation &w : e.wheel) {
-        wheels.push_back({{"wheel", w.wheel}, {"speed_min_rad_s", w.speed_min_rad_s}, {"speed_max_rad_s", w.speed_max_rad_s}, {"slip_low", w.slip_low}, {"slip_high", w.slip_high},
-                          {"accel_rms_rad_s2", w.accel_rms_rad_s2}, {"current_low_A", w.current_low_A}, {"current_high_A", w.current_high_A}});
+        wheels.push_back({{"wheel", w.wheel},
+                          {"speed_min_rad_s", w.speed_min_rad_s},
+                          {"speed_max_rad_s", w.speed_max_rad_s},
+                          {"slip_low", w.slip_low},
+                          {"slip_high", w.slip_high},
+                          {"accel_rms_rad_s2", w.accel_rms_rad_s2},
+                          {"current_low_A", w.current_low_A},
+                          {"current_high_A", w.current_high_A}});
     }
-    return {{"duration_s", e.duration_s}, {"speed_min_m_s", e.speed_min_m_s}, {"speed_max_m_s", e.speed_max_m_s}, {"reverse_s", e.reverse_s}, {"accel_rms_m_s2", e.accel_rms_m_s2}, {"starts", e.starts},
-            {"standstill_s", e.standstill_s}, {"moving_s", e.moving_s}, {"turning_s", e.turning_s}, {"yaw_rate_max_rad_s", e.yaw_rate_max_rad_s}, {"revisited", e.revisited}, {"path_m", e.path_m},
-            {"wheels_apart", e.wheels_apart}, {"slip_low", e.slip_low}, {"slip_high", e.slip_high}, {"constant_input", e.constant_input}, {"duty_saturated", e.duty_saturated}, {"wheels", wheels}};
+    return {{"duration_s", e.duration_s},         {"speed_min_m_s", e.speed_min_m_s},
+            {"speed_max_m_s", e.speed_max_m_s},   {"reverse_s", e.reverse_s},
+            {"accel_rms_m_s2", e.accel_rms_m_s2}, {"starts", e.starts},
+            {"standstill_s", e.standstill_s},     {"moving_s", e.moving_s},
+            {"turning_s", e.turning_s},           {"yaw_rate_max_rad_s", e.yaw_rate_max_rad_s},
+            {"revisited", e.revisited},           {"path_m", e.path_m},
+            {"wheels_apart", e.wheels_apart},     {"slip_low", e.slip_low},
+            {"slip_high", e.slip_high},           {"constant_input", e.constant_input},
+            {"duty_saturated", e.duty_saturated}, {"wheels", wheels}};
 }
 
 nlohmann::json report_json(const CheckOptions &options, const check::Report &report) {
     nlohmann::json findings = nlohmann::json::array(), rates = nlohmann::json::array();
     for (const check::Finding &f : report.findings) {
-        findings.push_back({{"id", f.id}, {"severity", check::severity_name(f.severity)}, {"signal", f.signal}, {"text", f.text}, {"mend", f.mend}, {"value", f.value}, {"t0_s", f.t0_s}, {"t1_s", f.t1_s}});
+        findings.push_back({{"id", f.id},
+                            {"severity", check::severity_name(f.severity)},
+                            {"signal", f.signal},
+                            {"text", f.text},
+                            {"mend", f.mend},
+                            {"value", f.value},
+                            {"t0_s", f.t0_s},
+                            {"t1_s", f.t1_s}});
     }
     for (const check::Rate &r : report.rates) {
-        rates.push_back({{"signal", r.signal}, {"samples", r.samples}, {"median_s", r.median_s}, {"jitter", r.jitter}, {"missing", r.missing}, {"largest_gap_s", r.largest_gap_s}});
+        rates.push_back({{"signal", r.signal},
+                         {"samples", r.samples},
+                         {"median_s", r.median_s},
+                         {"jitter", r.jitter},
+                         {"missing", r.missing},
+                         {"largest_gap_s", r.largest_gap_s}});
     }
-    return {{"schema", "traction.check/1"}, {"log", options.log}, {"map", options.map}, {"model", options.model}, {"passed", report.passed()}, {"findings", findings}, {"rates", rates}, {"excitation", excitation_json(report.excitation)}};
+    return {
+        {"schema", "traction.check/1"}, {"log", options.log},   {"map", options.map}, {"model", options.model},
+        {"passed", report.passed()},    {"findings", findings}, {"rates", rates},     {"excitation", excitation_json(report.excitation)}};
 }
 
 void print_report(const CheckOptions &options, const check::Report &report) {
     int count[3] = {};
     for (const check::Finding &finding : report.findings) {
         ++count[static_cast<int>(finding.severity)];
-        std::printf("%-7s  %-16s  %s\n%27s-> %s\n", check::severity_name(finding.severity), finding.id.c_str(), finding.text.c_str(), "", finding.mend.c_str());
+        std::printf("%-7s  %-16s  %s\n%27s-> %s\n", check::severity_name(finding.severity), finding.id.c_str(), finding.text.c_str(), "",
+                    finding.mend.c_str());
     }
     const check::Excitation &e = report.excitation;
     if (e.duration_s > 0) {
-        std::printf("drive: %.1f s, %.1f s moving, %.1f s in reverse, %d starts, longest standstill %.1f s\n", e.duration_s, e.moving_s, e.reverse_s, e.starts, e.standstill_s);
-        if (std::isfinite(e.speed_max_m_s)) std::printf("       speed %.2f to %.2f m/s, slip %.2f to %.2f, acceleration %.2f m/s^2 rms\n", e.speed_min_m_s, e.speed_max_m_s, e.slip_low, e.slip_high, e.accel_rms_m_s2);
+        std::printf("drive: %.1f s, %.1f s moving, %.1f s in reverse, %d starts, longest standstill %.1f s\n", e.duration_s, e.moving_s,
+                    e.reverse_s, e.starts, e.standstill_s);
+        if (std::isfinite(e.speed_max_m_s))
+            std::printf("       speed %.2f to %.2f m/s, slip %.2f to %.2f, acceleration %.2f m/s^2 rms\n", e.speed_min_m_s, e.speed_max_m_s,
+                        e.slip_low, e.slip_high, e.accel_rms_m_s2);
     }
-    std::printf("%s: %d errors, %d warnings, %d notes: %s\n", options.log.c_str(), count[2], count[1], count[0], report.passed() ? "fit to learn from" : "NOT fit to learn from until the errors are mended");
+    std::printf("%s: %d errors, %d warnings, %d notes: %s\n", options.log.c_str(), count[2], count[1], count[0],
+                report.passed() ? "fit to learn from" : "NOT fit to learn from until the errors are mended");
 }
 
 } // namespace
@@ -80,7 +112,8 @@ void add_check(CLI::App &app, Outcome &outcome) {
     CLI::App *verb = app.add_subcommand("check", "judge a log before anything is learnt from it: samples, signs, units, excitation");
     verb->add_option("log", options->log, "the log")->required()->type_name("LOG.csv");
     verb->add_option("--map", options->map, "read a foreign CSV through this map (docs/log_format.md)")->type_name("MAP.toml");
-    verb->add_option("--model", options->model, "what is known of the machine: units are then told by their factor")->type_name("MODEL.toml");
+    verb->add_option("--model", options->model, "what is known of the machine: units are then told by their factor")
+        ->type_name("MODEL.toml");
     add_json_option(verb, outcome);
     verb->callback([options, &outcome] {
         const check::Machine machine = options->model.empty() ? check::Machine{} : machine_of(lab::read_model(options->model));

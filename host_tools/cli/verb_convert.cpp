@@ -20,7 +20,8 @@ void add_convert(CLI::App &app, Outcome &outcome) {
     const auto options = std::make_shared<ConvertOptions>();
     CLI::App *verb = app.add_subcommand("convert", "rewrite a foreign CSV, read through a map, as a log of traction's own format");
     verb->add_option("in", options->in, "the file to read")->required()->type_name("IN.csv");
-    verb->add_option("--map", options->map, "which column is which signal (docs/log_format.md); without it, IN is mended and rewritten")->type_name("MAP.toml");
+    verb->add_option("--map", options->map, "which column is which signal (docs/log_format.md); without it, IN is mended and rewritten")
+        ->type_name("MAP.toml");
     verb->add_option("--out", options->out, "the log to write")->required()->type_name("OUT.csv");
     add_json_option(verb, outcome);
     verb->callback([options, &outcome] {
@@ -34,7 +35,14 @@ void add_convert(CLI::App &app, Outcome &outcome) {
             signals.push_back(signal.name);
         }
         std::printf("%s: %zu signals, %zu samples, %.6g s\n", options->out.c_str(), log.signals.size(), samples, log.duration_s());
-        outcome.json = {{"schema", "traction.convert/1"}, {"in", options->in}, {"map", options->map}, {"out", options->out}, {"signals", signals}, {"samples", samples}, {"duration_s", log.duration_s()}, {"repairs", log.repairs}};
+        outcome.json = {{"schema", "traction.convert/1"},
+                        {"in", options->in},
+                        {"map", options->map},
+                        {"out", options->out},
+                        {"signals", signals},
+                        {"samples", samples},
+                        {"duration_s", log.duration_s()},
+                        {"repairs", log.repairs}};
     });
 }
 

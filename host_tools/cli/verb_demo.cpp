@@ -82,8 +82,10 @@ void measured_run(const fs::path &root, Outcome &outcome) {
         std::printf("\nNo ../shared/data beside the project: the comparison with a measured Robotino run is left out.\n");
         return;
     }
-    const lab::Session session = lab::open_session({.model = (root / "models/robotino_carpet.toml").string(), .log = log.string(),
-                                                    .map = (root / "models/maps/robotino.toml").string(), .repeat = ""});
+    const lab::Session session = lab::open_session({.model = (root / "models/robotino_carpet.toml").string(),
+                                                    .log = log.string(),
+                                                    .map = (root / "models/maps/robotino.toml").string(),
+                                                    .repeat = ""});
     const lab::Comparison comparison = lab::compare(session.model, session.data, false);
     std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino_carpet.toml:\n%s",
                 lab::comparison_text(comparison).c_str());
@@ -97,8 +99,8 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     const std::string better_file = (folder / "rover_better.toml").string(), report_file = (folder / "report.html").string();
 
     const sim::Scenario scenario = sim::read_scenario((root / "scenarios/demo_sand.toml").string());
-    std::printf("1. Simulate %s with one effect hidden by seed %llu: firmware, plant and sensors in lockstep.\n",
-                scenario.name.c_str(), static_cast<unsigned long long>(request.seed));
+    std::printf("1. Simulate %s with one effect hidden by seed %llu: firmware, plant and sensors in lockstep.\n", scenario.name.c_str(),
+                static_cast<unsigned long long>(request.seed));
     std::fflush(stdout);
     SimulateOptions options;
     options.seed = request.seed;
@@ -143,9 +145,9 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     const std::string words = judged(truth, diagnosis, right);
     std::printf("\n5. The seal: %s.\n   %s\n", described(truth.at("effects").at(0)).c_str(), words.c_str());
     const lab::Rung &first = diagnosis.ladder.front(), &last = diagnosis.ladder.back();
-    outcome.json["demo"] = {{"seed", request.seed}, {"hidden", truth.at("effects").at(0)}, {"named", diagnosis.effects},
-                            {"right", right}, {"judgement", words}, {"error_before", first.heldout},
-                            {"error_after", last.heldout}, {"floor", last.floor}};
+    outcome.json["demo"] = {
+        {"seed", request.seed}, {"hidden", truth.at("effects").at(0)}, {"named", diagnosis.effects},  {"right", right},
+        {"judgement", words},   {"error_before", first.heldout},       {"error_after", last.heldout}, {"floor", last.floor}};
     measured_run(root, outcome);
     std::printf("\nOpen the report: %s\n", report_file.c_str());
 }

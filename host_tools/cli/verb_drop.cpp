@@ -23,8 +23,12 @@ void add_drop(CLI::App &app, Outcome &outcome) {
     add_json_option(verb, outcome);
     verb->callback([=, &outcome] {
         lab::Model model = lab::read_model(request->model);
-        const std::size_t dropped = std::erase_if(model.effects, [&](const lab::EffectUse &use) { return use.name == request->effect && (request->wheel < -1 || use.wheel == request->wheel); });
-        if (dropped == 0) throw lab::ModelError(request->model, 0, "effect", "there is no \"" + request->effect + "\" in it", "`traction history` lists what the model has");
+        const std::size_t dropped = std::erase_if(model.effects, [&](const lab::EffectUse &use) {
+            return use.name == request->effect && (request->wheel < -1 || use.wheel == request->wheel);
+        });
+        if (dropped == 0)
+            throw lab::ModelError(request->model, 0, "effect", "there is no \"" + request->effect + "\" in it",
+                                  "`traction history` lists what the model has");
         model.lineage.push_back({"- " + request->effect, "", "", {}, {}, {}});
         model.lineage.back().train = model.lineage.back().heldout = model.lineage.back().floor = std::numeric_limits<double>::quiet_NaN();
         lab::write_model(model, request->out);

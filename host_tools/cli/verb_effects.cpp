@@ -18,13 +18,20 @@ struct UnknownEffect : std::runtime_error {
 
 const char *place_of(sim::ActsOn where) {
     switch (where) {
-    case sim::ActsOn::wheel_torque: return "wheel torque";
-    case sim::ActsOn::wheel_force: return "wheel force";
-    case sim::ActsOn::body_force: return "body force";
-    case sim::ActsOn::motor_voltage: return "motor voltage";
-    case sim::ActsOn::kinematics: return "kinematics";
-    case sim::ActsOn::load: return "load";
-    case sim::ActsOn::sensor: return "sensor";
+    case sim::ActsOn::wheel_torque:
+        return "wheel torque";
+    case sim::ActsOn::wheel_force:
+        return "wheel force";
+    case sim::ActsOn::body_force:
+        return "body force";
+    case sim::ActsOn::motor_voltage:
+        return "motor voltage";
+    case sim::ActsOn::kinematics:
+        return "kinematics";
+    case sim::ActsOn::load:
+        return "load";
+    case sim::ActsOn::sensor:
+        return "sensor";
     }
     return "";
 }
@@ -46,17 +53,29 @@ std::size_t distance(std::string_view a, std::string_view b) { // Levenshtein
 const sim::Effect &effect_or_mend(const std::string &name) {
     if (const sim::Effect *effect = sim::find_effect(name)) return *effect;
     const auto all = sim::catalogue();
-    const auto nearest = std::min_element(all.begin(), all.end(), [&](const sim::Effect &a, const sim::Effect &b) { return distance(name, a.name) < distance(name, b.name); });
-    throw UnknownEffect("there is no effect '" + name + "'; did you mean '" + std::string(nearest->name) + "'? `traction effects` lists all");
+    const auto nearest = std::min_element(all.begin(), all.end(), [&](const sim::Effect &a, const sim::Effect &b) {
+        return distance(name, a.name) < distance(name, b.name);
+    });
+    throw UnknownEffect("there is no effect '" + name + "'; did you mean '" + std::string(nearest->name) +
+                        "'? `traction effects` lists all");
 }
 
 nlohmann::json effect_json(const sim::Effect &effect) {
     nlohmann::json parameters = nlohmann::json::array();
     for (const sim::EffectParameter &p : effect.parameters) {
-        parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"meaning", p.meaning}, {"strength", p.strength}, {"minimum", p.minimum}, {"maximum", p.maximum}, {"typical", p.typical}, {"of_interest", p.of_interest}, {"variants", p.variants}});
+        parameters.push_back({{"name", p.name},
+                              {"unit", p.unit},
+                              {"meaning", p.meaning},
+                              {"strength", p.strength},
+                              {"minimum", p.minimum},
+                              {"maximum", p.maximum},
+                              {"typical", p.typical},
+                              {"of_interest", p.of_interest},
+                              {"variants", p.variants}});
     }
-    return {{"name", effect.name}, {"title", effect.title}, {"acts_on", place_of(effect.acts_on)}, {"per_wheel", effect.per_wheel}, {"equation", effect.equation}, {"source", effect.source},
-            {"signature", effect.signature}, {"reveals", effect.reveals}, {"parameters", parameters}};
+    return {{"name", effect.name},           {"title", effect.title},       {"acts_on", place_of(effect.acts_on)},
+            {"per_wheel", effect.per_wheel}, {"equation", effect.equation}, {"source", effect.source},
+            {"signature", effect.signature}, {"reveals", effect.reveals},   {"parameters", parameters}};
 }
 
 void wrap(const char *label, std::string_view text) {
@@ -89,18 +108,22 @@ void explain(const sim::Effect &effect) {
     for (const sim::EffectParameter &p : effect.parameters) {
         std::printf("  %s [%s]: %s\n", std::string(p.name).c_str(), std::string(p.unit).c_str(), std::string(p.meaning).c_str());
         if (p.strength) {
-            std::printf("      fitted, 0 = absent; %g to %g, worth knowing from %g, the simulator's usual %g\n", p.minimum, p.maximum, p.of_interest, p.typical);
+            std::printf("      fitted, 0 = absent; %g to %g, worth knowing from %g, the simulator's usual %g\n", p.minimum, p.maximum,
+                        p.of_interest, p.typical);
         } else {
             std::string variants;
             for (const double value : p.variants) variants += (variants.empty() ? "" : ", ") + nlohmann::json(value).dump();
-            std::printf("      shape; the lab tries %s; the simulator's usual %g\n", variants.empty() ? "values that the log suggests" : variants.c_str(), p.typical);
+            std::printf("      shape; the lab tries %s; the simulator's usual %g\n",
+                        variants.empty() ? "values that the log suggests" : variants.c_str(), p.typical);
         }
     }
     std::string strength = "value";
     for (const sim::EffectParameter &p : effect.parameters) {
         if (p.strength) strength = std::string(p.name) + " = " + nlohmann::json(p.typical).dump();
     }
-    std::printf("\n  in a scenario or a model:   [[effect]]\n                              name = \"%s\"\n                              %s\n", std::string(effect.name).c_str(), strength.c_str());
+    std::printf(
+        "\n  in a scenario or a model:   [[effect]]\n                              name = \"%s\"\n                              %s\n",
+        std::string(effect.name).c_str(), strength.c_str());
 }
 
 } // namespace
@@ -118,7 +141,8 @@ void add_effects(CLI::App &app, Outcome &outcome) {
             effects.push_back(effect_json(effect));
         } else {
             for (const sim::Effect &effect : sim::catalogue()) {
-                std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), place_of(effect.acts_on), std::string(effect.title).c_str());
+                std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), place_of(effect.acts_on),
+                            std::string(effect.title).c_str());
                 effects.push_back(effect_json(effect));
             }
             std::printf("\n%zu effects. `traction effects NAME` explains one.\n", sim::catalogue().size());

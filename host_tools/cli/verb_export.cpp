@@ -29,7 +29,8 @@ std::string line(const char *name, double value, const char *comment) {
 // The numbers of rover_config_t that a model knows, with the effects that change them folded in.
 std::string firmware_text(const lab::Model &model) {
     const lab::WheelSpec &wheel = model.wheel.front();
-    double KG = wheel.motor.at("torque_constant_Nm_A").value, b = wheel.motor.at("viscous_Nms").value, t0 = wheel.motor.at("coulomb_Nm").value;
+    double KG = wheel.motor.at("torque_constant_Nm_A").value, b = wheel.motor.at("viscous_Nms").value,
+           t0 = wheel.motor.at("coulomb_Nm").value;
     double radius = wheel.geometry.at("radius_m").value;
     for (const lab::EffectUse &use : model.effects) {
         if (use.wheel >= 0) continue; // the firmware has one set for all wheels
@@ -41,7 +42,8 @@ std::string firmware_text(const lab::Model &model) {
     }
     return "# parameters for the firmware, from the model \"" + model.name + "\"\nformat = \"traction.firmware/1\"\n" +
            line("wheel_radius_m", radius, "m, under load") + line("torque_constant_Nm_A", KG, "N m/A at the wheel, (17)") +
-           line("viscous_Nms", b, "N m s, (18)") + line("coulomb_Nm", t0, "N m, (18)") + line("inertia_kg_m2", wheel.motor.at("inertia_kg_m2").value, "kg m^2, (17)") +
+           line("viscous_Nms", b, "N m s, (18)") + line("coulomb_Nm", t0, "N m, (18)") +
+           line("inertia_kg_m2", wheel.motor.at("inertia_kg_m2").value, "kg m^2, (17)") +
            line("resistance_ohm", wheel.motor.at("resistance_ohm").value, "ohm") + line("mass_kg", model.rover.at("mass_kg").value, "kg");
 }
 
@@ -66,7 +68,8 @@ void export_all(const ExportRequest &request, Outcome &outcome) {
     for (const lab::BalanceComparison &b : comparison.balances)
         for (std::size_t i = 0; i < b.t_s.size(); ++i) {
             char buffer[200];
-            std::snprintf(buffer, sizeof buffer, "%s,%.6f,%.9g,%.9g,%.9g,%.9g,%s\n", b.name.c_str(), b.t_s[i], b.measured[i], b.model[i], b.measured[i] - b.model[i], b.noise, b.unit.c_str());
+            std::snprintf(buffer, sizeof buffer, "%s,%.6f,%.9g,%.9g,%.9g,%.9g,%s\n", b.name.c_str(), b.t_s[i], b.measured[i], b.model[i],
+                          b.measured[i] - b.model[i], b.noise, b.unit.c_str());
             text += buffer;
         }
     report::write_text(text, request.residuals);
@@ -87,7 +90,9 @@ void add_export(CLI::App &app, Outcome &outcome) {
     verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
     verb->add_option("--residuals", request->residuals, "write every residual to this CSV")->type_name("FILE");
     verb->add_option("--firmware", request->firmware, "write the firmware's parameters to this file")->type_name("FILE");
-    verb->add_option("--regressors", request->regressors, "fit, then write what every candidate effect would change (host_tools/bench_lab/regressors.h)")->type_name("FILE");
+    verb->add_option("--regressors", request->regressors,
+                     "fit, then write what every candidate effect would change (host_tools/bench_lab/regressors.h)")
+        ->type_name("FILE");
     add_json_option(verb, outcome);
     verb->callback([=, &outcome] {
         if (request->residuals.empty() && request->firmware.empty() && request->regressors.empty())

@@ -19,7 +19,8 @@ namespace {
 
 void print_table(const char *title, const lab::Parameters &table) {
     for (const auto &[key, p] : table)
-        if (std::isfinite(p.low)) std::printf("%-10s %-26s %12.5g  [%.5g, %.5g] %s\n", title, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
+        if (std::isfinite(p.low))
+            std::printf("%-10s %-26s %12.5g  [%.5g, %.5g] %s\n", title, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
 }
 
 struct FitRequest {
@@ -39,7 +40,11 @@ report::Figure profile_figure(const std::vector<lab::Profile> &profiles) {
             curve.x.push_back(z), curve.y.push_back(p.rise[i]);
             if (std::fabs(z) < 3) parabola.x.push_back(z), parabola.y.push_back(z * z);
         }
-        figure.panels.push_back({.title = p.parameter + ": " + p.verdict, .y_label = "rise [1]", .series = {curve, parabola}, .rules = {{.value = 3.84, .name = "95 %"}}, .from_zero = true});
+        figure.panels.push_back({.title = p.parameter + ": " + p.verdict,
+                                 .y_label = "rise [1]",
+                                 .series = {curve, parabola},
+                                 .rules = {{.value = 3.84, .name = "95 %"}},
+                                 .from_zero = true});
     }
     return figure;
 }
@@ -103,8 +108,11 @@ void add_fit(CLI::App &app, Outcome &outcome) {
     verb->add_option("--to", request->input.to_s, "use the log up to this time [s]");
     verb->add_option("--out", request->out, "write the fitted model to this file")->type_name("FILE");
     verb->add_option("--report", request->report, "write a report page (HTML)")->type_name("FILE");
-    CLI::Option *profile = verb->add_option("--profile", request->profile, "profile likelihood of these, such as motor.resistance_ohm; of every effect's strength when none is named")
-                               ->expected(0, 100)->type_name("PARAM...");
+    CLI::Option *profile =
+        verb->add_option("--profile", request->profile,
+                         "profile likelihood of these, such as motor.resistance_ohm; of every effect's strength when none is named")
+            ->expected(0, 100)
+            ->type_name("PARAM...");
     verb->add_option("--profile-figure", request->figure, "draw the profiles (SVG)")->type_name("FILE")->needs(profile);
     add_json_option(verb, outcome);
     verb->callback([=, &outcome] {

@@ -39,7 +39,8 @@ void add_game(CLI::App &app, Outcome &outcome) {
     auto request = std::make_shared<GameRequest>();
     CLI::App *verb = app.add_subcommand("game", "a sealed log to learn on: look, guess an effect, add it, watch the ladder, open the seal");
     CLI::Option *fresh = verb->add_option("--new", request->fresh.seed, "start a game; the seed hides the effect")->type_name("SEED");
-    CLI::Option *guess = verb->add_option("--guess", request->guess, "fit the model with this effect, without keeping it")->type_name("EFFECT");
+    CLI::Option *guess =
+        verb->add_option("--guess", request->guess, "fit the model with this effect, without keeping it")->type_name("EFFECT");
     CLI::Option *add = verb->add_option("--add", request->add, "the same, and keep it")->type_name("EFFECT");
     CLI::Option *open = verb->add_flag("--open", request->open, "open the seal and be scored: the end");
     const std::vector<CLI::Option *> actions = {fresh, guess, add, open};

@@ -26,8 +26,10 @@ void add_history(CLI::App &app, Outcome &outcome) {
             std::printf("%-36s log %-30s %s\n", entry.label.c_str(), entry.log.c_str(), entry.date.c_str());
             ladder.push_back({entry.label, entry.train, entry.heldout, entry.floor});
         }
-        if (ladder.empty()) std::printf("no history: the model is as it was written\n");
-        else std::fputs(lab::ladder_text(ladder).c_str(), stdout);
+        if (ladder.empty())
+            std::printf("no history: the model is as it was written\n");
+        else
+            std::fputs(lab::ladder_text(ladder).c_str(), stdout);
         outcome.json = lab::head_json("history", model, lab::Dataset{});
         outcome.json["ladder"] = lab::ladder_json(ladder);
     });

@@ -23,18 +23,22 @@ struct NextRequest {
 };
 
 void next(const NextRequest &request, Outcome &outcome) {
-    if (request.input.log.empty() && request.effects.empty()) throw CLI::ValidationError("next", "give --log LOG, or --effects NAME..., or both");
+    if (request.input.log.empty() && request.effects.empty())
+        throw CLI::ValidationError("next", "give --log LOG, or --effects NAME..., or both");
     std::optional<lab::Session> session;
     if (!request.input.log.empty()) session = lab::open_session(request.input);
     lab::NextExperiment answer;
     if (request.effects.empty()) {
-        answer = lab::next_experiment(lab::diagnose(session->model, session->data, {}), session->model, session->data, request.all, simulated_rover());
+        answer = lab::next_experiment(lab::diagnose(session->model, session->data, {}), session->model, session->data, request.all,
+                                      simulated_rover());
     } else {
         const lab::Model model = session ? session->model : lab::read_model(request.input.model);
         answer = lab::next_experiment(request.effects, model, session ? &session->data : nullptr, simulated_rover());
     }
-    if (session) outcome.json = lab::head_json("next", session->model, session->data);
-    else outcome.json = {{"schema", "traction.lab/1"}, {"verb", "next"}};
+    if (session)
+        outcome.json = lab::head_json("next", session->model, session->data);
+    else
+        outcome.json = {{"schema", "traction.lab/1"}, {"verb", "next"}};
     outcome.json["next"] = lab::next_json(answer);
     std::fputs(lab::next_text(answer).c_str(), stdout);
     bool stuck = false;
@@ -44,8 +48,10 @@ void next(const NextRequest &request, Outcome &outcome) {
         if (stuck || (!answer.questions.empty() && !answer.predicted)) outcome.exit_code = exit_negative;
         return;
     }
-    if (request.out.empty()) std::fputs(("\n" + answer.scenario_toml).c_str(), stdout);
-    else report::write_text(answer.scenario_toml, request.out);
+    if (request.out.empty())
+        std::fputs(("\n" + answer.scenario_toml).c_str(), stdout);
+    else
+        report::write_text(answer.scenario_toml, request.out);
 }
 
 } // namespace
@@ -56,8 +62,12 @@ void add_next(CLI::App &app, Outcome &outcome) {
     verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
     CLI::Option *log = verb->add_option("--log", request->input.log, "log (CSV) that was not enough")->type_name("FILE");
     verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE")->needs(log);
-    CLI::Option *effects = verb->add_option("--effects", request->effects, "tell these apart (or, one alone: show it), instead of what a diagnosis leaves open; NAME or NAME:WHEEL");
-    verb->add_flag("--all", request->all, "also ask for every effect that the log could not have shown, beside classes")->excludes(effects)->needs(log);
+    CLI::Option *effects =
+        verb->add_option("--effects", request->effects,
+                         "tell these apart (or, one alone: show it), instead of what a diagnosis leaves open; NAME or NAME:WHEEL");
+    verb->add_flag("--all", request->all, "also ask for every effect that the log could not have shown, beside classes")
+        ->excludes(effects)
+        ->needs(log);
     verb->add_option("--out", request->out, "write the scenario to this file")->type_name("FILE");
     add_json_option(verb, outcome);
     verb->callback([=, &outcome] { next(*request, outcome); });

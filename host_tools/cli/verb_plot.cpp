@@ -24,8 +24,10 @@ void plot(const PlotOptions &options, Outcome &outcome) {
     report::Figure figure = report::log_figure(log, options.figure);
     figure.width_px = options.width_px;
     const std::string svg = report::to_svg(figure);
-    if (std::filesystem::path(options.out).extension() == ".png") report::write_png(svg, options.out);
-    else report::write_text(svg, options.out);
+    if (std::filesystem::path(options.out).extension() == ".png")
+        report::write_png(svg, options.out);
+    else
+        report::write_text(svg, options.out);
     std::printf("figure: %s\n", options.out.c_str());
     nlohmann::json panels = nlohmann::json::array();
     for (const report::Panel &panel : figure.panels) {
@@ -54,7 +56,10 @@ void add_plot(CLI::App &app, Outcome &outcome) {
     verb->add_option("--from", options->figure.from_s, "first time shown")->type_name("S");
     verb->add_option("--to", options->figure.to_s, "last time shown")->type_name("S");
     verb->add_option("--width", options->width_px, "width of the figure")->check(CLI::Range(200.0, 8000.0))->type_name("PX");
-    verb->add_option("--out", options->out, "the figure")->required()->type_name("FILE.svg|png")->check(CLI::Validator(check_ending, "", "ending"));
+    verb->add_option("--out", options->out, "the figure")
+        ->required()
+        ->type_name("FILE.svg|png")
+        ->check(CLI::Validator(check_ending, "", "ending"));
     add_json_option(verb, outcome);
     verb->callback([options, &outcome] { plot(*options, outcome); });
 }

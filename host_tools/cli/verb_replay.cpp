@@ -23,8 +23,8 @@ void replay(const std::string &path, const std::string &frames, Outcome &outcome
     }
     std::printf("%zu of %zu ticks differ; first at %.2f s: %s is %.9g in the log, %.9g now\n", comparison.differing, comparison.ticks,
                 comparison.first_s, comparison.first_signal.c_str(), comparison.logged, comparison.replayed);
-    outcome.json["first"] = {{"t_s", comparison.first_s}, {"signal", comparison.first_signal},
-                             {"logged", comparison.logged}, {"replayed", comparison.replayed}};
+    outcome.json["first"] = {
+        {"t_s", comparison.first_s}, {"signal", comparison.first_signal}, {"logged", comparison.logged}, {"replayed", comparison.replayed}};
     outcome.exit_code = exit_negative;
 }
 

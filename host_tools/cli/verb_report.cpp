@@ -25,7 +25,8 @@ nlohmann::json read_result(const std::string &path) {
     try {
         return nlohmann::json::parse(file);
     } catch (const nlohmann::json::parse_error &error) {
-        throw report::ReportError(path + ": byte " + std::to_string(error.byte) + ": this is no JSON; give the file that --json of another verb wrote");
+        throw report::ReportError(path + ": byte " + std::to_string(error.byte) +
+                                  ": this is no JSON; give the file that --json of another verb wrote");
     }
 }
 
@@ -34,7 +35,9 @@ nlohmann::json read_result(const std::string &path) {
 void add_report(CLI::App &app, Outcome &outcome) {
     const auto options = std::make_shared<ReportOptions>();
     CLI::App *verb = app.add_subcommand("report", "show a result written by --json as one HTML page that opens without a network");
-    verb->add_option("result", options->result, "result of compare, diagnose, add, fit, check or reproduce")->required()->type_name("RESULT.json");
+    verb->add_option("result", options->result, "result of compare, diagnose, add, fit, check or reproduce")
+        ->required()
+        ->type_name("RESULT.json");
     verb->add_option("--out", options->out, "the page")->required()->type_name("FILE.html");
     add_json_option(verb, outcome);
     verb->callback([options, &outcome] {

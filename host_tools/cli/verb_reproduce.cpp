@@ -25,9 +25,14 @@ void run(Arguments arguments, Outcome &outcome) {
     arguments.settings.after_run = [&progress] { progress.step(); };
     outcome.json = reproduce(arguments.settings);
     for (const auto &figure : outcome.json["figures"])
-        std::printf("%-8s %-20s paper: %s\n%-29s ours:  %s\n", figure["verdict"].get<std::string>().c_str(), figure["id"].get<std::string>().c_str(), figure["paper"].get<std::string>().c_str(), "", figure["ours"].get<std::string>().c_str());
+        std::printf("%-8s %-20s paper: %s\n%-29s ours:  %s\n", figure["verdict"].get<std::string>().c_str(),
+                    figure["id"].get<std::string>().c_str(), figure["paper"].get<std::string>().c_str(), "",
+                    figure["ours"].get<std::string>().c_str());
     for (const auto &check : outcome.json["checks"])
-        if (!check["pass"]) std::printf("outside its bound: %s, %s: %.4g, not in %.4g to %.4g\n", check["id"].get<std::string>().c_str(), check["what"].get<std::string>().c_str(), check["value"].get<double>(), check["low"].get<double>(), check["high"].get<double>());
+        if (!check["pass"])
+            std::printf("outside its bound: %s, %s: %.4g, not in %.4g to %.4g\n", check["id"].get<std::string>().c_str(),
+                        check["what"].get<std::string>().c_str(), check["value"].get<double>(), check["low"].get<double>(),
+                        check["high"].get<double>());
     if (arguments.settings.bench_data.empty()) std::printf("left out: the measured bench (no data in %s)\n", arguments.data.c_str());
     if (!arguments.out.empty()) {
         report::write_html(outcome.json, arguments.out);
@@ -44,7 +49,8 @@ void add_reproduce(CLI::App &app, Outcome &outcome) {
     verb->add_option("--out", arguments->out, "report with every figure, HTML")->type_name("FILE");
     verb->add_option("--scenarios", arguments->settings.scenarios, "folder of the scenario gallery")->check(CLI::ExistingDirectory);
     arguments->data = "../shared/data";
-    verb->add_option("--data", arguments->data, "folder with measured data; where it is absent, its experiment is left out")->type_name("DIR");
+    verb->add_option("--data", arguments->data, "folder with measured data; where it is absent, its experiment is left out")
+        ->type_name("DIR");
     verb->add_option("--seeds", arguments->settings.seeds, "runs per ground for table III")->check(CLI::Range(2, 1000));
     verb->add_option("--jobs", arguments->settings.jobs, "runs side by side")->check(CLI::Range(1, 256));
     add_json_option(verb, outcome);

@@ -52,15 +52,21 @@ void keep(const Arguments &arguments, const sim::Scenario &scenario, const Simul
 nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
     char hash[20];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(result.trace_hash));
-    return {{"seed", seed}, {"ticks", result.ticks}, {"simulated_s", static_cast<double>(result.ticks) / 100}, {"faults", result.faults}, {"trace_hash", hash}};
+    return {{"seed", seed},
+            {"ticks", result.ticks},
+            {"simulated_s", static_cast<double>(result.ticks) / 100},
+            {"faults", result.faults},
+            {"trace_hash", hash}};
 }
 
 // The scenario's drive, sensors and faults with a lab's model for rover, ground and effects.
 void drive_as(const std::string &file, sim::Scenario &scenario) {
     const lab::Model model = lab::read_model(file);
-    if (const std::string why = lab::cannot_drive(model); !why.empty()) throw lab::ModelError(file, 0, "--model", "cannot be driven: " + why, "give the model of a four-wheeled rover");
+    if (const std::string why = lab::cannot_drive(model); !why.empty())
+        throw lab::ModelError(file, 0, "--model", "cannot be driven: " + why, "give the model of a four-wheeled rover");
     std::vector<std::string> notes;
-    const sim::Scenario machine = sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
+    const sim::Scenario machine =
+        sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
     scenario.plant.rover = machine.plant.rover;
     scenario.plant.ground.soil = machine.plant.ground.soil;
     scenario.plant.ground.grip_noise = machine.plant.ground.grip_noise;
@@ -77,7 +83,8 @@ void run(const Arguments &arguments, Outcome &outcome) {
     options.frames_path = arguments.frames;
     if (!arguments.firmware.empty()) options.firmware = arguments.firmware;
     for (const std::string &text : arguments.effects) options.effects.push_back(sim::parse_effect(text));
-    if (arguments.hide >= 0) options.hide = sim::HiddenDraw{.seed = static_cast<std::uint64_t>(arguments.hide), .count = arguments.hide_count, .among = {}};
+    if (arguments.hide >= 0)
+        options.hide = sim::HiddenDraw{.seed = static_cast<std::uint64_t>(arguments.hide), .count = arguments.hide_count, .among = {}};
 
     std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
     const bool batch = !arguments.seeds.empty();
@@ -112,13 +119,17 @@ void add_simulate(CLI::App &app, Outcome &outcome) {
     verb->add_option("--out", arguments->out, "the log, CSV")->type_name("LOG");
     verb->add_option("--truth", arguments->truth, "what really happened, in a file of its own")->type_name("FILE");
     verb->add_option("--seed", arguments->seed, "instead of the scenario's seed")->check(CLI::NonNegativeNumber);
-    verb->add_option("--effect", arguments->effects, "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)")->type_name("EFFECT");
-    verb->add_option("--model", arguments->model, "rover, ground and effects of a lab's model (TOML) instead of the scenario's")->type_name("FILE");
-    CLI::Option *hide = verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
+    verb->add_option("--effect", arguments->effects, "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)")
+        ->type_name("EFFECT");
+    verb->add_option("--model", arguments->model, "rover, ground and effects of a lab's model (TOML) instead of the scenario's")
+        ->type_name("FILE");
+    CLI::Option *hide =
+        verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
     verb->add_option("--hide-count", arguments->hide_count, "how many effects to hide")->check(CLI::Range(1, 5))->needs(hide);
     verb->add_option("--seal", arguments->seal, "write what was hidden to this file")->type_name("FILE");
     verb->add_option("--frames", arguments->frames, "frames and commands as text that tests/replay reads")->type_name("FILE");
-    verb->add_option("--firmware", arguments->firmware, "firmware configuration instead of the scenario's")->check(CLI::IsMember({"default", "paper"}));
+    verb->add_option("--firmware", arguments->firmware, "firmware configuration instead of the scenario's")
+        ->check(CLI::IsMember({"default", "paper"}));
     verb->add_flag("--realtime", arguments->realtime, "keep pace with the wall clock");
     verb->add_option("--seeds", arguments->seeds, "run seeds FIRST..LAST; file names get the seed")->type_name("A..B");
     verb->add_option("--jobs", arguments->jobs, "runs side by side")->check(CLI::Range(1, 256));

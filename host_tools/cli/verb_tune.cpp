@@ -17,12 +17,19 @@ void add_tune(CLI::App &app, Outcome &outcome) {
         std::string scenario, parameters;
         TuneLimits limits;
     };
-    CLI::App *verb = app.add_subcommand("tune", "wheel-speed gains for the motors of a scenario's rover; the motors are stopped at the end");
+    CLI::App *verb =
+        app.add_subcommand("tune", "wheel-speed gains for the motors of a scenario's rover; the motors are stopped at the end");
     const auto options = std::make_shared<Options>();
-    verb->add_option("scenario", options->scenario, "scenario (TOML) whose rover is tuned; its drive plan is not used")->required()->type_name("FILE");
-    verb->add_option("--torque-Nm", options->limits.torque_Nm, "largest torque at a wheel")->check(CLI::Range(0.01, 20.0))->capture_default_str();
+    verb->add_option("scenario", options->scenario, "scenario (TOML) whose rover is tuned; its drive plan is not used")
+        ->required()
+        ->type_name("FILE");
+    verb->add_option("--torque-Nm", options->limits.torque_Nm, "largest torque at a wheel")
+        ->check(CLI::Range(0.01, 20.0))
+        ->capture_default_str();
     verb->add_option("--duty", options->limits.duty, "largest duty")->check(CLI::Range(0.05, 1.0))->capture_default_str();
-    verb->add_option("--time-s", options->limits.time_s, "the experiment takes at most so long")->check(CLI::Range(1.0, 600.0))->capture_default_str();
+    verb->add_option("--time-s", options->limits.time_s, "the experiment takes at most so long")
+        ->check(CLI::Range(1.0, 600.0))
+        ->capture_default_str();
     verb->add_option("--margin-deg", options->limits.margin_deg, "phase margin")->check(CLI::Range(30.0, 80.0))->capture_default_str();
     verb->add_option("--parameters", options->parameters, "set the gains in this parameter file of the firmware")->type_name("FILE");
     add_json_option(verb, outcome);
@@ -38,15 +45,21 @@ void add_tune(CLI::App &app, Outcome &outcome) {
         hal::SimHal rover(world);
         const TuneResult r = tune(rover.hal(), rover_config_default(), options->limits);
         std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
-        for (std::size_t i = 0; i < r.pole_1_s.size(); i++) std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);
+        for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
+            std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);
         std::printf("wheel_kp_s %.4f, wheel_ki_1 %.4f for a phase margin of %.0f deg\n", r.kp_s, r.ki_1, options->limits.margin_deg);
         if (!options->parameters.empty()) {
             put_parameter(options->parameters, "wheel_kp_s", r.kp_s, "duty per rad/s, traction tune");
             put_parameter(options->parameters, "wheel_ki_1", r.ki_1, "duty per rad, traction tune");
             std::printf("wrote %s\n", options->parameters.c_str());
         }
-        outcome.json = {{"schema", "traction.tune/1"}, {"kp_s", r.kp_s}, {"ki_1", r.ki_1}, {"pole_1_s", r.pole_1_s}, {"gain_rad_s2", r.gain_rad_s2},
-                        {"largest_torque_Nm", r.largest_torque_Nm}, {"used_s", r.used_s}};
+        outcome.json = {{"schema", "traction.tune/1"},
+                        {"kp_s", r.kp_s},
+                        {"ki_1", r.ki_1},
+                        {"pole_1_s", r.pole_1_s},
+                        {"gain_rad_s2", r.gain_rad_s2},
+                        {"largest_torque_Nm", r.largest_torque_Nm},
+                        {"used_s", r.used_s}};
     });
 }
 

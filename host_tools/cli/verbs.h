@@ -10,12 +10,12 @@ namespace traction::cli {
 
 // Exit codes of every verb (docs: README, `traction --help`).
 enum ExitCode {
-    exit_done = 0,       // it did what was asked
-    exit_negative = 1,   // it ran, and the answer is no: a gate or check failed
-    exit_usage = 2,      // the command line is wrong
-    exit_bad_input = 3,  // a log, model, map or scenario is wrong: the message says where and how to mend it
-    exit_io = 4,         // a file cannot be read or written
-    exit_internal = 70,  // a bug in traction
+    exit_done = 0,      // it did what was asked
+    exit_negative = 1,  // it ran, and the answer is no: a gate or check failed
+    exit_usage = 2,     // the command line is wrong
+    exit_bad_input = 3, // a log, model, map or scenario is wrong: the message says where and how to mend it
+    exit_io = 4,        // a file cannot be read or written
+    exit_internal = 70, // a bug in traction
 };
 
 // What a verb hands back to main: its exit code and, for programs, its result.

@@ -24,8 +24,10 @@ namespace {
 constexpr const char *schema = "traction.game/1";
 
 // Effects that the identification drive shows at the sizes that are hidden, and that no parameter of the model can take the place of.
-const std::vector<std::string> plain_effects = {"slip_sinkage", "viscous_friction", "coulomb_friction", "wiring_resistance", "mass_offset_x", "mass_offset_y", "grade", "current_gain",
-                                                "mesh_loss", "multi_pass", "bridge_dead_time", "load_transfer", "accel_scale", "lateral_scrub", "body_drag"};
+const std::vector<std::string> plain_effects = {
+    "slip_sinkage", "viscous_friction", "coulomb_friction", "wiring_resistance", "mass_offset_x",    "mass_offset_y",
+    "grade",        "current_gain",     "mesh_loss",        "multi_pass",        "bridge_dead_time", "load_transfer",
+    "accel_scale",  "lateral_scrub",    "body_drag"};
 
 std::string path_in(const std::string &folder, const char *name) { return (fs::path(folder) / name).string(); }
 
@@ -41,10 +43,12 @@ json read_json(const std::string &path, const std::string &mend) {
 
 json read_state(const std::string &folder) {
     const std::string path = path_in(folder, "game.json");
-    if (!fs::exists(path)) throw GameError(folder + ": there is no game in it; start one with  traction game --new SEED --folder " + folder);
+    if (!fs::exists(path))
+        throw GameError(folder + ": there is no game in it; start one with  traction game --new SEED --folder " + folder);
     json state = read_json(path, "start again with --new SEED --replace");
     for (const char *key : {"schema", "seed", "guesses", "ladder", "opened"})
-        if (!state.contains(key) || state["schema"] != schema) throw GameError(path + ": is not the state of a game (" + schema + "); start again with --new SEED --replace");
+        if (!state.contains(key) || state["schema"] != schema)
+            throw GameError(path + ": is not the state of a game (" + schema + "); start again with --new SEED --replace");
     return state;
 }
 
@@ -52,7 +56,8 @@ void write_state(const std::string &folder, const json &state) { report::write_t
 
 // The rows are those that the baseline makes of the log, whatever the model has grown to: errors on other rows would not compare.
 lab::Session session_of(const std::string &folder) {
-    lab::Session session = lab::open_session({.model = path_in(folder, "baseline.toml"), .log = path_in(folder, "run.csv"), .map = "", .repeat = ""});
+    lab::Session session =
+        lab::open_session({.model = path_in(folder, "baseline.toml"), .log = path_in(folder, "run.csv"), .map = "", .repeat = ""});
     session.model = lab::read_model(path_in(folder, "model.toml"));
     return session;
 }
@@ -76,14 +81,16 @@ std::string guesses_text(const json &state) {
     std::string text = "guesses:\n";
     for (const json &g : state["guesses"]) {
         char line[200];
-        std::snprintf(line, sizeof line, "  %-36s %8.3f -> %.3f%s\n", g.value("label", "").c_str(), g.value("before", 0.0), g.value("after", 0.0), g.value("added", false) ? ", added" : "");
+        std::snprintf(line, sizeof line, "  %-36s %8.3f -> %.3f%s\n", g.value("label", "").c_str(), g.value("before", 0.0),
+                      g.value("after", 0.0), g.value("added", false) ? ", added" : "");
         text += line;
     }
     return text;
 }
 
 void need_running(const json &state, const std::string &folder) {
-    if (state["opened"].get<bool>()) throw GameError(folder + ": this game is over, its seal is open; start another with  traction game --new SEED --replace");
+    if (state["opened"].get<bool>())
+        throw GameError(folder + ": this game is over, its seal is open; start another with  traction game --new SEED --replace");
 }
 
 } // namespace
@@ -93,7 +100,8 @@ Turn start(const NewGame &request) {
         throw GameError(request.folder + ": holds a game already; go on with it, or give --replace or another --folder");
     const sim::Soil *soil = sim::find_soil(request.soil);
     const std::string model_file = (fs::path(request.root) / "models" / ("rover_" + request.soil + ".toml")).string();
-    if (soil == nullptr || !fs::exists(model_file)) throw GameError("--soil " + request.soil + ": there is no model of the rover on it; use sand, gravel or concrete");
+    if (soil == nullptr || !fs::exists(model_file))
+        throw GameError("--soil " + request.soil + ": there is no model of the rover on it; use sand, gravel or concrete");
     sim::Scenario scenario = sim::read_scenario((fs::path(request.root) / "scenarios" / "identification.toml").string());
     scenario.duration_s = std::min(scenario.duration_s, request.duration_s);
     scenario.plant.ground.soil = *soil;
@@ -110,16 +118,23 @@ Turn start(const NewGame &request) {
     log::write_csv(run.log, path_in(request.folder, "run.csv"));
     for (const char *name : {"baseline.toml", "model.toml"}) lab::write_model(model, path_in(request.folder, name));
     report::write_text(sim::seal_text(run.hidden, scenario.name, request.seed), path_in(request.folder, "sealed.json"));
-    const json state = {{"schema", schema}, {"verb", "game"}, {"seed", request.seed}, {"soil", request.soil}, {"level", request.hard ? "hard" : "plain"},
-                        {"guesses", json::array()}, {"ladder", json::array({rung_json(baseline)})}, {"opened", false}};
+    const json state = {{"schema", schema},
+                        {"verb", "game"},
+                        {"seed", request.seed},
+                        {"soil", request.soil},
+                        {"level", request.hard ? "hard" : "plain"},
+                        {"guesses", json::array()},
+                        {"ladder", json::array({rung_json(baseline)})},
+                        {"opened", false}};
     write_state(request.folder, state);
-    Turn turn{"A rover drove for " + std::to_string(static_cast<int>(scenario.duration_s)) + " s on " + request.soil + ". One thing about it is not in the model; the truth is sealed in " +
-                  path_in(request.folder, "sealed.json") + ".\n" + (request.hard ? "It may be any of the catalogue's effects, seen or unseen.\n" : "It is one of:"),
+    Turn turn{"A rover drove for " + std::to_string(static_cast<int>(scenario.duration_s)) + " s on " + request.soil +
+                  ". One thing about it is not in the model; the truth is sealed in " + path_in(request.folder, "sealed.json") + ".\n" +
+                  (request.hard ? "It may be any of the catalogue's effects, seen or unseen.\n" : "It is one of:"),
               state};
     if (!request.hard)
         for (std::size_t i = 0; i < plain_effects.size(); ++i) turn.text += (i % 6 == 0 ? "\n  " : " ") + plain_effects[i];
-    turn.text += std::string(request.hard ? "" : "\n") + "(traction effects NAME tells what each does and how its residual looks)\n" + ladder_text(state) +
-                 "\nNext: traction game (look), --guess EFFECT (try it), --add EFFECT (keep it), --open (end)\n";
+    turn.text += std::string(request.hard ? "" : "\n") + "(traction effects NAME tells what each does and how its residual looks)\n" +
+                 ladder_text(state) + "\nNext: traction game (look), --guess EFFECT (try it), --add EFFECT (keep it), --open (end)\n";
     return turn;
 }
 
@@ -128,7 +143,8 @@ Turn look(const std::string &folder) {
     const lab::Session session = session_of(folder);
     const lab::Comparison comparison = lab::compare(session.model, session.data, false);
     Turn turn{lab::comparison_text(comparison) + guesses_text(state) + ladder_text(state), state};
-    turn.json["score"] = {{"error", comparison.error}, {"adjusted", comparison.adjusted}, {"floor", comparison.floor}, {"verdict", comparison.verdict}};
+    turn.json["score"] = {
+        {"error", comparison.error}, {"adjusted", comparison.adjusted}, {"floor", comparison.floor}, {"verdict", comparison.verdict}};
     return turn;
 }
 
@@ -160,13 +176,16 @@ Turn guess(const std::string &folder, const std::string &effect, int wheel, bool
     write_state(folder, state);
     Turn turn{lab::added_text(added), state};
     turn.json["helps"] = added.helps;
-    turn.text += keep ? label + " is in the model now\n" : "not kept: --add " + effect + (wheel >= 0 ? " --wheel " + std::to_string(wheel) : "") + " keeps it\n";
+    turn.text += keep ? label + " is in the model now\n"
+                      : "not kept: --add " + effect + (wheel >= 0 ? " --wheel " + std::to_string(wheel) : "") + " keeps it\n";
     return turn;
 }
 
 int points(const Played &p) {
     const double to_fall = p.error_before - p.floor;
-    const double share = to_fall > 0.01 * p.floor ? std::clamp((p.error_before - p.error_after) / to_fall, 0.0, 1.0) : p.named ? 1.0 : 0.0; // an error that hides it tells nothing
+    const double share = to_fall > 0.01 * p.floor ? std::clamp((p.error_before - p.error_after) / to_fall, 0.0, 1.0)
+                         : p.named                ? 1.0
+                                                  : 0.0; // an error that hides it tells nothing
     const bool as_good = to_fall > 0.01 * p.floor && p.error_after <= 1.02 * p.floor;
     const double name = p.named ? (p.wheel_right ? 60 : 30) : as_good ? 30 : 0;
     return static_cast<int>(std::lround(std::max(0.0, name + 40 * share - 10 * p.wrong_guesses)));

@@ -2,7 +2,8 @@
 //
 // A game is a folder: run.csv (the log), baseline.toml and model.toml (what the player knew and knows), sealed.json (what was hidden),
 // game.json (the state, schema "traction.game/1", written last: a folder without it is no game). Every action reads the folder, does one
-// thing and writes the state anew, so a game can be left and taken up again. The seal is read by open() and by nothing else; the lab never sees it.
+// thing and writes the state anew, so a game can be left and taken up again. The seal is read by open() and by nothing else; the lab never
+// sees it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,13 +20,13 @@ struct GameError : std::runtime_error {
 };
 
 struct NewGame {
-    std::string root;   // where scenarios/ and models/ lie
+    std::string root; // where scenarios/ and models/ lie
     std::string folder;
-    std::string soil = "sand";  // sand, gravel, concrete
+    std::string soil = "sand"; // sand, gravel, concrete
     std::uint64_t seed = 1;
-    double duration_s = 120;    // of the identification drive, from its beginning
-    bool hard = false;          // any effect of the catalogue; otherwise one of those that such a drive shows
-    bool replace = false;       // an earlier game in the folder is given up
+    double duration_s = 120; // of the identification drive, from its beginning
+    bool hard = false;       // any effect of the catalogue; otherwise one of those that such a drive shows
+    bool replace = false;    // an earlier game in the folder is given up
 };
 
 // What an action did: words for the player, the state (and more) for a program.

@@ -19,7 +19,8 @@ namespace {
 
 json read_json(const std::string &path) {
     std::ifstream file(path);
-    if (!file.is_open()) throw GameError(path + ": cannot be read; a game without it cannot be scored, start again with --new SEED --replace");
+    if (!file.is_open())
+        throw GameError(path + ": cannot be read; a game without it cannot be scored, start again with --new SEED --replace");
     try {
         return json::parse(file);
     } catch (const json::exception &) {
@@ -34,7 +35,8 @@ lab::EffectUse use_of(const json &hidden, const std::string &file) {
         use.name = hidden.at("name").get<std::string>();
         use.wheel = hidden.value("wheel", -1);
         const sim::Effect *effect = sim::find_effect(use.name);
-        if (effect == nullptr) throw GameError(file + ": hides \"" + use.name + "\", which is no effect; start again with --new SEED --replace");
+        if (effect == nullptr)
+            throw GameError(file + ": hides \"" + use.name + "\", which is no effect; start again with --new SEED --replace");
         for (const sim::EffectParameter &spec : effect->parameters) {
             lab::Parameter p;
             p.value = hidden.at("parameters").at(std::string(spec.name)).at("value").get<double>();
@@ -66,11 +68,15 @@ std::string described(const lab::EffectUse &use) {
 Turn open(const std::string &folder) {
     const auto path = [&](const char *name) { return (std::filesystem::path(folder) / name).string(); };
     json state = look(folder).json; // checks the state
-    if (state["opened"].get<bool>()) throw GameError(folder + ": the seal is open already: " + state.value("hidden", "") + ", " + std::to_string(state.value("points", 0)) + " points");
+    if (state["opened"].get<bool>())
+        throw GameError(folder + ": the seal is open already: " + state.value("hidden", "") + ", " +
+                        std::to_string(state.value("points", 0)) + " points");
     const json seal = read_json(path("sealed.json"));
-    if (!seal.contains("effects") || seal["effects"].empty()) throw GameError(path("sealed.json") + ": is no seal; start again with --new SEED --replace");
+    if (!seal.contains("effects") || seal["effects"].empty())
+        throw GameError(path("sealed.json") + ": is no seal; start again with --new SEED --replace");
     const lab::EffectUse truth = use_of(seal["effects"].at(0), path("sealed.json"));
-    const lab::Session session = lab::open_session({.model = path("baseline.toml"), .log = path("run.csv"), .map = "", .repeat = ""}); // the rows of every guess
+    const lab::Session session =
+        lab::open_session({.model = path("baseline.toml"), .log = path("run.csv"), .map = "", .repeat = ""}); // the rows of every guess
     lab::Model told = session.model;
     const lab::Model kept = lab::read_model(path("model.toml"));
     told.effects.push_back(truth);
@@ -82,20 +88,27 @@ Turn open(const std::string &folder) {
         if (use.name == truth.name) played.named = true, played.wheel_right = played.wheel_right || use.wheel == truth.wheel;
     std::vector<std::string> wrong;
     for (const json &g : state["guesses"])
-        if (const std::string name = g["effect"]; name != truth.name && std::find(wrong.begin(), wrong.end(), name) == wrong.end()) wrong.push_back(name);
+        if (const std::string name = g["effect"]; name != truth.name && std::find(wrong.begin(), wrong.end(), name) == wrong.end())
+            wrong.push_back(name);
     played.wrong_guesses = static_cast<int>(wrong.size());
     const int score = points(played);
-    state["opened"] = true, state["hidden"] = described(truth), state["seal"] = seal, state["points"] = score, state["wrong_guesses"] = played.wrong_guesses;
+    state["opened"] = true, state["hidden"] = described(truth), state["seal"] = seal, state["points"] = score,
+    state["wrong_guesses"] = played.wrong_guesses;
     state["error_before"] = played.error_before, state["error_after"] = played.error_after, state["floor"] = played.floor;
     state["error_over_floor"] = played.error_after / played.floor, state["named"] = played.named, state["wheel_right"] = played.wheel_right;
     report::write_text(state.dump(1) + "\n", path("game.json"));
     char line[400];
-    std::snprintf(line, sizeof line, "held-out error %.3f -> %.3f x noise; told the truth, the model leaves %.3f: you stand at %.3f of that\nwrong guesses: %d\n%d points of 100\n", played.error_before,
-                  played.error_after, played.floor, played.error_after / played.floor, played.wrong_guesses, score);
+    std::snprintf(line, sizeof line,
+                  "held-out error %.3f -> %.3f x noise; told the truth, the model leaves %.3f: you stand at %.3f of that\nwrong guesses: "
+                  "%d\n%d points of 100\n",
+                  played.error_before, played.error_after, played.floor, played.error_after / played.floor, played.wrong_guesses, score);
     std::string text = "The seal: " + described(truth) + ".\n";
-    if (played.named) text += played.wheel_right ? "Your model has it.\n" : "Your model has it, on other wheels.\n";
-    else if (played.error_after <= 1.02 * played.floor && played.error_before > 1.01 * played.floor) text += "Your model has another effect that leaves as little: this log hardly tells them apart.\n";
-    else text += "Your model does not have it.\n";
+    if (played.named)
+        text += played.wheel_right ? "Your model has it.\n" : "Your model has it, on other wheels.\n";
+    else if (played.error_after <= 1.02 * played.floor && played.error_before > 1.01 * played.floor)
+        text += "Your model has another effect that leaves as little: this log hardly tells them apart.\n";
+    else
+        text += "Your model does not have it.\n";
     return {text + line, state};
 }
 

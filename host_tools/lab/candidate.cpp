@@ -168,7 +168,8 @@ void Candidate::prepare(Physics &physics) const {
     for (const auto &[key, value] : variant)
         for (const auto &place : handle->shapes) {
             if (place.key != key) continue;
-            if (place.in_body != nullptr) physics.body.*place.in_body = value;
+            if (place.in_body != nullptr)
+                physics.body.*place.in_body = value;
             else
                 for (std::size_t i = 0; i < physics.wheel.size(); ++i)
                     if (wheel < 0 || static_cast<std::size_t>(wheel) == i) physics.wheel[i].*place.in_wheel = value;
@@ -193,7 +194,8 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
             for (const int wheel : wheels) {
                 if (model.find_effect(handle.name, wheel) != nullptr) continue;
                 // on one wheel already: another wheel may join, all wheels would be a second copy
-                const bool elsewhere = std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse &use) { return use.name == handle.name; });
+                const bool elsewhere =
+                    std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse &use) { return use.name == handle.name; });
                 if (wheel < 0 && elsewhere) continue;
                 Candidate c;
                 c.effect = handle.name;
@@ -202,7 +204,8 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
                 c.variants = static_cast<int>(shapes.size() * wheels.size());
                 c.touched = handle.touched;
                 for (const auto &place : handle.strengths) {
-                    const auto spec = std::find_if(effect->parameters.begin(), effect->parameters.end(), [&](const sim::EffectParameter &p) { return p.name == place.key; });
+                    const auto spec = std::find_if(effect->parameters.begin(), effect->parameters.end(),
+                                                   [&](const sim::EffectParameter &p) { return p.name == place.key; });
                     if (spec == effect->parameters.end()) continue;
                     c.strengths.push_back(strength_parameter(c, handle, place, *spec, physics));
                     c.of_interest.push_back(spec->of_interest);
@@ -217,7 +220,8 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
     return list;
 }
 
-std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const Physics &physics, const std::vector<std::vector<double>> &current_A) {
+std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const Physics &physics,
+                                        const std::vector<std::vector<double>> &current_A) {
     std::vector<Candidate> list;
     for (const ShapeKind &kind : shape_kinds) {
         Candidate c;
@@ -263,7 +267,8 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
             free.slots = {slot};
             free.minimum = -1e9;
             free.maximum = 1e9;
-            const bool multiplier = c.target == TermTarget::soil_strength || c.target == TermTarget::motor_constant || c.target == TermTarget::resistance || c.target == TermTarget::radar;
+            const bool multiplier = c.target == TermTarget::soil_strength || c.target == TermTarget::motor_constant ||
+                                    c.target == TermTarget::resistance || c.target == TermTarget::radar;
             free.step = multiplier || c.target == TermTarget::rolling ? 2e-6 : 5e-7;
             c.step.push_back(free.step);
         }
@@ -298,7 +303,8 @@ EffectUse effect_of(const Candidate &candidate, const std::vector<double> &stren
 }
 
 std::string shape_expression(const Candidate &c, const std::vector<double> &y) {
-    static const char *names[] = {"t", "w", "v", "s", "Fn", "theta", "x", "a", "I", "v/sqrt(v*v+1e-4)", "abs(v)", "r", "X", "d", "Io", "Ia", "Is", "abs(w)", "u"};
+    static const char *names[] = {"t",      "w", "v", "s", "Fn", "theta", "x",  "a",      "I", "v/sqrt(v*v+1e-4)",
+                                  "abs(v)", "r", "X", "d", "Io", "Ia",    "Is", "abs(w)", "u"};
     const std::string x = names[static_cast<int>(c.axis)];
     char buffer[160];
     if (c.order > 0) {
@@ -309,7 +315,8 @@ std::string shape_expression(const Candidate &c, const std::vector<double> &y) {
     std::string text = buffer;
     for (std::size_t i = 1; i < c.knots.size(); ++i) { // a ramp per piece
         const double width = c.knots[i] - c.knots[i - 1];
-        std::snprintf(buffer, sizeof buffer, " + (%.4g)*min(1, max(0, (%s - (%.4g))/%.4g))", y[i] - y[i - 1], x.c_str(), c.knots[i - 1], width);
+        std::snprintf(buffer, sizeof buffer, " + (%.4g)*min(1, max(0, (%s - (%.4g))/%.4g))", y[i] - y[i - 1], x.c_str(), c.knots[i - 1],
+                      width);
         text += buffer;
     }
     return text;

@@ -5,7 +5,8 @@
 
 namespace traction::lab {
 
-std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error, const DiagnoseOptions &options) {
+std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error,
+                                    const DiagnoseOptions &options) {
     std::vector<std::size_t> members;
     const Trial &w = trials[winner];
     const bool by_priors = w.gain - w.assessment.relief < options.least_gain * base_error && w.best_balance_gain < options.least_gain_one;
@@ -22,21 +23,25 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
         const double error = sum_error(w.block_gain - t.block_gain);
         const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
         const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
-        if (explains_more || (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options.same_cosine))) members.push_back(i);
+        if (explains_more || (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options.same_cosine)))
+            members.push_back(i);
     }
     return members;
 }
 
 void forget_class(Diagnosis &d, const std::string &label) {
-    const auto found = std::find_if(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
+    const auto found =
+        std::find_if(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
     if (found == d.classes.end()) return;
     const auto gone = static_cast<int>(found - d.classes.begin());
     d.classes.erase(found);
     for (std::vector<CandidateResult> *list : {&d.ranking, &d.accepted})
         for (CandidateResult &r : *list) {
             if (!r.class_index) continue;
-            if (*r.class_index == gone) r.class_index.reset();
-            else if (*r.class_index > gone) --*r.class_index;
+            if (*r.class_index == gone)
+                r.class_index.reset();
+            else if (*r.class_index > gone)
+                --*r.class_index;
         }
 }
 
@@ -54,10 +59,13 @@ void part_classes(Diagnosis &d) {
     for (std::vector<CandidateResult> *list : {&d.ranking, &d.accepted})
         for (CandidateResult &r : *list) {
             const std::string label = r.candidate.label();
-            const bool stands = std::any_of(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
+            const bool stands =
+                std::any_of(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
             if (r.verdict != "class" || stands) continue;
-            if (accepted(label)) r.class_index.reset(), r.verdict = "named";
-            else if (!r.class_index) r.verdict = "not_significant";
+            if (accepted(label))
+                r.class_index.reset(), r.verdict = "named";
+            else if (!r.class_index)
+                r.verdict = "not_significant";
         }
 }
 

@@ -6,7 +6,8 @@ namespace traction::lab {
 
 Eigen::MatrixXd Columns::of(const Candidate &c) {
     Eigen::MatrixXd out(problem_.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
-    for (std::size_t j = 0; j < c.strengths.size(); ++j) out.col(static_cast<Eigen::Index>(j)) = column(c, j).cwiseProduct(problem_.row_scale);
+    for (std::size_t j = 0; j < c.strengths.size(); ++j)
+        out.col(static_cast<Eigen::Index>(j)) = column(c, j).cwiseProduct(problem_.row_scale);
     return out;
 }
 

@@ -21,7 +21,9 @@ std::vector<Worst> worst_windows(const std::vector<double> &t, const std::vector
         sum += e[i] * e[i], ++n;
     }
     for (std::size_t w = 0; w < count; ++w)
-        if (sums[w].second > 0) list.push_back({t.front() + static_cast<double>(w) * window_s, t.front() + static_cast<double>(w + 1) * window_s, std::sqrt(sums[w].first / sums[w].second)});
+        if (sums[w].second > 0)
+            list.push_back({t.front() + static_cast<double>(w) * window_s, t.front() + static_cast<double>(w + 1) * window_s,
+                            std::sqrt(sums[w].first / sums[w].second)});
     std::stable_sort(list.begin(), list.end(), [](const Worst &a, const Worst &b) { return a.rmse > b.rmse; });
     if (list.size() > 5) list.resize(5);
     return list;
@@ -103,7 +105,8 @@ BalanceComparison compare_balance(Problem &problem, std::size_t b) {
 }
 
 // Heat map: one row per balance, columns along a quantity.
-template <typename Value> Regime regime(Problem &problem, const std::string &title, const std::string &x_label, double low, double high, Value &&value_at) {
+template <typename Value>
+Regime regime(Problem &problem, const std::string &title, const std::string &x_label, double low, double high, Value &&value_at) {
     Regime map{title, x_label, {}, {}, {}, {}};
     constexpr std::size_t columns = 12;
     if (!(high > low)) high = low + 1;
@@ -140,14 +143,19 @@ std::vector<Regime> regimes(Problem &problem) {
     };
     std::vector<Regime> maps;
     const auto wheel_of = [&](std::size_t b) { return static_cast<std::size_t>(std::max(0, data.balance[b].wheel)); };
-    maps.push_back(regime(problem, "Error by slip", "slip of the wheel (wheel 0 where the balance has none)", -1, 1, [&](std::size_t b, std::size_t k) { return m.wheel[wheel_of(b)].slip[k]; }));
+    maps.push_back(regime(problem, "Error by slip", "slip of the wheel (wheel 0 where the balance has none)", -1, 1,
+                          [&](std::size_t b, std::size_t k) { return m.wheel[wheel_of(b)].slip[k]; }));
     const auto [v0, v1] = range(m.v_m_s);
-    maps.push_back(regime(problem, "Error by speed", "speed of the body [m/s]", v0, v1, [&](std::size_t, std::size_t k) { return m.v_m_s[k]; }));
+    maps.push_back(
+        regime(problem, "Error by speed", "speed of the body [m/s]", v0, v1, [&](std::size_t, std::size_t k) { return m.v_m_s[k]; }));
     const auto [a0, a1] = range(m.accel_m_s2);
-    maps.push_back(regime(problem, "Error by acceleration", "acceleration of the body [m/s^2]", std::max(a0, -3.0), std::min(a1, 3.0), [&](std::size_t, std::size_t k) { return m.accel_m_s2[k]; }));
+    maps.push_back(regime(problem, "Error by acceleration", "acceleration of the body [m/s^2]", std::max(a0, -3.0), std::min(a1, 3.0),
+                          [&](std::size_t, std::size_t k) { return m.accel_m_s2[k]; }));
     const auto [x0, x1] = range(m.path_m);
-    maps.push_back(regime(problem, "Error by place", "path travelled [m]", x0, x1, [&](std::size_t, std::size_t k) { return m.path_m[k]; }));
-    maps.push_back(regime(problem, "Error by time", "time [s]", data.start_s, data.time(data.count - 1), [&](std::size_t, std::size_t k) { return data.time(k); }));
+    maps.push_back(
+        regime(problem, "Error by place", "path travelled [m]", x0, x1, [&](std::size_t, std::size_t k) { return m.path_m[k]; }));
+    maps.push_back(regime(problem, "Error by time", "time [s]", data.start_s, data.time(data.count - 1),
+                          [&](std::size_t, std::size_t k) { return data.time(k); }));
     return maps;
 }
 
@@ -162,8 +170,10 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     }
     const Physics physics = make_physics(model);
     Problem problem(data, physics, free_parameters(model, physics));
-    if (as_is) problem.linearise(); // its motion is shown
-    else problem.cost();
+    if (as_is)
+        problem.linearise(); // its motion is shown
+    else
+        problem.cost();
     out.error = overall_error(problem);
     Problem adjusted(data, physics, problem.parameters);
     adjusted.fit({.iterations = 4});
@@ -173,8 +183,11 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     out.regimes = regimes(shown);
     char text[256];
     const double ratio = out.adjusted / out.floor;
-    const char *what = ratio < 1.15 ? "the model explains this log down to the noise" : ratio < 1.6 ? "close to the noise: little is left to find" : "there is something to find";
-    std::snprintf(text, sizeof text, "error %.2f x noise floor (%.2f x when the parameters move within their priors): %s", out.error / out.floor, ratio, what);
+    const char *what = ratio < 1.15  ? "the model explains this log down to the noise"
+                       : ratio < 1.6 ? "close to the noise: little is left to find"
+                                     : "there is something to find";
+    std::snprintf(text, sizeof text, "error %.2f x noise floor (%.2f x when the parameters move within their priors): %s",
+                  out.error / out.floor, ratio, what);
     out.verdict = text;
     return out;
 }

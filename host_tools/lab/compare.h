@@ -39,8 +39,8 @@ struct Regime {
 struct Comparison {
     std::vector<BalanceComparison> balances;
     std::vector<Regime> regimes;
-    double error = 0;     // as the model stands
-    double adjusted = 0;  // after its parameters moved within their priors
+    double error = 0;    // as the model stands
+    double adjusted = 0; // after its parameters moved within their priors
     double floor = 1;
     std::string verdict;
     std::vector<std::string> messages;

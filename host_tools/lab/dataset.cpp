@@ -19,7 +19,8 @@ struct Builder : InputBuilder {
     // A released bridge carries no current whatever the duty says (actuator.motor_enable 0).
     bool powered(double t0, double t1) const {
         const log::Signal *enable = signal("actuator.motor_enable");
-        return enable == nullptr || (hold(enable->t_s, enable->value, t0 - 0.02) > 0.5 && hold(enable->t_s, enable->value, t1 + 0.02) > 0.5);
+        return enable == nullptr ||
+               (hold(enable->t_s, enable->value, t0 - 0.02) > 0.5 && hold(enable->t_s, enable->value, t1 + 0.02) > 0.5);
     }
 
     bool usable(double t0, double t1) const {
@@ -98,12 +99,24 @@ struct Builder : InputBuilder {
     void currents(std::size_t i) {
         const log::Signal *current = wheel_signal(i, "current_A");
         if (current == nullptr) {
-            if (model.wheel[i].driven && model.motion != BodyMotion::imposed) say("wheel" + std::to_string(i) + ".current_A is missing: its torque and voltage balances are left out");
+            if (model.wheel[i].driven && model.motion != BodyMotion::imposed)
+                say("wheel" + std::to_string(i) + ".current_A is missing: its torque and voltage balances are left out");
             return;
         }
         double scale = 0;
         if (motion_signal(i, scale) == nullptr) return;
-        Balance torque{BalanceKind::current_torque, static_cast<int>(i), "wheel" + std::to_string(i) + ".current_A", "current of wheel " + std::to_string(i) + ", torque balance", "A", 0, "", {}, {}, {}, {}, {}};
+        Balance torque{BalanceKind::current_torque,
+                       static_cast<int>(i),
+                       "wheel" + std::to_string(i) + ".current_A",
+                       "current of wheel " + std::to_string(i) + ", torque balance",
+                       "A",
+                       0,
+                       "",
+                       {},
+                       {},
+                       {},
+                       {},
+                       {}};
         const double noise = sample_noise(*current, "current.noise_A", torque.noise_source);
         Balance all = torque, powered_rows = torque;
         add_rows(all, *current, noise);
@@ -138,7 +151,8 @@ struct Builder : InputBuilder {
         add(std::move(all));
     }
 
-    void simple(const std::string &name, const std::string &title, const std::string &unit, BalanceKind kind, int wheel, const std::string &noise_key) {
+    void simple(const std::string &name, const std::string &title, const std::string &unit, BalanceKind kind, int wheel,
+                const std::string &noise_key) {
         const log::Signal *s = signal(name);
         if (s == nullptr) return;
         Balance balance{kind, wheel, name, title, unit, 0, "", {}, {}, {}, {}, {}};
@@ -153,20 +167,23 @@ struct Builder : InputBuilder {
         const auto b = std::min(data.count - 1, static_cast<std::size_t>((t1 - data.start_s) / data.step_s));
         double sum = 0, n = 0;
         for (std::size_t i = 0; i < data.wheel.size(); ++i)
-            for (std::size_t k = a; k <= b; ++k, ++n) sum += std::fabs(data.wheel[i].speed_rad_s[k]) * parameter(model.wheel[i].geometry, "radius_m");
+            for (std::size_t k = a; k <= b; ++k, ++n)
+                sum += std::fabs(data.wheel[i].speed_rad_s[k]) * parameter(model.wheel[i].geometry, "radius_m");
         return n > 0 ? sum / n : 0;
     }
 
     void radar() {
         const log::Signal *s = signal("radar.speed_m_s");
         if (s == nullptr) {
-            say(log.find("radar.adc_count") != nullptr ? "radar.adc_count is raw: no radar.speed_m_s, the radar balance is left out" : "radar.speed_m_s is missing: the radar balance is left out");
+            say(log.find("radar.adc_count") != nullptr ? "radar.adc_count is raw: no radar.speed_m_s, the radar balance is left out"
+                                                       : "radar.speed_m_s is missing: the radar balance is left out");
             return;
         }
         Balance balance{BalanceKind::radar, -1, "radar.speed_m_s", "ground speed by radar", "m/s", 0, "", {}, {}, {}, {}, {}};
         balance.noise = sample_noise(*s, "radar.noise_m_s", balance.noise_source);
         const double relative = header("noise.radar.speed_m_s.relative");
-        const double window = window_of(*s) > 0 ? window_of(*s) : parameter(model.sensors, "radar.window_s"), least = parameter(model.sensors, "radar.minimum_m_s");
+        const double window = window_of(*s) > 0 ? window_of(*s) : parameter(model.sensors, "radar.window_s"),
+                     least = parameter(model.sensors, "radar.minimum_m_s");
         double last_value = std::nan("");
         for (std::size_t i = 0; i < s->t_s.size(); ++i) {
             const double t1 = s->t_s[i], t0 = t1 - window, y = s->value[i];
@@ -195,9 +212,12 @@ struct Builder : InputBuilder {
         side.kind = BalanceKind::camera_y, side.name = "camera.left_m", side.title = "camera displacement, to the left";
         turn.kind = BalanceKind::camera_yaw, turn.name = "camera.yaw_rad", turn.title = "camera heading change", turn.unit = "rad";
         if (angle != nullptr) turn.noise = std::sqrt(2.0) * std::max(1e-4, noise_from_differences(angle->value));
-        const double mx = parameter(model.sensors, "camera.x_m"), my = parameter(model.sensors, "camera.y_m"), mount = parameter(model.sensors, "camera.yaw_rad");
+        const double mx = parameter(model.sensors, "camera.x_m"), my = parameter(model.sensors, "camera.y_m"),
+                     mount = parameter(model.sensors, "camera.yaw_rad");
         const double spacing = std::max(0.28, 0.99 * sample_period(*x));
-        struct Pose { double t, x, y, yaw; };
+        struct Pose {
+            double t, x, y, yaw;
+        };
         const auto pose = [&](std::size_t i) {
             const double t = x->t_s[i];
             double heading = angle != nullptr ? interpolate(angle->t_s, yaw, t) + mount : 0;
@@ -206,7 +226,8 @@ struct Builder : InputBuilder {
                 heading = data.yaw_rad[static_cast<std::size_t>(k)];
             }
             const double py = y != nullptr ? interpolate(y->t_s, y->value, t) : 0;
-            return Pose{t, x->value[i] - (mx * std::cos(heading) - my * std::sin(heading)), py - (mx * std::sin(heading) + my * std::cos(heading)), heading};
+            return Pose{t, x->value[i] - (mx * std::cos(heading) - my * std::sin(heading)),
+                        py - (mx * std::sin(heading) + my * std::cos(heading)), heading};
         };
         Pose a = pose(0);
         for (std::size_t i = 1; i < x->t_s.size(); ++i) {
@@ -230,8 +251,10 @@ struct Builder : InputBuilder {
         for (std::size_t i = 0; i < model.wheel.size(); ++i) {
             currents(i);
             const std::string w = "wheel" + std::to_string(i);
-            simple(w + ".drawbar_pull_N", "drawbar pull of wheel " + std::to_string(i), "N", BalanceKind::force, static_cast<int>(i), "force.noise_N");
-            simple(w + ".torque_Nm", "torque of wheel " + std::to_string(i), "N m", BalanceKind::torque, static_cast<int>(i), "torque.noise_Nm");
+            simple(w + ".drawbar_pull_N", "drawbar pull of wheel " + std::to_string(i), "N", BalanceKind::force, static_cast<int>(i),
+                   "force.noise_N");
+            simple(w + ".torque_Nm", "torque of wheel " + std::to_string(i), "N m", BalanceKind::torque, static_cast<int>(i),
+                   "torque.noise_Nm");
         }
         if (model.motion == BodyMotion::imposed || model.motion == BodyMotion::none) return;
         simple("imu.accel_x_m_s2", "longitudinal acceleration", "m/s^2", BalanceKind::accel, -1, "accel.noise_m_s2");

@@ -34,7 +34,7 @@ struct Balance {
     std::string name;  // "wheel0.current_A"
     std::string title; // for people
     std::string unit;
-    double noise = 0;  // standard deviation of one row, measurement noise alone
+    double noise = 0; // standard deviation of one row, measurement noise alone
     std::string noise_source;
     std::vector<double> t0_s, t1_s, measured; // one entry per row
     std::vector<double> noise_factor;         // of a row's noise, relative to `noise`; empty: all 1
@@ -43,30 +43,31 @@ struct Balance {
 
 struct WheelInput {
     std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
-    std::vector<double> travel_rad;  // since the wheel last reversed
-    std::vector<double> plain_speed_rad_s, plain_accel_rad_s2; // by parabolas throughout: speed_rad_s differs where it jumps; empty: nowhere
-    std::vector<double> voltage_V;                            // at the motor; empty when unknown
-    std::vector<double> voltage_t_s, voltage_integral_Vs;     // its integral at the log's own times: a row's mean is exact
-    std::vector<double> duty;                                 // held from those times on; empty where the voltage itself is logged
+    std::vector<double> travel_rad;                           // since the wheel last reversed
+    std::vector<double> plain_speed_rad_s,
+        plain_accel_rad_s2;                               // by parabolas throughout: speed_rad_s differs where it jumps; empty: nowhere
+    std::vector<double> voltage_V;                        // at the motor; empty when unknown
+    std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
+    std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged
 };
 
 struct Dataset {
     double start_s = 0, step_s = 0.01; // grid: time[k] = start_s + k * step_s
     std::size_t count = 0;
-    bool independent_rows = false;      // a table of steady states, not a time series
+    bool independent_rows = false; // a table of steady states, not a time series
     std::vector<WheelInput> wheel;
-    std::vector<double> yaw_rate_rad_s; // empty when unknown
-    std::vector<double> yaw_rad;        // empty when unknown: integral of the rate, or the camera's
-    std::vector<double> body_speed_m_s; // imposed speed; empty otherwise
-    std::vector<std::vector<double>> load_N; // measured load per wheel; empty when not logged
+    std::vector<double> yaw_rate_rad_s;       // empty when unknown
+    std::vector<double> yaw_rad;              // empty when unknown: integral of the rate, or the camera's
+    std::vector<double> body_speed_m_s;       // imposed speed; empty otherwise
+    std::vector<std::vector<double>> load_N;  // measured load per wheel; empty when not logged
     std::vector<double> supply_t_s, supply_V; // battery, or one constant
-    bool yaw_free = false;              // the log measures yaw, so the yaw rate follows from the model's forces
-    bool gyro = false;                  // the yaw rate is a gyro's
-    std::vector<char> gap;              // 1 where a wheel's speed is not known
+    bool yaw_free = false;                    // the log measures yaw, so the yaw rate follows from the model's forces
+    bool gyro = false;                        // the yaw rate is a gyro's
+    std::vector<char> gap;                    // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
-    std::vector<std::string> messages;  // what is missing and what that removes
-    double smoothing_half_s = 0;        // half width of the encoder's parabolas
-    double accel_bias_prior_m_s2 = 0;   // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
+    std::vector<std::string> messages; // what is missing and what that removes
+    double smoothing_half_s = 0;       // half width of the encoder's parabolas
+    double accel_bias_prior_m_s2 = 0;  // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
     std::string log_file, scenario, date;
     double duration_s = 0;
 

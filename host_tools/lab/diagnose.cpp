@@ -39,7 +39,8 @@ class Search {
         const Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
-            d_.ladder.push_back({d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem), overall_heldout(problem), 1});
+            d_.ladder.push_back({d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem),
+                                 overall_heldout(problem), 1});
             refresh(problem, screen);
             if (round == options_.most_effects) break;
             std::optional<Problem> next = try_all(problem, screen, round == 0);
@@ -64,7 +65,8 @@ class Search {
         for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
             for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
                 const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];
-                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.base == b.base) problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
+                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.base == b.base)
+                    problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
             }
         problem.fit({});
         return problem;
@@ -130,14 +132,17 @@ class Search {
         weigh_beyond(trials, base_error);
         for (Trial &t : trials)
             if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
-        std::stable_sort(trials.begin(), trials.end(), [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
+        std::stable_sort(trials.begin(), trials.end(),
+                         [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
         std::optional<Problem> next;
         std::size_t winner = trials.size();
         for (std::size_t i = 0; i < trials.size() && !next; ++i) {
             if (trials[i].verdict != "passes") continue;
             next = with(trials[i], problem);
-            if (next) winner = i;
-            else trials[i].verdict = "not_significant";
+            if (next)
+                winner = i;
+            else
+                trials[i].verdict = "not_significant";
         }
         if (is_first) note_unseen(trials);
         record(trials, winner, base_error, screen, is_first);
@@ -156,9 +161,11 @@ class Search {
         const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
         if (much) best->at_least = true, best->verdict = "passes";
         const std::string told = best->candidate.label() + " explains ";
-        if (std::any_of(d_.messages.begin(), d_.messages.end(), [&](const std::string &m) { return m.starts_with(told); })) return; // in an earlier round
+        if (std::any_of(d_.messages.begin(), d_.messages.end(), [&](const std::string &m) { return m.starts_with(told); }))
+            return; // in an earlier round
         d_.messages.push_back(told + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
-                              best->candidate.strengths[0].key + " at " + figures(best->value[0]) + (much ? "): read its size as at least that" : "): not named"));
+                              best->candidate.strengths[0].key + " at " + figures(best->value[0]) +
+                              (much ? "): read its size as at least that" : "): not named"));
     }
 
     // Those most sure by their linear step, those that promise more than what passed, then those whose scan saw more than the step did.
@@ -173,26 +180,36 @@ class Search {
                 if (t->refitted || !likely(*t)) continue;
                 if (most-- <= 0) return;
                 refit(*t, problem, screen, d_.model, data_);
-                if (t->assessment.projected.size() == 0) t->assessment.projected = screen.projected(columns.of(t->candidate).col(0)); // the step was the fit
+                if (t->assessment.projected.size() == 0)
+                    t->assessment.projected = screen.projected(columns.of(t->candidate).col(0)); // the step was the fit
                 judge(*t, screen.heldout_error(), options_);
                 if (t->verdict == "passes") best = std::max(best, t->gain);
                 tick();
             }
         };
-        refit_some(options_.refits, [&](const Trial &t) { return t.p_value < 0.2 && t.promise > least_promise && t.promise > 0.5 * best; },
-                   [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
+        refit_some(
+            options_.refits, [&](const Trial &t) { return t.p_value < 0.2 && t.promise > least_promise && t.promise > 0.5 * best; },
+            [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
         const auto most_promise = [](const Trial &a, const Trial &b) { return a.promise > b.promise; };
         // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
-        refit_some(3, [&](const Trial &t) { return t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best); }, most_promise);
-        refit_some(3, [&](const Trial &t) { return t.surprise > std::max(3 * least_promise, 0.3 * t.promise) && t.promise > 0.5 * best; },
-                   most_promise);
+        refit_some(
+            3,
+            [&](const Trial &t) {
+                return t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best);
+            },
+            most_promise);
+        refit_some(
+            3, [&](const Trial &t) { return t.surprise > std::max(3 * least_promise, 0.3 * t.promise) && t.promise > 0.5 * best; },
+            most_promise);
     }
 
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
     bool rebase(const std::vector<Trial> &trials, Problem &problem) const {
         const Trial *best = nullptr;
         for (const Trial &t : trials)
-            if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.promise > 3 * least_promise && (best == nullptr || t.promise > best->promise)) best = &t;
+            if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.promise > 3 * least_promise &&
+                (best == nullptr || t.promise > best->promise))
+                best = &t;
         if (best == nullptr) return false;
         Problem moved = problem;
         const double before = moved.cost();
@@ -218,7 +235,9 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) || honest_error(problem) > 1.03 * honest_error(before)) return std::nullopt;
+        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) ||
+            honest_error(problem) > 1.03 * honest_error(before))
+            return std::nullopt;
         return problem;
     }
 
@@ -233,8 +252,14 @@ class Search {
                 alone = alone || size * t.assessment.column_norm > 2;
                 beside = beside || size > 2 * t.error[j];
             }
-            if (!alone) d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " + one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) + " standard deviations");
-            else if (!beside && t.p_value > 0.05) d_.not_excited.emplace_back(c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " + one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
+            if (!alone)
+                d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
+                                                          one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) +
+                                                          " standard deviations");
+            else if (!beside && t.p_value > 0.05)
+                d_.not_excited.emplace_back(
+                    c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
+                                  one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
         }
     }
 
@@ -244,9 +269,12 @@ class Search {
         for (std::size_t i = 0; i < trials.size(); ++i) {
             CandidateResult r = result_of(trials[i], base_error, screen);
             const bool member = std::find(members.begin(), members.end(), i) != members.end();
-            if (i == winner) r.verdict = members.empty() ? "named" : "class";
-            else if (member) r.verdict = "class";
-            else if (r.verdict == "passes") r.verdict = "not_significant";
+            if (i == winner)
+                r.verdict = members.empty() ? "named" : "class";
+            else if (member)
+                r.verdict = "class";
+            else if (r.verdict == "passes")
+                r.verdict = "not_significant";
             if ((i == winner || member) && !members.empty()) r.class_index = static_cast<int>(d_.classes.size());
             for (const auto &[effect, why] : d_.not_excited)
                 if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
@@ -274,7 +302,8 @@ class Search {
             const bool solid = sure && large_enough(one.candidate, one.value);
             if (d_.accepted.size() == 1 && solid) return;
             Model without = d_.model;
-            std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+            std::erase_if(without.effects,
+                          [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
             Problem problem = fitted(without, &last);
             const Screen screen(problem);
             Columns::Cache cache;
@@ -310,7 +339,8 @@ class Search {
             Beyond beyond = find_unknown(first, last, named, options_);
             if (beyond.shape) d_.unknown = beyond.shape;
             std::vector<std::size_t> &rest = beyond.replaced;
-            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * beyond.gain_squares); rest.pop_back()) {
+            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * beyond.gain_squares);
+                 rest.pop_back()) {
                 demote(rest.back(), last);
                 again = true;
             }
@@ -326,10 +356,13 @@ class Search {
     void demote(std::size_t i, Problem &last) {
         const CandidateResult one = d_.accepted[i];
         Model without = d_.model;
-        std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
-        d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance + " alone explains as much: not named");
+        std::erase_if(without.effects,
+                      [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+        d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance +
+                              " alone explains as much: not named");
         for (CandidateResult &r : d_.ranking)
-            if (r.candidate.label() == one.candidate.label() || (one.class_index && r.class_index == one.class_index)) r.verdict = "nearest";
+            if (r.candidate.label() == one.candidate.label() || (one.class_index && r.class_index == one.class_index))
+                r.verdict = "nearest";
         d_.nearest.push_back(one.candidate.label());
         last = fitted(without, &last);
         remove(i, std::move(without), last);
@@ -338,8 +371,10 @@ class Search {
     void conclude() {
         part_classes(d_);
         for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
-        if (d_.accepted.empty()) d_.kind = d_.unknown ? "unknown" : "nothing";
-        else d_.kind = d_.unknown ? "partial" : !d_.classes.empty() ? "class" : "named";
+        if (d_.accepted.empty())
+            d_.kind = d_.unknown ? "unknown" : "nothing";
+        else
+            d_.kind = d_.unknown ? "partial" : !d_.classes.empty() ? "class" : "named";
         d_.text = verdict_text(d_);
     }
 

@@ -14,23 +14,23 @@ namespace traction::lab {
 
 // Decision thresholds (docs/lab_method.md says where each comes from).
 struct DiagnoseOptions {
-    double p_limit = 0.003;            // of the corrected p: stricter than LAB.md's 0.01, uneven ground mimics soil effects
-    double least_gain = 0.01;          // fall of the held-out error, all balances
-    double least_gain_one = 0.03;      // the same in one balance
-    double least_relief = 9.0;         // relief of priors, squared standard deviations
-    int refits = 5;                    // classes that are fitted in full
+    double p_limit = 0.003;       // of the corrected p: stricter than LAB.md's 0.01, uneven ground mimics soil effects
+    double least_gain = 0.01;     // fall of the held-out error, all balances
+    double least_gain_one = 0.03; // the same in one balance
+    double least_relief = 9.0;    // relief of priors, squared standard deviations
+    int refits = 5;               // classes that are fitted in full
     int most_effects = 4;
-    double same_cosine = 0.9;          // above it two candidates are one class
-    double shape_p_limit = 0.02;       // of the corrected p of a structure-free shape, which must also gain 2.5 standard errors
-    double least_shape_gain = 0.02;    // a structure-free shape has many freedoms
-    double shape_margin = 1.10;        // a shape must beat the winner by this factor
+    double same_cosine = 0.9;       // above it two candidates are one class
+    double shape_p_limit = 0.02;    // of the corrected p of a structure-free shape, which must also gain 2.5 standard errors
+    double least_shape_gain = 0.02; // a structure-free shape has many freedoms
+    double shape_margin = 1.10;     // a shape must beat the winner by this factor
     bool shapes = true;
     std::function<void(int, int)> progress; // done, total
 };
 
 struct CandidateResult {
     Candidate candidate;
-    std::vector<double> value, low, high; // strengths, 95 %
+    std::vector<double> value, low, high;                 // strengths, 95 %
     double heldout_gain = 0, gain_low = 0, gain_high = 0; // fraction of the held-out error
     double gain_squares = 0;
     double p_value = 1;       // corrected for the number tried
@@ -62,8 +62,8 @@ struct Rung { // of the ladder
 };
 
 struct Diagnosis {
-    std::vector<CandidateResult> ranking;   // first round, best first
-    std::vector<CandidateResult> accepted;  // in order of acceptance, final values
+    std::vector<CandidateResult> ranking;  // first round, best first
+    std::vector<CandidateResult> accepted; // in order of acceptance, final values
     std::vector<ConfoundedClass> classes;
     std::vector<std::pair<std::string, std::string>> not_excited; // effect, why
     std::optional<UnknownShape> unknown;

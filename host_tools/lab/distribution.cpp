@@ -62,7 +62,9 @@ double signed_rank_tail(std::vector<double> values) {
         if (!(values[i] > 0)) below += i + 1;
     const auto count = static_cast<double>(n);
     if (n == 0) return 1;
-    if (n > 60) return 0.5 * std::erfc((0.25 * count * (count + 1) - static_cast<double>(below) - 0.5) / std::sqrt(count * (count + 1) * (2 * count + 1) / 12));
+    if (n > 60)
+        return 0.5 * std::erfc((0.25 * count * (count + 1) - static_cast<double>(below) - 0.5) /
+                               std::sqrt(count * (count + 1) * (2 * count + 1) / 12));
     std::vector<double> share(below + 1, 0); // of all choices of signs: those whose ranks sum to the index
     share[0] = std::ldexp(1.0, -static_cast<int>(n));
     for (std::size_t rank = 1; rank <= n; ++rank)

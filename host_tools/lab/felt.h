@@ -1,7 +1,8 @@
 // felt.h - a Jacobian without its zeros: per balance the columns that its rows feel at all.
 //
 // Most of a wheel's parameters leave the rows of the other wheels and of the body's sensors alone, so that more than half of a Jacobian is
-// zero. Products skip it; they are those of the whole matrix but for the order of the sums. Rows: all balances in the data's order; units: the Jacobian's.
+// zero. Products skip it; they are those of the whole matrix but for the order of the sums. Rows: all balances in the data's order; units:
+// the Jacobian's.
 #pragma once
 
 #include "dataset.h"
@@ -22,7 +23,7 @@ class Felt {
         std::vector<Eigen::Index> column;
         Eigen::MatrixXd value;
     };
-    const std::vector<Part> &parts() const { return parts_; } // in the order of data.balance
+    const std::vector<Part> &parts() const { return parts_; }  // in the order of data.balance
     Eigen::MatrixXd gram() const;                              // J' J
     Eigen::VectorXd moment(const Eigen::VectorXd &rows) const; // J' rows
 

@@ -11,13 +11,15 @@ namespace {
 
 constexpr double friction_speed_rad_s = 0.05; // friction reverses over this speed: assumed, rows near standstill are left out
 constexpr double bridge_current_A = 0.01;     // the bridge's dead time reverses over this current at least: assumed
-constexpr double voltage_part_s = 0.01;       // dead time bends the voltage balance: it is taken over parts of a row as long as this, a control tick
-constexpr double copper_per_K = 0.0039;       // resistance of copper
-constexpr double magnet_per_K = -0.002;       // flux of ferrite magnets
-constexpr double tilt_lag_s = 0.1;            // suspension's lag, the catalogue's
+constexpr double voltage_part_s =
+    0.01; // dead time bends the voltage balance: it is taken over parts of a row as long as this, a control tick
+constexpr double copper_per_K = 0.0039; // resistance of copper
+constexpr double magnet_per_K = -0.002; // flux of ferrite magnets
+constexpr double tilt_lag_s = 0.1;      // suspension's lag, the catalogue's
 
 bool has_electric_terms(const Physics &physics) {
-    return std::any_of(physics.terms.begin(), physics.terms.end(), [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
+    return std::any_of(physics.terms.begin(), physics.terms.end(),
+                       [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
 }
 
 // Of a piecewise constant voltage up to a time; times asked for one after the other are found at once.
@@ -51,7 +53,9 @@ Forward::Forward(const Dataset &data) : data_(&data) {
 }
 
 void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const {
-    windows_[balance].mean(series, delay_s, adding, out.segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(data_->balance[balance].measured.size())));
+    windows_[balance].mean(
+        series, delay_s, adding,
+        out.segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(data_->balance[balance].measured.size())));
 }
 
 // Mean motor voltage over each row's window, delay_s earlier; lag_s: what the command lags behind the log, the supply does not.
@@ -91,18 +95,21 @@ void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t b
     const Dataset &d = *data_;
     const Balance &b = d.balance[balance];
     const WheelPhysics &p = physics.wheel[wheel];
-    const std::vector<double> voltage = voltage_parts(balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
+    const std::vector<double> voltage =
+        voltage_parts(balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
     const double offset = p.current_offset + p.current_extra, last = static_cast<double>(d.count - 2);
     std::size_t at = 0;
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const std::size_t parts = parts_of(b.t1_s[r] - b.t0_s[r]);
         double taken = 0;
         for (std::size_t n = 0; n < parts; ++n, ++at) {
-            const double t = b.t0_s[r] + (static_cast<double>(n) + 0.5) / static_cast<double>(parts) * (b.t1_s[r] - b.t0_s[r]) - physics.body.current_delay;
+            const double t = b.t0_s[r] + (static_cast<double>(n) + 0.5) / static_cast<double>(parts) * (b.t1_s[r] - b.t0_s[r]) -
+                             physics.body.current_delay;
             const double x = std::clamp((t - d.start_s) / d.step_s, 0.0, last);
             const auto k = static_cast<std::size_t>(x);
             const double f = x - static_cast<double>(k);
-            const double per_V = electric_.per_V[k] + f * (electric_.per_V[k + 1] - electric_.per_V[k]), lost = electric_.lost[k] + f * (electric_.lost[k + 1] - electric_.lost[k]);
+            const double per_V = electric_.per_V[k] + f * (electric_.per_V[k + 1] - electric_.per_V[k]),
+                         lost = electric_.lost[k] + f * (electric_.lost[k + 1] - electric_.lost[k]);
             const double free = per_V * voltage[at] - lost - offset, most = per_V * (1 + physics.body.voltage_gain) * p.dead_voltage;
             taken += most * std::clamp(free / std::max(std::fabs(most), bridge_current_A), -1.0, 1.0);
         }
@@ -128,7 +135,9 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     series_.resize(data_->count);
     for (std::size_t k = 0; k < data_->count; ++k) {
         series_[k] = per_N * (now[k] - before[k]);
-        if (p.mesh != 0) series_[k] += per_N * p.mesh * (std::fabs(now[k]) - std::fabs(before[k])) * soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
+        if (p.mesh != 0)
+            series_[k] += per_N * p.mesh * (std::fabs(now[k]) - std::fabs(before[k])) *
+                          soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
         if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
     }
     rows_of(balance, series_, physics.body.current_delay, true, out);
@@ -140,8 +149,10 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
     const Motion::Wheel &m = motion.wheel[wheel];
     const double gain = 1 / (1 - std::min(0.9, physics.wheel[wheel].encoder_missed));
     Signals s;
-    s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k], s.theta = gain * in.angle_rad[k];
-    s.x = motion.path_m[k] + physics.wheel[wheel].x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k];
+    s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k],
+    s.theta = gain * in.angle_rad[k];
+    s.x = motion.path_m[k] + physics.wheel[wheel].x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k],
+    s.r = motion.yaw_rate_rad_s[k];
     s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / (1 + physics.body.voltage_gain);
     s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = s.Ia = s.Is = 0;
     for (std::size_t j = 0; j < base_current_.size(); ++j) {
@@ -153,7 +164,8 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
     return s;
 }
 
-void Forward::electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current, ElectricSeries &out) const {
+void Forward::electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
+                              ElectricSeries &out) const {
     const Dataset &d = *data_;
     const WheelPhysics &p = physics.wheel[wheel];
     const WheelInput &in = d.wheel[wheel];
@@ -161,7 +173,8 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
     const double gain = 1 / (1 - std::min(0.9, p.encoder_missed)), radius = p.radius * (1 + p.radius_change);
     std::vector<const ExtraTerm *> terms;
     for (const ExtraTerm &term : physics.terms)
-        if ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel))) terms.push_back(&term);
+        if ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel)))
+            terms.push_back(&term);
     current.resize(d.count);
     for (auto *series : {&out.reading, &out.lost, &out.per_V, &out.shaft}) series->resize(d.count);
     double heat_K = 0;
@@ -184,12 +197,18 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
             s.I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
             for (const ExtraTerm *term : terms) {
                 const double f = term->term->value(s, term->coefficients.data());
-                if (term->target == TermTarget::wheel_torque) gear += f;
-                else if (term->target == TermTarget::wheel_friction) gear += f * side;
-                else if (term->target == TermTarget::voltage) u_lost += f;
-                else if (term->target == TermTarget::motor_constant) KG *= 1 + f, ke *= 1 + f;
-                else if (term->target == TermTarget::resistance) Ra *= std::max(0.05, 1 + f);
-                else if (term->target == TermTarget::current) current_factor *= 1 + f;
+                if (term->target == TermTarget::wheel_torque)
+                    gear += f;
+                else if (term->target == TermTarget::wheel_friction)
+                    gear += f * side;
+                else if (term->target == TermTarget::voltage)
+                    u_lost += f;
+                else if (term->target == TermTarget::motor_constant)
+                    KG *= 1 + f, ke *= 1 + f;
+                else if (term->target == TermTarget::resistance)
+                    Ra *= std::max(0.05, 1 + f);
+                else if (term->target == TermTarget::current)
+                    current_factor *= 1 + f;
             }
         }
         const double I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
@@ -207,14 +226,17 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
 void Forward::electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
                          Eigen::VectorXd &out) const {
     const Dataset &d = *data_;
-    const std::size_t torque_balance = balance_of(BalanceKind::current_torque, wheel), voltage_balance = balance_of(BalanceKind::current_voltage, wheel),
+    const std::size_t torque_balance = balance_of(BalanceKind::current_torque, wheel),
+                      voltage_balance = balance_of(BalanceKind::current_voltage, wheel),
                       bench_balance = balance_of(BalanceKind::torque, wheel);
-    const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(), with_bench = bench_balance < d.balance.size();
+    const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(),
+               with_bench = bench_balance < d.balance.size();
     if (!with_torque && !with_voltage && !with_bench) return;
     electric_series(physics, motion, wheel, current, electric_);
     if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_.reading, physics.body.current_delay, false, out);
     if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
-        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
+        const Eigen::VectorXd &voltage =
+            mean_voltage(voltage_balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
         auto rows = out.segment(static_cast<Eigen::Index>(first_row_[voltage_balance]), voltage.size());
         rows_of(voltage_balance, electric_.per_V, physics.body.current_delay, false, out);
         const Eigen::VectorXd through = rows.cwiseProduct(voltage);
@@ -230,7 +252,8 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
 void Forward::lead(std::size_t balance, const std::vector<double> &series, double share, double delay_s, Eigen::VectorXd &out) const {
     const Balance &b = data_->balance[balance];
     const auto place = [&](double t) {
-        return static_cast<std::ptrdiff_t>(std::clamp((t - delay_s - data_->start_s) / data_->step_s, 0.0, static_cast<double>(data_->count - 1)));
+        return static_cast<std::ptrdiff_t>(
+            std::clamp((t - delay_s - data_->start_s) / data_->step_s, 0.0, static_cast<double>(data_->count - 1)));
     };
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const auto [low, high] = std::minmax_element(series.begin() + place(b.t0_s[r]), series.begin() + place(b.t1_s[r]) + 1);
@@ -248,7 +271,8 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         double f = 1;
         for (const ExtraTerm &term : physics.terms) {
             if (term.target != target) continue;
-            s.t = d.time(k), s.v = s.V = motion.v_m_s[k], s.x = s.X = motion.path_m[k], s.a = motion.accel_m_s2[k], s.r = motion.yaw_rate_rad_s[k];
+            s.t = d.time(k), s.v = s.V = motion.v_m_s[k], s.x = s.X = motion.path_m[k], s.a = motion.accel_m_s2[k],
+            s.r = motion.yaw_rate_rad_s[k];
             f += term.term->value(s, term.coefficients.data());
         }
         return f;
@@ -263,15 +287,19 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
                 const double a = motion.accel_m_s2[k];
                 lagged += share * (0.5 * (a + before) - lagged);
                 before = a;
-                x[k] = (a + b.gravity * b.accel_tilt * lagged) * (1 + b.accel_scale) + b.accel_bias0 + b.accel_bias + b.accel_drift * d.time(k) + factor(TermTarget::accel, k) - 1;
+                x[k] = (a + b.gravity * b.accel_tilt * lagged) * (1 + b.accel_scale) + b.accel_bias0 + b.accel_bias +
+                       b.accel_drift * d.time(k) + factor(TermTarget::accel, k) - 1;
             }
         } else if (kind == BalanceKind::radar) {
             delay = b.radar_delay;
             for (std::size_t k = 0; k < d.count; ++k)
-                x[k] = std::fabs(motion.v_m_s[k]) * (1 + b.radar_scale0 + b.radar_scale) * (1 + b.radar_pitch * motion.accel_m_s2[k]) * factor(TermTarget::radar, k);
+                x[k] = std::fabs(motion.v_m_s[k]) * (1 + b.radar_scale0 + b.radar_scale) * (1 + b.radar_pitch * motion.accel_m_s2[k]) *
+                       factor(TermTarget::radar, k);
         } else if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw) {
             delay = b.camera_delay0 + b.camera_delay;
-            const auto &source = kind == BalanceKind::camera_x ? motion.v_m_s : kind == BalanceKind::camera_y ? motion.vy_m_s : motion.yaw_rate_rad_s;
+            const auto &source = kind == BalanceKind::camera_x   ? motion.v_m_s
+                                 : kind == BalanceKind::camera_y ? motion.vy_m_s
+                                                                 : motion.yaw_rate_rad_s;
             const double scale = kind == BalanceKind::camera_yaw ? 1 : 1 + b.camera_scale0 + b.camera_scale;
             for (std::size_t k = 0; k < d.count; ++k) x[k] = source[k] * scale * factor(TermTarget::camera, k);
         } else if (kind == BalanceKind::yaw_rate) {
@@ -286,7 +314,8 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         if (kind == BalanceKind::radar && b.radar_lead != 0) lead(i, x, b.radar_lead, delay, out);
         if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw)
             for (std::size_t r = 0; r < d.balance[i].measured.size(); ++r)
-                out[static_cast<Eigen::Index>(first_row_[i] + r)] *= d.balance[i].t1_s[r] - d.balance[i].t0_s[r]; // a displacement, not a speed
+                out[static_cast<Eigen::Index>(first_row_[i] + r)] *=
+                    d.balance[i].t1_s[r] - d.balance[i].t0_s[r]; // a displacement, not a speed
     }
 }
 
@@ -305,13 +334,16 @@ Eigen::VectorXd Forward::predict(const Physics &physics, unsigned touched) {
 }
 
 void Forward::observe_beside(const Physics &physics, const Motion &motion, unsigned touched, int wheel, Eigen::VectorXd &out) const {
-    const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0, terms = has_electric_terms(physics);
+    const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0,
+               terms = has_electric_terms(physics);
     const unsigned stages = moves ? stage_torque | stage_voltage : touched;
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         const WheelPhysics &p = physics.wheel[i];
         const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
-        if (whole || (moves && (terms || p.heating != 0))) electrical(physics, motion, i, stages, current_, out);
-        else if (moves) torque_of_traction(physics, motion, i, out);
+        if (whole || (moves && (terms || p.heating != 0)))
+            electrical(physics, motion, i, stages, current_, out);
+        else if (moves)
+            torque_of_traction(physics, motion, i, out);
     }
     if (moves || (touched & stage_sensors) != 0) sensors(physics, motion, out);
 }
@@ -331,7 +363,8 @@ void Forward::set_base(const Physics &physics) {
     have_base_ = true;
     base_physics_ = physics;
     linear_base_ = !base_motion_.tangent.empty() && has_neighbours(*data_, physics, physics);
-    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+        electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
     sensors(physics, base_motion_, base_prediction_);
 }
 

@@ -32,16 +32,20 @@ class Forward {
 
     // The same to first order, beside `base`, the prediction of the last set_base().
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
-    // What one unit of each coefficient of a shape f(X) changes in each row, beside the base: of a shape that moves the body, and of one of the
-    // torque and voltage balances alone. Holds where nothing but the motion remembers (no heating, no other terms).
+    // What one unit of each coefficient of a shape f(X) changes in each row, beside the base: of a shape that moves the body, and of one of
+    // the torque and voltage balances alone. Holds where nothing but the motion remembers (no heating, no other terms).
     Eigen::MatrixXd shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count);
     struct ElectricSeries {
-        std::vector<double> reading, lost, per_V, shaft; // current by torque; by voltage: per_V times the motor's voltage, less what is lost
+        std::vector<double> reading, lost, per_V,
+            shaft; // current by torque; by voltage: per_V times the motor's voltage, less what is lost
     };
     std::vector<ElectricSeries> electric_unit(const Physics &base, TermTarget target) const; // per wheel
-    Eigen::MatrixXd shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term, std::size_t count) const;
+    Eigen::MatrixXd shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term,
+                                    std::size_t count) const;
     void set_base(const Physics &physics);
-    void start_near(const Forward &other) { base_motion_ = other.base_motion_, have_base_ = other.have_base_; } // its motion is the first guess
+    void start_near(const Forward &other) {
+        base_motion_ = other.base_motion_, have_base_ = other.have_base_;
+    } // its motion is the first guess
     const Eigen::VectorXd &base() const { return base_prediction_; }
     bool has_linear_base() const { return linear_base_; }
     const Motion &motion() const { return base_motion_; }
@@ -56,8 +60,10 @@ class Forward {
     void observe_beside(const Physics &physics, const Motion &motion, unsigned touched, int wheel, Eigen::VectorXd &out) const;
     void electrical(const Physics &physics, const Motion &motion, std::size_t wheel, unsigned stages, std::vector<double> &current,
                     Eigen::VectorXd &out) const;
-    void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current, ElectricSeries &out) const;
-    Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const; // of the torque and voltage terms, I left out
+    void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
+                         ElectricSeries &out) const;
+    Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel,
+                       std::size_t k) const; // of the torque and voltage terms, I left out
     void lead(std::size_t balance, const std::vector<double> &series, double share, double delay_s, Eigen::VectorXd &out) const;
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
     void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;

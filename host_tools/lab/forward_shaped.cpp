@@ -6,7 +6,8 @@
 namespace traction::lab {
 
 bool plain_currents(const Physics &physics) {
-    return std::all_of(physics.wheel.begin(), physics.wheel.end(), [](const WheelPhysics &w) { return w.dead_voltage == 0 && w.heating == 0; });
+    return std::all_of(physics.wheel.begin(), physics.wheel.end(),
+                       [](const WheelPhysics &w) { return w.dead_voltage == 0 && w.heating == 0; });
 }
 
 Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count) {
@@ -20,7 +21,8 @@ Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, c
         s.t = d.time(k), s.X = m.path_m[j], s.a = m.rate[j][0], s.V = m.v_m_s[k], s.r = m.yaw_rate_rad_s[k];
         for (std::size_t i = 0; i < wheels; ++i) {
             const double gain = 1 / (1 - std::min(0.9, base.wheel[i].encoder_missed));
-            s.w = gain * d.wheel[i].speed_rad_s[k], s.v = m.wheel[i].ground_speed_m_s[k], s.s = m.wheel[i].slip[k], s.Fn = m.wheel[i].load_N[k];
+            s.w = gain * d.wheel[i].speed_rad_s[k], s.v = m.wheel[i].ground_speed_m_s[k], s.s = m.wheel[i].slip[k],
+            s.Fn = m.wheel[i].load_N[k];
             s.theta = gain * d.wheel[i].angle_rad[k], s.x = s.X + base.wheel[i].x;
             s.Ft = m.wheel[i].traction_N[k], s.d = d.wheel[i].travel_rad.empty() ? 0 : gain * d.wheel[i].travel_rad[k];
             term.weights(s, count, &share[(k * wheels + i) * count]);
@@ -57,7 +59,8 @@ std::vector<Forward::ElectricSeries> Forward::electric_unit(const Physics &base,
     return unit;
 }
 
-Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term, std::size_t count) const {
+Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term,
+                                         std::size_t count) const {
     const Dataset &d = *data_;
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(base_prediction_.size(), static_cast<Eigen::Index>(count));
     std::vector<double> weight(d.count * count);
@@ -73,14 +76,18 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
             const auto rows_of_unit = [&](std::size_t balance, const std::vector<double> &of) {
                 for (std::size_t k = 0; k < d.count; ++k) series[k] = weight[k * count + j] * of[k];
                 rows_of(balance, series, base.body.current_delay, false, out);
-                return out.segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(d.balance[balance].measured.size()));
+                return out.segment(static_cast<Eigen::Index>(first_row_[balance]),
+                                   static_cast<Eigen::Index>(d.balance[balance].measured.size()));
             };
             const auto place = [&](std::size_t balance) {
-                return columns.col(static_cast<Eigen::Index>(j)).segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(d.balance[balance].measured.size()));
+                return columns.col(static_cast<Eigen::Index>(j))
+                    .segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(d.balance[balance].measured.size()));
             };
-            if (const std::size_t b = balance_of(BalanceKind::current_torque, i); b < d.balance.size()) place(b) = rows_of_unit(b, unit[i].reading);
+            if (const std::size_t b = balance_of(BalanceKind::current_torque, i); b < d.balance.size())
+                place(b) = rows_of_unit(b, unit[i].reading);
             if (const std::size_t b = balance_of(BalanceKind::current_voltage, i); b < d.balance.size()) {
-                through = rows_of_unit(b, unit[i].per_V).cwiseProduct(mean_voltage(b, base.body.current_delay, base.body.voltage_delay0 + base.body.actuation_delay));
+                through = rows_of_unit(b, unit[i].per_V)
+                              .cwiseProduct(mean_voltage(b, base.body.current_delay, base.body.voltage_delay0 + base.body.actuation_delay));
                 place(b) = through - rows_of_unit(b, unit[i].lost);
             }
         }

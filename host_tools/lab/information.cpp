@@ -93,11 +93,12 @@ namespace {
 
 // A at its size, and any column, with all that the parameters and the rival can take from them.
 struct Unabsorbed {
-    double own = 0;   // square of A
-    double with = 0;  // A times the column
+    double own = 0;  // square of A
+    double with = 0; // A times the column
 };
 
-Unabsorbed unabsorbed(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival, Eigen::Index column) {
+Unabsorbed unabsorbed(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
+                      int rival, Eigen::Index column) {
     const Eigen::Index parameters = precision.size();
     std::vector<Eigen::Index> rest;
     for (Eigen::Index i = 0; i < parameters; ++i) rest.push_back(i);
@@ -121,11 +122,13 @@ Unabsorbed unabsorbed(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precis
 
 } // namespace
 
-double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival) {
+double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
+                     int rival) {
     return std::sqrt(unabsorbed(gram, precision, candidates, truth, rival, -1).own);
 }
 
-double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival) {
+double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
+                 int rival) {
     const Unabsorbed u = unabsorbed(gram, precision, candidates, truth, rival, gram.cols() - 1);
     return u.own > 0 ? std::fabs(u.with) / std::sqrt(u.own) : 0;
 }

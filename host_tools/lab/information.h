@@ -36,7 +36,8 @@ Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double
 
 // (2) as d', the sum of G over drives given. `truth` and `rival` index the candidates, in the order given to information(); rival -1:
 // none. precision: of the parameters' priors.
-double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival);
+double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
+                     int rival);
 
 // What the residual shows of A, beside R, in standard deviations: about 1 where it is noise.
 double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival);

@@ -13,8 +13,9 @@ namespace traction::lab {
 namespace {
 
 constexpr double plain_step_s = 0.02;
-constexpr double most_step_loss = 0.06; // second-order differences with steps h lose (omega h)^2 / 3 of a swing at omega: clean drives 1 to 2 %, loops that swing 8 to 10 %
-constexpr double longest_gap_s = 0.25; // beyond it a wheel's speed is not known
+constexpr double most_step_loss = 0.06; // second-order differences with steps h lose (omega h)^2 / 3 of a swing at omega: clean drives 1 to
+                                        // 2 %, loops that swing 8 to 10 %
+constexpr double longest_gap_s = 0.25;  // beyond it a wheel's speed is not known
 
 } // namespace
 
@@ -143,7 +144,8 @@ void InputBuilder::wheel_motion(std::size_t i) {
         if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, standstill_rad_s); wide > 1.2 * half) {
             half = wide;
             char text[160];
-            std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s", s->name.c_str(), half);
+            std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s",
+                          s->name.c_str(), half);
             say(text);
         }
         Smooth smooth = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 2);
@@ -180,15 +182,18 @@ void InputBuilder::wheel_motion(std::size_t i) {
 double InputBuilder::rounding_noise(const std::vector<double> &angle, double period, double half) {
     double count = 0;
     for (std::size_t i = 2; i < angle.size(); ++i)
-        if (const double step = std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]); step > 1e-9 && (count <= 0 || step < count)) count = step;
-    constexpr double gain = 165; // of white noise, by simulation: 167 at half = 55 ms and 165 at 80 ms of 10 ms samples, 140 at 110 ms of 20 ms samples
+        if (const double step = std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]); step > 1e-9 && (count <= 0 || step < count))
+            count = step;
+    constexpr double gain =
+        165; // of white noise, by simulation: 167 at half = 55 ms and 165 at 80 ms of 10 ms samples, 140 at 110 ms of 20 ms samples
     return gain * count / std::sqrt(12.0) * std::sqrt(period) / std::pow(half, 1.5);
 }
 
 // Where cubics and parabolas differ by more than noise, the wheel jumps: there the cubics serve.
 void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const {
-    constexpr double jump = 5;                      // standard deviations
-    constexpr double calm = 0.2, quantile = 0.2533; // the difference's noise: from its calmest fifth while the wheel turns, whatever the rest does
+    constexpr double jump = 5; // standard deviations
+    constexpr double calm = 0.2,
+                     quantile = 0.2533; // the difference's noise: from its calmest fifth while the wheel turns, whatever the rest does
     std::vector<double> size, moving;
     for (std::size_t k = 0; k < data.count; ++k) {
         size.push_back(std::fabs(sharp.accel_rad_s2[k] - input.accel_rad_s2[k]));
@@ -254,10 +259,12 @@ void InputBuilder::voltages() {
             input.voltage_t_s = voltage->t_s;
             input.voltage_integral_Vs.assign(1, 0);
             for (std::size_t j = 0; j + 1 < voltage->t_s.size(); ++j)
-                input.voltage_integral_Vs.push_back(input.voltage_integral_Vs.back() + 0.5 * (voltage->value[j] + voltage->value[j + 1]) * (voltage->t_s[j + 1] - voltage->t_s[j]));
+                input.voltage_integral_Vs.push_back(input.voltage_integral_Vs.back() + 0.5 * (voltage->value[j] + voltage->value[j + 1]) *
+                                                                                           (voltage->t_s[j + 1] - voltage->t_s[j]));
         } else if (const log::Signal *duty = wheel_signal(i, "duty"); duty != nullptr && !data.supply_V.empty()) { // held from its time on
             for (std::size_t k = 0; k < data.count; ++k)
-                input.voltage_V.push_back(hold(duty->t_s, duty->value, data.time(k)) * interpolate(data.supply_t_s, data.supply_V, data.time(k)));
+                input.voltage_V.push_back(hold(duty->t_s, duty->value, data.time(k)) *
+                                          interpolate(data.supply_t_s, data.supply_V, data.time(k)));
             input.voltage_t_s = duty->t_s;
             input.duty = duty->value;
             input.voltage_integral_Vs = data.voltage_integral(input, 0);
@@ -272,15 +279,19 @@ void InputBuilder::yaw() {
     const log::Signal *gyro = signal("imu.gyro_z_rad_s"), *camera = signal("camera.yaw_rad");
     data.gyro = gyro != nullptr;
     if (gyro != nullptr) {
-        data.yaw_rate_rad_s = smooth_at(gyro->t_s, gyro->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*gyro)), 1).value;
+        data.yaw_rate_rad_s =
+            smooth_at(gyro->t_s, gyro->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*gyro)), 1).value;
     } else if (camera != nullptr) {
-        data.yaw_rate_rad_s = smooth_at(camera->t_s, unwrapped(camera->value), data.start_s, data.step_s, data.count, std::max(0.35, 2.5 * sample_period(*camera)), 2).slope;
+        data.yaw_rate_rad_s = smooth_at(camera->t_s, unwrapped(camera->value), data.start_s, data.step_s, data.count,
+                                        std::max(0.35, 2.5 * sample_period(*camera)), 2)
+                                  .slope;
     } else if (model.wheel.size() > 1 && model.motion == BodyMotion::longitudinal) {
         say("no yaw rate (imu.gyro_z_rad_s or camera.yaw_rad): the body is taken to drive straight");
     }
     double sides = 0; // half the distance between the wheels' tracks
     for (const WheelSpec &w : model.wheel) sides = std::max(sides, std::fabs(parameter(w.geometry, "y_m")));
-    data.yaw_free = model.motion == BodyMotion::longitudinal && (gyro != nullptr || camera != nullptr) && sides > 1e-3 && model.wheel.size() > 1;
+    data.yaw_free =
+        model.motion == BodyMotion::longitudinal && (gyro != nullptr || camera != nullptr) && sides > 1e-3 && model.wheel.size() > 1;
     if (camera != nullptr) {
         const std::vector<double> angle = unwrapped(camera->value);
         for (std::size_t k = 0; k < data.count; ++k) data.yaw_rad.push_back(interpolate(camera->t_s, angle, data.time(k)));
@@ -318,7 +329,8 @@ void InputBuilder::imposed_motion() {
         const log::Signal *load = wheel_signal(i, "normal_N");
         if (load == nullptr) continue;
         data.load_N.resize(model.wheel.size());
-        for (std::size_t k = 0; k < data.count; ++k) data.load_N[i].push_back(std::max(0.0, interpolate(load->t_s, load->value, data.time(k))));
+        for (std::size_t k = 0; k < data.count; ++k)
+            data.load_N[i].push_back(std::max(0.0, interpolate(load->t_s, load->value, data.time(k))));
     }
 }
 

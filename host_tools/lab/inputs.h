@@ -10,7 +10,7 @@ namespace traction::lab {
 
 inline constexpr double standstill_rad_s = 0.15; // below it friction is indeterminate: the torque balance says nothing
 
-double sample_period(const log::Signal &signal); // [s], median
+double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
 
 // Fills everything of a Dataset but its balances.
@@ -31,7 +31,8 @@ struct InputBuilder {
     bool set_grid(double step_s);
     // Steps of 20 ms, of 10 ms where the wheels swing so quickly that the integration would lose more of it than it may. False: no grid.
     bool grid_and_wheels();
-    double swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
+    double
+    swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
     double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel
     void wheel_motion(std::size_t i);
     void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;

@@ -33,7 +33,8 @@ void doubt_jumps(const Model &model, Dataset &data) {
         Balance kept = b;
         for (auto *series : {&kept.t0_s, &kept.t1_s, &kept.measured, &kept.noise_factor, &kept.doubt}) series->clear();
         for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
-            const double factor = b.noise_factor.empty() ? 1 : b.noise_factor[r], lost = cubics_share * change[row], doubt = std::fabs(lost) / (b.noise * factor);
+            const double factor = b.noise_factor.empty() ? 1 : b.noise_factor[r], lost = cubics_share * change[row],
+                         doubt = std::fabs(lost) / (b.noise * factor);
             if (b.kind == BalanceKind::current_torque && !(doubt < most_doubt)) {
                 ++left_out;
                 continue;
@@ -46,7 +47,9 @@ void doubt_jumps(const Model &model, Dataset &data) {
         }
         b = std::move(kept);
     }
-    if (left_out > 0) data.messages.push_back(std::to_string(left_out) + " rows of the torque balances lie at speed steps quicker than the encoder can tell: left out");
+    if (left_out > 0)
+        data.messages.push_back(std::to_string(left_out) +
+                                " rows of the torque balances lie at speed steps quicker than the encoder can tell: left out");
 }
 
 } // namespace traction::lab

@@ -31,9 +31,12 @@ class Drive {
     Drive(std::string title, std::vector<std::string> good_for) { made_.title = std::move(title), made_.good_for = std::move(good_for); }
     Drive &stop(double for_s) { return add(for_s, "stop", ""); }
     Drive &speed(double for_s, const std::string &speed_m_s, const std::string &yaw_rate_rad_s = "") {
-        return add(for_s, "platform_speed", "speed_m_s = " + speed_m_s + (yaw_rate_rad_s.empty() ? "" : "\nyaw_rate_rad_s = " + yaw_rate_rad_s));
+        return add(for_s, "platform_speed",
+                   "speed_m_s = " + speed_m_s + (yaw_rate_rad_s.empty() ? "" : "\nyaw_rate_rad_s = " + yaw_rate_rad_s));
     }
-    Drive &wheels(double for_s, const std::string &wheel_speed_rad_s) { return add(for_s, "wheel_speed", "wheel_speed_rad_s = " + wheel_speed_rad_s); }
+    Drive &wheels(double for_s, const std::string &wheel_speed_rad_s) {
+        return add(for_s, "wheel_speed", "wheel_speed_rad_s = " + wheel_speed_rad_s);
+    }
     Drive &sweep(double for_s, const std::string &speed_m_s) { return add(for_s, "soil_sweep", "speed_m_s = " + speed_m_s); }
     Drive &duty(double for_s, const std::string &duty) { return add(for_s, "open_loop", "duty = " + duty); }
     Manoeuvre made() { return made_; }
@@ -50,35 +53,81 @@ class Drive {
 // Sizes are those of a rover of a few kilograms; LAB.md section 3 says what each separates.
 std::vector<Manoeuvre> make_manoeuvres() {
     return {
-        Drive("there and back over the same ground",
-              {"grade", "multi_pass", "mass_offset_x", "soil_patch", "soil_gradient", "tether_drag", "accel_bias", "rolling_resistance", "body_drag"})
-            .speed(12, "0.3").speed(2, "0.0").speed(12, "-0.3").speed(2, "0.0").made(),
+        Drive("there and back over the same ground", {"grade", "multi_pass", "mass_offset_x", "soil_patch", "soil_gradient", "tether_drag",
+                                                      "accel_bias", "rolling_resistance", "body_drag"})
+            .speed(12, "0.3")
+            .speed(2, "0.0")
+            .speed(12, "-0.3")
+            .speed(2, "0.0")
+            .made(),
         Drive("cruise straight, slow and fast", {"wheel_radius", "encoder_missed", "radar_scale", "camera_scale", "speed_resistance"})
-            .speed(10, "0.15").speed(10, "0.6").speed(2, "0.0").made(),
-        Drive("three wheels push, one drags",
-              {"mesh_loss", "slip_sinkage", "torque_constant", "current_gain", "wheel_radius", "encoder_missed", "sliding_speed_loss", "shear_stiffness", "mass_offset_y"})
-            .wheels(6, "[6.0, 6.0, 6.0, 1.0]").wheels(6, "[1.0, 6.0, 6.0, 6.0]").wheels(6, "[6.0, 1.0, 6.0, 6.0]").wheels(6, "[6.0, 6.0, 1.0, 6.0]").made(),
-        Drive("slip sweep of the front wheels", {"slip_sinkage", "shear_stiffness", "sliding_speed_loss", "relaxation_length", "mesh_loss", "speed_resistance"})
-            .sweep(20, "0.3").sweep(20, "0.15").made(),
-        Drive("front against rear, forwards and in reverse", {"multi_pass", "mass_offset_x", "slip_sinkage", "mesh_loss", "bridge_dead_time", "wiring_resistance"})
-            .wheels(6, "[2.0, 2.0, [2.0, 9.0], [2.0, 9.0]]").wheels(6, "[[2.0, 9.0], [2.0, 9.0], 2.0, 2.0]")
-            .wheels(6, "[-2.0, -2.0, [-2.0, -9.0], [-2.0, -9.0]]").wheels(6, "[[-2.0, -9.0], [-2.0, -9.0], -2.0, -2.0]").made(),
-        Drive("hard starts and stops",
-              {"load_transfer", "accel_scale", "accel_tilt", "radar_pitch", "camera_delay", "actuation_delay", "relaxation_length", "backlash", "radar_scale", "camera_scale"})
-            .speed(4, "0.8").speed(3, "-0.8").speed(3, "0.8").speed(3, "0.0").duty(8, "{ amplitude = 0.9, period_s = 1.5 }").made(),
-        Drive("stairs of speed, both ways",
-              {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_ripple", "speed_resistance", "bridge_dead_time", "voltage_gain", "wiring_resistance", "current_offset"})
-            .speed(6, "0.05").speed(6, "0.2").speed(6, "0.6").speed(6, "-0.1").speed(6, "-0.5").made(),
-        Drive("creep back and forth", {"stribeck_friction", "coulomb_friction", "backlash", "current_offset", "torque_ripple", "bridge_dead_time"})
-            .wheels(24, "{ amplitude = 1.5, period_s = 6.0 }").made(),
+            .speed(10, "0.15")
+            .speed(10, "0.6")
+            .speed(2, "0.0")
+            .made(),
+        Drive("three wheels push, one drags", {"mesh_loss", "slip_sinkage", "torque_constant", "current_gain", "wheel_radius",
+                                               "encoder_missed", "sliding_speed_loss", "shear_stiffness", "mass_offset_y"})
+            .wheels(6, "[6.0, 6.0, 6.0, 1.0]")
+            .wheels(6, "[1.0, 6.0, 6.0, 6.0]")
+            .wheels(6, "[6.0, 1.0, 6.0, 6.0]")
+            .wheels(6, "[6.0, 6.0, 1.0, 6.0]")
+            .made(),
+        Drive("slip sweep of the front wheels",
+              {"slip_sinkage", "shear_stiffness", "sliding_speed_loss", "relaxation_length", "mesh_loss", "speed_resistance"})
+            .sweep(20, "0.3")
+            .sweep(20, "0.15")
+            .made(),
+        Drive("front against rear, forwards and in reverse",
+              {"multi_pass", "mass_offset_x", "slip_sinkage", "mesh_loss", "bridge_dead_time", "wiring_resistance"})
+            .wheels(6, "[2.0, 2.0, [2.0, 9.0], [2.0, 9.0]]")
+            .wheels(6, "[[2.0, 9.0], [2.0, 9.0], 2.0, 2.0]")
+            .wheels(6, "[-2.0, -2.0, [-2.0, -9.0], [-2.0, -9.0]]")
+            .wheels(6, "[[-2.0, -9.0], [-2.0, -9.0], -2.0, -2.0]")
+            .made(),
+        Drive("hard starts and stops", {"load_transfer", "accel_scale", "accel_tilt", "radar_pitch", "camera_delay", "actuation_delay",
+                                        "relaxation_length", "backlash", "radar_scale", "camera_scale"})
+            .speed(4, "0.8")
+            .speed(3, "-0.8")
+            .speed(3, "0.8")
+            .speed(3, "0.0")
+            .duty(8, "{ amplitude = 0.9, period_s = 1.5 }")
+            .made(),
+        Drive("stairs of speed, both ways", {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_ripple",
+                                             "speed_resistance", "bridge_dead_time", "voltage_gain", "wiring_resistance", "current_offset"})
+            .speed(6, "0.05")
+            .speed(6, "0.2")
+            .speed(6, "0.6")
+            .speed(6, "-0.1")
+            .speed(6, "-0.5")
+            .made(),
+        Drive("creep back and forth",
+              {"stribeck_friction", "coulomb_friction", "backlash", "current_offset", "torque_ripple", "bridge_dead_time"})
+            .wheels(24, "{ amplitude = 1.5, period_s = 6.0 }")
+            .made(),
         Drive("push and brake by duty", {"backlash", "bridge_dead_time", "actuation_delay", "accel_scale"})
-            .duty(12, "{ amplitude = 0.6, period_s = 2.0 }").made(),
+            .duty(12, "{ amplitude = 0.6, period_s = 2.0 }")
+            .made(),
         Drive("turns on the spot and on the move", {"lateral_scrub", "wheel_radius", "mass_offset_y"})
-            .speed(6, "0.2", "0.8").speed(6, "0.2", "-0.8").speed(6, "0.0", "0.9").made(),
+            .speed(6, "0.2", "0.8")
+            .speed(6, "0.2", "-0.8")
+            .speed(6, "0.0", "0.9")
+            .made(),
         Drive("a square: along, across, back", {"grade", "soil_gradient", "accel_bias"})
-            .speed(6, "0.3").speed(2, "0.0", "0.8").speed(6, "0.3").speed(2, "0.0", "0.8").speed(6, "0.3").speed(2, "0.0", "0.8").speed(6, "0.3").made(),
+            .speed(6, "0.3")
+            .speed(2, "0.0", "0.8")
+            .speed(6, "0.3")
+            .speed(2, "0.0", "0.8")
+            .speed(6, "0.3")
+            .speed(2, "0.0", "0.8")
+            .speed(6, "0.3")
+            .made(),
         Drive("front against rear for a minute and a half, rest, the start again", {"winding_heating", "wiring_resistance", "accel_drift"})
-            .speed(6, "0.3").wheels(45, "[1.0, 1.0, 10.0, 10.0]").wheels(45, "[10.0, 10.0, 1.0, 1.0]").stop(20).speed(6, "0.3").made(),
+            .speed(6, "0.3")
+            .wheels(45, "[1.0, 1.0, 10.0, 10.0]")
+            .wheels(45, "[10.0, 10.0, 1.0, 1.0]")
+            .stop(20)
+            .speed(6, "0.3")
+            .made(),
     };
 }
 
@@ -93,7 +142,8 @@ std::string effect_table(const EffectUse &use, std::vector<std::string> &notes) 
         const auto found = use.parameters.find(std::string(p.name));
         if (found == use.parameters.end()) continue;
         const double value = std::clamp(found->second.value, p.minimum, p.maximum);
-        if (value != found->second.value) notes.push_back(use.name + "." + std::string(p.name) + " is beyond what the plant takes: driven with " + text_of(value));
+        if (value != found->second.value)
+            notes.push_back(use.name + "." + std::string(p.name) + " is beyond what the plant takes: driven with " + text_of(value));
         text += std::string(p.name) + " = " + text_of(value) + "\n";
     }
     return text + "\n";
@@ -105,7 +155,8 @@ double mean_of(const Model &model, const Parameters WheelSpec::*table, const cha
         const double value = number_of(w.*table, key);
         sum += value, low = std::min(low, value), high = std::max(high, value);
     }
-    if (high - low > 1e-9 * std::fabs(high)) notes.push_back(std::string(key) + " differs between the wheels: the plant drives with the mean");
+    if (high - low > 1e-9 * std::fabs(high))
+        notes.push_back(std::string(key) + " differs between the wheels: the plant drives with the mean");
     return sum / static_cast<double>(model.wheel.size());
 }
 
@@ -119,23 +170,30 @@ const std::vector<Manoeuvre> &manoeuvres() {
 std::string cannot_drive(const Model &model) {
     if (model.motion == BodyMotion::imposed) return "a carriage imposes its motion";
     if (model.motion == BodyMotion::none) return "its wheels turn in the air";
-    if (model.wheel.size() != 4) return "it has " + std::to_string(model.wheel.size()) + (model.wheel.size() == 1 ? " wheel" : " wheels") + ", the simulated rover has 4";
+    if (model.wheel.size() != 4)
+        return "it has " + std::to_string(model.wheel.size()) + (model.wheel.size() == 1 ? " wheel" : " wheels") +
+               ", the simulated rover has 4";
     for (std::size_t i = 0; i < 4; ++i) {
         const WheelSpec &w = model.wheel[i];
         const double x = number_of(w.geometry, "x_m"), y = number_of(w.geometry, "y_m");
         const bool place = (i < 2 ? x < 0 : x > 0) && (i % 2 == 0 ? y > 0 : y < 0);
-        if (!place || !w.driven || !w.grips_sideways || number_of(w.geometry, "heading_rad") != 0) return "its wheel " + std::to_string(i) + " is not a driven wheel where the simulated rover has its own (0 rear left, 1 rear right, 2 front left, 3 front right)";
+        if (!place || !w.driven || !w.grips_sideways || number_of(w.geometry, "heading_rad") != 0)
+            return "its wheel " + std::to_string(i) +
+                   " is not a driven wheel where the simulated rover has its own (0 rear left, 1 rear right, 2 front left, 3 front right)";
     }
-    if (!(number_of(model.rover, "mass_kg") > 0) || !(number_of(model.wheel[0].motor, "resistance_ohm") > 0) || !(number_of(model.wheel[0].motor, "torque_constant_Nm_A") > 0))
+    if (!(number_of(model.rover, "mass_kg") > 0) || !(number_of(model.wheel[0].motor, "resistance_ohm") > 0) ||
+        !(number_of(model.wheel[0].motor, "torque_constant_Nm_A") > 0))
         return "its mass, motor constant or winding resistance is not given";
     return "";
 }
 
-std::string scenario_of(const Model &model, const std::string &title, const std::string &segments, double duration_s, std::vector<std::string> &notes) {
+std::string scenario_of(const Model &model, const std::string &title, const std::string &segments, double duration_s,
+                        std::vector<std::string> &notes) {
     std::string quoted;
     for (const char c : title)
         if (c != '"' && c != '\\' && c >= ' ') quoted += c;
-    std::string text = "title = \"" + quoted + "\"\nduration_s = " + text_of(duration_s) + "\nseed = 1\n\n[ground]\nsoil = \"" + (model.soil_law == SoilLaw::burckhardt ? "concrete" : "sand") + "\"\n";
+    std::string text = "title = \"" + quoted + "\"\nduration_s = " + text_of(duration_s) + "\nseed = 1\n\n[ground]\nsoil = \"" +
+                       (model.soil_law == SoilLaw::burckhardt ? "concrete" : "sand") + "\"\n";
     const auto mean = [&](const Parameters WheelSpec::*table, const char *key) { return mean_of(model, table, key, notes); };
     const auto put = [&](const char *key, double value, bool when) {
         if (when) text += std::string(key) + " = " + text_of(value) + "\n";
@@ -147,13 +205,15 @@ std::string scenario_of(const Model &model, const std::string &title, const std:
     text += "\n[rover]\n";
     put("mass_kg", number_of(model.rover, "mass_kg"), true);
     double x = 0, y = 0;
-    for (const WheelSpec &w : model.wheel) x += std::fabs(number_of(w.geometry, "x_m")) / 4, y += std::fabs(number_of(w.geometry, "y_m")) / 4;
+    for (const WheelSpec &w : model.wheel)
+        x += std::fabs(number_of(w.geometry, "x_m")) / 4, y += std::fabs(number_of(w.geometry, "y_m")) / 4;
     put("half_wheelbase_m", x, true), put("half_track_m", y, true);
     put("wheel_radius_m", mean(&WheelSpec::geometry, "radius_m"), true);
     put("centre_height_m", number_of(model.rover, "centre_height_m"), true);
     const double relaxation = mean(&WheelSpec::soil, "relaxation_length_m");
     put("relaxation_length_m", relaxation, relaxation >= 0.0005);
-    for (const char *key : {"torque_constant_Nm_A", "resistance_ohm", "inertia_kg_m2", "viscous_Nms", "coulomb_Nm"}) put(key, mean(&WheelSpec::motor, key), true);
+    for (const char *key : {"torque_constant_Nm_A", "resistance_ohm", "inertia_kg_m2", "viscous_Nms", "coulomb_Nm"})
+        put(key, mean(&WheelSpec::motor, key), true);
     const double battery_V = number_of(model.rover, "battery_voltage_V");
     put("battery_voltage_V", battery_V, battery_V > 0);
     text += "\n";
@@ -185,13 +245,16 @@ std::string measure_instead(const std::string &effect) {
         {{"accel_bias", "accel_drift"}, "log the rover at rest on a level plate, then turned by half a turn"},
         {{"accel_scale"}, "stand the rover on its nose: the sensor must read 9.81 m/s^2"},
         {{"grade"}, "lay a spirit level on the ground"},
-        {{"wiring_resistance", "bridge_dead_time"}, "block the wheel and measure the voltage at the motor's terminals with a meter, at two currents"},
+        {{"wiring_resistance", "bridge_dead_time"},
+         "block the wheel and measure the voltage at the motor's terminals with a meter, at two currents"},
         {{"winding_heating"}, "measure the winding's resistance with a meter, cold and after a hard drive"},
         {{"torque_constant"}, "turn the motor at a known speed and measure its open-circuit voltage"},
         {{"current_gain", "current_offset"}, "put an ammeter in the motor's lead"},
         {{"voltage_gain"}, "put a voltmeter on the battery"},
-        {{"rolling_resistance", "body_drag", "tether_drag", "speed_resistance"}, "pull the rover with a spring balance, motors disconnected"},
-        {{"coulomb_friction", "viscous_friction", "stribeck_friction", "torque_ripple", "mesh_loss", "backlash"}, "lift the wheel off the ground and run it alone"},
+        {{"rolling_resistance", "body_drag", "tether_drag", "speed_resistance"},
+         "pull the rover with a spring balance, motors disconnected"},
+        {{"coulomb_friction", "viscous_friction", "stribeck_friction", "torque_ripple", "mesh_loss", "backlash"},
+         "lift the wheel off the ground and run it alone"},
         {{"lateral_scrub"}, "pull the rover sideways with a spring balance"},
     };
     for (const auto &[names, words] : table)

@@ -12,9 +12,9 @@ namespace traction::lab {
 
 struct Manoeuvre {
     std::string title;
-    std::string segments;                // [[drive]] tables
+    std::string segments; // [[drive]] tables
     double duration_s = 0;
-    std::vector<std::string> good_for;   // effects it is known to show or separate: said where nothing can be simulated
+    std::vector<std::string> good_for; // effects it is known to show or separate: said where nothing can be simulated
 };
 
 const std::vector<Manoeuvre> &manoeuvres();
@@ -28,7 +28,8 @@ std::string cannot_drive(const Model &model);
 std::string scenario_of(const Model &model, const std::vector<const Manoeuvre *> &list, std::vector<std::string> &notes);
 
 // The same with drive tables of the caller's own: `segments`, lasting duration_s.
-std::string scenario_of(const Model &model, const std::string &title, const std::string &segments, double duration_s, std::vector<std::string> &notes);
+std::string scenario_of(const Model &model, const std::string &title, const std::string &segments, double duration_s,
+                        std::vector<std::string> &notes);
 
 // What to measure without driving when no manoeuvre tells this effect: "weigh the wheels one by one".
 std::string measure_instead(const std::string &effect);

@@ -16,7 +16,8 @@ namespace traction::lab {
 
 namespace {
 
-std::string complete_message(const std::string &file, std::size_t line, const std::string &key, const std::string &wrong, const std::string &mend) {
+std::string complete_message(const std::string &file, std::size_t line, const std::string &key, const std::string &wrong,
+                             const std::string &mend) {
     std::string text = file;
     if (line > 0) text += ":" + std::to_string(line);
     if (!key.empty()) text += ": " + key;
@@ -54,16 +55,26 @@ struct Reader {
             for (const auto &[name_key, item] : *table) {
                 const std::string name(name_key.str());
                 const std::string path = key + "." + name;
-                if (name == "value") p.value = number(item, path), has_value = true;
-                else if (name == "min") p.minimum = number(item, path);
-                else if (name == "max") p.maximum = number(item, path);
-                else if (name == "prior") p.prior = number(item, path);
-                else if (name == "low") p.low = number(item, path);
-                else if (name == "high") p.high = number(item, path);
-                else if (name == "fixed") p.fixed = item.value_or(false);
-                else if (name == "source") p.source = item.value_or(std::string());
-                else if (name == "unit") check_unit(item, path, p);
-                else fail(item, path, "is not known", "a parameter may have value, unit, min, max, prior, fixed, source, low, high");
+                if (name == "value")
+                    p.value = number(item, path), has_value = true;
+                else if (name == "min")
+                    p.minimum = number(item, path);
+                else if (name == "max")
+                    p.maximum = number(item, path);
+                else if (name == "prior")
+                    p.prior = number(item, path);
+                else if (name == "low")
+                    p.low = number(item, path);
+                else if (name == "high")
+                    p.high = number(item, path);
+                else if (name == "fixed")
+                    p.fixed = item.value_or(false);
+                else if (name == "source")
+                    p.source = item.value_or(std::string());
+                else if (name == "unit")
+                    check_unit(item, path, p);
+                else
+                    fail(item, path, "is not known", "a parameter may have value, unit, min, max, prior, fixed, source, low, high");
             }
             if (!has_value) fail(node, key, "has no value", "add value = NUMBER to the table");
         }
@@ -82,8 +93,10 @@ struct Reader {
             std::erase(text, ' ');
             return text == "-" || text.empty() ? std::string("1") : text;
         };
-        if (p.unit.empty()) p.unit = unit;
-        else if (plain(unit) != plain(p.unit)) fail(item, path, "is \"" + unit + "\"", "this key is in " + p.unit + ": convert the value");
+        if (p.unit.empty())
+            p.unit = unit;
+        else if (plain(unit) != plain(p.unit))
+            fail(item, path, "is \"" + unit + "\"", "this key is in " + p.unit + ": convert the value");
     }
 
     // Fills `into` from the keys of the table that are in `known`; complains of others unless they are in `also`.
@@ -93,7 +106,8 @@ struct Reader {
             const std::string name(name_key.str());
             if (std::find(also.begin(), also.end(), name) != also.end()) continue;
             const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == prefix + name; });
-            if (found == known.end()) fail(node, where + "." + name, "is not a known key", "did you mean " + nearest(prefix + name, known) + "?");
+            if (found == known.end())
+                fail(node, where + "." + name, "is not a known key", "did you mean " + nearest(prefix + name, known) + "?");
             Parameter p = into.count(prefix + name) != 0 ? into.at(prefix + name) : Parameter{};
             p.unit = found->unit;
             p.minimum = found->minimum;
@@ -145,11 +159,11 @@ void fill_defaults(std::span<const ModelKey> known, Parameters &into) {
 
 const std::vector<std::string> motor_extra = {"motor_constant_Nm_A", "motor_back_emf_Vs_rad", "gear_ratio", "gear_efficiency",
                                               "motor_inertia_kg_m2"};
-const std::vector<std::string> soil_extra = {"law", "strength_N", "cohesion_Pa", "friction_angle_rad", "shear_length_m",
-                                             "contact_length_m"};
+const std::vector<std::string> soil_extra = {
+    "law", "strength_N", "cohesion_Pa", "friction_angle_rad", "shear_length_m", "contact_length_m"};
 
-void put(Parameters &into, const Reader &reader, const toml::table &source, const std::string &where,
-         std::span<const ModelKey> known, const std::string &key, double value, const char *how) {
+void put(Parameters &into, const Reader &reader, const toml::table &source, const std::string &where, std::span<const ModelKey> known,
+         const std::string &key, double value, const char *how) {
     const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == key; });
     Parameter p;
     p.unit = found->unit;
@@ -176,18 +190,24 @@ void read_motor(const Reader &reader, const toml::table &source, const std::stri
     const double gear = std::isnan(get("gear_ratio")) ? 1.0 : get("gear_ratio");
     const double efficiency = std::isnan(get("gear_efficiency")) ? 1.0 : get("gear_efficiency");
     const double kt = get("motor_constant_Nm_A"), ke = get("motor_back_emf_Vs_rad"), rotor = get("motor_inertia_kg_m2");
-    if (!std::isnan(kt)) put(into, reader, source, where, motor_keys(), "torque_constant_Nm_A", kt * gear * efficiency, "motor constant times gear ratio");
+    if (!std::isnan(kt))
+        put(into, reader, source, where, motor_keys(), "torque_constant_Nm_A", kt * gear * efficiency, "motor constant times gear ratio");
     if (!std::isnan(ke)) put(into, reader, source, where, motor_keys(), "back_emf_Vs_rad", ke * gear, "motor back-EMF times gear ratio");
-    if (!std::isnan(rotor)) put(into, reader, source, where, motor_keys(), "inertia_kg_m2", rotor * gear * gear, "rotor inertia times gear ratio squared");
+    if (!std::isnan(rotor))
+        put(into, reader, source, where, motor_keys(), "inertia_kg_m2", rotor * gear * gear, "rotor inertia times gear ratio squared");
 }
 
-void read_soil(const Reader &reader, const toml::table &source, const std::string &where, Parameters &into, Model &model,
-               double load_N, double width_m) {
+void read_soil(const Reader &reader, const toml::table &source, const std::string &where, Parameters &into, Model &model, double load_N,
+               double width_m) {
     reader.table(source, where, soil_keys(), into, soil_extra);
     const std::string law = source["law"].value_or(std::string(model.soil_law == SoilLaw::janosi ? "janosi" : "burckhardt"));
-    if (law == "burckhardt") model.soil_law = SoilLaw::burckhardt;
-    else if (law == "janosi" || law == "bekker") model.soil_law = SoilLaw::janosi;
-    else reader.fail(*source.get("law"), where + ".law", "is \"" + law + "\"", "use \"janosi\" (soft soil), \"burckhardt\" (hard ground) or \"bekker\"");
+    if (law == "burckhardt")
+        model.soil_law = SoilLaw::burckhardt;
+    else if (law == "janosi" || law == "bekker")
+        model.soil_law = SoilLaw::janosi;
+    else
+        reader.fail(*source.get("law"), where + ".law", "is \"" + law + "\"",
+                    "use \"janosi\" (soft soil), \"burckhardt\" (hard ground) or \"bekker\"");
     const auto get = [&](const char *key) -> double {
         const toml::node *node = source.get(key);
         if (node == nullptr) return std::nan("");
@@ -197,13 +217,15 @@ void read_soil(const Reader &reader, const toml::table &source, const std::strin
     };
     const double strength = get("strength_N");
     if (!std::isnan(strength)) {
-        if (!(load_N > 0)) reader.fail(source, where + ".strength_N", "needs a wheel load", "give load_N per wheel or rover.mass_kg, or use mu");
+        if (!(load_N > 0))
+            reader.fail(source, where + ".strength_N", "needs a wheel load", "give load_N per wheel or rover.mass_kg, or use mu");
         put(into, reader, source, where, soil_keys(), "mu", strength / load_N, "strength_N over the wheel's static load");
     }
     if (law != "bekker") return;
     const double c = get("cohesion_Pa"), phi = get("friction_angle_rad"), K = get("shear_length_m"), l = get("contact_length_m");
     if (std::isnan(c) || std::isnan(phi) || !(K > 0) || !(l > 0))
-        reader.fail(source, where, "law \"bekker\" is incomplete", "give cohesion_Pa, friction_angle_rad, shear_length_m and contact_length_m");
+        reader.fail(source, where, "law \"bekker\" is incomplete",
+                    "give cohesion_Pa, friction_angle_rad, shear_length_m and contact_length_m");
     put(into, reader, source, where, soil_keys(), "adhesion_N", l * width_m * c, "l * width * c, (5) Lhomme-Desages");
     put(into, reader, source, where, soil_keys(), "mu", std::tan(phi), "tan(phi), (5) Lhomme-Desages");
     put(into, reader, source, where, soil_keys(), "shear_slip", K / l, "K / l, (20) Lhomme-Desages");
@@ -215,14 +237,17 @@ void read_rover(const Reader &reader, const toml::table &root, Model &model) {
         const std::string motion = (*rover)["motion"].value_or(std::string("longitudinal"));
         static const char *names[] = {"longitudinal", "planar", "imposed", "none"}; // as BodyMotion has them
         const auto found = std::find(std::begin(names), std::end(names), motion);
-        if (found == std::end(names)) reader.fail(*rover->get("motion"), "rover.motion", "is \"" + motion + "\"", "use \"longitudinal\", \"planar\", \"imposed\" or \"none\"");
+        if (found == std::end(names))
+            reader.fail(*rover->get("motion"), "rover.motion", "is \"" + motion + "\"",
+                        "use \"longitudinal\", \"planar\", \"imposed\" or \"none\"");
         model.motion = static_cast<BodyMotion>(found - names);
         model.halves = (*rover)["halves"].value_or(false);
     }
     fill_defaults(rover_keys(), model.rover);
     const bool moves = model.motion == BodyMotion::longitudinal || model.motion == BodyMotion::planar;
     if (moves && !(model.rover.at("mass_kg").value > 0))
-        reader.fail(root, "rover.mass_kg", "is missing or zero", "give the mass, or rover.motion = \"imposed\" (bench) or \"none\" (wheels in the air)");
+        reader.fail(root, "rover.mass_kg", "is missing or zero",
+                    "give the mass, or rover.motion = \"imposed\" (bench) or \"none\" (wheels in the air)");
 }
 
 void read_wheels(const Reader &reader, const toml::table &root, Model &model) {
@@ -247,7 +272,8 @@ void read_wheels(const Reader &reader, const toml::table &root, Model &model) {
         if (const toml::table *motor = root["motor"].as_table()) read_motor(reader, *motor, "motor", spec.motor);
         if (const toml::table *motor = (*table)["motor"].as_table()) read_motor(reader, *motor, where + ".motor", spec.motor);
         if (const toml::table *soil = root["soil"].as_table()) read_soil(reader, *soil, "soil", spec.soil, model, load_N, width_m);
-        if (const toml::table *soil = (*table)["soil"].as_table()) read_soil(reader, *soil, where + ".soil", spec.soil, model, load_N, width_m);
+        if (const toml::table *soil = (*table)["soil"].as_table())
+            read_soil(reader, *soil, where + ".soil", spec.soil, model, load_N, width_m);
         fill_defaults(motor_keys(), spec.motor);
         fill_defaults(soil_keys(), spec.soil);
         model.wheel.push_back(std::move(spec));
@@ -302,12 +328,14 @@ void read_effects(const Reader &reader, const toml::table &root, Model &model) {
         if (use.name.empty()) reader.fail(*table, where + ".name", "is missing", "name an effect of `traction effects`, or your own");
         use.wheel = (*table)["wheel"].value_or(-1);
         if (use.wheel < -1 || use.wheel >= static_cast<int>(model.wheel.size()))
-            reader.fail(*table, where + ".wheel", "is " + std::to_string(use.wheel), "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
+            reader.fail(*table, where + ".wheel", "is " + std::to_string(use.wheel),
+                        "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
         use.acts_on = (*table)["acts_on"].value_or(std::string());
         use.expression = (*table)["expression"].value_or(std::string());
         const sim::Effect *effect = use.expression.empty() ? sim::find_effect(use.name) : nullptr;
         if (effect == nullptr && use.expression.empty())
-            reader.fail(*table, where + ".name", "unknown effect \"" + use.name + "\"", "`traction effects` lists the names; an effect of your own needs acts_on and expression");
+            reader.fail(*table, where + ".name", "unknown effect \"" + use.name + "\"",
+                        "`traction effects` lists the names; an effect of your own needs acts_on and expression");
         for (const auto &[key, node] : *table) {
             const std::string name(key.str());
             if (name == "name" || name == "wheel" || name == "acts_on" || name == "expression" || name == "note") continue;
@@ -320,14 +348,17 @@ void read_effects(const Reader &reader, const toml::table &root, Model &model) {
         }
         TermTarget target = TermTarget::wheel_torque;
         if (!use.expression.empty() && !parse_target(use.acts_on, target))
-            reader.fail(*table, where + ".acts_on", "is \"" + use.acts_on + "\"", "use wheel_torque, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, motor_constant, resistance, sensor.accel, sensor.radar, sensor.camera or sensor.current");
+            reader.fail(*table, where + ".acts_on", "is \"" + use.acts_on + "\"",
+                        "use wheel_torque, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, "
+                        "motor_constant, resistance, sensor.accel, sensor.radar, sensor.camera or sensor.current");
         if (!use.expression.empty()) {
             std::vector<std::string> names;
             for (const auto &[key, parameter] : use.parameters) names.push_back(key);
             try {
                 make_expression(use.expression, names);
             } catch (const std::runtime_error &error) {
-                reader.fail(*table, where + ".expression", error.what(), "use t w v s Fn theta x a I u Ft V r, the effect's own parameters, and muparser's functions");
+                reader.fail(*table, where + ".expression", error.what(),
+                            "use t w v s Fn theta x a I u Ft V r, the effect's own parameters, and muparser's functions");
             }
         }
         model.effects.push_back(std::move(use));
@@ -352,7 +383,8 @@ void read_lineage(const toml::table &root, Model &model) {
 
 } // namespace
 
-ModelError::ModelError(const std::string &file, std::size_t line, const std::string &key, const std::string &what_is_wrong, const std::string &mend)
+ModelError::ModelError(const std::string &file, std::size_t line, const std::string &key, const std::string &what_is_wrong,
+                       const std::string &mend)
     : std::runtime_error(complete_message(file, line, key, what_is_wrong, mend)) {}
 
 const EffectUse *Model::find_effect(const std::string &effect, int wheel_index) const {
@@ -373,9 +405,11 @@ Model parse_model(const std::string &text, const std::string &file) {
     model.file = file;
     model.name = root["name"].value_or(file);
     for (const auto &[key, node] : root) {
-        static const std::vector<std::string> known = {"format", "name", "rover", "wheels", "wheel", "motor", "soil", "sensors", "effect", "lineage", "note"};
+        static const std::vector<std::string> known = {"format", "name",    "rover",  "wheels",  "wheel", "motor",
+                                                       "soil",   "sensors", "effect", "lineage", "note"};
         if (std::find(known.begin(), known.end(), key.str()) == known.end())
-            reader.fail(node, std::string(key.str()), "is not a known table", "use rover, wheels, wheel, motor, soil, sensors, effect, lineage");
+            reader.fail(node, std::string(key.str()), "is not a known table",
+                        "use rover, wheels, wheel, motor, soil, sensors, effect, lineage");
     }
     if (const auto format = root["format"].value<std::string>(); format && *format != "traction.model/1")
         reader.fail(*root.get("format"), "format", "is \"" + *format + "\"", "this program reads \"traction.model/1\"");

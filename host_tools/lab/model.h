@@ -21,13 +21,13 @@ struct ModelError : std::runtime_error {
 
 struct Parameter {
     double value = 0;
-    std::string unit;   // SI; "1" where dimensionless
+    std::string unit; // SI; "1" where dimensionless
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
     double prior = 0;   // standard deviation around value, in the same unit; 0: not adjusted while an effect is sought
     bool fixed = false; // never fitted
     std::string source;
-    double low = std::numeric_limits<double>::quiet_NaN();  // 95 % interval of a fit, where there was one
+    double low = std::numeric_limits<double>::quiet_NaN(); // 95 % interval of a fit, where there was one
     double high = std::numeric_limits<double>::quiet_NaN();
     bool given = false; // false: the default of this program
 };
@@ -63,9 +63,9 @@ struct EffectUse {
 
 // One step of the model's history.
 struct LineageEntry {
-    std::string label; // "baseline", "+ slip_sinkage"
-    std::string log;   // file name without folder
-    std::string date;  // the log's own date, if it has one
+    std::string label;                                       // "baseline", "+ slip_sinkage"
+    std::string log;                                         // file name without folder
+    std::string date;                                        // the log's own date, if it has one
     double train = std::numeric_limits<double>::quiet_NaN(); // error in units of noise
     double heldout = std::numeric_limits<double>::quiet_NaN();
     double floor = std::numeric_limits<double>::quiet_NaN();
@@ -77,7 +77,7 @@ struct Model {
     BodyMotion motion = BodyMotion::longitudinal;
     bool halves = false; // of the chassis, left and right, on a revolute joint across: each finds its own pitch
     SoilLaw soil_law = SoilLaw::janosi;
-    Parameters rover;   // mass_kg, yaw_inertia_kg_m2, centre_height_m, gravity_m_s2, battery_voltage_V
+    Parameters rover; // mass_kg, yaw_inertia_kg_m2, centre_height_m, gravity_m_s2, battery_voltage_V
     std::vector<WheelSpec> wheel;
     Parameters sensors; // "current.noise_A", "radar.window_s", ...
     bool unsigned_current = false;

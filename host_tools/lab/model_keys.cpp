@@ -7,16 +7,13 @@ namespace {
 // Priors are assumed: a brushed gear motor's data sheet holds within 3 % for its constant and winding, 15 % for friction; a soil is
 // known to 20 %; a tyre's radius under load to 0.5 %.
 constexpr ModelKey rover[] = {
-    {"mass_kg", "kg", 0, 0, 1e5, 0, 0},
-    {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},
-    {"centre_height_m", "m", 0, 0, 10, 0, 0},
-    {"gravity_m_s2", "m/s^2", 9.81, 0, 30, 0, 0},
+    {"mass_kg", "kg", 0, 0, 1e5, 0, 0},          {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},
+    {"centre_height_m", "m", 0, 0, 10, 0, 0},    {"gravity_m_s2", "m/s^2", 9.81, 0, 30, 0, 0},
     {"battery_voltage_V", "V", 0, 0, 1e3, 0, 0},
 };
 constexpr ModelKey wheel[] = {
-    {"x_m", "m", 0, -50, 50, 0, 0},          {"y_m", "m", 0, -50, 50, 0, 0},
-    {"heading_rad", "rad", 0, -7, 7, 0, 0},  {"radius_m", "m", 0, 1e-4, 5, 0.005, 0},
-    {"width_m", "m", 0, 0, 5, 0, 0},         {"load_N", "N", 0, 0, 1e6, 0, 0},
+    {"x_m", "m", 0, -50, 50, 0, 0},          {"y_m", "m", 0, -50, 50, 0, 0},  {"heading_rad", "rad", 0, -7, 7, 0, 0},
+    {"radius_m", "m", 0, 1e-4, 5, 0.005, 0}, {"width_m", "m", 0, 0, 5, 0, 0}, {"load_N", "N", 0, 0, 1e6, 0, 0},
 };
 constexpr ModelKey motor[] = {
     {"torque_constant_Nm_A", "N m/A", 0, 0, 1e4, 0.02, 0}, {"back_emf_Vs_rad", "V s/rad", 0, 0, 1e4, 0.02, 0},

@@ -9,7 +9,7 @@ namespace traction::lab {
 struct ModelKey {
     std::string_view key;
     std::string_view unit;
-    double value;          // when the file does not say
+    double value; // when the file does not say
     double minimum, maximum;
     double relative_prior; // default prior as a fraction of the value: assumed, see docs/model_format.md
     double absolute_prior; // default prior in the unit

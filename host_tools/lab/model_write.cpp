@@ -1,10 +1,10 @@
 // Writes a model as TOML: shared [motor] and [soil] tables from the first wheel, overrides where a wheel differs.
 #include "model.h"
 
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <charconv>
 
 namespace traction::lab {
 
@@ -22,8 +22,10 @@ std::string quoted(const std::string &text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') out += '\\';
-        if (c == '\n') out += "\\n";
-        else out += c;
+        if (c == '\n')
+            out += "\\n";
+        else
+            out += c;
     }
     return out + "\"";
 }

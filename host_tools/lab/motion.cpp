@@ -13,7 +13,8 @@ namespace detail {
 
 Freedom freedom_of(const Dataset &data, const Physics &physics) {
     const bool planar = physics.motion == BodyMotion::planar;
-    const bool omni = planar && std::find(physics.grips_sideways.begin(), physics.grips_sideways.end(), false) != physics.grips_sideways.end();
+    const bool omni =
+        planar && std::find(physics.grips_sideways.begin(), physics.grips_sideways.end(), false) != physics.grips_sideways.end();
     return {planar, planar || data.yaw_free, omni, planar ? data.gyro : data.yaw_free};
 }
 
@@ -26,8 +27,10 @@ void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool la
         for (auto *series : {&w.traction_N, &w.rolling_N, &w.slip, &w.side_slip, &w.load_N, &w.ground_speed_m_s}) series->resize(count);
         for (auto *series : {&w.force, &w.traction_by_speed}) series->resize(keep ? count : 0);
         for (auto *series : {&w.traction_by_accel, &w.traction_by_path}) series->resize(keep ? count : 0);
-        for (auto *series : {&w.force_by_slip, &w.slip_by_speed, &w.force_by_side, &w.side_by_speed}) series->resize(keep && lags ? count : 0);
-        for (auto *series : {&w.traction_by_slip, &w.slip_by_slip, &w.traction_by_side, &w.side_by_side}) series->resize(keep && lags ? count : 0);
+        for (auto *series : {&w.force_by_slip, &w.slip_by_speed, &w.force_by_side, &w.side_by_speed})
+            series->resize(keep && lags ? count : 0);
+        for (auto *series : {&w.traction_by_slip, &w.slip_by_slip, &w.traction_by_side, &w.side_by_side})
+            series->resize(keep && lags ? count : 0);
     }
 }
 
@@ -38,15 +41,19 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double near_end = 1e-5; // m/s and rad/s: the Jacobian is known to a few percent, which leaves 1e-6 at most, far below any sensor's noise
-constexpr double step_speed = 1e-6, step_accel = 1e-4, step_path = 3e-3, step_slip = 1e-6; // of the differences: m/s (and rad/s), m/s^2, m (about a step of the path)
+constexpr double near_end =
+    1e-5; // m/s and rad/s: the Jacobian is known to a few percent, which leaves 1e-6 at most, far below any sensor's noise
+constexpr double step_speed = 1e-6, step_accel = 1e-4, step_path = 3e-3,
+                 step_slip = 1e-6; // of the differences: m/s (and rad/s), m/s^2, m (about a step of the path)
 
 // Root of a function that rises on the whole, in [low, high]: secant steps kept inside the bracket.
 template <typename Function> double bracketed_root(Function &&g, double low, double high, double guess) {
     double x = std::clamp(guess, low, high), gx = g(x), x_old = x + 1e-4, g_old = g(x_old);
     for (int i = 0; i < 60; ++i) {
-        if (gx > 0) high = std::min(high, x);
-        else low = std::max(low, x);
+        if (gx > 0)
+            high = std::min(high, x);
+        else
+            low = std::max(low, x);
         const double slope = (gx - g_old) / (x - x_old);
         double next = slope > 0 ? x - gx / slope : 0.5 * (low + high);
         if (!(next > low && next < high)) next = 0.5 * (low + high);
@@ -63,7 +70,8 @@ class Solver {
   public:
     Solver(const Dataset &data, const Physics &physics, bool keeps)
         : data_(data), p_(physics), step_(data, physics), freedom_(detail::freedom_of(data, physics)), keeps_(keeps) {
-        for (const WheelPhysics &w : p_.wheel) most_ += (w.adhesion + std::fabs(w.mu) * 10 + 1) + p_.body.gravity * p_.body.mass * (std::fabs(w.mu) + 2);
+        for (const WheelPhysics &w : p_.wheel)
+            most_ += (w.adhesion + std::fabs(w.mu) * 10 + 1) + p_.body.gravity * p_.body.mass * (std::fabs(w.mu) + 2);
         most_ /= p_.body.mass;
     }
 
@@ -76,17 +84,15 @@ class Solver {
         centre_ = v_before;
     }
 
-    Vector3d rate(const Vector3d &q) {
-        return with_body(step_.forces(q, keeps_ ? &force_ : nullptr), q);
-    }
+    Vector3d rate(const Vector3d &q) { return with_body(step_.forces(q, keeps_ ? &force_ : nullptr), q); }
 
     Vector3d residual(const Vector3d &q) {
         rate_ = rate(q);
         return q - right_ - reach_ * rate_;
     }
 
-    // From a near start: chord iteration with an inverse that each step mends (Broyden's good update). A last change smaller than `near_end` is
-    // taken without another evaluation where `exact` is not asked for. False: not found.
+    // From a near start: chord iteration with an inverse that each step mends (Broyden's good update). A last change smaller than
+    // `near_end` is taken without another evaluation where `exact` is not asked for. False: not found.
     bool approach(Vector3d &q, const Motion &guess, std::size_t k, bool exact) {
         Matrix3d inverse = guess.tangent[k].inverse;
         Vector3d f = residual(q);
@@ -161,12 +167,14 @@ class Solver {
         t.rate_by_path = Vector3d::Zero();
         step_.prepare(k, v_before, accel_before + step_accel, path, away);
         t.rate_by_accel = (rate(q) - at) / step_accel;
-        for (std::size_t i = 0; i < step_.wheels(); ++i) m.wheel[i].traction_by_accel[k] = (step_.state(i).traction - traction[i]) / step_accel;
+        for (std::size_t i = 0; i < step_.wheels(); ++i)
+            m.wheel[i].traction_by_accel[k] = (step_.state(i).traction - traction[i]) / step_accel;
         if (step_.feels_path()) {
             step_.prepare(k, v_before, accel_before, path + step_path, away + step_path);
             t.rate_by_path = (rate(q) - at) / step_path;
         }
-        for (std::size_t i = 0; i < step_.wheels(); ++i) m.wheel[i].traction_by_path[k] = step_.feels_path() ? (step_.state(i).traction - traction[i]) / step_path : 0;
+        for (std::size_t i = 0; i < step_.wheels(); ++i)
+            m.wheel[i].traction_by_path[k] = step_.feels_path() ? (step_.state(i).traction - traction[i]) / step_path : 0;
         step_.prepare(k, v_before, accel_before, path, away);
         rate(q);
     }
@@ -226,11 +234,15 @@ class Solver {
             const bool slow = share < 1 || size(g_next) > 0.05 * size(f);
             const Vector3d change_f = g_next - f;
             const Vector3d f_old = f;
-            if (size(g_next) <= size(f)) x = next, f = g_next;
-            else if (share <= 0.01) break;
+            if (size(g_next) <= size(f))
+                x = next, f = g_next;
+            else if (share <= 0.01)
+                break;
             if (small < 1e-9 || size(f) < 1e-18) break;
-            if (slow || f == f_old) f = residual(x), jacobian();
-            else J += (change_f - J * moved) * moved.transpose() / moved.squaredNorm();
+            if (slow || f == f_old)
+                f = residual(x), jacobian();
+            else
+                J += (change_f - J * moved) * moved.transpose() / moved.squaredNorm();
         }
         return x;
     }
@@ -266,10 +278,12 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
     const detail::Freedom freedom = solver.freedom();
     Vector3d q = Vector3d::Zero(), before = q, shift = q, shift_before = q; // shift: from the guess
     if (!freedom.omni)
-        for (std::size_t i = 0; i < p.wheel.size(); ++i) q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
+        for (std::size_t i = 0; i < p.wheel.size(); ++i)
+            q[0] += p.wheel[i].radius * data.wheel[i].speed_rad_s[0] / static_cast<double>(p.wheel.size());
     double accel = 0, path = 0, away = 0, x = 0, y = 0, heading = 0; // place and heading from the start
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();
-    const bool whole = keep || !p.terms.empty() || std::any_of(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::force; });
+    const bool whole = keep || !p.terms.empty() ||
+                       std::any_of(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::force; });
     const bool far = keep || p.body.tether != 0; // who else asks how far away it is?
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
@@ -278,7 +292,8 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         const double v_before = q[0], accel_before = accel, path_before = path, away_before = away;
         solver.prepare(k, right, k < 2 ? 1.0 : 2.0 / 3, v_before, accel_before, path_before, away_before);
         const Vector3d guessed = guess != nullptr ? Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]) : q;
-        Vector3d found = guess != nullptr ? Vector3d(guessed + 2 * shift - shift_before) : Vector3d(q + data.step_s * Vector3d(accel, 0, 0));
+        Vector3d found =
+            guess != nullptr ? Vector3d(guessed + 2 * shift - shift_before) : Vector3d(q + data.step_s * Vector3d(accel, 0, 0));
         if (!freedom.yaw) found[2] = given;
         if (!chord || !solver.approach(found, *guess, k, exact)) found = solver.solve(found);
         if (!found.allFinite()) found = q;
@@ -332,11 +347,14 @@ void integrate_imposed(const Dataset &data, const Physics &p, Motion &m) {
 
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep) {
     const bool free = physics.motion == BodyMotion::longitudinal || physics.motion == BodyMotion::planar;
-    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(), [&](const WheelPhysics &w) { return w.relaxation + physics.body.relaxation > 0; });
+    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(),
+                                  [&](const WheelPhysics &w) { return w.relaxation + physics.body.relaxation > 0; });
     detail::resize(motion, data.count, physics.wheel.size(), keep && free, lags);
     if (physics.wheel.size() > most_wheels) return;
-    if (free) integrate_free(data, physics, motion, guess, keep);
-    else integrate_imposed(data, physics, motion);
+    if (free)
+        integrate_free(data, physics, motion, guess, keep);
+    else
+        integrate_imposed(data, physics, motion);
 }
 
 } // namespace traction::lab

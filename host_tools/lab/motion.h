@@ -6,7 +6,8 @@
 // ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull is not felt.
 // Neighbours of a known motion by one linear recursion, tangent.cpp:
 //   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1} + rate_s ds_{k-1}))      (3)
-// where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips (along and across).
+// where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips (along and
+// across).
 #pragma once
 
 #include "dataset.h"
@@ -20,16 +21,17 @@ namespace traction::lab {
 
 // Derivatives of one step at a known motion, for (3). By path: of the path travelled; by accel: of the acceleration a step before.
 struct StepTangent {
-    Eigen::Matrix3d inverse;               // of I - 2/3 h A (h for the first step)
+    Eigen::Matrix3d inverse; // of I - 2/3 h A (h for the first step)
     Eigen::Vector3d rate_by_accel, rate_by_path;
 };
 
 // Trajectory of one pass, on the grid.
 struct Motion {
     std::vector<double> v_m_s, vy_m_s, yaw_rate_rad_s, path_m;
-    std::vector<double> away_m;     // of the way from the start, the part along the heading (omni wheels: the path); with the tangents or a tether only
-    std::vector<double> accel_m_s2; // specific force along x: what an accelerometer feels
-    std::vector<double> twist_N;    // half of what the left wheels pull more than the right ones
+    std::vector<double>
+        away_m; // of the way from the start, the part along the heading (omni wheels: the path); with the tangents or a tether only
+    std::vector<double> accel_m_s2;    // specific force along x: what an accelerometer feels
+    std::vector<double> twist_N;       // half of what the left wheels pull more than the right ones
     std::vector<Eigen::Vector3d> rate; // of (vx, vy, yaw rate)
     struct Wheel {
         std::vector<double> traction_N, rolling_N, slip, side_slip, load_N, ground_speed_m_s;
@@ -64,7 +66,8 @@ struct UnitResponse {
 UnitResponse unit_response(const Dataset &data, const Physics &base, const Motion &known, TermTarget target);
 // Several shapes at once. share: of shape j at wheel i and step k, at (k * wheels + i) * motions.size() + j.
 inline constexpr std::size_t most_shapes = 8;
-void neighbours_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<double> &share, std::vector<Motion> &motions);
+void neighbours_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit,
+                       const std::vector<double> &share, std::vector<Motion> &motions);
 
 namespace detail {
 
@@ -79,7 +82,8 @@ Freedom freedom_of(const Dataset &data, const Physics &physics);
 inline constexpr double observer_1_s = 3; // forgets in 0.3 s: assumed
 
 // (2) from the sum of forces; grade: gravity along the slope, forward and left; gyro: the measured yaw rate, for the observer.
-inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, const Eigen::Vector2d &grade, double gyro, const Physics &p, Freedom freedom) {
+inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, const Eigen::Vector2d &grade, double gyro,
+                               const Physics &p, Freedom freedom) {
     Eigen::Vector3d rate(force[0] / p.body.mass + grade[0], 0, freedom.yaw ? force[2] / p.body.yaw_inertia : 0);
     if (freedom.observed) rate[2] += observer_1_s * (gyro - q[2]);
     if (freedom.vy) rate[0] += q[2] * q[1], rate[1] = force[1] / p.body.mass + grade[1] - q[2] * q[0];

@@ -25,7 +25,7 @@ struct Asked {
 
 // What is asked, of which model, on top of which log.
 struct Plan {
-    Model base;                      // without the members in question
+    Model base; // without the members in question
     std::vector<Sized> candidates;
     std::vector<Asked> asked;
     const Dataset *data = nullptr;
@@ -36,7 +36,8 @@ struct Plan {
 
 Sized of_interest(const Candidate &c) {
     Sized s{c, {}};
-    for (std::size_t j = 0; j < c.strengths.size(); ++j) s.size.push_back(sizes_of_interest * (j < c.of_interest.size() ? c.of_interest[j] : c.step[j]));
+    for (std::size_t j = 0; j < c.strengths.size(); ++j)
+        s.size.push_back(sizes_of_interest * (j < c.of_interest.size() ? c.of_interest[j] : c.step[j]));
     return s;
 }
 
@@ -45,8 +46,10 @@ Sized as_found(const CandidateResult &r) {
     Sized s = of_interest(r.candidate);
     for (std::size_t j = 0; j < r.value.size() && j < s.size.size(); ++j) {
         const double least = s.size[j] / sizes_of_interest, sign = r.candidate.minimum[j] >= 0 ? 1.0 : (r.value[j] < 0 ? -1.0 : 1.0);
-        if (std::fabs(r.value[j]) > least && r.value[j] * sign > 0) s.size[j] = std::clamp(r.value[j], r.candidate.minimum[j], r.candidate.maximum[j]);
-        else s.size[j] *= sign;
+        if (std::fabs(r.value[j]) > least && r.value[j] * sign > 0)
+            s.size[j] = std::clamp(r.value[j], r.candidate.minimum[j], r.candidate.maximum[j]);
+        else
+            s.size[j] *= sign;
     }
     return s;
 }
@@ -86,13 +89,15 @@ const CandidateResult *find_result(const Diagnosis &d, const std::string &label)
 
 // d' of one role, less where the forward model's own error on these drives looks like the effect: it must not be taken for it.
 double trusted(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, int truth, int rival) {
-    return detectability(gram, precision, plan.candidates, truth, rival) / std::max(1.0, imitation(gram, precision, plan.candidates, truth, rival));
+    return detectability(gram, precision, plan.candidates, truth, rival) /
+           std::max(1.0, imitation(gram, precision, plan.candidates, truth, rival));
 }
 
 // The least of "A is true, B stands in" and the other way round; whether A shows at all when it is alone.
 double distance(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const Asked &asked) {
     if (asked.members.size() == 1) return trusted(plan, gram, precision, asked.members[0], -1);
-    return std::min(trusted(plan, gram, precision, asked.members[0], asked.members[1]), trusted(plan, gram, precision, asked.members[1], asked.members[0]));
+    return std::min(trusted(plan, gram, precision, asked.members[0], asked.members[1]),
+                    trusted(plan, gram, precision, asked.members[1], asked.members[0]));
 }
 
 bool answers(const Plan &plan, double before, double after) {
@@ -104,7 +109,9 @@ bool answers(const Plan &plan, double before, double after) {
 Eigen::MatrixXd told_by(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
     Dataset trial = make_dataset(plan.base, drive(scenario));
     if (plan.data != nullptr) { // sensors that this rover's log lacks will be lacking again, and be as noisy
-        std::erase_if(trial.balance, [&](const Balance &b) { return std::none_of(plan.data->balance.begin(), plan.data->balance.end(), [&](const Balance &a) { return a.name == b.name; }); });
+        std::erase_if(trial.balance, [&](const Balance &b) {
+            return std::none_of(plan.data->balance.begin(), plan.data->balance.end(), [&](const Balance &a) { return a.name == b.name; });
+        });
         for (Balance &b : trial.balance)
             for (const Balance &a : plan.data->balance)
                 if (a.name == b.name) b.noise = std::max(a.noise, 1e-12);
@@ -126,7 +133,9 @@ struct Choice {
 
 void name_kinds(const Plan &plan, NextExperiment &next) {
     for (const Manoeuvre &m : manoeuvres()) {
-        const bool fits = std::any_of(plan.candidates.begin(), plan.candidates.end(), [&](const Sized &s) { return std::find(m.good_for.begin(), m.good_for.end(), s.candidate.effect) != m.good_for.end(); });
+        const bool fits = std::any_of(plan.candidates.begin(), plan.candidates.end(), [&](const Sized &s) {
+            return std::find(m.good_for.begin(), m.good_for.end(), s.candidate.effect) != m.good_for.end();
+        });
         if (fits) next.tried.push_back({m.title, 0, 0, 0});
     }
     for (Question &q : next.questions) q.status = "later";
@@ -171,7 +180,7 @@ struct Table {
     Eigen::MatrixXd log;
     std::vector<Eigen::MatrixXd> grams; // per manoeuvre
     std::vector<double> before;
-    std::vector<bool> answerable;       // by all manoeuvres together
+    std::vector<bool> answerable; // by all manoeuvres together
 
     double at(const Eigen::MatrixXd &gram, std::size_t q) const { return distance(plan, gram, precision, plan.asked[q]); }
 };
@@ -221,7 +230,8 @@ void conclude(const Table &table, const Eigen::MatrixXd &after, NextExperiment &
     }
 }
 
-// Best set of up to three manoeuvres: most answers, then the largest square of the least d' per second: d'^2 adds up over time, d' does not.
+// Best set of up to three manoeuvres: most answers, then the largest square of the least d' per second: d'^2 adds up over time, d' does
+// not.
 Choice choose(const Table &table) {
     const std::size_t n = table.grams.size();
     Choice best;
@@ -283,7 +293,8 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
         next.notes.clear();
         next.scenario_toml = scenario_of(plan.base, list, next.notes);
         for (const Manoeuvre *m : list) next.title += (next.title.empty() ? "" : ", then ") + m->title, next.duration_s += m->duration_s;
-        after += list.size() > 1 ? told_by(plan, next.scenario_toml, drive) : table.grams[choice.manoeuvres[0]]; // in one go, as it will be driven
+        after += list.size() > 1 ? told_by(plan, next.scenario_toml, drive)
+                                 : table.grams[choice.manoeuvres[0]]; // in one go, as it will be driven
     }
     conclude(table, after, next);
     return next;
@@ -313,7 +324,8 @@ NextExperiment next_experiment(const Diagnosis &d, const Model &model, const Dat
     return solve(plan, d.model, drive);
 }
 
-NextExperiment next_experiment(const std::vector<std::string> &effects, const Model &model, const Dataset *data, const DriveScenario &drive) {
+NextExperiment next_experiment(const std::vector<std::string> &effects, const Model &model, const Dataset *data,
+                               const DriveScenario &drive) {
     Plan plan;
     plan.data = data;
     plan.base = model;
@@ -322,10 +334,15 @@ NextExperiment next_experiment(const std::vector<std::string> &effects, const Mo
         const std::size_t colon = text.find(':');
         const std::string name = text.substr(0, colon);
         int wheel = -1;
-        if (colon != std::string::npos) wheel = text.size() == colon + 2 && text[colon + 1] >= '0' && text[colon + 1] <= '9' ? text[colon + 1] - '0' : 1000;
-        if (sim::find_effect(name) == nullptr) throw ModelError("--effects", 0, text, "is no effect of the catalogue", "`traction effects` lists them; NAME, or NAME:WHEEL");
+        if (colon != std::string::npos)
+            wheel = text.size() == colon + 2 && text[colon + 1] >= '0' && text[colon + 1] <= '9' ? text[colon + 1] - '0' : 1000;
+        if (sim::find_effect(name) == nullptr)
+            throw ModelError("--effects", 0, text, "is no effect of the catalogue", "`traction effects` lists them; NAME, or NAME:WHEEL");
         const auto c = catalogue_candidate(name, wheel, model);
-        if (!c) throw ModelError("--effects", 0, text, model.find_effect(name, -1) != nullptr ? "is in the model already" : "cannot be had on that wheel", "name another effect, or NAME alone for all wheels");
+        if (!c)
+            throw ModelError("--effects", 0, text,
+                             model.find_effect(name, -1) != nullptr ? "is in the model already" : "cannot be had on that wheel",
+                             "name another effect, or NAME alone for all wheels");
         places.push_back(place_of(plan, of_interest(*c)));
     }
     std::sort(places.begin(), places.end());

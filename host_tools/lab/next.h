@@ -5,7 +5,8 @@
 // class, at the sizes found) or "is it there at all" (an effect that was not excited, at three sizes of interest). It counts as
 // answered at d' >= 2 (and at least 2 more than before, in quadrature, where a log of d' 2 did not decide it). Effects asked for by
 // name have three sizes of interest, or, where the model's own parameters hide that, the size that stands out from them. Chosen: up
-// to three manoeuvres that answer most questions that any can answer; among these the largest square of the least d' per second (d'^2 adds up over time).
+// to three manoeuvres that answer most questions that any can answer; among these the largest square of the least d' per second (d'^2 adds
+// up over time).
 #pragma once
 
 #include "diagnose.h"
@@ -39,12 +40,12 @@ struct Tried {
 };
 
 struct NextExperiment {
-    bool predicted = false;    // false: the plant cannot drive this machine; only kinds of manoeuvre are named
+    bool predicted = false; // false: the plant cannot drive this machine; only kinds of manoeuvre are named
     std::string why_not;
     std::string title, scenario_toml; // empty when no drive is needed or none helps
     double duration_s = 0;
     std::vector<Question> questions;
-    std::vector<Tried> tried;  // every manoeuvre alone
+    std::vector<Tried> tried; // every manoeuvre alone
     std::vector<std::string> notes;
 };
 
@@ -53,7 +54,8 @@ NextExperiment next_experiment(const Diagnosis &diagnosis, const Model &model, c
 
 // Between effects by name ("grade", "coulomb_friction:2" for wheel 2): every pair, or whether a single one shows. data: what is known
 // already; nullptr when there is no log. Throws ModelError for a name that is no candidate.
-NextExperiment next_experiment(const std::vector<std::string> &effects, const Model &model, const Dataset *data, const DriveScenario &drive);
+NextExperiment next_experiment(const std::vector<std::string> &effects, const Model &model, const Dataset *data,
+                               const DriveScenario &drive);
 
 nlohmann::json next_json(const NextExperiment &next); // null when there is no question
 std::string next_text(const NextExperiment &next);

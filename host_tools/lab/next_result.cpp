@@ -46,7 +46,8 @@ nlohmann::json next_json(const NextExperiment &next) {
         if (next.predicted) one["duration_s"] = t.duration_s, one["d_least"] = t.least, one["answered"] = t.answered;
         tried.push_back(one);
     }
-    json out = {{"version", 2}, {"predicted", next.predicted}, {"title", next.title}, {"separates", separates}, {"questions", questions}, {"manoeuvres", tried}, {"notes", next.notes}};
+    json out = {{"version", 2},           {"predicted", next.predicted}, {"title", next.title}, {"separates", separates},
+                {"questions", questions}, {"manoeuvres", tried},         {"notes", next.notes}};
     out["scenario_toml"] = next.scenario_toml.empty() ? json(nullptr) : json(next.scenario_toml);
     if (!next.why_not.empty()) out["why_not"] = next.why_not;
     if (!next.scenario_toml.empty()) out["duration_s"] = next.duration_s;
@@ -65,15 +66,23 @@ std::string next_text(const NextExperiment &next) {
         return text;
     }
     std::vector<Tried> order = next.tried;
-    std::stable_sort(order.begin(), order.end(), [](const Tried &a, const Tried &b) { return a.answered != b.answered ? a.answered > b.answered : a.least / a.duration_s > b.least / b.duration_s; });
+    std::stable_sort(order.begin(), order.end(), [](const Tried &a, const Tried &b) {
+        return a.answered != b.answered ? a.answered > b.answered : a.least / a.duration_s > b.least / b.duration_s;
+    });
     if (!order.empty()) append(text, "%-66s %7s %9s %9s\n", "manoeuvre alone", "s", "answers", "least d'");
-    for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i) append(text, "%-66s %7.0f %9d %9.2f\n", order[i].title.c_str(), order[i].duration_s, order[i].answered, order[i].least);
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i)
+        append(text, "%-66s %7.0f %9d %9.2f\n", order[i].title.c_str(), order[i].duration_s, order[i].answered, order[i].least);
     append(text, "%-58s %9s %9s\n", "question", "d' before", "d' after");
-    for (const Question &q : next.questions) append(text, "%-58s %9.2f %9.2f  %s\n", joined(q.members).c_str(), q.before, q.after, status_words(q));
     for (const Question &q : next.questions)
-        if (q.status == "never") append(text, "%s: cannot be separated by driving (d' stays %.2f); %s\n", joined(q.members).c_str(), std::max(q.best, q.after), q.measure.c_str());
-    if (next.scenario_toml.empty()) append(text, "no drive is proposed\n");
-    else append(text, "next: %s (%.0f s)\n", next.title.c_str(), next.duration_s);
+        append(text, "%-58s %9.2f %9.2f  %s\n", joined(q.members).c_str(), q.before, q.after, status_words(q));
+    for (const Question &q : next.questions)
+        if (q.status == "never")
+            append(text, "%s: cannot be separated by driving (d' stays %.2f); %s\n", joined(q.members).c_str(), std::max(q.best, q.after),
+                   q.measure.c_str());
+    if (next.scenario_toml.empty())
+        append(text, "no drive is proposed\n");
+    else
+        append(text, "next: %s (%.0f s)\n", next.title.c_str(), next.duration_s);
     return text;
 }
 

@@ -81,8 +81,10 @@ std::vector<EffectHandle> make_handles() {
         {"stribeck_friction", {{"torque_Nm", &W::stribeck, nullptr}}, {{"speed_rad_s", &W::stribeck_speed, nullptr}}, stage_torque},
         {"mesh_loss", {{"fraction", &W::mesh, nullptr}}, {}, stage_torque},
         {"backlash", {{"play_rad", &W::backlash, nullptr}}, {}, stage_motion},
-        {"torque_ripple", {{"cos_Nm", &W::ripple_cos, nullptr}, {"sin_Nm", &W::ripple_sin, nullptr}},
-         {{"order", &W::ripple_order, nullptr}}, stage_torque},
+        {"torque_ripple",
+         {{"cos_Nm", &W::ripple_cos, nullptr}, {"sin_Nm", &W::ripple_sin, nullptr}},
+         {{"order", &W::ripple_order, nullptr}},
+         stage_torque},
         {"winding_heating", {{"resistance_K_W", &W::heating, nullptr}}, {{"time_constant_s", &W::heating_time, nullptr}}, electric},
         {"wiring_resistance", {{"resistance_ohm", &W::wiring, nullptr}}, {}, stage_voltage},
         {"bridge_dead_time", {{"voltage_V", &W::dead_voltage, nullptr}}, {}, stage_voltage},
@@ -94,8 +96,10 @@ std::vector<EffectHandle> make_handles() {
         {"load_transfer", {{"height_m", nullptr, &B::load_height}}, {}, stage_motion},
         {"mass_offset_x", {{"offset_m", nullptr, &B::offset_x}}, {}, stage_motion},
         {"mass_offset_y", {{"offset_m", nullptr, &B::offset_y}}, {}, stage_motion},
-        {"soil_patch", {{"change", nullptr, &B::patch_change}},
-         {{"start_m", nullptr, &B::patch_start}, {"length_m", nullptr, &B::patch_length}}, stage_motion},
+        {"soil_patch",
+         {{"change", nullptr, &B::patch_change}},
+         {{"start_m", nullptr, &B::patch_start}, {"length_m", nullptr, &B::patch_length}},
+         stage_motion},
         {"soil_gradient", {{"change_per_m", nullptr, &B::soil_gradient}}, {}, stage_motion},
         {"relaxation_length", {{"length_m", nullptr, &B::relaxation}}, {}, stage_motion},
         {"sliding_speed_loss", {{"coefficient_s_m", nullptr, &B::sliding_loss}}, {}, stage_motion},
@@ -135,9 +139,10 @@ void add_user_effect(Physics &physics, const Model &model, const EffectUse &use)
     term.name = use.name;
     term.wheel = use.wheel;
     if (!parse_target(use.acts_on, term.target))
-        throw ModelError(model.file, 0, "effect." + use.name + ".acts_on", "unknown place \"" + use.acts_on + "\"",
-                         "use wheel_torque, wheel_friction, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, "
-                         "motor_constant, resistance, sensor.accel, sensor.radar, sensor.camera or sensor.current");
+        throw ModelError(
+            model.file, 0, "effect." + use.name + ".acts_on", "unknown place \"" + use.acts_on + "\"",
+            "use wheel_torque, wheel_friction, wheel_force, rolling_resistance, body_force, voltage, soil_strength, shear_slip, "
+            "motor_constant, resistance, sensor.accel, sensor.radar, sensor.camera or sensor.current");
     std::vector<std::string> names;
     for (const auto &[key, parameter] : use.parameters) {
         names.push_back(key);
@@ -216,8 +221,7 @@ Physics make_physics(const Model &model) {
                              "`traction effects` lists the names; an effect of your own needs acts_on and expression");
         for (const auto *list : {&handle->strengths, &handle->shapes})
             for (const auto &place : *list)
-                if (use.parameters.count(place.key) != 0)
-                    set_effect(physics, place, use.wheel, use.parameters.at(place.key).value);
+                if (use.parameters.count(place.key) != 0) set_effect(physics, place, use.wheel, use.parameters.at(place.key).value);
     }
     return physics;
 }
@@ -257,8 +261,9 @@ void append_shared(std::vector<FreeParameter> &list, const Model &model, const P
                 free.slots.push_back(wheel_slot(&W::ke, static_cast<int>(j)));
         }
         if (done.size() > 1 && std::count(done.begin(), done.end(), true) == 1) free.wheel = static_cast<int>(i);
-        const bool alone = static_cast<std::size_t>(std::count_if(free.slots.begin(), free.slots.end(),
-            [&](const Slot &s) { return s.in_wheel == key.in_wheel; })) < model.wheel.size();
+        const bool alone = static_cast<std::size_t>(std::count_if(free.slots.begin(), free.slots.end(), [&](const Slot &s) {
+                               return s.in_wheel == key.in_wheel;
+                           })) < model.wheel.size();
         free.wheel = alone ? static_cast<int>(i) : -1;
         free.step = difference_step(p.value, p.prior);
         list.push_back(std::move(free));
@@ -292,7 +297,8 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model) {
                 free.touched = handle->touched;
                 for (const auto &place : handle->strengths) {
                     if (place.key != key) continue;
-                    if (place.in_body != nullptr) free.slots = {body_slot(place.in_body)};
+                    if (place.in_body != nullptr)
+                        free.slots = {body_slot(place.in_body)};
                     else
                         for (std::size_t i = 0; i < model.wheel.size(); ++i)
                             if (use.wheel < 0 || static_cast<std::size_t>(use.wheel) == i)

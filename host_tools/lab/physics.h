@@ -21,7 +21,8 @@ struct WheelPhysics {
     // the machine
     double x = 0, y = 0, heading = 0, radius = 0, load = 0; // load 0: from the geometry
     double KG = 0, ke = 0, Ra = 0, J = 0, b = 0, t0 = 0;
-    double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0, relaxation = 0; // grip: 1 where the soil holds sideways as it holds lengthways
+    double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0,
+           relaxation = 0; // grip: 1 where the soil holds sideways as it holds lengthways
     double current_offset = 0;
     // effects, in the catalogue's units
     double coulomb = 0, viscous = 0, stribeck = 0, stribeck_speed = 1, mesh = 0, backlash = 0;
@@ -35,7 +36,8 @@ inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y
 
 struct BodyPhysics {
     double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;
-    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0, camera_scale0 = 0, camera_delay0 = 0;
+    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0,
+           camera_scale0 = 0, camera_delay0 = 0;
     double slip_sinkage = 0, speed_resistance = 0, multi_pass = 0, load_height = 0, offset_x = 0, offset_y = 0;
     double patch_change = 0, patch_start = 0, patch_length = 1, soil_gradient = 0, relaxation = 0, sliding_loss = 0;
     double shear_change = 0, scrub = 0, grade = 0, grade_direction = 0, tether = 0, drag = 0;
@@ -78,10 +80,10 @@ struct FreeParameter {
     std::string unit;
     int wheel = -1;
     std::vector<Slot> slots;
-    double base = 0;   // value in the model, before the increment (first slot)
-    double prior = 0;  // standard deviation of the increment; 0: free
+    double base = 0;                 // value in the model, before the increment (first slot)
+    double prior = 0;                // standard deviation of the increment; 0: free
     double minimum = 0, maximum = 0; // of base + increment
-    double step = 0;   // for differences
+    double step = 0;                 // for differences
     unsigned touched = stage_all;
     void add(Physics &physics, double increment) const;
 };

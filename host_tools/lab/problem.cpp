@@ -32,7 +32,8 @@ Eigen::VectorXd Problem::noise_rows() const {
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
         const Balance &balance = data_->balance[b];
         for (std::size_t r = 0; r < balance.measured.size(); ++r)
-            rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = balance.noise * (balance.noise_factor.empty() ? 1.0 : balance.noise_factor[r]);
+            rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] =
+                balance.noise * (balance.noise_factor.empty() ? 1.0 : balance.noise_factor[r]);
     }
     return rows;
 }
@@ -40,7 +41,8 @@ Eigen::VectorXd Problem::noise_rows() const {
 Eigen::VectorXd Problem::doubt_rows() const {
     Eigen::VectorXd rows = Eigen::VectorXd::Zero(measured_.size());
     for (std::size_t b = 0; b < data_->balance.size(); ++b)
-        for (std::size_t r = 0; r < data_->balance[b].doubt.size(); ++r) rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data_->balance[b].doubt[r];
+        for (std::size_t r = 0; r < data_->balance[b].doubt.size(); ++r)
+            rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data_->balance[b].doubt[r];
     return rows;
 }
 
@@ -87,8 +89,10 @@ void Problem::linearise() {
         double low = 0, high = 0;
         bounds(i, low, high);
         // whole integrations need a step that is large against the 1e-9 m/s of their search
-        const double size = (parameters[i].touched & stage_motion) != 0 && !forward_.has_linear_base() ? 100 * parameters[i].step : parameters[i].step;
-        jacobian.col(static_cast<Eigen::Index>(i)) = column(at, parameters[i], theta[static_cast<Eigen::Index>(i)] + size > high ? -size : size);
+        const double size =
+            (parameters[i].touched & stage_motion) != 0 && !forward_.has_linear_base() ? 100 * parameters[i].step : parameters[i].step;
+        jacobian.col(static_cast<Eigen::Index>(i)) =
+            column(at, parameters[i], theta[static_cast<Eigen::Index>(i)] + size > high ? -size : size);
     }
 }
 
@@ -161,8 +165,11 @@ void Problem::solve(int iterations) {
 
 double Problem::speed_range(double t0, double t1) const {
     const std::vector<double> &v = forward_.motion().v_m_s;
-    const auto at = [&](double t) { return std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (t - data_->start_s) / data_->step_s))); };
-    const auto [low, high] = std::minmax_element(v.begin() + static_cast<std::ptrdiff_t>(at(t0)), v.begin() + static_cast<std::ptrdiff_t>(at(t1)) + 1);
+    const auto at = [&](double t) {
+        return std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (t - data_->start_s) / data_->step_s)));
+    };
+    const auto [low, high] =
+        std::minmax_element(v.begin() + static_cast<std::ptrdiff_t>(at(t0)), v.begin() + static_cast<std::ptrdiff_t>(at(t1)) + 1);
     return *high - *low;
 }
 
@@ -177,7 +184,8 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, parts);
     for (Eigen::Index r = 0; r < n; ++r) {
         const double t0 = balance.t0_s[static_cast<std::size_t>(r)], t1 = balance.t1_s[static_cast<std::size_t>(r)];
-        const auto k = std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (0.5 * (t0 + t1) - data_->start_s) / data_->step_s)));
+        const auto k =
+            std::min(data_->count - 1, static_cast<std::size_t>(std::max(0.0, (0.5 * (t0 + t1) - data_->start_s) / data_->step_s)));
         F(r, 0) = 1;
         F(r, 4) = m.v_m_s[k] * m.v_m_s[k];
         F(r, 5) = speed_range(t0, t1) * speed_range(t0, t1);
@@ -208,7 +216,8 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
 void Problem::set_scales() {
     const Eigen::VectorXd noise = noise_rows(), before = row_scale;
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
-        const auto first = static_cast<Eigen::Index>(forward_.first_row(b)), n = static_cast<Eigen::Index>(data_->balance[b].measured.size());
+        const auto first = static_cast<Eigen::Index>(forward_.first_row(b)),
+                   n = static_cast<Eigen::Index>(data_->balance[b].measured.size());
         Eigen::VectorXd e = residual.segment(first, n).cwiseQuotient(noise.segment(first, n)); // in units of the row's noise
         std::vector<double> size(static_cast<std::size_t>(n));
         for (Eigen::Index r = 0; r < n; ++r) size[static_cast<std::size_t>(r)] = std::fabs(e[r]);
@@ -236,7 +245,9 @@ double Problem::cost() {
     return residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(prior_precision());
 }
 
-Eigen::VectorXd Problem::scaled_residual(const Physics &at, unsigned touched) { return (measured_ - forward_.predict(at, touched)).cwiseProduct(row_scale); }
+Eigen::VectorXd Problem::scaled_residual(const Physics &at, unsigned touched) {
+    return (measured_ - forward_.predict(at, touched)).cwiseProduct(row_scale);
+}
 
 void Problem::within_bounds() {
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
@@ -313,9 +324,12 @@ Eigen::VectorXd Problem::bounded_step(const Eigen::MatrixXd &normal, const Eigen
             double low = 0, high = 0;
             bounds(static_cast<std::size_t>(at), low, high);
             found[at] = change[i];
-            if (theta[at] + change[i] < low - 1e-12) step[at] = low - theta[at];
-            else if (theta[at] + change[i] > high + 1e-12) step[at] = high - theta[at];
-            else kept.push_back(at);
+            if (theta[at] + change[i] < low - 1e-12)
+                step[at] = low - theta[at];
+            else if (theta[at] + change[i] > high + 1e-12)
+                step[at] = high - theta[at];
+            else
+                kept.push_back(at);
         }
         if (kept.size() == open.size()) return found;
         open = std::move(kept);
@@ -356,7 +370,8 @@ void Problem::polish(int fresh) {
             if (fall < worth) break;
         }
         const Eigen::VectorXd moved = theta - start;
-        if (fresh <= 0 || moved.dot(normal * moved) < 0.1) return settle(); // a third of a standard deviation: the sensitivities serve there too
+        if (fresh <= 0 || moved.dot(normal * moved) < 0.1)
+            return settle(); // a third of a standard deviation: the sensitivities serve there too
         linearise();
         if (first - best < worth) return;
     }
@@ -371,8 +386,10 @@ void Problem::fit(const FitOptions &options) {
         polish(options.thorough ? 2 : 1); // Ceres then starts where the quick steps end: from far away it may end at a bound
         set_scales();
     }
-    if (options.thorough) solve(options.iterations);
-    else polish(options.iterations);
+    if (options.thorough)
+        solve(options.iterations);
+    else
+        polish(options.iterations);
 }
 
 double Problem::balance_rms(std::size_t b, bool in_noise) const {

@@ -14,8 +14,8 @@
 namespace traction::lab {
 
 struct FitOptions {
-    int iterations = 2;     // linearisations (Ceres: iterations) after the last reweighting
-    bool reweight = true;   // set the scale of each balance from its residual and Huber weights, then fit again
+    int iterations = 2;    // linearisations (Ceres: iterations) after the last reweighting
+    bool reweight = true;  // set the scale of each balance from its residual and Huber weights, then fit again
     bool thorough = false; // Ceres to its own convergence; else Gauss-Newton that keeps its sensitivities while they serve
 };
 
@@ -46,13 +46,14 @@ class Problem {
     Eigen::VectorXd doubt_rows() const; // Balance::doubt of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
-    Eigen::VectorXd scaled_residual(const Physics &at, unsigned touched); // of a physics that differs in these stages, on the present scales
+    Eigen::VectorXd scaled_residual(const Physics &at,
+                                    unsigned touched); // of a physics that differs in these stages, on the present scales
     bool at_bound(std::size_t parameter) const;
-    void within_bounds();                               // moves increments that left their bounds back to them
-    double cost(); // squares of all rows and priors at the present increments, where `residual` is then
+    void within_bounds(); // moves increments that left their bounds back to them
+    double cost();        // squares of all rows and priors at the present increments, where `residual` is then
 
-    // Gauss-Newton on baseline plus a candidate that leaves the motion alone, where the baseline's sensitivities are kept from `base` (the first columns here, same
-    // scales): a candidate moves them little, and a pass for each is saved. Leaves the problem linearised.
+    // Gauss-Newton on baseline plus a candidate that leaves the motion alone, where the baseline's sensitivities are kept from `base` (the
+    // first columns here, same scales): a candidate moves them little, and a pass for each is saved. Leaves the problem linearised.
     void quick_fit(const Problem &base, int iterations);
 
     // Gauss-Newton with the scales as they are: sensitivities are computed afresh at most `fresh` times, and serve for several steps
@@ -67,8 +68,8 @@ class Problem {
 
   private:
     friend class RowsCost;
-    void set_scales(); // the Jacobian, if there is one, is scaled anew
-    void settle();     // prediction and residual at the present increments; the Jacobian stays
+    void set_scales();                                  // the Jacobian, if there is one, is scaled anew
+    void settle();                                      // prediction and residual at the present increments; the Jacobian stays
     double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
     Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
@@ -80,7 +81,7 @@ class Problem {
     Physics base_;
     Forward forward_;
     Eigen::VectorXd measured_;
-    bool settled_ = false;       // the forward model has a base, at these increments:
+    bool settled_ = false; // the forward model has a base, at these increments:
     Eigen::VectorXd settled_at_;
 };
 

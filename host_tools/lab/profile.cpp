@@ -87,8 +87,10 @@ class Held {
             for (const Eigen::Index i : free) {
                 const FreeParameter &p = others_[static_cast<std::size_t>(i)];
                 const double low = (p.minimum - p.base - theta[i]) / unit_[i], high = (p.maximum - p.base - theta[i]) / unit_[i];
-                if (step[i] >= low && step[i] <= high) still.push_back(i);
-                else step[i] = std::clamp(step[i], std::min(low, high), std::max(low, high)), stopped.push_back(i);
+                if (step[i] >= low && step[i] <= high)
+                    still.push_back(i);
+                else
+                    step[i] = std::clamp(step[i], std::min(low, high), std::max(low, high)), stopped.push_back(i);
             }
             if (still.size() == free.size()) break;
             free = std::move(still);
@@ -131,7 +133,7 @@ class Held {
     Eigen::MatrixXd jacobian_, normal_; // normal_ in units of unit_
     Eigen::VectorXd unit_, residual_, measured_;
     Eigen::VectorXd slope_; // what is left of the gradient at the best fit (bounds, steps of a held voltage): no news of the held parameter
-    double own_ = 0; // precision of the held parameter's prior
+    double own_ = 0;        // precision of the held parameter's prior
 };
 
 struct Side {
@@ -141,8 +143,8 @@ struct Side {
 
 // Where the rise passes the limit between `inside` and `outside`: secants of its square root (a parabola's is a line), bisection
 // where they creep.
-double crossing(const std::function<double(double, Eigen::VectorXd &, bool)> &rise_at, const FreeParameter &p, Profile &out, double inside, double rise_inside,
-                const Eigen::VectorXd &theta_inside, double outside, double rise_outside) {
+double crossing(const std::function<double(double, Eigen::VectorXd &, bool)> &rise_at, const FreeParameter &p, Profile &out, double inside,
+                double rise_inside, const Eigen::VectorXd &theta_inside, double outside, double rise_outside) {
     const double goal = std::sqrt(limit);
     Eigen::VectorXd theta = theta_inside;
     for (int i = 0; i < 12; ++i) {
@@ -153,15 +155,19 @@ double crossing(const std::function<double(double, Eigen::VectorXd &, bool)> &ri
         const double rise = rise_at(x, here, true);
         out.x.push_back(p.base + x), out.rise.push_back(rise);
         if (std::fabs(std::sqrt(rise) - goal) < 0.01 * goal) return x;
-        if (rise <= limit) inside = x, rise_inside = rise, theta = here;
-        else outside = x, rise_outside = rise;
+        if (rise <= limit)
+            inside = x, rise_inside = rise, theta = here;
+        else
+            outside = x, rise_outside = rise;
     }
     return 0.5 * (inside + outside);
 }
 
 // Walks from the best value outwards until the rise passes the limit, a bound stops it, or it has gone as far as is sensible.
 Side walk(Held &held, double best_cost, const FreeParameter &p, double increment, double error, double reach, int sign, Profile &out) {
-    const auto rise_at = [&](double x, Eigen::VectorXd &theta, bool fresh) { return std::max(0.0, (held.cost(x, theta, fresh) - best_cost) / out.dispersion); };
+    const auto rise_at = [&](double x, Eigen::VectorXd &theta, bool fresh) {
+        return std::max(0.0, (held.cost(x, theta, fresh) - best_cost) / out.dispersion);
+    };
     const double bound = sign > 0 ? p.maximum - p.base : p.minimum - p.base;
     const bool bounded = std::isfinite(bound);
     const double far = bounded ? bound : increment + sign * reach;
@@ -203,7 +209,8 @@ Profile profile_one(Problem &best, const Model &model, Eigen::Index i, double er
     const double held_error = 1 / std::max(1e-12, best.jacobian.col(i).norm()); // were all the others known
     const double reach = std::max({10 * std::fabs(out.value), 40 * held_error, 5 * std::min(error, 1e4 * held_error)});
     Held held(best, model, i);
-    const Side low = walk(held, best_cost, p, best.theta[i], error, reach, -1, out), high = walk(held, best_cost, p, best.theta[i], error, reach, 1, out);
+    const Side low = walk(held, best_cost, p, best.theta[i], error, reach, -1, out),
+               high = walk(held, best_cost, p, best.theta[i], error, reach, 1, out);
     out.low = low.end, out.low_open = low.open, out.low_at_bound = low.at_bound;
     out.high = high.end, out.high_open = high.open, out.high_at_bound = high.at_bound;
     out.x.push_back(out.value), out.rise.push_back(0);
@@ -216,7 +223,9 @@ Profile profile_one(Problem &best, const Model &model, Eigen::Index i, double er
 }
 
 std::vector<Eigen::Index> find_wanted(const Problem &problem, const Model &model, const std::vector<std::string> &wanted) {
-    const auto of_effect = [&](const FreeParameter &p) { return std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse &use) { return use.name == p.owner; }); };
+    const auto of_effect = [&](const FreeParameter &p) {
+        return std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse &use) { return use.name == p.owner; });
+    };
     std::vector<Eigen::Index> list;
     std::string known;
     for (const FreeParameter &p : problem.parameters) known += (known.empty() ? "" : ", ") + name_of(p);
@@ -226,35 +235,41 @@ std::vector<Eigen::Index> find_wanted(const Problem &problem, const Model &model
             const FreeParameter &p = problem.parameters[i];
             if (name != p.owner && name != p.owner + "." + p.key && name != name_of(p)) continue;
             found = true;
-            if (std::find(list.begin(), list.end(), static_cast<Eigen::Index>(i)) == list.end()) list.push_back(static_cast<Eigen::Index>(i));
+            if (std::find(list.begin(), list.end(), static_cast<Eigen::Index>(i)) == list.end())
+                list.push_back(static_cast<Eigen::Index>(i));
         }
         if (!found) throw ModelError(model.file, 0, "--profile", "\"" + name + "\" is not free in this model", "name some of: " + known);
     }
     if (wanted.empty())
         for (std::size_t i = 0; i < problem.parameters.size(); ++i)
             if (of_effect(problem.parameters[i])) list.push_back(static_cast<Eigen::Index>(i));
-    if (list.empty()) throw ModelError(model.file, 0, "--profile", "the model has no effect whose strength could be profiled", "name some of: " + known);
+    if (list.empty())
+        throw ModelError(model.file, 0, "--profile", "the model has no effect whose strength could be profiled", "name some of: " + known);
     return list;
 }
 
 } // namespace
 
 std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data, const std::vector<std::string> &wanted) {
-    if (data.balance.empty() || data.count < 3) throw ModelError(model.file, 0, "--profile", "the log has nothing that this model predicts", "see what `traction compare` says of the log");
+    if (data.balance.empty() || data.count < 3)
+        throw ModelError(model.file, 0, "--profile", "the log has nothing that this model predicts",
+                         "see what `traction compare` says of the log");
     const Physics physics = make_physics(model);
     Problem best(data, physics, free_parameters(model, physics));
     const std::vector<Eigen::Index> list = find_wanted(best, model, wanted);
     for (int i = 0; i < 3; ++i) best.fit({.iterations = 10, .thorough = true}); // until the scales no longer depend on where the fit began
-    best.fit({.iterations = 10, .reweight = false, .thorough = true}); // to the optimum of the scales that the profile keeps
+    best.fit({.iterations = 10, .reweight = false, .thorough = true});          // to the optimum of the scales that the profile keeps
     const std::vector<ParameterError> errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();
     for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's whisper
-    const Eigen::VectorXd white = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0).cwiseSqrt();
+    const Eigen::VectorXd white =
+        normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0).cwiseSqrt();
     const double best_cost = best.cost();
     best.linearise(); // cost() has moved the prediction
     std::vector<Profile> out;
-    for (const Eigen::Index i : list) out.push_back(profile_one(best, model, i, errors[static_cast<std::size_t>(i)].standard, white[i], best_cost));
+    for (const Eigen::Index i : list)
+        out.push_back(profile_one(best, model, i, errors[static_cast<std::size_t>(i)].standard, white[i], best_cost));
     return out;
 }
 
@@ -273,7 +288,8 @@ std::string profile_text(const std::vector<Profile> &profiles) {
         interval.append(end(p.low, p.low_open, p.low_at_bound)).append(", ").append(end(p.high, p.high_open, p.high_at_bound)).append("]");
         char wald[64];
         std::snprintf(wald, sizeof wald, "[%.5g, %.5g]", p.wald_low, p.wald_high);
-        std::snprintf(line, sizeof line, "%-40s %11.5g %25s %25s %6.1f  %s %s\n", p.parameter.c_str(), p.value, interval.c_str(), wald, p.dispersion, p.verdict.c_str(), p.unit == "1" ? "" : p.unit.c_str());
+        std::snprintf(line, sizeof line, "%-40s %11.5g %25s %25s %6.1f  %s %s\n", p.parameter.c_str(), p.value, interval.c_str(), wald,
+                      p.dispersion, p.verdict.c_str(), p.unit == "1" ? "" : p.unit.c_str());
         text += line;
     }
     return text;
@@ -283,10 +299,21 @@ nlohmann::json profile_json(const std::vector<Profile> &profiles) {
     const auto finite = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); };
     nlohmann::json out = nlohmann::json::array();
     for (const Profile &p : profiles)
-        out.push_back({{"parameter", p.parameter}, {"unit", p.unit}, {"value", finite(p.value)}, {"low", finite(p.low)}, {"high", finite(p.high)},
-                       {"low_open", p.low_open}, {"high_open", p.high_open}, {"low_at_bound", p.low_at_bound}, {"high_at_bound", p.high_at_bound},
-                       {"wald_low", finite(p.wald_low)}, {"wald_high", finite(p.wald_high)}, {"dispersion", finite(p.dispersion)},
-                       {"verdict", p.verdict}, {"x", p.x}, {"rise", p.rise}});
+        out.push_back({{"parameter", p.parameter},
+                       {"unit", p.unit},
+                       {"value", finite(p.value)},
+                       {"low", finite(p.low)},
+                       {"high", finite(p.high)},
+                       {"low_open", p.low_open},
+                       {"high_open", p.high_open},
+                       {"low_at_bound", p.low_at_bound},
+                       {"high_at_bound", p.high_at_bound},
+                       {"wald_low", finite(p.wald_low)},
+                       {"wald_high", finite(p.wald_high)},
+                       {"dispersion", finite(p.dispersion)},
+                       {"verdict", p.verdict},
+                       {"x", p.x},
+                       {"rise", p.rise}});
     return out;
 }
 

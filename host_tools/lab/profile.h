@@ -22,12 +22,12 @@ struct Profile {
     std::string unit;
     double value = 0, standard_error = 0; // of the best fit; robust
     double wald_low = 0, wald_high = 0;
-    double low = 0, high = 0;             // of (2); the end of what was tried where that side is open or at a bound
+    double low = 0, high = 0;                         // of (2); the end of what was tried where that side is open or at a bound
     bool low_open = false, high_open = false;         // the rise stays below 3.84 as far as it was tried: the data do not limit it
     bool low_at_bound = false, high_at_bound = false; // reached the parameter's own bound first
-    double dispersion = 1;                // phi
-    std::vector<double> x, rise;          // ascending
-    std::string verdict;                  // identifiable, asymmetric, at_bound, one_sided, not_identifiable
+    double dispersion = 1;                            // phi
+    std::vector<double> x, rise;                      // ascending
+    std::string verdict;                              // identifiable, asymmetric, at_bound, one_sided, not_identifiable
 };
 
 // Fits the model and profiles the wanted parameters: "slip_sinkage", "slip_sinkage.coefficient", "motor.resistance_ohm"; none: every

@@ -21,7 +21,8 @@ json series(const std::vector<double> &values, std::size_t every = 1) {
 
 json effect_json(const EffectUse &use) {
     json parameters = json::object();
-    for (const auto &[key, p] : use.parameters) parameters[key] = {{"value", finite(p.value)}, {"unit", p.unit}, {"low", finite(p.low)}, {"high", finite(p.high)}};
+    for (const auto &[key, p] : use.parameters)
+        parameters[key] = {{"value", finite(p.value)}, {"unit", p.unit}, {"low", finite(p.low)}, {"high", finite(p.high)}};
     json out = {{"name", use.name}, {"parameters", parameters}};
     if (use.wheel >= 0) out["wheel"] = use.wheel;
     if (!use.expression.empty()) out["expression"] = use.expression, out["acts_on"] = use.acts_on;
@@ -36,12 +37,23 @@ json candidate_json(const CandidateResult &r, int rank) {
     json variant = json::object(), parameters = json::object(), evidence = json::array();
     for (const auto &[key, value] : r.candidate.variant) variant[key] = finite(value);
     for (std::size_t j = 0; j < r.value.size(); ++j)
-        parameters[r.candidate.strengths[j].key] = {{"value", finite(r.value[j])}, {"unit", r.candidate.strengths[j].unit}, {"low", finite(r.low[j])}, {"high", finite(r.high[j])}};
-    for (const auto &[window, share] : r.evidence) evidence.push_back({{"t0_s", finite(window.first)}, {"t1_s", finite(window.second)}, {"share", finite(share)}});
-    json out = {{"rank", rank}, {"effect", r.candidate.effect}, {"variant", variant}, {"heldout_gain", finite(r.heldout_gain)},
-                {"gain_low", finite(r.gain_low)}, {"gain_high", finite(r.gain_high)}, {"p_value", finite(r.p_value)}, {"parameters", parameters},
-                {"verdict", r.verdict}, {"class", r.class_index ? json(*r.class_index) : json(nullptr)}, {"detectability", finite(r.detectability)},
-                {"evidence", evidence}, {"explains", r.explains}};
+        parameters[r.candidate.strengths[j].key] = {
+            {"value", finite(r.value[j])}, {"unit", r.candidate.strengths[j].unit}, {"low", finite(r.low[j])}, {"high", finite(r.high[j])}};
+    for (const auto &[window, share] : r.evidence)
+        evidence.push_back({{"t0_s", finite(window.first)}, {"t1_s", finite(window.second)}, {"share", finite(share)}});
+    json out = {{"rank", rank},
+                {"effect", r.candidate.effect},
+                {"variant", variant},
+                {"heldout_gain", finite(r.heldout_gain)},
+                {"gain_low", finite(r.gain_low)},
+                {"gain_high", finite(r.gain_high)},
+                {"p_value", finite(r.p_value)},
+                {"parameters", parameters},
+                {"verdict", r.verdict},
+                {"class", r.class_index ? json(*r.class_index) : json(nullptr)},
+                {"detectability", finite(r.detectability)},
+                {"evidence", evidence},
+                {"explains", r.explains}};
     out["wheel"] = r.candidate.wheel >= 0 ? json(r.candidate.wheel) : json(nullptr);
     return out;
 }
@@ -49,7 +61,8 @@ json candidate_json(const CandidateResult &r, int rank) {
 std::string strengths_text(const CandidateResult &r) {
     std::string text;
     for (std::size_t j = 0; j < r.value.size(); ++j) {
-        append(text, "%s%s = %.4g [%.4g, %.4g] %s", j > 0 ? ", " : "", r.candidate.strengths[j].key.c_str(), r.value[j], r.low[j], r.high[j], r.candidate.strengths[j].unit == "1" ? "" : r.candidate.strengths[j].unit.c_str());
+        append(text, "%s%s = %.4g [%.4g, %.4g] %s", j > 0 ? ", " : "", r.candidate.strengths[j].key.c_str(), r.value[j], r.low[j],
+               r.high[j], r.candidate.strengths[j].unit == "1" ? "" : r.candidate.strengths[j].unit.c_str());
     }
     for (const auto &[key, value] : r.candidate.variant) append(text, ", %s = %g", key.c_str(), value);
     return text;
@@ -60,23 +73,40 @@ std::string strengths_text(const CandidateResult &r) {
 json head_json(const std::string &verb, const Model &model, const Dataset &data) {
     json effects = json::array();
     for (const EffectUse &use : model.effects) effects.push_back(effect_json(use));
-    return {{"schema", "traction.lab/1"}, {"verb", verb}, {"title", verb + ": " + model.name + " against " + data.log_file},
+    return {{"schema", "traction.lab/1"},
+            {"verb", verb},
+            {"title", verb + ": " + model.name + " against " + data.log_file},
             {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}}},
             {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
 }
 
 void put_comparison(json &out, const Comparison &c) {
-    out["score"] = {{"error", finite(c.error)}, {"adjusted", finite(c.adjusted)}, {"floor", finite(c.floor)}, {"ratio", finite(c.error / c.floor)}, {"verdict", c.verdict}};
+    out["score"] = {{"error", finite(c.error)},
+                    {"adjusted", finite(c.adjusted)},
+                    {"floor", finite(c.floor)},
+                    {"ratio", finite(c.error / c.floor)},
+                    {"verdict", c.verdict}};
     json balances = json::array();
     for (const BalanceComparison &b : c.balances) {
         const std::size_t every = b.t_s.size() / 3000 + 1;
         json worst = json::array(), ccf = json::array();
         for (const Worst &w : b.worst) worst.push_back({{"t0_s", finite(w.t0_s)}, {"t1_s", finite(w.t1_s)}, {"rmse", finite(w.rmse)}});
         for (const Correlation &k : b.ccf) ccf.push_back(correlation_json(k));
-        balances.push_back({{"name", b.name}, {"title", b.title}, {"unit", b.unit}, {"sigma", finite(b.noise)}, {"sigma_source", b.noise_source},
-                            {"t_s", series(b.t_s, every)}, {"measured", series(b.measured, every)}, {"model", series(b.model, every)},
-                            {"rmse", finite(b.rmse)}, {"nrmse", finite(b.nrmse)}, {"bias", finite(b.bias)}, {"r2", finite(b.r2)}, {"worst", worst},
-                            {"acf", correlation_json(b.acf)}, {"ccf", ccf}});
+        balances.push_back({{"name", b.name},
+                            {"title", b.title},
+                            {"unit", b.unit},
+                            {"sigma", finite(b.noise)},
+                            {"sigma_source", b.noise_source},
+                            {"t_s", series(b.t_s, every)},
+                            {"measured", series(b.measured, every)},
+                            {"model", series(b.model, every)},
+                            {"rmse", finite(b.rmse)},
+                            {"nrmse", finite(b.nrmse)},
+                            {"bias", finite(b.bias)},
+                            {"r2", finite(b.r2)},
+                            {"worst", worst},
+                            {"acf", correlation_json(b.acf)},
+                            {"ccf", ccf}});
     }
     out["balances"] = balances;
     json regimes = json::array();
@@ -84,7 +114,12 @@ void put_comparison(json &out, const Comparison &c) {
         json value = json::array(), count = json::array();
         for (const auto &row : r.value) value.push_back(series(row));
         for (const auto &row : r.count) count.push_back(series(row));
-        regimes.push_back({{"title", r.title}, {"x_label", r.x_label}, {"x_edges", series(r.x_edges)}, {"y_labels", r.y_labels}, {"value", value}, {"count", count}});
+        regimes.push_back({{"title", r.title},
+                           {"x_label", r.x_label},
+                           {"x_edges", series(r.x_edges)},
+                           {"y_labels", r.y_labels},
+                           {"value", value},
+                           {"count", count}});
     }
     out["regimes"] = regimes;
     out["messages"] = c.messages;
@@ -92,7 +127,8 @@ void put_comparison(json &out, const Comparison &c) {
 
 json ladder_json(const std::vector<Rung> &ladder) {
     json out = json::array();
-    for (const Rung &r : ladder) out.push_back({{"label", r.label}, {"train", finite(r.train)}, {"heldout", finite(r.heldout)}, {"floor", finite(r.floor)}});
+    for (const Rung &r : ladder)
+        out.push_back({{"label", r.label}, {"train", finite(r.train)}, {"heldout", finite(r.heldout)}, {"floor", finite(r.floor)}});
     return out;
 }
 
@@ -111,8 +147,9 @@ void put_diagnosis(json &out, const Diagnosis &d) {
     out["unknown"] = nullptr;
     if (d.unknown) {
         const UnknownShape &u = *d.unknown;
-        out["unknown"] = {{"variable", u.variable}, {"balance", u.balance}, {"acts_on", u.target}, {"gain", finite(u.gain)}, {"x", series(u.x)}, {"y", series(u.y)},
-                          {"low", series(u.low)}, {"high", series(u.high)}, {"unit_x", u.unit_x}, {"unit_y", u.unit_y}, {"expression", u.expression}};
+        out["unknown"] = {{"variable", u.variable}, {"balance", u.balance}, {"acts_on", u.target},       {"gain", finite(u.gain)},
+                          {"x", series(u.x)},       {"y", series(u.y)},     {"low", series(u.low)},      {"high", series(u.high)},
+                          {"unit_x", u.unit_x},     {"unit_y", u.unit_y},   {"expression", u.expression}};
     }
     out["verdict"] = {{"kind", d.kind}, {"effects", d.effects}, {"nearest", d.nearest}, {"text", d.text}};
     out["ladder"] = ladder_json(d.ladder);
@@ -136,7 +173,8 @@ std::string ladder_text(const std::vector<Rung> &ladder) {
     std::string text;
     append(text, "%-36s %10s %10s   (in units of noise)\n", "ladder", "training", "held out");
     for (const Rung &r : ladder) append(text, "%-36s %10.3f %10.3f\n", r.label.c_str(), r.train, r.heldout);
-    append(text, "%-36s %10.3f %10.3f\n", "noise floor", ladder.empty() ? 1.0 : ladder.back().floor, ladder.empty() ? 1.0 : ladder.back().floor);
+    append(text, "%-36s %10.3f %10.3f\n", "noise floor", ladder.empty() ? 1.0 : ladder.back().floor,
+           ladder.empty() ? 1.0 : ladder.back().floor);
     return text;
 }
 
@@ -147,14 +185,17 @@ std::string diagnosis_text(const Diagnosis &d) {
     int shown = 0;
     for (const CandidateResult &r : d.ranking) {
         if (++shown > 8) break;
-        append(text, "%-34s %7.1f %% %8.1f to %5.1f %% %9.1e  %s, %s\n", r.candidate.label().c_str(), 100 * r.heldout_gain, 100 * r.gain_low, 100 * r.gain_high, r.p_value, r.verdict.c_str(), strengths_text(r).c_str());
+        append(text, "%-34s %7.1f %% %8.1f to %5.1f %% %9.1e  %s, %s\n", r.candidate.label().c_str(), 100 * r.heldout_gain,
+               100 * r.gain_low, 100 * r.gain_high, r.p_value, r.verdict.c_str(), strengths_text(r).c_str());
     }
     for (const ConfoundedClass &c : d.classes) {
         append(text, "cannot be told apart in this log:");
         for (const std::string &m : c.members) append(text, " %s", m.c_str());
         append(text, "\n  to separate them: %s\n", c.separate_by.c_str());
     }
-    if (d.unknown) append(text, "unexplained: %s depends on %s (explains %.1f %%): %s\n", d.unknown->target.c_str(), d.unknown->variable.c_str(), 100 * d.unknown->gain, d.unknown->expression.c_str());
+    if (d.unknown)
+        append(text, "unexplained: %s depends on %s (explains %.1f %%): %s\n", d.unknown->target.c_str(), d.unknown->variable.c_str(),
+               100 * d.unknown->gain, d.unknown->expression.c_str());
     if (!d.not_excited.empty()) {
         append(text, "this log cannot show:");
         for (const auto &[effect, why] : d.not_excited) append(text, " %s", effect.c_str());

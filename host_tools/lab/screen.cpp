@@ -11,9 +11,9 @@ namespace traction::lab {
 namespace {
 constexpr double heldout_block_s = 5.0; // LAB.md section 2
 constexpr double test_block_s = 2.5;
-constexpr double fewest_blocks = 10;    // shorter logs are cut finer
-constexpr double most_heldout = 4;      // a block's held-out error counts up to so many times its error in the fit: beyond, the linear
-                                        // step that leaves it out is not to be believed
+constexpr double fewest_blocks = 10; // shorter logs are cut finer
+constexpr double most_heldout = 4;   // a block's held-out error counts up to so many times its error in the fit: beyond, the linear
+                                     // step that leaves it out is not to be believed
 } // namespace
 
 double sum_error(const Eigen::VectorXd &of_blocks) {
@@ -79,7 +79,8 @@ void Screen::cut() {
     std::size_t count = 0;
     for (auto &[block, index] : fine) index = count++;
     count = 0;
-    for (auto &[block, index] : coarse) index = count++, block_times_.emplace_back(start + block * coarse_s, start + (block + 1) * coarse_s);
+    for (auto &[block, index] : coarse)
+        index = count++, block_times_.emplace_back(start + block * coarse_s, start + (block + 1) * coarse_s);
     const Eigen::Index n = nuisance_.cols();
     for (Blocks *blocks : {&fine_, &coarse_}) {
         const std::size_t size = blocks == &fine_ ? fine.size() : coarse.size();
@@ -133,7 +134,8 @@ void Screen::parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) con
 
 class Screen::LeaveOut {
   public:
-    LeaveOut(const Blocks &blocks, const Part &part, const Eigen::MatrixXd &nc, const Eigen::MatrixXd &cc, const Eigen::VectorXd &mc, const Eigen::VectorXd &whisper)
+    LeaveOut(const Blocks &blocks, const Part &part, const Eigen::MatrixXd &nc, const Eigen::MatrixXd &cc, const Eigen::VectorXd &mc,
+             const Eigen::VectorXd &whisper)
         : blocks_(blocks), part_(part), nc_(nc), cc_(cc), mc_(mc), whisper_(whisper) {}
 
     const Eigen::VectorXd &strength(std::size_t b) {
@@ -144,8 +146,10 @@ class Screen::LeaveOut {
         schur_.diagonal() += whisper_;
         gamma = mc_ - part_.mc[b];
         gamma.noalias() -= half_.transpose() * blocks_.half[b];
-        if (gamma.size() == 1) gamma[0] /= schur_(0, 0);
-        else gamma = factor_.compute(schur_).solve(gamma).eval();
+        if (gamma.size() == 1)
+            gamma[0] /= schur_(0, 0);
+        else
+            gamma = factor_.compute(schur_).solve(gamma).eval();
         return gamma;
     }
     // Of the block left out, by the strength just found; the baseline's step without it included.
@@ -217,15 +221,19 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     const double blocks_that_inform = weight.squaredNorm() > 0 ? weight.sum() * weight.sum() / weight.squaredNorm() : 1;
     const double data_part = covariance.trace();
     covariance += prior_part;
-    const Eigen::VectorXd by_doubt = schur_factor.solve(columns.transpose() * doubt_ - absorb.transpose() * doubt_moment_); // what the smoothing alone would pass for
+    const Eigen::VectorXd by_doubt =
+        schur_factor.solve(columns.transpose() * doubt_ - absorb.transpose() * doubt_moment_); // what the smoothing alone would pass for
     covariance += by_doubt * by_doubt.transpose();
     // never below what white residuals of unit scale would give
     const Eigen::MatrixXd least = schur_factor.solve(Eigen::MatrixXd::Identity(k, k));
     for (Eigen::Index j = 0; j < k; ++j)
         if (covariance(j, j) < 0.25 * least(j, j)) covariance(j, j) = 0.25 * least(j, j);
     const double share = covariance.trace() > 0 && data_part > 0 ? covariance.trace() / data_part : 1;
-    // at least 5 after the strengths are counted: the jackknife is conservative already where one block carries the evidence (assumed; clean logs stay silent with it)
-    const double freedom = std::clamp((blocks_that_inform - 1) * share * share, std::min(4.0 + static_cast<double>(k), static_cast<double>(count)), std::max(4.0 + static_cast<double>(k), static_cast<double>(count - 1)));
+    // at least 5 after the strengths are counted: the jackknife is conservative already where one block carries the evidence (assumed;
+    // clean logs stay silent with it)
+    const double freedom =
+        std::clamp((blocks_that_inform - 1) * share * share, std::min(4.0 + static_cast<double>(k), static_cast<double>(count)),
+                   std::max(4.0 + static_cast<double>(k), static_cast<double>(count - 1)));
     out.standard_error = covariance.diagonal().cwiseSqrt();
     const Eigen::VectorXd whole = out.strength + present;
     const double wald = whole.dot(covariance.ldlt().solve(whole)) / static_cast<double>(k);
@@ -250,7 +258,9 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     return out;
 }
 
-Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column) const { return projected(column, total_factor_.solve(felt_.moment(column))); }
+Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column) const {
+    return projected(column, total_factor_.solve(felt_.moment(column)));
+}
 
 Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const {
     Eigen::VectorXd out(column.size() + absorb.size());
@@ -268,7 +278,8 @@ double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::Vec
 bool Screen::frees(const Eigen::VectorXd &change) const {
     for (Eigen::Index i = 0; i < nuisance_.cols(); ++i) {
         const double theta = problem_.theta[i], prior = problem_.parameters[static_cast<std::size_t>(i)].prior;
-        if (prior > 0 && problem_.at_bound(static_cast<std::size_t>(i)) && theta * change[i] < 0 && std::fabs(change[i]) > prior) return true;
+        if (prior > 0 && problem_.at_bound(static_cast<std::size_t>(i)) && theta * change[i] < 0 && std::fabs(change[i]) > prior)
+            return true;
     }
     return false;
 }
@@ -343,7 +354,8 @@ std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of)
         const double by_data = deviation.row(j).squaredNorm() * static_cast<double>(count - 1) / static_cast<double>(count);
         const double by_prior = inverse.row(j).cwiseAbs2().dot(precision_); // d theta / d prior mean = inverse * precision
         const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j)) + by_doubt[j] * by_doubt[j];
-        const double blocks = information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;
+        const double blocks =
+            information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;
         const double share = by_data > 0 ? (by_data + by_prior) / by_data : 1e3;
         const double freedom = std::clamp((blocks - 1) * share * share, 4.0, 1e3);
         errors.push_back({std::sqrt(all), t_quantile(0.05, freedom) * std::sqrt(all)});

@@ -18,19 +18,19 @@ namespace traction::lab {
 double sum_error(const Eigen::VectorXd &of_blocks);
 
 struct Assessment {
-    Eigen::VectorXd strength;       // estimate, what is present included
+    Eigen::VectorXd strength; // estimate, what is present included
     Eigen::VectorXd standard_error;
-    Eigen::VectorXd change;         // of the baseline's parameters, with the candidate in
-    double fall = 0;          // of the error on all rows, in squared units of scale
-    double gain = 0;          // fall of the held-out error incl. priors, in squared units of scale
-    double gain_error = 0;    // its standard error over blocks
-    double relief = 0;        // part of the gain that is relief of priors
-    double p_value = 1;       // of the robust F test, not corrected
-    double column_norm = 0;   // size of the first column alone: what one unit changes, in standard deviations
-    double freedom = 1;       // degrees of freedom of the test's denominator
-    double information = 0;   // share of the candidate's column that the baseline cannot absorb
-    Eigen::VectorXd block_gain;  // held-out fall per 5 s block
-    Eigen::VectorXd projected;   // column (first strength) after projection, for cosines
+    Eigen::VectorXd change;     // of the baseline's parameters, with the candidate in
+    double fall = 0;            // of the error on all rows, in squared units of scale
+    double gain = 0;            // fall of the held-out error incl. priors, in squared units of scale
+    double gain_error = 0;      // its standard error over blocks
+    double relief = 0;          // part of the gain that is relief of priors
+    double p_value = 1;         // of the robust F test, not corrected
+    double column_norm = 0;     // size of the first column alone: what one unit changes, in standard deviations
+    double freedom = 1;         // degrees of freedom of the test's denominator
+    double information = 0;     // share of the candidate's column that the baseline cannot absorb
+    Eigen::VectorXd block_gain; // held-out fall per 5 s block
+    Eigen::VectorXd projected;  // column (first strength) after projection, for cosines
 };
 
 struct ParameterError {
@@ -57,9 +57,9 @@ class Screen {
     bool frees(const Eigen::VectorXd &change) const;
     // Largest relative fall of one balance's error on all rows, by the linear step.
     double best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const;
-    double error() const { return error_; } // on all rows, priors included, at the baseline's optimum
-    double penalty() const { return base_penalty_; }                // of the priors, at the baseline's optimum
-    double heldout_error() const { return base_error_; }            // sum of squares over held-out blocks, priors included
+    double error() const { return error_; }              // on all rows, priors included, at the baseline's optimum
+    double penalty() const { return base_penalty_; }     // of the priors, at the baseline's optimum
+    double heldout_error() const { return base_error_; } // sum of squares over held-out blocks, priors included
     const Eigen::VectorXd &block_error() const { return block_error_; }
     const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
     // Held-out sum of squares per balance; in_noise: in units of each row's measurement noise, which no model changes.
@@ -74,7 +74,7 @@ class Screen {
         std::vector<Eigen::VectorXd> moment; // N' r
         std::vector<double> squares;         // r' r
         std::vector<Eigen::LLT<Eigen::MatrixXd>> without;
-        std::vector<Eigen::VectorXd> half;   // of the step without the block: L^-1 (moment of the others)
+        std::vector<Eigen::VectorXd> half; // of the step without the block: L^-1 (moment of the others)
         Eigen::Index count() const { return static_cast<Eigen::Index>(gram.size()); }
     };
     // Rows of one balance that lie in one block of either length.
@@ -100,12 +100,12 @@ class Screen {
     const Problem &problem_;
     std::vector<Segment> segments_;
     Eigen::MatrixXd nuisance_;
-    Felt felt_; // the same
-    Eigen::VectorXd residual_;  // scaled
-    Eigen::VectorXd moment_;    // N' r + pull
+    Felt felt_;                            // the same
+    Eigen::VectorXd residual_;             // scaled
+    Eigen::VectorXd moment_;               // N' r + pull
     Eigen::VectorXd doubt_, doubt_moment_; // of the smoothing, scaled; N' doubt
-    Eigen::VectorXd precision_; // of the priors
-    Eigen::VectorXd pull_;      // -precision * theta
+    Eigen::VectorXd precision_;            // of the priors
+    Eigen::VectorXd pull_;                 // -precision * theta
     Eigen::MatrixXd total_;
     Eigen::LLT<Eigen::MatrixXd> total_factor_;
     Blocks fine_, coarse_;

@@ -30,7 +30,8 @@ Session open_session(const Request &request) {
     log::Log log = log::read_csv(request.log, request.map);
     cut_part(log, request.from_s, request.to_s);
     for (const auto &[key, value] : log.header) // a map that says so makes the model's currents magnitudes
-        if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1") session.model.unsigned_current = true;
+        if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1")
+            session.model.unsigned_current = true;
     if (request.repeat.empty()) {
         session.data = make_dataset(session.model, log);
     } else {
@@ -48,7 +49,9 @@ std::string verdict_text(const Diagnosis &d) {
     std::string names;
     for (const CandidateResult &a : d.accepted) names += (names.empty() ? "" : " and ") + a.candidate.label();
     if (d.kind == "nothing") {
-        std::snprintf(buffer, sizeof buffer, "Nothing found that the log supports; the error stands at %.2f x noise. %zu effects could not have been seen in it.", before, d.not_excited.size());
+        std::snprintf(buffer, sizeof buffer,
+                      "Nothing found that the log supports; the error stands at %.2f x noise. %zu effects could not have been seen in it.",
+                      before, d.not_excited.size());
         return buffer;
     }
     std::string text;
@@ -58,14 +61,18 @@ std::string verdict_text(const Diagnosis &d) {
     }
     for (const ConfoundedClass &c : d.classes) {
         text += " This log cannot tell";
-        for (std::size_t i = 0; i < c.members.size(); ++i) text += (i == 0 ? " " : i + 1 == c.members.size() ? " from " : ", ") + c.members[i];
+        for (std::size_t i = 0; i < c.members.size(); ++i)
+            text += (i == 0 ? " " : i + 1 == c.members.size() ? " from " : ", ") + c.members[i];
         text += '.';
     }
     if (d.unknown) {
-        if (!text.empty()) text += " That explains it only partly:";
-        else text += "Unknown: no effect of the catalogue explains it:";
+        if (!text.empty())
+            text += " That explains it only partly:";
+        else
+            text += "Unknown: no effect of the catalogue explains it:";
         text += " what is left depends on " + d.unknown->variable + ": " + d.unknown->balance + '.';
-        for (std::size_t i = 0; i < d.nearest.size(); ++i) text += (i == 0 ? " Nearest in the catalogue, not the cause: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
+        for (std::size_t i = 0; i < d.nearest.size(); ++i)
+            text += (i == 0 ? " Nearest in the catalogue, not the cause: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
     }
     return text;
 }

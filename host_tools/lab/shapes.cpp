@@ -14,7 +14,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double shapes_tried = 72; // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double shapes_tried = 72;   // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -74,7 +74,8 @@ class ShapeColumns {
             }
             Beside all;
             for (std::size_t i = first; i < last; ++i) all.add(make_periodic(waves[i].axis, waves[i].order), 2);
-            const Eigen::MatrixXd columns = problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
+            const Eigen::MatrixXd columns = problem_.row_scale.asDiagonal() *
+                                            problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
             for (Eigen::Index i = 0; i < columns.cols(); i += 2) list.push_back(columns.middleCols(i, 2));
         }
         return list;
@@ -83,12 +84,14 @@ class ShapeColumns {
   private:
     const UnitResponse &unit(TermTarget target) {
         auto found = units_.find(target);
-        if (found == units_.end()) found = units_.emplace(target, unit_response(problem_.data(), physics_, problem_.forward().motion(), target)).first;
+        if (found == units_.end())
+            found = units_.emplace(target, unit_response(problem_.data(), physics_, problem_.forward().motion(), target)).first;
         return found->second;
     }
     const std::vector<Forward::ElectricSeries> &electric_unit(TermTarget target) {
         auto found = electric_units_.find(target);
-        if (found == electric_units_.end()) found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
+        if (found == electric_units_.end())
+            found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
         return found->second;
     }
 
@@ -99,9 +102,10 @@ class ShapeColumns {
     std::map<TermTarget, std::vector<Forward::ElectricSeries>> electric_units_;
 };
 
-// Two tests, corrected for their number and that of the shapes: of the coefficients (robust, but each costs a degree of freedom), and of the
-// held-out error's fall over blocks (Diebold and Mariano, J. Business & Economic Statistics 13 (1995) 253). A curve is judged by the ranks of its
-// falls: it may matter in few blocks only, whose falls are large and unlike; a wave, which any uneven ground fits a little all along, by their mean.
+// Two tests, corrected for their number and that of the shapes: of the coefficients (robust, but each costs a degree of freedom), and of
+// the held-out error's fall over blocks (Diebold and Mariano, J. Business & Economic Statistics 13 (1995) 253). A curve is judged by the
+// ranks of its falls: it may matter in few blocks only, whose falls are large and unlike; a wave, which any uneven ground fits a little all
+// along, by their mean.
 double corrected(const Candidate &c, const Assessment &a) {
     double falls = 1;
     if (c.order == 0) {
@@ -130,7 +134,8 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
     std::vector<Candidate> waves;
-    for (const Candidate &c : shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
+    for (const Candidate &c :
+         shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
         if (c.order > 0 && c.target == TermTarget::soil_strength) {
             waves.push_back(c);
             continue;
@@ -148,12 +153,15 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
     }
     const std::vector<Eigen::MatrixXd> of_waves = columns.of_waves(waves);
     for (std::size_t i = 0; i < waves.size(); ++i) list.push_back(scored(waves[i], of_waves[i], screen, keep));
-    std::stable_sort(list.begin(), list.end(), [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
+    std::stable_sort(list.begin(), list.end(),
+                     [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
     return list;
 }
 
 // Every ground's strength wanders along the way: that alone is not worth a word.
-bool uneven(const Candidate &c) { return c.target == TermTarget::soil_strength && c.order == 0 && (c.axis == Axis::time || c.axis == Axis::place || c.axis == Axis::path); }
+bool uneven(const Candidate &c) {
+    return c.target == TermTarget::soil_strength && c.order == 0 && (c.axis == Axis::time || c.axis == Axis::place || c.axis == Axis::path);
+}
 
 UnknownShape describe(const ShapeScore &s, double base_error) {
     UnknownShape u;
@@ -171,7 +179,8 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     u.expression = shape_expression(s.candidate, y);
     if (s.candidate.order > 0) {
         for (int i = 0; i <= 36; ++i) { // a turn of the wheel, or one wave
-            const double theta = 2 * std::numbers::pi * i / 36 / (s.candidate.axis == Axis::angle ? 1 : s.candidate.order), f = y[0] * std::cos(s.candidate.order * theta) + y[1] * std::sin(s.candidate.order * theta);
+            const double theta = 2 * std::numbers::pi * i / 36 / (s.candidate.axis == Axis::angle ? 1 : s.candidate.order),
+                         f = y[0] * std::cos(s.candidate.order * theta) + y[1] * std::sin(s.candidate.order * theta);
             const double band = 1.96 * s.assessment.standard_error.maxCoeff();
             u.x.push_back(theta), u.y.push_back(f), u.low.push_back(f - band), u.high.push_back(f + band);
         }
@@ -225,13 +234,18 @@ Assessment beside(const Problem &less, const Eigen::MatrixXd &effect, const Shap
 // Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
 bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
 
-// A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none either: f(X) may stand for anything
-// that differed between them.
-bool is_curve(const Candidate &shape) { return shape.order == 0 && !shape.parts_wheels && (shape.knots.size() > 3 || is_straight(shape) || is_bump(shape) || shape.axis == Axis::direction || shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current); }
+// A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none
+// either: f(X) may stand for anything that differed between them.
+bool is_curve(const Candidate &shape) {
+    return shape.order == 0 && !shape.parts_wheels &&
+           (shape.knots.size() > 3 || is_straight(shape) || is_bump(shape) || shape.axis == Axis::direction ||
+            shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current);
+}
 
 // The shape in whose stead the effect was named, if there is one: needed beside the effect, and explaining more than it by itself, while
 // the effect is not needed beside the shape. A law that is right passes: no freer shape does better than it.
-std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &effect, const std::vector<ShapeScore> &shapes, const ShapeScore *flagged, const DiagnoseOptions &options) {
+std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &effect, const std::vector<ShapeScore> &shapes,
+                                        const ShapeScore *flagged, const DiagnoseOptions &options) {
     Eigen::MatrixXd columns;
     const Problem less = without(last, effect, columns);
     const Screen screen(less);
@@ -255,8 +269,10 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
 
 // The named effects that say the same as the shape. One that keeps more than half of what it gains beside it is about something else, and
 // neither stands nor falls with it.
-std::vector<std::size_t> in_its_way(const Problem &last, const std::vector<Candidate> &named, const std::string &shape, const std::vector<ShapeScore> &scores) {
-    const auto found = std::find_if(scores.begin(), scores.end(), [&](const ShapeScore &s) { return s.candidate.effect == shape && s.columns.cols() > 0; });
+std::vector<std::size_t> in_its_way(const Problem &last, const std::vector<Candidate> &named, const std::string &shape,
+                                    const std::vector<ShapeScore> &scores) {
+    const auto found = std::find_if(scores.begin(), scores.end(),
+                                    [&](const ShapeScore &s) { return s.candidate.effect == shape && s.columns.cols() > 0; });
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < named.size(); ++i) {
         Eigen::MatrixXd columns;
@@ -288,7 +304,8 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
     // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
     const auto material = [&](const ShapeScore &s) {
-        return s.assessment.gain > std::max(least, uneven(s.candidate) ? least_uneven : 0.0) * last_screen.heldout_error() || (s.balance_fall > 0.15 && s.p_value < 1e-4);
+        return s.assessment.gain > std::max(least, uneven(s.candidate) ? least_uneven : 0.0) * last_screen.heldout_error() ||
+               (s.balance_fall > 0.15 && s.p_value < 1e-4);
     };
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
     const ShapeScore *best = nullptr;
@@ -296,7 +313,8 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
     for (const ShapeScore &s : scores) {
         if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
         // of shapes that do nearly as well, the one with the fewest coefficients
-        if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())) continue;
+        if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
+            continue;
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
     }
@@ -318,7 +336,8 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
         if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > 0.95 * named_gain)) continue;
         const std::vector<std::size_t> replaced = in_its_way(last, named, s.candidate.effect, scores);
         if (replaced.empty()) continue;
-        // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name goes
+        // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name
+        // goes
         const double margin = replaced.size() > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
         const double error = sum_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
         if (!(s.assessment.gain > margin * named_gain) || (replaced.size() == 1 && s.assessment.gain - named_gain < 2 * error)) continue;

@@ -11,8 +11,8 @@ namespace traction::lab {
 
 struct Beyond {
     std::optional<UnknownShape> shape;
-    std::vector<std::size_t> replaced; // of the named: the shape alone does better than they together
-    double gain_squares = 0; // what it explains of the first problem's held-out error, where it replaces any
+    std::vector<std::size_t> replaced;   // of the named: the shape alone does better than they together
+    double gain_squares = 0;             // what it explains of the first problem's held-out error, where it replaces any
     std::optional<std::size_t> stand_in; // of the named: it is not needed beside a shape that is needed beside it
     std::optional<UnknownShape> cause;   // that shape
 };

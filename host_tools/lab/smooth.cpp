@@ -70,12 +70,14 @@ double scatter_of(const std::vector<double> &t, const std::vector<double> &angle
 
 } // namespace
 
-double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s, double still_rad_s) {
+double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s,
+                      double still_rad_s) {
     double speed = 0;
     const double scatter = scatter_of(t_s, angle_rad, period_s, still_rad_s, speed);
     if (!(scatter > 0)) return half_s;
     // tricube weights: a scatter sigma leaves 1.85 sigma sqrt(period) / half^1.5 in the slope
-    return std::clamp(std::pow(1.85 * scatter * std::sqrt(period_s) / (slope_noise * speed), 2.0 / 3), half_s, std::max(half_s, widest_half_s));
+    return std::clamp(std::pow(1.85 * scatter * std::sqrt(period_s) / (slope_noise * speed), 2.0 / 3), half_s,
+                      std::max(half_s, widest_half_s));
 }
 
 Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s, std::size_t count,
@@ -97,8 +99,10 @@ Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &valu
         while (b - a < need) { // few samples: widen towards the nearer side
             const double left = a > 0 ? t - t_s[a - 1] : std::numeric_limits<double>::infinity();
             const double right = b < n ? t_s[b] - t : std::numeric_limits<double>::infinity();
-            if (left <= right) --a;
-            else ++b;
+            if (left <= right)
+                --a;
+            else
+                ++b;
             width = std::max(width, 1.05 * std::min(left, right));
         }
         double s[7] = {}, r[4] = {};

@@ -17,26 +17,36 @@ using Eigen::Vector3d;
 class Moved {
   public:
     Moved(const Dataset &data, const Physics &moved, const Motion &known, std::size_t first, std::size_t last)
-        : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
+        : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)),
+          first_(first), last_(last) {}
 
     Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
         step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
-        for (std::size_t i = first_; i < last_; ++i) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
+        for (std::size_t i = first_; i < last_; ++i)
+            step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
         Vector3d force = Vector3d::Zero();
-        if (first_ == 0 && last_ == p_.wheel.size()) force = step_.forces(q, nullptr);
+        if (first_ == 0 && last_ == p_.wheel.size())
+            force = step_.forces(q, nullptr);
         else
-            for (std::size_t i = 0; i < p_.wheel.size(); ++i) force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
+            for (std::size_t i = 0; i < p_.wheel.size(); ++i)
+                force += i >= first_ && i < last_ ? step_.force(i, q) : known_.wheel[i].force[k];
         const double speed = freedom_.omni ? std::hypot(q[0], q[1]) : q[0], along = step_.body_force(speed);
-        if (!freedom_.omni) force[0] += along;
-        else if (speed > 1e-6) force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
+        if (!freedom_.omni)
+            force[0] += along;
+        else if (speed > 1e-6)
+            force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
         return detail::rate_of(force, q, step_.grade_accel(), gyro_.empty() ? 0 : gyro_[k], p_, freedom_) - known_.rate[k];
     }
     double traction_change(std::size_t i, std::size_t k) const {
         return i >= first_ && i < last_ ? step_.state(i).traction - known_.wheel[i].traction_N[k] : 0;
     }
-    double slip_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).slip - known_.wheel[i].slip[k] : 0; }
-    double side_change(std::size_t i, std::size_t k) const { return i >= first_ && i < last_ ? step_.state(i).side_slip - known_.wheel[i].side_slip[k] : 0; }
+    double slip_change(std::size_t i, std::size_t k) const {
+        return i >= first_ && i < last_ ? step_.state(i).slip - known_.wheel[i].slip[k] : 0;
+    }
+    double side_change(std::size_t i, std::size_t k) const {
+        return i >= first_ && i < last_ ? step_.state(i).side_slip - known_.wheel[i].side_slip[k] : 0;
+    }
     double grade_accel(std::size_t) const { return step_.grade_accel()[0]; }
     const WheelStep &step() const { return step_; }
 
@@ -59,7 +69,8 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
     for (std::size_t k = 0; k < data.count; ++k) {
         const Vector3d at(known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]);
         const std::size_t j = k == 0 ? 0 : k - 1;
-        const Vector3d moved_rate = change.rate_change(k, at, k == 0 ? at[0] : known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j]);
+        const Vector3d moved_rate =
+            change.rate_change(k, at, k == 0 ? at[0] : known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j]);
         const StepTangent &t = known.tangent[k];
         const double reach = (k < 2 ? 1.0 : 2.0 / 3) * data.step_s;
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
@@ -67,7 +78,8 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
         Vector3d by_slip = Vector3d::Zero();
         for (std::size_t i = 0; i < wheels; ++i)
             if (change.step().lags(i)) by_slip += known.wheel[i].force_by_slip[k] * slip[i] + known.wheel[i].force_by_side[k] * side[i];
-        by_slip = by_slip.cwiseProduct(Vector3d(1 / moved.body.mass, freedom.vy ? 1 / moved.body.mass : 0, freedom.yaw ? 1 / moved.body.yaw_inertia : 0));
+        by_slip = by_slip.cwiseProduct(
+            Vector3d(1 / moved.body.mass, freedom.vy ? 1 / moved.body.mass : 0, freedom.yaw ? 1 / moved.body.yaw_inertia : 0));
         const Vector3d next = t.inverse * (right + reach * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path + by_slip));
         for (std::size_t i = 0; i < wheels; ++i) {
             const Motion::Wheel &w = known.wheel[i];
@@ -103,7 +115,8 @@ bool has_neighbours(const Dataset &data, const Physics &base, const Physics &mov
 }
 
 void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &m) {
-    const std::size_t wheels = moved.wheel.size(), first = wheel < 0 ? 0 : static_cast<std::size_t>(wheel), last = wheel < 0 ? wheels : first + 1;
+    const std::size_t wheels = moved.wheel.size(), first = wheel < 0 ? 0 : static_cast<std::size_t>(wheel),
+                      last = wheel < 0 ? wheels : first + 1;
     detail::resize(m, data.count, wheels, false, false);
     Moved change(data, moved, known, first, last);
     follow(data, moved, known, change, m);
@@ -135,7 +148,8 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
         step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j], k == 0 ? 0 : known.away_m[j]);
         for (std::size_t i = 0; i < base.wheel.size(); ++i) {
             step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j], k == 0 ? 0 : known.wheel[i].side_slip[j]);
-            unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) / size);
+            unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) /
+                                    size);
             unit.traction[i].push_back((step.state(i).traction - known.wheel[i].traction_N[k]) / size);
         }
     }

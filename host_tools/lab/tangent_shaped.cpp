@@ -18,8 +18,9 @@ template <int Lanes> class Shapes {
     using Lane3 = std::array<Lane, 3>;
 
     Shapes(const Dataset &data, const Physics &physics, const Motion &known, const UnitResponse &unit)
-        : data_(data), known_(known), unit_(unit), freedom_(detail::freedom_of(data, physics)),
-          per_N_{1 / physics.body.mass, freedom_.vy ? 1 / physics.body.mass : 0, freedom_.yaw ? 1 / physics.body.yaw_inertia : 0} {
+        : data_(data), known_(known), unit_(unit),
+          freedom_(detail::freedom_of(data, physics)), per_N_{1 / physics.body.mass, freedom_.vy ? 1 / physics.body.mass : 0,
+                                                              freedom_.yaw ? 1 / physics.body.yaw_inertia : 0} {
         const WheelStep step(data, physics);
         for (std::size_t i = 0; i < physics.wheel.size(); ++i) lags_[i] = step.lags(i);
         for (Lane3 *x : {&q_, &before_}) x->fill(Lane::Zero());
@@ -106,19 +107,25 @@ template <int Lanes> class Shapes {
 };
 
 template <int Lanes>
-void follow(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<double> &share, std::vector<Motion> &motions) {
+void follow(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<double> &share,
+            std::vector<Motion> &motions) {
     Shapes<Lanes> shapes(data, base, known, unit);
     for (std::size_t k = 0; k < data.count; ++k) shapes.step(k, &share[k * base.wheel.size() * motions.size()], motions);
 }
 
 } // namespace
 
-void neighbours_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit, const std::vector<double> &share, std::vector<Motion> &motions) {
+void neighbours_shaped(const Dataset &data, const Physics &base, const Motion &known, const UnitResponse &unit,
+                       const std::vector<double> &share, std::vector<Motion> &motions) {
     for (Motion &m : motions) detail::resize(m, data.count, base.wheel.size(), false, false);
-    if (motions.size() <= 2) follow<2>(data, base, known, unit, share, motions);
-    else if (motions.size() <= 4) follow<4>(data, base, known, unit, share, motions);
-    else if (motions.size() <= 6) follow<6>(data, base, known, unit, share, motions);
-    else if (motions.size() <= most_shapes) follow<most_shapes>(data, base, known, unit, share, motions);
+    if (motions.size() <= 2)
+        follow<2>(data, base, known, unit, share, motions);
+    else if (motions.size() <= 4)
+        follow<4>(data, base, known, unit, share, motions);
+    else if (motions.size() <= 6)
+        follow<6>(data, base, known, unit, share, motions);
+    else if (motions.size() <= most_shapes)
+        follow<most_shapes>(data, base, known, unit, share, motions);
 }
 
 } // namespace traction::lab

@@ -13,12 +13,28 @@ namespace traction::lab {
 namespace {
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(TermTarget::count)> target_names = {
-    "wheel_torque", "wheel_friction", "wheel_force", "rolling_resistance", "body_force", "voltage", "soil_strength", "shear_slip",
-    "motor_constant", "resistance", "sensor.accel", "sensor.radar", "sensor.camera", "sensor.current"};
+    "wheel_torque", "wheel_friction", "wheel_force", "rolling_resistance", "body_force",   "voltage",       "soil_strength",
+    "shear_slip",   "motor_constant", "resistance",  "sensor.accel",       "sensor.radar", "sensor.camera", "sensor.current"};
 
-constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_names = {
-    "time", "wheel speed", "ground speed", "slip", "wheel load", "wheel angle", "path travelled", "acceleration",
-    "winding current (model)", "direction", "absolute speed", "yaw rate", "place on the path", "wheel angle since reversal", "current of the other motors (model)", "current of the motors of its axle (model)", "current of the motors of its side (model)", "absolute wheel speed", "motor voltage (duty times battery)"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_names = {"time",
+                                                                                            "wheel speed",
+                                                                                            "ground speed",
+                                                                                            "slip",
+                                                                                            "wheel load",
+                                                                                            "wheel angle",
+                                                                                            "path travelled",
+                                                                                            "acceleration",
+                                                                                            "winding current (model)",
+                                                                                            "direction",
+                                                                                            "absolute speed",
+                                                                                            "yaw rate",
+                                                                                            "place on the path",
+                                                                                            "wheel angle since reversal",
+                                                                                            "current of the other motors (model)",
+                                                                                            "current of the motors of its axle (model)",
+                                                                                            "current of the motors of its side (model)",
+                                                                                            "absolute wheel speed",
+                                                                                            "motor voltage (duty times battery)"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_units = {
     "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s", "rad/s", "m", "rad", "A", "A", "A", "rad/s", "V"};
 
@@ -88,9 +104,24 @@ class Expression : public Term {
   public:
     Expression(const std::string &text, const std::vector<std::string> &parameters) : coefficients_(parameters.size()) {
         try {
-            const std::array<std::pair<const char *, double *>, 18> names = {{{"t", &s_.t}, {"w", &s_.w}, {"v", &s_.v},
-                {"s", &s_.s}, {"Fn", &s_.Fn}, {"theta", &s_.theta}, {"x", &s_.x}, {"a", &s_.a}, {"I", &s_.I}, {"u", &s_.u},
-                {"Ft", &s_.Ft}, {"V", &s_.V}, {"r", &s_.r}, {"X", &s_.X}, {"d", &s_.d}, {"Io", &s_.Io}, {"Ia", &s_.Ia}, {"Is", &s_.Is}}};
+            const std::array<std::pair<const char *, double *>, 18> names = {{{"t", &s_.t},
+                                                                              {"w", &s_.w},
+                                                                              {"v", &s_.v},
+                                                                              {"s", &s_.s},
+                                                                              {"Fn", &s_.Fn},
+                                                                              {"theta", &s_.theta},
+                                                                              {"x", &s_.x},
+                                                                              {"a", &s_.a},
+                                                                              {"I", &s_.I},
+                                                                              {"u", &s_.u},
+                                                                              {"Ft", &s_.Ft},
+                                                                              {"V", &s_.V},
+                                                                              {"r", &s_.r},
+                                                                              {"X", &s_.X},
+                                                                              {"d", &s_.d},
+                                                                              {"Io", &s_.Io},
+                                                                              {"Ia", &s_.Ia},
+                                                                              {"Is", &s_.Is}}};
             for (const auto &[name, place] : names) parser_.DefineVar(name, place);
             for (std::size_t i = 0; i < parameters.size(); ++i) parser_.DefineVar(parameters[i], &coefficients_[i]);
             parser_.DefineConst("pi", M_PI);
@@ -136,20 +167,26 @@ bool parse_target(std::string_view name, TermTarget &target) {
 unsigned target_stages(TermTarget target) {
     switch (target) {
     case TermTarget::wheel_torque:
-    case TermTarget::wheel_friction: return stage_torque;
+    case TermTarget::wheel_friction:
+        return stage_torque;
     case TermTarget::wheel_force:
     case TermTarget::rolling:
     case TermTarget::body_force:
     case TermTarget::soil_strength:
-    case TermTarget::shear_slip: return stage_motion;
+    case TermTarget::shear_slip:
+        return stage_motion;
     case TermTarget::voltage:
-    case TermTarget::resistance: return stage_voltage;
+    case TermTarget::resistance:
+        return stage_voltage;
     case TermTarget::motor_constant:
-    case TermTarget::current: return stage_torque | stage_voltage;
+    case TermTarget::current:
+        return stage_torque | stage_voltage;
     case TermTarget::accel:
     case TermTarget::radar:
-    case TermTarget::camera: return stage_sensors;
-    case TermTarget::count: break;
+    case TermTarget::camera:
+        return stage_sensors;
+    case TermTarget::count:
+        break;
     }
     return stage_motion;
 }
@@ -159,33 +196,51 @@ std::string_view axis_unit(Axis axis) { return axis_units[static_cast<std::size_
 
 double axis_value(Axis axis, const Signals &s) {
     switch (axis) {
-    case Axis::time: return s.t;
-    case Axis::wheel_speed: return s.w;
-    case Axis::speed: return s.v;
-    case Axis::slip: return s.s;
-    case Axis::load: return s.Fn;
-    case Axis::angle: return s.theta;
-    case Axis::path: return s.x;
-    case Axis::accel: return s.a;
-    case Axis::current: return s.I;
-    case Axis::direction: return s.v / std::sqrt(s.v * s.v + 1e-4);
-    case Axis::abs_speed: return std::fabs(s.v);
-    case Axis::yaw_rate: return s.r;
-    case Axis::place: return s.X;
-    case Axis::reversal: return s.d;
-    case Axis::other_current: return s.Io;
-    case Axis::axle_current: return s.Ia;
-    case Axis::side_current: return s.Is;
-    case Axis::abs_wheel_speed: return std::fabs(s.w);
-    case Axis::voltage: return s.u;
-    case Axis::count: break;
+    case Axis::time:
+        return s.t;
+    case Axis::wheel_speed:
+        return s.w;
+    case Axis::speed:
+        return s.v;
+    case Axis::slip:
+        return s.s;
+    case Axis::load:
+        return s.Fn;
+    case Axis::angle:
+        return s.theta;
+    case Axis::path:
+        return s.x;
+    case Axis::accel:
+        return s.a;
+    case Axis::current:
+        return s.I;
+    case Axis::direction:
+        return s.v / std::sqrt(s.v * s.v + 1e-4);
+    case Axis::abs_speed:
+        return std::fabs(s.v);
+    case Axis::yaw_rate:
+        return s.r;
+    case Axis::place:
+        return s.X;
+    case Axis::reversal:
+        return s.d;
+    case Axis::other_current:
+        return s.Io;
+    case Axis::axle_current:
+        return s.Ia;
+    case Axis::side_current:
+        return s.Is;
+    case Axis::abs_wheel_speed:
+        return std::fabs(s.w);
+    case Axis::voltage:
+        return s.u;
+    case Axis::count:
+        break;
     }
     return 0;
 }
 
-std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots) {
-    return std::make_shared<Piecewise>(axis, std::move(knots));
-}
+std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots) { return std::make_shared<Piecewise>(axis, std::move(knots)); }
 std::shared_ptr<Term> make_cells(Axis axis, double start, double length) { return std::make_shared<Cells>(axis, start, length); }
 std::shared_ptr<Term> make_periodic(Axis axis, double order) { return std::make_shared<Periodic>(axis, order); }
 std::shared_ptr<Term> make_expression(const std::string &expression, const std::vector<std::string> &parameters) {

@@ -38,7 +38,8 @@ bool parse_target(std::string_view name, TermTarget &target);
 unsigned target_stages(TermTarget target); // Stage bits of physics.h
 
 struct Signals {
-    double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0, X = 0, d = 0, Io = 0, Ia = 0, Is = 0;
+    double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0, X = 0, d = 0, Io = 0, Ia = 0,
+           Is = 0;
 };
 
 // A function of the signals, linear or not in its coefficients. Evaluation does not change the object's meaning (a parser inside
@@ -51,8 +52,28 @@ class Term {
     virtual void weights(const Signals &signals, std::size_t count, double *weight) const;
 };
 
-enum class Axis { time, wheel_speed, speed, slip, load, angle, path, accel, current, direction, abs_speed, yaw_rate, place, reversal, other_current,
-                  axle_current, side_current, abs_wheel_speed, voltage, count };
+enum class Axis {
+    time,
+    wheel_speed,
+    speed,
+    slip,
+    load,
+    angle,
+    path,
+    accel,
+    current,
+    direction,
+    abs_speed,
+    yaw_rate,
+    place,
+    reversal,
+    other_current,
+    axle_current,
+    side_current,
+    abs_wheel_speed,
+    voltage,
+    count
+};
 std::string_view axis_name(Axis axis);
 std::string_view axis_unit(Axis axis);
 double axis_value(Axis axis, const Signals &signals);

@@ -13,7 +13,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double clearly_worse = 1.02; // of the baseline's error: beyond such a size no better one is sought (assumed)
-constexpr double classes_tried = 20; // catalogue effects that are not near copies of one another: about half of the catalogue
+constexpr double classes_tried = 20;   // catalogue effects that are not near copies of one another: about half of the catalogue
 
 bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
     for (std::size_t j = 0; j < value.size(); ++j)
@@ -21,8 +21,8 @@ bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
     return true;
 }
 
-// Of the coefficient's own test and, four to one, the ranks of the held-out error's falls over blocks (as of shapes): an effect that acts in few
-// blocks has a coefficient that scatters though it helps in all of them.
+// Of the coefficient's own test and, four to one, the ranks of the held-out error's falls over blocks (as of shapes): an effect that acts
+// in few blocks has a coefficient that scatters though it helps in all of them.
 void test(Trial &t) {
     const double tried = t.candidate.variants * classes_tried, ranks = signed_rank_tail({t.block_gain.begin(), t.block_gain.end()});
     t.own_p_value = std::min(1.0, 1.25 * t.assessment.p_value * tried);
@@ -76,7 +76,8 @@ bool strongly_nonlinear(const std::string &effect) { return effect == "backlash"
 
 bool large_enough(const Candidate &c, const std::vector<double> &value) {
     double size = 0, least = 0;
-    for (std::size_t j = 0; j < value.size(); ++j) size += value[j] * value[j], least = std::max(least, j < c.of_interest.size() ? c.of_interest[j] : 0.0);
+    for (std::size_t j = 0; j < value.size(); ++j)
+        size += value[j] * value[j], least = std::max(least, j < c.of_interest.size() ? c.of_interest[j] : 0.0);
     return std::sqrt(size) >= least;
 }
 
@@ -113,7 +114,8 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
     c.prepare(at);
     const double linear = t.value[0], largest = linear < 0 && c.minimum[0] < 0 ? c.minimum[0] : c.maximum[0];
     std::vector<double> sizes = {linear, 2 * linear, 0.5 * largest};
-    if (std::fabs(linear) < 0.1 * std::fabs(largest)) sizes = {linear, 0.1 * largest, 0.25 * largest, 0.5 * largest}; // a poor baseline hides large ones
+    if (std::fabs(linear) < 0.1 * std::fabs(largest))
+        sizes = {linear, 0.1 * largest, 0.25 * largest, 0.5 * largest}; // a poor baseline hides large ones
     if (strongly_nonlinear(c.effect)) sizes = {c.of_interest[0], 0.1 * largest, 0.25 * largest, 0.5 * largest, 0.8 * largest};
     double best = screen.error();
     const double before = best;
@@ -154,10 +156,13 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
         problem.theta[n + j] = start;
     }
     if ((t.candidate.touched & stage_motion) != 0 || t.frees) {
-        if (linear) t.start_change = t.assessment.change;
-        else if (t.start.empty()) shorten(problem, n);
+        if (linear)
+            t.start_change = t.assessment.change;
+        else if (t.start.empty())
+            shorten(problem, n);
         if (t.start_change.size() == n) problem.theta.head(n) += t.start_change, problem.within_bounds();
-        problem.polish(strongly_nonlinear(t.candidate.effect) || t.frees ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
+        problem.polish(
+            strongly_nonlinear(t.candidate.effect) || t.frees ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
     } else {
         problem.quick_fit(base, 3);
     }
@@ -184,11 +189,16 @@ void judge(Trial &t, double base_error, const DiagnoseOptions &options) {
     const double relative = base_error > 0 ? t.gain / base_error : 0;
     const bool by_rows = relative > options.least_gain || t.best_balance_gain > options.least_gain_one; // ranks know nothing of relief
     const bool gains = t.gain > 0 && (by_rows || t.assessment.relief > options.least_relief);
-    if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains) t.verdict = "not_significant";
-    else if (!plausible_sign(t.candidate, t.value)) t.verdict = "wrong_sign";
-    else if (!large_enough(t.candidate, t.value)) t.verdict = "too_small";
-    else if (t.refitted && beyond_range(t.candidate, t.value)) t.verdict = "beyond_range";
-    else t.verdict = "passes";
+    if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
+        t.verdict = "not_significant";
+    else if (!plausible_sign(t.candidate, t.value))
+        t.verdict = "wrong_sign";
+    else if (!large_enough(t.candidate, t.value))
+        t.verdict = "too_small";
+    else if (t.refitted && beyond_range(t.candidate, t.value))
+        t.verdict = "beyond_range";
+    else
+        t.verdict = "passes";
 }
 
 CandidateResult result_of(const Trial &t, double base_error, const Screen &screen) {

@@ -20,7 +20,7 @@ using Lane = Eigen::Array<double, 4, 1>;
 inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
                                                // would be too stiff for any step; assumed
 
-inline constexpr double most_side_slip = 4;     // a lagging one stays within: beyond it the ground slides whatever it is
+inline constexpr double most_side_slip = 4; // a lagging one stays within: beyond it the ground slides whatever it is
 
 namespace law {
 

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double resist_speed_m_s = 5e-3; // rolling resistance reverses over this speed: assumed, below any sensor's resolution
 constexpr double scrub_speed_m_s = 5e-3;  // and sideways scrub over this one, where the wheels' sideways speed is that of turning alone;
-constexpr double drift_speed_m_s = 15e-3; // over this one where the body drifts as well: every small swerve would meet all of it otherwise; assumed
+constexpr double drift_speed_m_s =
+    15e-3; // over this one where the body drifts as well: every small swerve would meet all of it otherwise; assumed
 constexpr double least_combined_m_s = 0.02; // combined slip is taken against at least this speed: assumed
 
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
@@ -61,7 +62,8 @@ void WheelStep::gather() {
     plain_ = (p_.motion == BodyMotion::longitudinal || sideways_) && all_grip && (all_lag || none_lags) && !motion_terms_ && !play_;
 }
 
-void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first, std::size_t last) {
+void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first,
+                        std::size_t last) {
     t_ = data_.time(k);
     path_ = path_m;
     away_ = away_m;
@@ -129,7 +131,8 @@ inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) co
     f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
     Lane Fm = f.Fm;
     if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
-    f.side_slip = sideways_ && state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v) : side_slip(f.rim, v, side_v, least_combined_m_s);
+    f.side_slip = sideways_ && state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v)
+                                                   : side_slip(f.rim, v, side_v, least_combined_m_s);
     const Lane across = f.grip * f.side_slip, felt = sideways_ ? f.side_slip : across;
     const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + felt.square()).sqrt() * f.per_sc));
     f.traction = grip * f.slip;
@@ -158,7 +161,8 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
             const auto at = static_cast<Eigen::Index>(i % 4);
             State &s = state_[i];
-            s.v = f.v[at], s.side_v = side_v[at], s.slip = f.slip[at], s.side_slip = f.side_slip[at], s.traction = f.traction[at], s.rolling = f.rolling[at];
+            s.v = f.v[at], s.side_v = side_v[at], s.slip = f.slip[at], s.side_slip = f.side_slip[at], s.traction = f.traction[at],
+            s.rolling = f.rolling[at];
             if (each != nullptr) (*each)[i] = {fx[at], sideways_ ? fy[at] : 0, moment[at]};
         }
         sum += Eigen::Vector3d(fx.sum(), sideways_ ? fy.sum() : 0, moment.sum());
@@ -206,9 +210,9 @@ void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double tract
     s.traction += traction_N;
 }
 
-// Force along the heading at wheel-centre speed v; side_v across it. Combined slip S = |(s, sy)|, (Ft, Fy) = f(S)/S (Fm s, Fym sy) inside the
-// friction ellipse, Fym = lateral_grip Fm (Pacejka's similarity). Where the body is not followed sideways its sideways speed is only presumed, and
-// lateral_grip is the share of it that slides: S = |(s, lateral_grip sy)|.
+// Force along the heading at wheel-centre speed v; side_v across it. Combined slip S = |(s, sy)|, (Ft, Fy) = f(S)/S (Fm s, Fym sy) inside
+// the friction ellipse, Fym = lateral_grip Fm (Pacejka's similarity). Where the body is not followed sideways its sideways speed is only
+// presumed, and lateral_grip is the share of it that slides: S = |(s, lateral_grip sy)|.
 double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     State &s = state_[i];
     const BodyPhysics &b = p_.body;
@@ -229,7 +233,9 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
         s.traction = Fm / sc * traction_slope(p_.soil_law, std::fabs(s.slip) / sc) * s.slip;
     }
     if (p_.wheel[i].backlash > 0) s.traction *= contact(i, v);
-    const double resist = s.load * (p_.wheel[i].crr + p_.wheel[i].rolling + b.slip_sinkage * std::fabs(s.slip) + b.speed_resistance * std::fabs(v)) + extra_rolling;
+    const double resist =
+        s.load * (p_.wheel[i].crr + p_.wheel[i].rolling + b.slip_sinkage * std::fabs(s.slip) + b.speed_resistance * std::fabs(v)) +
+        extra_rolling;
     // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
     const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v), share = resist / length(speed, resist_speed_m_s);
     s.rolling = share * v;
@@ -258,10 +264,14 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
     signals.r = yaw_rate_, signals.X = path_, signals.d = s.travel;
     for (const ExtraTerm &term : p_.terms) {
         if (term.wheel >= 0 && static_cast<std::size_t>(term.wheel) != i) continue;
-        if (term.target == TermTarget::wheel_force) extra += term.term->value(signals, term.coefficients.data());
-        else if (term.target == TermTarget::rolling) rolling += term.term->value(signals, term.coefficients.data());
-        else if (term.target == TermTarget::soil_strength) Fm *= std::max(0.0, 1 + term.term->value(signals, term.coefficients.data()));
-        else if (term.target == TermTarget::shear_slip) sc *= std::max(0.05, 1 + term.term->value(signals, term.coefficients.data()));
+        if (term.target == TermTarget::wheel_force)
+            extra += term.term->value(signals, term.coefficients.data());
+        else if (term.target == TermTarget::rolling)
+            rolling += term.term->value(signals, term.coefficients.data());
+        else if (term.target == TermTarget::soil_strength)
+            Fm *= std::max(0.0, 1 + term.term->value(signals, term.coefficients.data()));
+        else if (term.target == TermTarget::shear_slip)
+            sc *= std::max(0.05, 1 + term.term->value(signals, term.coefficients.data()));
     }
 }
 
@@ -308,7 +318,8 @@ void WheelStep::loads() {
         if (p_.halves) {
             double reach = 0; // of this half
             for (const WheelPhysics &w : p_.wheel) reach += same_side(w, p_.wheel[i]) ? w.x * w.x : 0;
-            state_[i].load_per_twist = reach > 0 ? -(b.centre_height + b.load_height) * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / reach : 0;
+            state_[i].load_per_twist =
+                reach > 0 ? -(b.centre_height + b.load_height) * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / reach : 0;
         }
         state_[i].load_per_side = X.dot(share * Eigen::Vector3d(0, 0, -M_h));
         state_[i].load_per_accel = X.dot(share * Eigen::Vector3d(0, -M_h, 0));
@@ -317,7 +328,9 @@ void WheelStep::loads() {
 
 double WheelStep::load(std::size_t i) const {
     const WheelPhysics &w = p_.wheel[i];
-    return w.load > 0 ? w.load : std::max(0.0, state_[i].load_0 + state_[i].load_per_accel * accel_ + state_[i].load_per_side * side_accel_ + state_[i].load_per_twist * twist_);
+    return w.load > 0 ? w.load
+                      : std::max(0.0, state_[i].load_0 + state_[i].load_per_accel * accel_ + state_[i].load_per_side * side_accel_ +
+                                          state_[i].load_per_twist * twist_);
 }
 
 void WheelStep::followers() {

@@ -21,7 +21,8 @@ FileBytes::FileBytes(const std::string &path, std::size_t limit) {
     }
     const auto too_large = [&](std::size_t bytes) {
         ::close(fd);
-        throw LogError(path, 0, 0, "is too large: " + std::to_string(bytes >> 20) + " MiB, the limit is " + std::to_string(limit >> 20) + " MiB",
+        throw LogError(path, 0, 0,
+                       "is too large: " + std::to_string(bytes >> 20) + " MiB, the limit is " + std::to_string(limit >> 20) + " MiB",
                        "cut it into parts, or leave out the fastest columns");
     };
     if (S_ISREG(info.st_mode)) {

@@ -84,7 +84,9 @@ class Keys {
 };
 
 const toml::table &as_table(const std::string &path, const toml::node &node, const char *key) {
-    if (!node.is_table()) throw LogError(path, line_of(node), 0, std::string("'") + key + "' is not a table", std::string("write [") + key + "] or [[" + key + "]] on a line of its own");
+    if (!node.is_table())
+        throw LogError(path, line_of(node), 0, std::string("'") + key + "' is not a table",
+                       std::string("write [") + key + "] or [[" + key + "]] on a line of its own");
     return *node.as_table();
 }
 
@@ -93,23 +95,28 @@ MapSignal read_signal(const std::string &path, const toml::table &table, std::si
     MapSignal signal;
     signal.line = keys.line();
     signal.name = keys.text("name", "");
-    if (signal.name.empty()) keys.fail("[[signal]] number " + std::to_string(index) + " has no name", "write name = \"wheel0.speed_rad_s\" or another name of docs/log_format.md");
+    if (signal.name.empty())
+        keys.fail("[[signal]] number " + std::to_string(index) + " has no name",
+                  "write name = \"wheel0.speed_rad_s\" or another name of docs/log_format.md");
     if (find_quantity(signal.name) == nullptr) {
         std::string si_name;
         double factor = 1;
         if (convert_unit(signal.name, si_name, factor)) {
-            keys.fail("signal '" + signal.name + "' is not in SI", "write name = \"" + si_name + "\" and scale = " + std::to_string(factor));
+            keys.fail("signal '" + signal.name + "' is not in SI",
+                      "write name = \"" + si_name + "\" and scale = " + std::to_string(factor));
         }
         keys.fail("signal '" + signal.name + "' is not in the vocabulary", "use a name of docs/log_format.md");
     }
     signal.column = keys.column("column");
     signal.value = keys.number("value");
     if (signal.column.empty() == !signal.value) {
-        keys.fail("signal '" + signal.name + "' needs either 'column' or 'value'", "write column = \"its column\", or value = 24.0 for a constant");
+        keys.fail("signal '" + signal.name + "' needs either 'column' or 'value'",
+                  "write column = \"its column\", or value = 24.0 for a constant");
     }
     signal.scale = keys.number("scale", 1);
     const double sign = keys.number("sign", 1);
-    if (sign != 1 && sign != -1) keys.fail("sign of '" + signal.name + "' is neither 1 nor -1", "write sign = -1, and put the size in 'scale'");
+    if (sign != 1 && sign != -1)
+        keys.fail("sign of '" + signal.name + "' is neither 1 nor -1", "write sign = -1, and put the size in 'scale'");
     if (signal.scale == 0) keys.fail("scale of '" + signal.name + "' is 0", "write the unit's size, e.g. 0.001 for millimetres");
     signal.scale *= sign;
     signal.offset = keys.number("offset", 0);
@@ -117,10 +124,12 @@ MapSignal read_signal(const std::string &path, const toml::table &table, std::si
     signal.is_unsigned = keys.flag("unsigned");
     signal.unwrap = keys.flag("unwrap");
     signal.period = keys.number("period", 2 * std::numbers::pi);
-    if (!(signal.period > 0)) keys.fail("period of '" + signal.name + "' is not above 0", "write the size of one turn in the signal's unit");
+    if (!(signal.period > 0))
+        keys.fail("period of '" + signal.name + "' is not above 0", "write the size of one turn in the signal's unit");
     signal.differentiate = keys.flag("differentiate");
     signal.window_s = keys.number("window_s", 0.1);
-    if (!(signal.window_s > 0)) keys.fail("window_s of '" + signal.name + "' is not above 0", "write the span of time to fit the slope over, e.g. 0.1");
+    if (!(signal.window_s > 0))
+        keys.fail("window_s of '" + signal.name + "' is not above 0", "write the span of time to fit the slope over, e.g. 0.1");
     signal.drop_repeats = keys.flag("drop_repeats");
     signal.noise = keys.number("noise");
     signal.quantum = keys.number("quantum");
@@ -138,7 +147,8 @@ void read_time(const std::string &path, const toml::table &table, Map &map) {
     map.row_period_s = keys.number("row_period_s", 0);
     const bool trials = keys.flag("rows_are_trials");
     keys.none_unknown();
-    if (!(map.time_scale > 0)) keys.fail("scale of the time is not above 0", "write seconds per unit of the column, e.g. 0.001 for milliseconds");
+    if (!(map.time_scale > 0))
+        keys.fail("scale of the time is not above 0", "write seconds per unit of the column, e.g. 0.001 for milliseconds");
     if ((map.dialect.time_column.empty() ? 0 : 1) + (map.row_period_s > 0 ? 1 : 0) + (trials ? 1 : 0) != 1) {
         keys.fail("[time] needs one of 'column', 'row_period_s', 'rows_are_trials'", "write column = \"the column of time\"");
     }
@@ -169,7 +179,8 @@ void read_header(const std::string &path, const toml::table &table, Map &map) {
             char buffer[32];
             value.assign(buffer, std::to_chars(buffer, buffer + sizeof buffer, *number).ptr);
         } else {
-            throw LogError(path, line_of(node), 0, "header entry '" + std::string(key.str()) + "' is neither text nor number", "write a text in quotes or a number");
+            throw LogError(path, line_of(node), 0, "header entry '" + std::string(key.str()) + "' is neither text nor number",
+                           "write a text in quotes or a number");
         }
         map.header[std::string(key.str())] = value;
     }
@@ -183,19 +194,24 @@ Map read_map(const std::string &path) {
     try {
         root = toml::parse(bytes.view(), path);
     } catch (const toml::parse_error &error) {
-        throw LogError(path, error.source().begin.line, error.source().begin.column, "this is not TOML: " + std::string(error.description()), "correct the line");
+        throw LogError(path, error.source().begin.line, error.source().begin.column,
+                       "this is not TOML: " + std::string(error.description()), "correct the line");
     }
     Map map;
     map.path = path;
     map.dialect.native = false;
     Keys keys(path, root, "the map");
     const std::string format = keys.text("format", "");
-    if (format != "traction-map 1") keys.fail("the map's format is '" + format + "'", "write format = \"traction-map 1\" on its first line");
+    if (format != "traction-map 1")
+        keys.fail("the map's format is '" + format + "'", "write format = \"traction-map 1\" on its first line");
     const std::string separator = keys.text("separator", "");
-    if (separator.size() > 1) keys.fail("separator '" + separator + "' is longer than one character", "write separator = \";\" or leave it out to have it guessed");
+    if (separator.size() > 1)
+        keys.fail("separator '" + separator + "' is longer than one character",
+                  "write separator = \";\" or leave it out to have it guessed");
     if (!separator.empty()) map.dialect.separator = separator[0];
     const double skip = keys.number("skip_rows", 0);
-    if (skip < 0 || skip > 1e6 || skip != std::floor(skip)) keys.fail("skip_rows is not a small whole number", "write how many lines stand above the row of names");
+    if (skip < 0 || skip > 1e6 || skip != std::floor(skip))
+        keys.fail("skip_rows is not a small whole number", "write how many lines stand above the row of names");
     map.dialect.skip_rows = static_cast<std::size_t>(skip);
     if (keys.has("row_of_names")) map.dialect.row_of_names = keys.flag("row_of_names");
     const toml::node *time = keys.look("time");
@@ -204,13 +220,15 @@ Map read_map(const std::string &path) {
     if (const toml::node *header = keys.look("header")) read_header(path, as_table(path, *header, "header"), map);
     if (const toml::node *where = keys.look("where")) read_filters(path, *where, map);
     const toml::node *signals = keys.look("signal");
-    if (signals == nullptr || !signals->is_array() || signals->as_array()->empty()) keys.fail("the map has no [[signal]]", "write [[signal]] with name and column for each signal");
+    if (signals == nullptr || !signals->is_array() || signals->as_array()->empty())
+        keys.fail("the map has no [[signal]]", "write [[signal]] with name and column for each signal");
     keys.none_unknown();
     std::set<std::string> names;
     for (const toml::node &node : *signals->as_array()) {
         map.signals.push_back(read_signal(path, as_table(path, node, "signal"), map.signals.size() + 1));
         const MapSignal &signal = map.signals.back();
-        if (!names.insert(signal.name).second) throw LogError(path, signal.line, 0, "signal '" + signal.name + "' stands twice", "keep one of them");
+        if (!names.insert(signal.name).second)
+            throw LogError(path, signal.line, 0, "signal '" + signal.name + "' stands twice", "keep one of them");
         const std::string &key = signal.name;
         const auto put = [&](const std::string &prefix, const std::optional<double> &value) {
             if (!value) return;
@@ -295,7 +313,8 @@ Signal make_signal(const MapSignal &rule, Column column, const std::string &path
 
 } // namespace
 
-Log read_through_map(const FileBytes &bytes, const std::string &path, const Map &map, std::vector<Repair> &repairs, const ReadLimits &limits) {
+Log read_through_map(const FileBytes &bytes, const std::string &path, const Map &map, std::vector<Repair> &repairs,
+                     const ReadLimits &limits) {
     Dialect dialect = map.dialect;
     std::set<std::string> wanted;
     for (const MapSignal &signal : map.signals) {
@@ -318,13 +337,17 @@ Log read_through_map(const FileBytes &bytes, const std::string &path, const Map 
             column.signal.t_s.erase(std::unique(column.signal.t_s.begin(), column.signal.t_s.end()), column.signal.t_s.end());
             column.signal.value.assign(column.signal.t_s.size(), *rule.value);
         } else {
-            const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const Column &c) { return c.signal.name == rule.column; });
+            const auto found =
+                std::find_if(table.columns.begin(), table.columns.end(), [&](const Column &c) { return c.signal.name == rule.column; });
             if (found == table.columns.end()) {
-                throw LogError(map.path, rule.line, 0, "signal '" + rule.name + "' wants column '" + rule.column + "', which " + path + " does not have", "correct the name (columns there: " + table.names.front() + " ... " + table.names.back() + ")");
+                throw LogError(map.path, rule.line, 0,
+                               "signal '" + rule.name + "' wants column '" + rule.column + "', which " + path + " does not have",
+                               "correct the name (columns there: " + table.names.front() + " ... " + table.names.back() + ")");
             }
             column = *found;
         }
-        Signal signal = rule.value ? Signal{rule.name, column.signal.t_s, column.signal.value} : make_signal(rule, std::move(column), path, repairs);
+        Signal signal =
+            rule.value ? Signal{rule.name, column.signal.t_s, column.signal.value} : make_signal(rule, std::move(column), path, repairs);
         for (double &t : signal.t_s) t = (t - start) * scale + map.time_offset_s - rule.delay_s;
         keep_what_is_a_number(signal, repairs);
         log.signals.push_back(std::move(signal));

@@ -11,29 +11,29 @@ namespace traction::log {
 // How one signal comes out of a column: value = sign * scale * (column) + offset, time = row time - delay_s.
 struct MapSignal {
     std::string name;
-    std::string column;           // empty for a constant
-    std::optional<double> value;  // a constant, e.g. the battery of a machine that does not log it
+    std::string column;          // empty for a constant
+    std::optional<double> value; // a constant, e.g. the battery of a machine that does not log it
     double scale = 1;
     double offset = 0;
-    double delay_s = 0;           // how long before its row's time the sample was true
-    bool is_unsigned = false;     // magnitude only: header key `unsigned.<signal>: 1`
-    bool unwrap = false;          // an angle that jumps by a turn becomes continuous
-    double period = 0;            // the turn, in the signal's unit
-    bool differentiate = false;   // the signal is the rate of change of the column
-    double window_s = 0;          // span of the line fitted for it
-    bool drop_repeats = false;    // keep a sample only when it differs from the one before (sample and hold of a slower sensor)
-    std::optional<double> noise;  // standard deviation: header key `noise.<signal>`
+    double delay_s = 0;            // how long before its row's time the sample was true
+    bool is_unsigned = false;      // magnitude only: header key `unsigned.<signal>: 1`
+    bool unwrap = false;           // an angle that jumps by a turn becomes continuous
+    double period = 0;             // the turn, in the signal's unit
+    bool differentiate = false;    // the signal is the rate of change of the column
+    double window_s = 0;           // span of the line fitted for it
+    bool drop_repeats = false;     // keep a sample only when it differs from the one before (sample and hold of a slower sensor)
+    std::optional<double> noise;   // standard deviation: header key `noise.<signal>`
     std::optional<double> quantum; // step of the sensor: header key `quantum.<signal>`
-    std::vector<double> missing;  // numbers in the column that mean "no sample"
-    std::size_t line = 0;         // in the map
+    std::vector<double> missing;   // numbers in the column that mean "no sample"
+    std::size_t line = 0;          // in the map
 };
 
 struct Map {
     std::string path;
     Dialect dialect;
-    double time_scale = 1;  // seconds per unit of the time column
+    double time_scale = 1; // seconds per unit of the time column
     double time_offset_s = 0;
-    bool from_zero = false; // the first row becomes t = 0
+    bool from_zero = false;  // the first row becomes t = 0
     double row_period_s = 0; // with no time column: seconds from row to row; 0: rows are trials, one second apart
     std::map<std::string, std::string> header;
     std::vector<MapSignal> signals;
@@ -43,6 +43,7 @@ struct Map {
 Map read_map(const std::string &path);
 
 // Throws LogError with the line in the log.
-Log read_through_map(const FileBytes &bytes, const std::string &path, const Map &map, std::vector<Repair> &repairs, const ReadLimits &limits);
+Log read_through_map(const FileBytes &bytes, const std::string &path, const Map &map, std::vector<Repair> &repairs,
+                     const ReadLimits &limits);
 
 } // namespace traction::log

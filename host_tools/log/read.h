@@ -18,7 +18,7 @@ struct Repair {
 
 // A log beyond these is refused with a message, before memory runs out.
 struct ReadLimits {
-    std::size_t bytes = std::size_t{4} << 30;    // size of the file [1]
+    std::size_t bytes = std::size_t{4} << 30;     // size of the file [1]
     std::size_t samples = std::size_t{200000000}; // non-empty cells; 16 bytes each in memory
 };
 

@@ -12,7 +12,8 @@ namespace traction::log {
 namespace {
 
 // "wheel0.speed_rpm" becomes "wheel0.speed_rad_s"; a name outside the vocabulary is kept.
-void name_in_vocabulary(Column &column, const std::vector<std::string> &names, std::vector<Repair> &repairs, std::vector<std::string> &unknown) {
+void name_in_vocabulary(Column &column, const std::vector<std::string> &names, std::vector<Repair> &repairs,
+                        std::vector<std::string> &unknown) {
     Signal &signal = column.signal;
     if (find_quantity(signal.name) != nullptr || signal.name.rfind("truth.", 0) == 0) return;
     const std::string at = "column " + std::to_string(column.number) + ": '" + signal.name + "' ";
@@ -21,7 +22,8 @@ void name_in_vocabulary(Column &column, const std::vector<std::string> &names, s
     if (convert_unit(signal.name, si_name, factor) && std::find(names.begin(), names.end(), si_name) == names.end()) {
         char text[40];
         std::snprintf(text, sizeof text, "%.7g", factor);
-        repairs.push_back({"unit_converted", si_name, signal.value.size(), 0, at + "is converted to '" + si_name + "' by the factor " + text});
+        repairs.push_back(
+            {"unit_converted", si_name, signal.value.size(), 0, at + "is converted to '" + si_name + "' by the factor " + text});
         for (double &value : signal.value) value *= factor;
         signal.name = si_name;
         keep_what_is_a_number(signal, repairs);
@@ -32,7 +34,9 @@ void name_in_vocabulary(Column &column, const std::vector<std::string> &names, s
 
 void say_unknown(const std::vector<std::string> &unknown, std::size_t columns, std::vector<Repair> &repairs) {
     if (unknown.empty()) return;
-    std::string text = unknown.size() == columns ? "no column is" : std::to_string(unknown.size()) + (unknown.size() == 1 ? " column is not" : " columns are not");
+    std::string text = unknown.size() == columns
+                           ? "no column is"
+                           : std::to_string(unknown.size()) + (unknown.size() == 1 ? " column is not" : " columns are not");
     text += " in the vocabulary (";
     for (std::size_t i = 0; i < unknown.size() && i < 4; ++i) text += (i == 0 ? "'" : ", '") + unknown[i] + "'";
     text += unknown.size() > 4 ? ", ...): " : "): ";
@@ -62,7 +66,8 @@ Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Rep
 Log read_csv(const std::string &path, const std::string &map_path, std::vector<Repair> &repairs, const ReadLimits &limits) {
     const std::size_t before = repairs.size();
     const FileBytes bytes(path, limits.bytes);
-    Log log = map_path.empty() ? read_native(bytes, path, repairs, limits) : read_through_map(bytes, path, read_map(map_path), repairs, limits);
+    Log log =
+        map_path.empty() ? read_native(bytes, path, repairs, limits) : read_through_map(bytes, path, read_map(map_path), repairs, limits);
     for (std::size_t i = before; i < repairs.size(); ++i) log.repairs.push_back(repairs[i].text);
     return log;
 }

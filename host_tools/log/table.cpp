@@ -61,7 +61,8 @@ struct Field {
 
 class TableReader {
   public:
-    TableReader(std::string_view text, const std::string &file, const Dialect &dialect, const ReadLimits &limits, std::vector<Repair> &repairs)
+    TableReader(std::string_view text, const std::string &file, const Dialect &dialect, const ReadLimits &limits,
+                std::vector<Repair> &repairs)
         : rest_(text), file_(file), dialect_(dialect), limits_(limits), repairs_(repairs) {}
 
     Table read();
@@ -91,7 +92,8 @@ class TableReader {
     std::size_t line_number_ = 0;
     bool complete_ = true; // the line ends with a line end
     bool crlf_ = false, decimal_comma_ = false;
-    std::size_t decimal_commas_ = 0, decimal_comma_line_ = 0, blank_lines_ = 0, blank_line_ = 0, pending_blank_ = 0, pending_blank_line_ = 0;
+    std::size_t decimal_commas_ = 0, decimal_comma_line_ = 0, blank_lines_ = 0, blank_line_ = 0, pending_blank_ = 0,
+                pending_blank_line_ = 0;
     std::size_t trailing_ = 0, bad_times_ = 0, bad_time_line_ = 0, rows_ = 0, samples_ = 0;
     char separator_ = ',';
     std::vector<Field> fields_;
@@ -158,7 +160,8 @@ void TableReader::header_line() {
     if (key.empty()) return;
     if (key == "format" && dialect_.native) {
         if (value != "traction-log 1") {
-            fail(0, "format " + shown(value) + " is not known to this version", "write '# format: traction-log 1', or read it with the traction that wrote it");
+            fail(0, "format " + shown(value) + " is not known to this version",
+                 "write '# format: traction-log 1', or read it with the traction that wrote it");
         }
         table_.has_format = true;
         return;
@@ -185,7 +188,8 @@ void TableReader::guess_separator() {
     if (commas == 0 && semicolons + tabs > 0) {
         separator_ = semicolons >= tabs ? ';' : '\t';
         decimal_comma_ = true;
-        note("separator", "", 1, line_number_, std::string("the columns are separated by ") + (separator_ == ';' ? "semicolons" : "tabs") + ", read as such");
+        note("separator", "", 1, line_number_,
+             std::string("the columns are separated by ") + (separator_ == ';' ? "semicolons" : "tabs") + ", read as such");
     }
 }
 
@@ -212,7 +216,8 @@ void TableReader::take_names() {
         if (name.empty()) fail(i + 1, "this column has no name", "name it, or delete the column");
         const auto [where, fresh] = seen.emplace(name, i + 1);
         if (!fresh) {
-            fail(i + 1, "column " + shown(name) + " stands twice, first as column " + std::to_string(where->second), "rename or delete one of them");
+            fail(i + 1, "column " + shown(name) + " stands twice, first as column " + std::to_string(where->second),
+                 "rename or delete one of them");
         }
         table_.names.push_back(name);
     }
@@ -225,14 +230,17 @@ void TableReader::take_names() {
         time_index_ = index_of(dialect_.time_column);
         has_time_ = time_index_ != fields_.size();
         if (!has_time_) {
-            fail(0, "there is no column '" + dialect_.time_column + "' (found: " + table_.names[0] + (table_.names.size() > 1 ? ", " + table_.names[1] : "") +
-                        (table_.names.size() > 2 ? ", ..." : "") + ")",
-                 dialect_.native ? "call the column of seconds 't_s', or read the file through a map (--map)" : "correct time.column in the map");
+            fail(0,
+                 "there is no column '" + dialect_.time_column + "' (found: " + table_.names[0] +
+                     (table_.names.size() > 1 ? ", " + table_.names[1] : "") + (table_.names.size() > 2 ? ", ..." : "") + ")",
+                 dialect_.native ? "call the column of seconds 't_s', or read the file through a map (--map)"
+                                 : "correct time.column in the map");
         }
     }
     for (const RowFilter &filter : dialect_.filters) {
         filter_index_.push_back(index_of(filter.column));
-        if (filter_index_.back() == fields_.size()) fail(0, "there is no column '" + filter.column + "', which the map filters by", "correct where.column in the map");
+        if (filter_index_.back() == fields_.size())
+            fail(0, "there is no column '" + filter.column + "', which the map filters by", "correct where.column in the map");
     }
     for (std::size_t i = 0; i < table_.names.size(); ++i) {
         const bool is_time = has_time_ && i == time_index_;
@@ -254,7 +262,8 @@ bool TableReader::cell_number(std::size_t index, double &value, bool &finite) {
     }
     if (decimal_comma_ && text.find(',') != std::string_view::npos && decimal_commas_++ == 0) decimal_comma_line_ = line_number_;
     if (!parse_number(text, decimal_comma_, value)) {
-        fail(index + 1, shown(text) + " in column '" + table_.names[index] + "' is not a number", "write a number, or leave the cell empty where there is no sample");
+        fail(index + 1, shown(text) + " in column '" + table_.names[index] + "' is not a number",
+             "write a number, or leave the cell empty where there is no sample");
     }
     finite = std::isfinite(value);
     return true;
@@ -284,7 +293,8 @@ void TableReader::take_cell(Column &column, double t_s) {
         if (column.backs.size() < 64 && t_s < signal.t_s.back()) column.backs.emplace_back(signal.t_s.size(), line_number_);
     }
     if (++samples_ > limits_.samples) {
-        fail(column.number, "the log holds more than " + std::to_string(limits_.samples) + " samples", "cut it into parts, or leave out the fastest columns");
+        fail(column.number, "the log holds more than " + std::to_string(limits_.samples) + " samples",
+             "cut it into parts, or leave out the fastest columns");
     }
     signal.t_s.push_back(t_s);
     signal.value.push_back(value);
@@ -293,16 +303,20 @@ void TableReader::take_cell(Column &column, double t_s) {
 void TableReader::take_row() {
     split();
     if (!complete_) {
-        note("cut_last_line", "", 1, line_number_, "line " + std::to_string(line_number_) + ": the last line does not end with a line end and may be cut, left out");
+        note("cut_last_line", "", 1, line_number_,
+             "line " + std::to_string(line_number_) + ": the last line does not end with a line end and may be cut, left out");
         return;
     }
     const std::size_t expected = table_.names.size();
     if (fields_.size() == expected + 1 && fields_.back().text.empty()) {
         if (trailing_++ == 0 && (repairs_.empty() || repairs_.back().id != "trailing_separator")) {
-            note("trailing_separator", "", 1, line_number_, "line " + std::to_string(line_number_) + ": a separator ends the line, the empty field after it is left out");
+            note("trailing_separator", "", 1, line_number_,
+                 "line " + std::to_string(line_number_) + ": a separator ends the line, the empty field after it is left out");
         }
     } else if (fields_.size() != expected) {
-        fail(0, std::to_string(fields_.size()) + " fields, but the row of names (line " + std::to_string(table_.names_line) + ") has " + std::to_string(expected),
+        fail(0,
+             std::to_string(fields_.size()) + " fields, but the row of names (line " + std::to_string(table_.names_line) + ") has " +
+                 std::to_string(expected),
              separator_ == ',' && fields_.size() > expected ? "give every row one field a column; decimal commas need ';' between columns"
                                                             : "give every row one field a column, empty where there is no sample");
     }
@@ -310,7 +324,8 @@ void TableReader::take_row() {
     double t_s = static_cast<double>(rows_);
     if (has_time_) {
         bool finite = false;
-        if (!cell_number(time_index_, t_s, finite)) fail(time_index_ + 1, "the row has no time", "write its time in column '" + dialect_.time_column + "', or delete the row");
+        if (!cell_number(time_index_, t_s, finite))
+            fail(time_index_ + 1, "the row has no time", "write its time in column '" + dialect_.time_column + "', or delete the row");
         if (!finite) {
             if (bad_times_++ == 0) bad_time_line_ = line_number_;
             return;
@@ -330,7 +345,8 @@ Table TableReader::read() {
     if (rest_.substr(0, 2) == "PK" || rest_.substr(0, 4).find('\0') != std::string_view::npos) {
         throw LogError(file_, 1, 0, "this is not a text file", "export the log as CSV");
     }
-    for (std::size_t i = 0; i < dialect_.skip_rows && next_line(); ++i) {}
+    for (std::size_t i = 0; i < dialect_.skip_rows && next_line(); ++i) {
+    }
     bool names_taken = false;
     while (next_line()) {
         if (line_.find_first_not_of(" \t") == std::string_view::npos) {
@@ -354,24 +370,31 @@ Table TableReader::read() {
         names_taken = true;
         if (!dialect_.row_of_names) take_row();
     }
-    if (!names_taken) throw LogError(file_, line_number_, 0, "there is no row of names and no data", "put 't_s,<object>.<quantity>_<unit>,...' above the data");
+    if (!names_taken)
+        throw LogError(file_, line_number_, 0, "there is no row of names and no data",
+                       "put 't_s,<object>.<quantity>_<unit>,...' above the data");
     if (table_.has_format == false && dialect_.native) {
         note("no_format", "", 1, 1, "there is no line '# format: traction-log 1', read as that");
     }
     if (crlf_) note("crlf", "", 1, 1, "the lines end with CR LF, read as such");
     if (decimal_commas_ != 0) {
         note("decimal_comma", "", decimal_commas_, decimal_comma_line_,
-             "line " + std::to_string(decimal_comma_line_) + ": " + std::to_string(decimal_commas_) + " numbers have a decimal comma, read as a point");
+             "line " + std::to_string(decimal_comma_line_) + ": " + std::to_string(decimal_commas_) +
+                 " numbers have a decimal comma, read as a point");
     }
-    if (blank_lines_ != 0) note("blank_line", "", blank_lines_, blank_line_, "line " + std::to_string(blank_line_) + ": " + std::to_string(blank_lines_) + " blank lines between the rows are skipped");
+    if (blank_lines_ != 0)
+        note("blank_line", "", blank_lines_, blank_line_,
+             "line " + std::to_string(blank_line_) + ": " + std::to_string(blank_lines_) + " blank lines between the rows are skipped");
     if (bad_times_ != 0) {
         note("time_not_finite", dialect_.time_column, bad_times_, bad_time_line_,
-             "line " + std::to_string(bad_time_line_) + ", column " + std::to_string(time_index_ + 1) + ": " + std::to_string(bad_times_) + " rows have a time that is not finite, left out");
+             "line " + std::to_string(bad_time_line_) + ", column " + std::to_string(time_index_ + 1) + ": " + std::to_string(bad_times_) +
+                 " rows have a time that is not finite, left out");
     }
     for (const Column &column : table_.columns) {
         if (column.not_finite == 0) continue;
         note("not_finite", column.signal.name, column.not_finite, column.not_finite_line,
-             "line " + std::to_string(column.not_finite_line) + ", column " + std::to_string(column.number) + ": " + std::to_string(column.not_finite) + " cells of '" + column.signal.name +
+             "line " + std::to_string(column.not_finite_line) + ", column " + std::to_string(column.number) + ": " +
+                 std::to_string(column.not_finite) + " cells of '" + column.signal.name +
                  "' are NaN, infinite or say 'none', read as no sample");
     }
     return std::move(table_);
@@ -379,7 +402,8 @@ Table TableReader::read() {
 
 } // namespace
 
-Table read_table(std::string_view text, const std::string &file, const Dialect &dialect, const ReadLimits &limits, std::vector<Repair> &repairs) {
+Table read_table(std::string_view text, const std::string &file, const Dialect &dialect, const ReadLimits &limits,
+                 std::vector<Repair> &repairs) {
     return TableReader(text, file, dialect, limits, repairs).read();
 }
 

@@ -36,11 +36,11 @@ struct RowFilter {
 
 // How to read one kind of file.
 struct Dialect {
-    char separator = 0;                // 0: guess from the row of names
-    std::size_t skip_rows = 0;         // lines before the row of names that mean nothing
-    bool row_of_names = true;          // false: columns are called "1", "2", ...
-    bool native = true;                // the `# key: value` header of our own format is expected
-    std::string time_column = "t_s";   // empty: the time is the number of the row, from 0
+    char separator = 0;              // 0: guess from the row of names
+    std::size_t skip_rows = 0;       // lines before the row of names that mean nothing
+    bool row_of_names = true;        // false: columns are called "1", "2", ...
+    bool native = true;              // the `# key: value` header of our own format is expected
+    std::string time_column = "t_s"; // empty: the time is the number of the row, from 0
     std::vector<RowFilter> filters;
     std::function<bool(const std::string &)> wanted; // which columns to read; empty: all
 };
@@ -48,7 +48,7 @@ struct Dialect {
 // One column: samples in file order, and what was odd about them.
 struct Column {
     Signal signal;
-    std::size_t number = 0;               // 1-based, in the file
+    std::size_t number = 0; // 1-based, in the file
     std::size_t not_finite = 0, not_finite_line = 0;
     std::size_t back_steps = 0, back_line = 0;
     std::vector<std::pair<std::size_t, std::size_t>> backs; // first back steps: index of the sample, line
@@ -56,9 +56,9 @@ struct Column {
 
 struct Table {
     std::map<std::string, std::string> header;
-    std::vector<Column> columns;      // wanted ones, without the time
-    std::vector<double> row_time;     // of every row kept (filled for foreign files only)
-    std::vector<std::string> names;   // of all columns in the file
+    std::vector<Column> columns;    // wanted ones, without the time
+    std::vector<double> row_time;   // of every row kept (filled for foreign files only)
+    std::vector<std::string> names; // of all columns in the file
     bool has_format = false;
     std::size_t names_line = 0;
 };

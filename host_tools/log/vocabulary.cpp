@@ -16,7 +16,8 @@ constexpr std::array table{
     Quantity{"wheel<i>", "current", "A", Kind::measured, "motor current, positive drives forward"},
     Quantity{"wheel<i>", "current", "count", Kind::raw, "current converter, offset binary, 12 bit"},
     Quantity{"wheel<i>", "duty", "", Kind::measured, "PWM rate written to the bridge, -1..1"},
-    Quantity{"wheel<i>", "voltage", "V", Kind::measured, "mean voltage at the motor's terminals (where measured, instead of duty times battery)"},
+    Quantity{"wheel<i>", "voltage", "V", Kind::measured,
+             "mean voltage at the motor's terminals (where measured, instead of duty times battery)"},
     Quantity{"wheel<i>", "torque", "Nm", Kind::measured, "torque at the wheel's shaft from a torque sensor"},
     Quantity{"wheel<i>", "temperature", "degC", Kind::measured, "winding temperature"},
     Quantity{"wheel<i>", "set_speed", "rad_s", Kind::command, "reference of the wheel's speed loop"},
@@ -60,7 +61,8 @@ constexpr std::array table{
     Quantity{"command", "slip", "", Kind::command, "slip asked for"},
     Quantity{"frame", "present", "", Kind::raw, "which parts of the sensor frame were fresh, FRAME_* bits as one number"},
     Quantity{"frame", "radar_samples", "", Kind::raw, "radar samples in the frame"},
-    Quantity{"actuator", "motor_enable", "", Kind::command, "1 while the bridges drive the motors, 0 while they are released and no current flows"},
+    Quantity{"actuator", "motor_enable", "", Kind::command,
+             "1 while the bridges drive the motors, 0 while they are released and no current flows"},
     // benches
     Quantity{"carriage", "speed", "m_s", Kind::measured, "speed of the carriage that leads a single wheel"},
     Quantity{"carriage", "x", "m", Kind::measured, "position of that carriage"},
@@ -79,13 +81,24 @@ struct Conversion {
 };
 constexpr double rad_per_deg = std::numbers::pi / 180;
 constexpr std::array conversions{
-    Conversion{"rpm", "rad_s", std::numbers::pi / 30}, Conversion{"deg_s", "rad_s", rad_per_deg},
-    Conversion{"rev_s", "rad_s", 2 * std::numbers::pi}, Conversion{"deg", "rad", rad_per_deg},
-    Conversion{"mA", "A", 1e-3},     Conversion{"mV", "V", 1e-3},       Conversion{"mm", "m", 1e-3},
-    Conversion{"cm", "m", 1e-2},     Conversion{"mm_s", "m_s", 1e-3},   Conversion{"cm_s", "m_s", 1e-2},
-    Conversion{"km_h", "m_s", 1 / 3.6}, Conversion{"g", "m_s2", 9.80665}, Conversion{"mg", "m_s2", 9.80665e-3},
-    Conversion{"mps", "m_s", 1.0},   Conversion{"radps", "rad_s", 1.0}, Conversion{"mNm", "Nm", 1e-3},
-    Conversion{"percent", "", 1e-2}, Conversion{"kN", "N", 1e3},
+    Conversion{"rpm", "rad_s", std::numbers::pi / 30},
+    Conversion{"deg_s", "rad_s", rad_per_deg},
+    Conversion{"rev_s", "rad_s", 2 * std::numbers::pi},
+    Conversion{"deg", "rad", rad_per_deg},
+    Conversion{"mA", "A", 1e-3},
+    Conversion{"mV", "V", 1e-3},
+    Conversion{"mm", "m", 1e-3},
+    Conversion{"cm", "m", 1e-2},
+    Conversion{"mm_s", "m_s", 1e-3},
+    Conversion{"cm_s", "m_s", 1e-2},
+    Conversion{"km_h", "m_s", 1 / 3.6},
+    Conversion{"g", "m_s2", 9.80665},
+    Conversion{"mg", "m_s2", 9.80665e-3},
+    Conversion{"mps", "m_s", 1.0},
+    Conversion{"radps", "rad_s", 1.0},
+    Conversion{"mNm", "Nm", 1e-3},
+    Conversion{"percent", "", 1e-2},
+    Conversion{"kN", "N", 1e3},
 };
 
 bool same_object(std::string_view object, std::string_view pattern) {
@@ -105,7 +118,9 @@ const Quantity *find_quantity(std::string_view name) {
         if (!same_object(object, entry.object)) continue;
         if (rest.substr(0, entry.quantity.size()) != entry.quantity) continue;
         const std::string_view suffix = rest.substr(entry.quantity.size());
-        if (entry.unit.empty() ? suffix.empty() : suffix.size() == entry.unit.size() + 1 && suffix[0] == '_' && suffix.substr(1) == entry.unit) return &entry;
+        if (entry.unit.empty() ? suffix.empty()
+                               : suffix.size() == entry.unit.size() + 1 && suffix[0] == '_' && suffix.substr(1) == entry.unit)
+            return &entry;
     }
     return nullptr;
 }
@@ -136,11 +151,16 @@ bool convert_unit(std::string_view name, std::string &si_name, double &factor) {
 
 std::string_view kind_name(Kind kind) {
     switch (kind) {
-    case Kind::raw: return "raw";
-    case Kind::measured: return "measured";
-    case Kind::estimate: return "estimate";
-    case Kind::command: return "command";
-    case Kind::truth: return "truth";
+    case Kind::raw:
+        return "raw";
+    case Kind::measured:
+        return "measured";
+    case Kind::estimate:
+        return "estimate";
+    case Kind::command:
+        return "command";
+    case Kind::truth:
+        return "truth";
     }
     return "";
 }

@@ -8,11 +8,11 @@
 namespace traction::log {
 
 enum class Kind {
-    raw,       // counts, as a device gives them
-    measured,  // scaled to SI
-    estimate,  // what the firmware makes of it
-    command,   // what was asked for
-    truth,     // what the simulator knows; nothing in the lab may read it
+    raw,      // counts, as a device gives them
+    measured, // scaled to SI
+    estimate, // what the firmware makes of it
+    command,  // what was asked for
+    truth,    // what the simulator knows; nothing in the lab may read it
 };
 
 struct Quantity {

@@ -43,7 +43,8 @@ class WholeFile {
         const std::string why = std::strerror(errno);
         if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
         ::unlink(temporary_.c_str());
-        throw FileError(path_, 0, 0, std::string("cannot ") + what + ": " + why, "check that the folder exists, may be written to and has room");
+        throw FileError(path_, 0, 0, std::string("cannot ") + what + ": " + why,
+                        "check that the folder exists, may be written to and has room");
     }
     std::string path_, temporary_;
     std::FILE *file_;
@@ -80,24 +81,29 @@ bool one_clean_line(const std::string &text) {
 void check(const Log &log, const std::string &path) {
     for (const auto &[key, value] : log.header) {
         require(!key.empty() && key != "format" && one_clean_line(key) && key.find(':') == std::string::npos && one_clean_line(value), path,
-                "header line '" + key + ": " + value + "' cannot be written", "keep keys and values to one line without blanks at the ends, keys without ':', not 'format'");
+                "header line '" + key + ": " + value + "' cannot be written",
+                "keep keys and values to one line without blanks at the ends, keys without ':', not 'format'");
     }
     std::set<std::string> names{"t_s"};
     for (const Signal &signal : log.signals) {
         double number = 0;
         const auto parsed = std::from_chars(signal.name.data(), signal.name.data() + signal.name.size(), number);
-        require(!signal.name.empty() && signal.name.find_first_of("\r\n\t") == std::string::npos && signal.name.find('\0') == std::string::npos &&
-                    parsed.ptr != signal.name.data() + signal.name.size(),
+        require(!signal.name.empty() && signal.name.find_first_of("\r\n\t") == std::string::npos &&
+                    signal.name.find('\0') == std::string::npos && parsed.ptr != signal.name.data() + signal.name.size(),
                 path, "signal name '" + signal.name + "' cannot be written", "use '<object>.<quantity>_<unit>'");
         require(names.insert(signal.name).second, path, "signal '" + signal.name + "' stands twice", "give every signal its own name");
-        require(signal.t_s.size() == signal.value.size(), path, "signal '" + signal.name + "' has " + std::to_string(signal.t_s.size()) + " times and " + std::to_string(signal.value.size()) + " values",
+        require(signal.t_s.size() == signal.value.size(), path,
+                "signal '" + signal.name + "' has " + std::to_string(signal.t_s.size()) + " times and " +
+                    std::to_string(signal.value.size()) + " values",
                 "give every sample a time");
         double previous = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
             // the message is put together only when it is needed: this loop sees every sample
             if (!(std::isfinite(signal.t_s[i]) && signal.t_s[i] > previous))
-                require(false, path, "times of '" + signal.name + "' do not increase at sample " + std::to_string(i), "sort them and drop duplicates");
-            if (!std::isfinite(signal.value[i])) require(false, path, "'" + signal.name + "' is not finite at sample " + std::to_string(i), "leave the sample out");
+                require(false, path, "times of '" + signal.name + "' do not increase at sample " + std::to_string(i),
+                        "sort them and drop duplicates");
+            if (!std::isfinite(signal.value[i]))
+                require(false, path, "'" + signal.name + "' is not finite at sample " + std::to_string(i), "leave the sample out");
             previous = signal.t_s[i];
         }
     }

@@ -118,9 +118,9 @@ std::string frames_text(const std::vector<LoggedTick> &ticks) {
         append_hex(text, frame.present, 1);
         for (const auto count : frame.encoder_count) append(text, count);
         for (const auto count : frame.current_count) append(text, count);
-        for (const long value : {static_cast<long>(frame.battery_count), static_cast<long>(frame.accel_x_count),
-                                 static_cast<long>(frame.gyro_z_count), frame.emergency_stop ? 1L : 0L,
-                                 static_cast<long>(frame.radar_samples)})
+        for (const long value :
+             {static_cast<long>(frame.battery_count), static_cast<long>(frame.accel_x_count), static_cast<long>(frame.gyro_z_count),
+              frame.emergency_stop ? 1L : 0L, static_cast<long>(frame.radar_samples)})
             append(text, value);
         for (int i = 0; i < frame.radar_samples; ++i) append(text, frame.radar_count[i]);
         append(text, command.mode);
@@ -154,15 +154,23 @@ Comparison replay_log(const log::Log &log, const std::vector<LoggedTick> &ticks)
     };
     for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
         const std::string wheel = "wheel" + std::to_string(i) + '.';
-        watch(wheel + "duty", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].duty); }, i);
-        watch(wheel + "slip", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].slip); }, i);
-        watch(wheel + "traction_N", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].traction_N); }, i);
-        watch(wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].set_speed_rad_s); }, i);
+        watch(
+            wheel + "duty", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].duty); }, i);
+        watch(
+            wheel + "slip", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].slip); }, i);
+        watch(
+            wheel + "traction_N", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].traction_N); }, i);
+        watch(
+            wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].set_speed_rad_s); }, i);
     }
-    watch("estimate.speed_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_m_s); }, 0);
-    watch("estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_std_m_s); }, 0);
-    watch("estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return static_cast<double>(t.accel_bias_m_s2); }, 0);
-    watch("control.faults", [](const trace_t &t, std::size_t) { return static_cast<double>(t.faults); }, 0);
+    watch(
+        "estimate.speed_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_m_s); }, 0);
+    watch(
+        "estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_std_m_s); }, 0);
+    watch(
+        "estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return static_cast<double>(t.accel_bias_m_s2); }, 0);
+    watch(
+        "control.faults", [](const trace_t &t, std::size_t) { return static_cast<double>(t.faults); }, 0);
 
     const control_config_t config = logged_config(log);
     control_state_t state;

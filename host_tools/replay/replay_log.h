@@ -29,8 +29,8 @@ control_config_t logged_config(const log::Log &log);
 
 struct Comparison {
     std::size_t ticks = 0, differing = 0;
-    double first_s = 0;        // time of the first difference
-    std::string first_signal;  // its name
+    double first_s = 0;       // time of the first difference
+    std::string first_signal; // its name
     double logged = 0, replayed = 0;
 };
 

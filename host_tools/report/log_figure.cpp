@@ -16,19 +16,23 @@ namespace {
 constexpr std::size_t most_in_a_panel = 8; // as many as there are styles
 
 // Suffix of a name and how a reader writes the unit; longer suffixes first, so that m_s2 is not taken for s2.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 24> units{{
-    {"rad_s2", "rad/s²"}, {"rad_s", "rad/s"}, {"deg_s", "deg/s"}, {"m_s3", "m/s³"}, {"m_s2", "m/s²"}, {"mm_s", "mm/s"}, {"m_s", "m/s"},
-    {"Nms", "N m s"}, {"Nm", "N m"}, {"count", "count"}, {"rad", "rad"}, {"deg", "deg"}, {"degC", "°C"}, {"ohm", "ohm"}, {"rpm", "rpm"},
-    {"mA", "mA"}, {"mm", "mm"}, {"Hz", "Hz"}, {"Pa", "Pa"}, {"N", "N"}, {"A", "A"}, {"V", "V"}, {"m", "m"}, {"s", "s"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> units{
+    {{"rad_s2", "rad/s²"}, {"rad_s", "rad/s"}, {"deg_s", "deg/s"}, {"m_s3", "m/s³"},   {"m_s2", "m/s²"}, {"mm_s", "mm/s"},
+     {"m_s", "m/s"},       {"Nms", "N m s"},   {"Nm", "N m"},      {"count", "count"}, {"rad", "rad"},   {"deg", "deg"},
+     {"degC", "°C"},       {"ohm", "ohm"},     {"rpm", "rpm"},     {"mA", "mA"},       {"mm", "mm"},     {"Hz", "Hz"},
+     {"Pa", "Pa"},         {"N", "N"},         {"A", "A"},         {"V", "V"},         {"m", "m"},       {"s", "s"}}};
 
 std::string_view suffix_of(const std::string &signal) {
     for (const auto &[suffix, unit] : units)
-        if (signal.size() > suffix.size() + 1 && signal.ends_with(suffix) && signal[signal.size() - suffix.size() - 1] == '_') return suffix;
+        if (signal.size() > suffix.size() + 1 && signal.ends_with(suffix) && signal[signal.size() - suffix.size() - 1] == '_')
+            return suffix;
     return "";
 }
 
 // What follows the object: "speed_rad_s" of "wheel0.speed_rad_s".
-std::string quantity_of(const std::string &signal) { return signal.substr(signal.find('.') == std::string::npos ? 0 : signal.find('.') + 1); }
+std::string quantity_of(const std::string &signal) {
+    return signal.substr(signal.find('.') == std::string::npos ? 0 : signal.find('.') + 1);
+}
 
 std::string panel_key(const std::string &signal) {
     const std::string unit = unit_of(signal);

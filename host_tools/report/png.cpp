@@ -43,12 +43,14 @@ void write_png(const std::string &svg, const std::string &path, double zoom) {
     namespace fs = std::filesystem;
     const std::string drawing = path + ".svg.part", part = path + ".part", complaints = path + ".err.part";
     write_text(svg, drawing);
-    const int status = run({"rsvg-convert", "--unlimited", "--format=png", "--zoom=" + std::to_string(std::clamp(zoom, 0.1, 10.0)), "--output=" + part, drawing, "", ""},
+    const int status = run({"rsvg-convert", "--unlimited", "--format=png", "--zoom=" + std::to_string(std::clamp(zoom, 0.1, 10.0)),
+                            "--output=" + part, drawing, "", ""},
                            complaints);
     std::error_code ignored;
     fs::remove(drawing, ignored);
     fs::remove(complaints, ignored);
-    if (status == 127) throw ReportError(path + ": a PNG needs the program rsvg-convert; install the package librsvg2-bin, or ask for .svg");
+    if (status == 127)
+        throw ReportError(path + ": a PNG needs the program rsvg-convert; install the package librsvg2-bin, or ask for .svg");
     if (status != 0 || !fs::exists(part)) {
         fs::remove(part, ignored);
         throw ReportError(path + ": rsvg-convert refused the drawing (status " + std::to_string(status) + "); ask for .svg instead");

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
-#include <system_error>
 #include <string_view>
+#include <system_error>
 
 namespace traction::report {
 
@@ -19,8 +19,10 @@ std::string embeddable(const nlohmann::json &result) {
     std::string out;
     out.reserve(text.size());
     for (const char c : text) {
-        if (c == '<') out += "\\u003c";
-        else out += c;
+        if (c == '<')
+            out += "\\u003c";
+        else
+            out += c;
     }
     return out;
 }
@@ -30,7 +32,8 @@ std::string embeddable(const nlohmann::json &result) {
 std::string to_html(const nlohmann::json &result) {
     const std::string schema = result.is_object() ? result.value("schema", nlohmann::json()).dump() : "no object";
     if (schema != "\"traction.lab/1\"" && schema != "\"traction.figures/1\"" && schema != "\"traction.check/1\"")
-        throw ReportError("schema: " + schema + ": no page shows it; give what --json of check, compare, diagnose, add, fit or reproduce wrote "
+        throw ReportError("schema: " + schema +
+                          ": no page shows it; give what --json of check, compare, diagnose, add, fit or reproduce wrote "
                           "(traction.check/1, traction.lab/1, traction.figures/1)");
     const std::string_view page = page_template(), mark = "__TRACTION_RESULT__";
     const std::size_t place = page.find(mark);

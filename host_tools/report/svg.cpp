@@ -37,17 +37,20 @@ std::string line(double x1, double y1, double x2, double y2, const char *kind, c
 
 // Eight shapes, so that series differ without colour.
 std::string marker(double x, double y, std::size_t style) {
-    static constexpr std::array<const char *, 8> shapes{
-        "m-3,0a3,3 0 1,0 6,0a3,3 0 1,0 -6,0z", "m-3,-3h6v6h-6z", "m0,-4l4,7h-8z", "m0,-4l4,4l-4,4l-4,-4z",
-        "m0,4l4,-7h-8z", "m-3,-3l6,6m-6,0l6,-6", "m-4,0h8m-4,-4v8", "m-4,-2h8v4h-8z"};
+    static constexpr std::array<const char *, 8> shapes{"m-3,0a3,3 0 1,0 6,0a3,3 0 1,0 -6,0z",
+                                                        "m-3,-3h6v6h-6z",
+                                                        "m0,-4l4,7h-8z",
+                                                        "m0,-4l4,4l-4,4l-4,-4z",
+                                                        "m0,4l4,-7h-8z",
+                                                        "m-3,-3l6,6m-6,0l6,-6",
+                                                        "m-4,0h8m-4,-4v8",
+                                                        "m-4,-2h8v4h-8z"};
     const bool open = style >= 5 && style <= 6;
     return "<path d=\"M" + coordinate(x) + "," + coordinate(y) + shapes[style] + "\" fill=\"" + (open ? "none" : colours[style]) +
            "\" stroke=\"" + colours[style] + "\"/>";
 }
 
-bool drawable(const Frame &frame, double x, double y) {
-    return std::isfinite(x) && std::isfinite(y) && (!frame.up.logarithmic || y > 0);
-}
+bool drawable(const Frame &frame, double x, double y) { return std::isfinite(x) && std::isfinite(y) && (!frame.up.logarithmic || y > 0); }
 
 struct Point {
     double x, y;
@@ -102,7 +105,8 @@ std::string draw_line(const Frame &frame, const Series &series, std::size_t styl
             out += marker(run[0].x, run[0].y, style);
             continue;
         }
-        out += "<path class=\"curve\" fill=\"none\" stroke=\"" + std::string(colours[style]) + "\" stroke-width=\"1.5\" stroke-linejoin=\"round\"";
+        out += "<path class=\"curve\" fill=\"none\" stroke=\"" + std::string(colours[style]) +
+               "\" stroke-width=\"1.5\" stroke-linejoin=\"round\"";
         if (*dashes[style] != '\0') out += " stroke-dasharray=\"" + std::string(dashes[style]) + "\"";
         out += " d=\"M";
         for (std::size_t i = 0; i < run.size(); ++i) {
@@ -152,7 +156,8 @@ std::string draw_band(const Frame &frame, const Series &series, std::size_t styl
     return out;
 }
 
-std::string draw_bars(const Frame &frame, const Panel &panel, const Series &series, std::size_t style, std::size_t slot, std::size_t slots) {
+std::string draw_bars(const Frame &frame, const Panel &panel, const Series &series, std::size_t style, std::size_t slot,
+                      std::size_t slots) {
     std::string out;
     const double group = frame.width / static_cast<double>(std::max<std::size_t>(1, panel.categories.size()));
     const double width = std::min(70.0, group * 0.8 / static_cast<double>(slots));
@@ -166,7 +171,8 @@ std::string draw_bars(const Frame &frame, const Panel &panel, const Series &seri
         out += "<rect x=\"" + coordinate(x) + "\" y=\"" + coordinate(std::min(y, base)) + "\" width=\"" + coordinate(width * 0.94) +
                "\" height=\"" + coordinate(std::fabs(base - y)) + "\" fill=\"" + colours[style] + "\" fill-opacity=\"" +
                (slot % 2 == 0 ? "0.85" : "0.35") + "\" stroke=\"" + colours[style] + "\"/>";
-        out += svg_text(x + width / 2, std::max(frame.y + 9, std::min(y, base) - 3), number(series.y[i], 3), {.anchor = "middle", .size = 10});
+        out +=
+            svg_text(x + width / 2, std::max(frame.y + 9, std::min(y, base) - 3), number(series.y[i], 3), {.anchor = "middle", .size = 10});
     }
     return out;
 }
@@ -179,7 +185,8 @@ std::string draw_rules(const Frame &frame, const Panel &panel) {
         if (rule.vertical) {
             const double x = frame.px(rule.value);
             if (x < frame.x || x > frame.x + frame.width) continue;
-            out += line(x, frame.y, x, frame.y + frame.height, "ink", look) + svg_text(x + 4, frame.y + 11, rule.name, {.size = 10, .halo = true});
+            out += line(x, frame.y, x, frame.y + frame.height, "ink", look) +
+                   svg_text(x + 4, frame.y + 11, rule.name, {.size = 10, .halo = true});
         } else {
             const double y = frame.py(rule.value);
             out += line(frame.x, y, frame.x + frame.width, y, "ink", look) +
@@ -211,7 +218,8 @@ std::string draw_axes(const Frame &frame, const Panel &panel, bool with_x_ticks,
     }
     out += "<rect class=\"frame\" x=\"" + coordinate(frame.x) + "\" y=\"" + coordinate(frame.y) + "\" width=\"" + coordinate(frame.width) +
            "\" height=\"" + coordinate(frame.height) + "\" fill=\"none\" stroke=\"#555555\"/>\n";
-    out += svg_text(16, frame.y + frame.height / 2, shortened(panel.y_label, frame.height + 30, 12), {.anchor = "middle", .size = 12, .turned = true});
+    out += svg_text(16, frame.y + frame.height / 2, shortened(panel.y_label, frame.height + 30, 12),
+                    {.anchor = "middle", .size = 12, .turned = true});
     if (with_x_ticks && !x_label.empty())
         out += svg_text(frame.x + frame.width / 2, bottom + tick_room_px + 12, x_label, {.anchor = "middle", .size = 12});
     return out;
@@ -250,10 +258,12 @@ std::string draw_legend(const std::vector<LegendEntry> &entries, double left, do
                    "\" fill-opacity=\"" + (mark == Mark::band ? "0.18" : "0.7") + "\" stroke=\"" + colour + "\"/>";
         if (mark == Mark::line || mark == Mark::step) {
             const std::string dash = dashes[entry.style];
-            out += line(x + 2, y, x + 32, y, "curve",
-                        ("stroke=\"" + colour + "\" stroke-width=\"1.5\" stroke-dasharray=\"" + (dash.empty() ? "none" : dash) + "\"").c_str());
+            out += line(
+                x + 2, y, x + 32, y, "curve",
+                ("stroke=\"" + colour + "\" stroke-width=\"1.5\" stroke-dasharray=\"" + (dash.empty() ? "none" : dash) + "\"").c_str());
         }
-        if (mark == Mark::scatter || ((mark == Mark::line || mark == Mark::step) && entry.style != 0)) out += marker(x + 17, y, entry.style);
+        if (mark == Mark::scatter || ((mark == Mark::line || mark == Mark::step) && entry.style != 0))
+            out += marker(x + 17, y, entry.style);
         out += svg_text(x + 38, y + 4, shortened(entry.series->name, width - 38, 11), {.size = 11});
     }
     return out;
@@ -272,7 +282,8 @@ std::string draw_heat(const Frame &frame, const Panel &panel) {
     for (const auto &row : heat.value)
         for (const double value : row) range.include(value);
     const std::size_t rows = heat.value.size(), columns = heat.x_edges.size() - 1;
-    const double wide = frame.width / static_cast<double>(columns), high = frame.height / static_cast<double>(std::max<std::size_t>(1, rows));
+    const double wide = frame.width / static_cast<double>(columns),
+                 high = frame.height / static_cast<double>(std::max<std::size_t>(1, rows));
     for (std::size_t r = 0; r < rows; ++r) {
         for (std::size_t c = 0; c < std::min(columns, heat.value[r].size()); ++c) {
             const double value = heat.value[r][c];
@@ -284,7 +295,8 @@ std::string draw_heat(const Frame &frame, const Panel &panel) {
                    coordinate(high) + "\" fill=\"" + shade(part) + "\"/>";
             const std::string text = number(value, 2);
             if (text_width(text, 11) < wide - 4 && high >= 13)
-                out += svg_text(x + wide / 2, y + high / 2 + 4, text, {.anchor = "middle", .size = 11, .fill = part > 0.5 ? "#ffffff" : "#111111"});
+                out += svg_text(x + wide / 2, y + high / 2 + 4, text,
+                                {.anchor = "middle", .size = 11, .fill = part > 0.5 ? "#ffffff" : "#111111"});
         }
         if (r < heat.y_labels.size())
             out += svg_text(frame.x - 6, frame.y + (static_cast<double>(r) + 0.5) * high + 4, shortened(heat.y_labels[r], left_px - 24, 11),
@@ -294,7 +306,8 @@ std::string draw_heat(const Frame &frame, const Panel &panel) {
            "\" height=\"" + coordinate(frame.height) + "\" fill=\"none\" stroke=\"#555555\"/>\n";
     const std::size_t stride = 1 + columns * 48 / static_cast<std::size_t>(frame.width);
     for (std::size_t c = 0; c <= columns; c += stride)
-        out += svg_text(frame.x + static_cast<double>(c) * wide, frame.y + frame.height + 14, number(heat.x_edges[c], 3), {.anchor = "middle", .size = 11});
+        out += svg_text(frame.x + static_cast<double>(c) * wide, frame.y + frame.height + 14, number(heat.x_edges[c], 3),
+                        {.anchor = "middle", .size = 11});
     out += svg_text(frame.x + frame.width / 2, frame.y + frame.height + tick_room_px + 12, heat.x_label, {.anchor = "middle", .size = 12});
     return out + svg_text(16, frame.y + frame.height / 2, panel.y_label, {.anchor = "middle", .size = 12, .turned = true});
 }
@@ -345,10 +358,18 @@ std::string draw_panel(const Panel &panel, Frame frame, const Figure &figure, bo
         const std::size_t style = style_of(series, i);
         switch (series.mark) {
         case Mark::line:
-        case Mark::step: out += draw_line(frame, series, style); break;
-        case Mark::scatter: out += draw_scatter(frame, series, style); break;
-        case Mark::band: out += draw_band(frame, series, style); break;
-        case Mark::bar: out += draw_bars(frame, panel, series, style, slot++, slots); break;
+        case Mark::step:
+            out += draw_line(frame, series, style);
+            break;
+        case Mark::scatter:
+            out += draw_scatter(frame, series, style);
+            break;
+        case Mark::band:
+            out += draw_band(frame, series, style);
+            break;
+        case Mark::bar:
+            out += draw_bars(frame, panel, series, style, slot++, slots);
+            break;
         }
     }
     return out + draw_rules(frame, panel); // their names stay readable over the data
@@ -394,8 +415,9 @@ std::string to_svg(const Figure &figure) {
     y += 6;
     const std::string w = coordinate(width), h = coordinate(y);
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "\" height=\"" + h + "\" viewBox=\"0 0 " + w + " " + h +
-           "\" role=\"img\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n<title>" + escaped(figure.title.empty() ? "figure" : figure.title) +
-           "</title>\n<rect class=\"paper\" width=\"" + w + "\" height=\"" + h + "\" fill=\"#ffffff\"/>\n" + body + "</svg>\n";
+           "\" role=\"img\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n<title>" +
+           escaped(figure.title.empty() ? "figure" : figure.title) + "</title>\n<rect class=\"paper\" width=\"" + w + "\" height=\"" + h +
+           "\" fill=\"#ffffff\"/>\n" + body + "</svg>\n";
 }
 
 } // namespace traction::report

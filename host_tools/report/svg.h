@@ -27,7 +27,7 @@ struct Series {
     std::vector<double> x{};
     std::vector<double> y{};
     std::vector<double> y_high{}; // band: upper edge. bar: not used
-    int style = -1;             // 0..7 chooses colour, dash and marker; -1: by position in the panel
+    int style = -1;               // 0..7 chooses colour, dash and marker; -1: by position in the panel
 };
 
 // A straight reference: y = value over the whole width (a limit, a noise band, a number of the paper), or x = value.
@@ -40,9 +40,9 @@ struct Rule {
 // Colours and numbers in a grid; a panel with a heat map shows nothing else, and has its own x axis.
 struct HeatMap {
     std::string x_label{};
-    std::vector<double> x_edges{};             // columns + 1, rising
-    std::vector<std::string> y_labels{};       // one per row, the first on top
-    std::vector<std::vector<double>> value{};  // [row][column]; NaN: an empty cell
+    std::vector<double> x_edges{};            // columns + 1, rising
+    std::vector<std::string> y_labels{};      // one per row, the first on top
+    std::vector<std::vector<double>> value{}; // [row][column]; NaN: an empty cell
 };
 
 struct Panel {
@@ -52,8 +52,8 @@ struct Panel {
     std::vector<Rule> rules{};
     std::vector<std::string> categories{}; // names under the bars
     HeatMap heat{};
-    double height_px = 0; // 0: chosen from the number of panels
-    bool log_y = false;   // decades; samples <= 0 are gaps
+    double height_px = 0;   // 0: chosen from the number of panels
+    bool log_y = false;     // decades; samples <= 0 are gaps
     bool from_zero = false; // y axis always contains 0 (always so with bars)
 };
 

@@ -19,7 +19,7 @@ struct TextLook {
     const char *anchor = "start";
     double size = 12;
     bool bold = false;
-    bool turned = false; // reads upwards
+    bool turned = false;   // reads upwards
     const char *fill = ""; // empty: the ink of the page
     bool halo = false;     // a rim of paper, where it crosses data
 };

@@ -16,7 +16,7 @@ struct ReproduceSettings {
     std::string bench_data;              // CSV of the CMU single-wheel bench; empty: that experiment is left out
     int seeds = 20;                      // of table III
     int jobs = 1;
-    std::function<void()> after_run;     // called after every simulated run
+    std::function<void()> after_run; // called after every simulated run
 };
 
 // One figure of merit against its bound.
@@ -37,14 +37,14 @@ struct SoilTable {
     std::vector<std::vector<nlohmann::json>> rows; // of table III
 };
 
-Experiment bench_curve(const ReproduceSettings &settings);                    // fig 3
-Experiment radar_spectrum(const ReproduceSettings &settings);                 // fig 8
-Experiment fused_speed(const ReproduceSettings &settings);                    // fig 10
-Experiment sweep_in_time(const ReproduceSettings &settings);                  // fig 11-13
+Experiment bench_curve(const ReproduceSettings &settings);                           // fig 3
+Experiment radar_spectrum(const ReproduceSettings &settings);                        // fig 8
+Experiment fused_speed(const ReproduceSettings &settings);                           // fig 10
+Experiment sweep_in_time(const ReproduceSettings &settings);                         // fig 11-13
 Experiment soil_identification(const ReproduceSettings &settings, SoilTable &table); // fig 14, (21), table III, fig 15
-Experiment blocked_wheels(const ReproduceSettings &settings);                 // fig 16
-Experiment slip_servo(const ReproduceSettings &settings);                     // fig 17
-Experiment measured_bench(const ReproduceSettings &settings);                 // a bench that others measured
+Experiment blocked_wheels(const ReproduceSettings &settings);                        // fig 16
+Experiment slip_servo(const ReproduceSettings &settings);                            // fig 17
+Experiment measured_bench(const ReproduceSettings &settings);                        // a bench that others measured
 
 // Scale of the paper's Doppler reading, calibrated on a drive with the camera as the paper did.
 double calibrate_paper_radar(const ReproduceSettings &settings);

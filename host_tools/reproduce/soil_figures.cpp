@@ -39,7 +39,7 @@ report::Series curve(const std::string &name, SoilCurve law, double fm_N, double
 struct Ground {
     const char *name;
     SoilCurve law;
-    double fm_N, sc; // the paper's; sc of concrete is not published
+    double fm_N, sc;           // the paper's; sc of concrete is not published
     double fm_bound, sc_bound; // relative, issue of table III
 };
 constexpr Ground grounds[] = {{"sand", SoilCurve::janosi, 5.1, 0.27, 0.05, 0.15},
@@ -66,12 +66,13 @@ Pairs paper_pairs(const log::Log &log, double from_s, double to_s) {
     return pairs;
 }
 
-// Ours, all four wheels: speed, wheel speed and force are averaged over half a second before slip is formed. Slip is a ratio, so noise in it bends a
-// curve that is averaged afterwards (errors in variables); the sweep is slow, so half a second costs 0.03 of slip.
+// Ours, all four wheels: speed, wheel speed and force are averaged over half a second before slip is formed. Slip is a ratio, so noise in
+// it bends a curve that is averaged afterwards (errors in variables); the sweep is slow, so half a second costs 0.03 of slip.
 Pairs our_pairs(const log::Log &log, double from_s, double to_s) {
     constexpr double window_s = 0.5, radius_m = 0.057;
     Pairs pairs;
-    for (const std::string wheel : {"wheel0", "wheel1", "wheel2", "wheel3"}) // the rear pair mirrors the front and reaches slips that it does not
+    for (const std::string wheel :
+         {"wheel0", "wheel1", "wheel2", "wheel3"}) // the rear pair mirrors the front and reaches slips that it does not
         for (double t_s = from_s; t_s + window_s <= to_s; t_s += window_s) {
             const double v = spread(values_between(log, "estimate.speed_m_s", t_s, t_s + window_s)).mean;
             const double rim = radius_m * spread(values_between(log, wheel + ".speed_rad_s", t_s, t_s + window_s)).mean;
@@ -91,21 +92,28 @@ Identified identify(const ReproduceSettings &settings, const Ground &ground, boo
     sim::Scenario scenario = sim::read_scenario(settings.scenarios + "/sweep_" + ground.name + ".toml");
     scenario.firmware = {.config = paper ? "paper" : "default", .doppler_scale = paper ? scale : 0};
     Identified all;
-    simulate_batch(scenario, {}, 1, static_cast<std::uint64_t>(settings.seeds), settings.jobs, [&](std::uint64_t seed, SimulationResult &&result) {
-        const Pairs pairs = paper ? paper_pairs(result.log, 5.5, 25) : our_pairs(result.log, 5.5, 25);
-        const SoilFit fit = fit_soil(ground.law, pairs.slip, pairs.force_N);
-        all.fm_N.push_back(fit.fm_N);
-        all.sc.push_back(fit.shear_slip);
-        if (seed == 1) all.example = pairs;
-        if (settings.after_run) settings.after_run();
-    });
+    simulate_batch(scenario, {}, 1, static_cast<std::uint64_t>(settings.seeds), settings.jobs,
+                   [&](std::uint64_t seed, SimulationResult &&result) {
+                       const Pairs pairs = paper ? paper_pairs(result.log, 5.5, 25) : our_pairs(result.log, 5.5, 25);
+                       const SoilFit fit = fit_soil(ground.law, pairs.slip, pairs.force_N);
+                       all.fm_N.push_back(fit.fm_N);
+                       all.sc.push_back(fit.shear_slip);
+                       if (seed == 1) all.example = pairs;
+                       if (settings.after_run) settings.after_run();
+                   });
     return all;
 }
 
 } // namespace
 
 Experiment bench_curve(const ReproduceSettings &) {
-    Experiment e{.id = "fig 3", .title = "Single-wheel bench: drawbar pull against imposed slip", .paper = "the model passes through measurements with +-5 N of noise", .ours = {}, .notes = {}, .svg = {}, .checks = {}};
+    Experiment e{.id = "fig 3",
+                 .title = "Single-wheel bench: drawbar pull against imposed slip",
+                 .paper = "the model passes through measurements with +-5 N of noise",
+                 .ours = {},
+                 .notes = {},
+                 .svg = {},
+                 .checks = {}};
     // the bench: dry sand of the literature under 20 N, rolling resistance 2 N, force sensor +-5 N (two standard deviations)
     constexpr double normal_N = 20, rolling_N = 2, noise_N = 2.5;
     const double fm_N = literature_fm_N(normal_N), sc = shear_m / contact_m;
@@ -118,41 +126,63 @@ Experiment bench_curve(const ReproduceSettings &) {
     const SoilFit fit = fit_soil(SoilCurve::janosi, slip, force);
     // how far the fitted curve lies from the true one, over the slips of the bench
     double off = 0;
-    for (const double s : slip) off = std::fmax(off, std::fabs(fit.fm_N * soil_curve(SoilCurve::janosi, s, fit.shear_slip) - fm_N * soil_curve(SoilCurve::janosi, s, sc)));
+    for (const double s : slip)
+        off = std::fmax(
+            off, std::fabs(fit.fm_N * soil_curve(SoilCurve::janosi, s, fit.shear_slip) - fm_N * soil_curve(SoilCurve::janosi, s, sc)));
     e.ours = "fitted curve within " + number(off, 2) + " N of the true one; residual " + number(fit.rms_N, 2) + " N rms of 2.50 N noise";
-    e.checks = {{"residual of the fit", "noise +-5 N", "N", fit.rms_N, 2.5 * 0.89, 2.5 * 1.11, "rms of 400 values is known to 3.5 %; three times that"},
-                {"fitted against true curve", "passes through", "N", off, 0, 0.8, "two parameters from 400 values of 2.5 N: 2.5 sqrt(2/400) = 0.18 N rms, the ends three to four times as much"}};
+    e.checks = {{"residual of the fit", "noise +-5 N", "N", fit.rms_N, 2.5 * 0.89, 2.5 * 1.11,
+                 "rms of 400 values is known to 3.5 %; three times that"},
+                {"fitted against true curve", "passes through", "N", off, 0, 0.8,
+                 "two parameters from 400 values of 2.5 N: 2.5 sqrt(2/400) = 0.18 N rms, the ends three to four times as much"}};
     report::Figure figure{.title = "Drawbar pull (2), dry sand, 20 N", .x_label = "slip [1]"};
     report::Series model{.name = "fitted (5)", .x = slip};
     for (const double s : slip) model.y.push_back(fit.fm_N * soil_curve(SoilCurve::janosi, s, fit.shear_slip) - rolling_N);
-    figure.panels.push_back({.y_label = "drawbar pull [N]", .series = {{.name = "simulated bench", .mark = report::Mark::scatter, .x = slip, .y = pull}, model}});
+    figure.panels.push_back({.y_label = "drawbar pull [N]",
+                             .series = {{.name = "simulated bench", .mark = report::Mark::scatter, .x = slip, .y = pull}, model}});
     e.svg = to_svg(figure);
     return e;
 }
 
 Experiment soil_identification(const ReproduceSettings &settings, SoilTable &table) {
-    Experiment e{.id = "fig 14-15, table III", .title = "Soil identified in place from wheel currents, " + std::to_string(settings.seeds) + " seeds",
-                 .paper = "sand Fm 5.1 N, sc 0.27; gravel 6.8 N, 0.088; concrete mu 0.8 (5.6 N); literature sand (5) 5.47 N, 0.5", .ours = {}, .notes = {}, .svg = {}, .checks = {}};
+    Experiment e{.id = "fig 14-15, table III",
+                 .title = "Soil identified in place from wheel currents, " + std::to_string(settings.seeds) + " seeds",
+                 .paper = "sand Fm 5.1 N, sc 0.27; gravel 6.8 N, 0.088; concrete mu 0.8 (5.6 N); literature sand (5) 5.47 N, 0.5",
+                 .ours = {},
+                 .notes = {},
+                 .svg = {},
+                 .checks = {}};
     const double scale = calibrate_paper_radar(settings);
     report::Figure figure{.title = "Traction against slip: our estimates of one run, fits and the paper's curves", .x_label = "slip [1]"};
     for (const Ground &ground : grounds) {
         const Identified theirs = identify(settings, ground, true, scale), ours = identify(settings, ground, false, 0);
         for (const auto &[who, found] : {std::pair<const char *, const Identified &>{"paper's estimator", theirs}, {"ours", ours}}) {
             const Spread fm = spread(found.fm_N), sc = spread(found.sc);
-            table.rows.push_back({ground.name, who, ground.fm_N, fm.mean, fm.deviation, ground.sc > 0 ? nlohmann::json(ground.sc) : nlohmann::json(), sc.mean, sc.deviation});
+            table.rows.push_back({ground.name, who, ground.fm_N, fm.mean, fm.deviation,
+                                  ground.sc > 0 ? nlohmann::json(ground.sc) : nlohmann::json(), sc.mean, sc.deviation});
         }
         const Spread fm = spread(ours.fm_N), sc = spread(ours.sc);
         e.ours += (e.ours.empty() ? "" : "; ") + std::string(ground.name) + " Fm " + with_spread(fm, 2) + " N, sc " + with_spread(sc);
-        e.checks.push_back({std::string(ground.name) + ": mean Fm", number(ground.fm_N, 1) + " N", "N", fm.mean, ground.fm_N * (1 - ground.fm_bound), ground.fm_N * (1 + ground.fm_bound), "stated goal: mean over seeds"});
-        if (ground.sc > 0) e.checks.push_back({std::string(ground.name) + ": mean sc", number(ground.sc), "1", sc.mean, ground.sc * (1 - ground.sc_bound), ground.sc * (1 + ground.sc_bound), "stated goal: mean over seeds"});
-        report::Panel panel{.title = ground.name, .y_label = "traction [N]", .series = {{.name = "half-second means, one run", .mark = report::Mark::scatter, .x = ours.example.slip, .y = ours.example.force_N}, curve("fit, mean of all seeds", ground.law, fm.mean, sc.mean)}};
+        e.checks.push_back({std::string(ground.name) + ": mean Fm", number(ground.fm_N, 1) + " N", "N", fm.mean,
+                            ground.fm_N * (1 - ground.fm_bound), ground.fm_N * (1 + ground.fm_bound), "stated goal: mean over seeds"});
+        if (ground.sc > 0)
+            e.checks.push_back({std::string(ground.name) + ": mean sc", number(ground.sc), "1", sc.mean, ground.sc * (1 - ground.sc_bound),
+                                ground.sc * (1 + ground.sc_bound), "stated goal: mean over seeds"});
+        report::Panel panel{
+            .title = ground.name,
+            .y_label = "traction [N]",
+            .series = {
+                {.name = "half-second means, one run", .mark = report::Mark::scatter, .x = ours.example.slip, .y = ours.example.force_N},
+                curve("fit, mean of all seeds", ground.law, fm.mean, sc.mean)}};
         if (ground.sc > 0) panel.series.push_back(curve("the paper's fit", ground.law, ground.fm_N, ground.sc));
-        if (std::string(ground.name) == "sand") panel.series.push_back(curve("literature dry sand (5)", SoilCurve::janosi, literature_fm_N(load_N), shear_m / contact_m));
+        if (std::string(ground.name) == "sand")
+            panel.series.push_back(curve("literature dry sand (5)", SoilCurve::janosi, literature_fm_N(load_N), shear_m / contact_m));
         figure.panels.push_back(panel);
     }
-    e.checks.push_back({"literature sand, Fm of (5)", "5.47 N", "N", literature_fm_N(load_N), 5.465, 5.475, "arithmetic: l ww c + Fn tan(phi)"});
+    e.checks.push_back(
+        {"literature sand, Fm of (5)", "5.47 N", "N", literature_fm_N(load_N), 5.465, 5.475, "arithmetic: l ww c + Fn tan(phi)"});
     e.checks.push_back({"literature sand, sc", "0.5", "1", shear_m / contact_m, 0.4999, 0.5001, "arithmetic: K/l"});
-    e.notes = "Our grounds have the paper's numbers as truth, with 6 % (concrete 2 %) of random grip; the wheels carry 7.06 N, not 7 N. The paper gives no sc for concrete.";
+    e.notes = "Our grounds have the paper's numbers as truth, with 6 % (concrete 2 %) of random grip; the wheels carry 7.06 N, not 7 N. "
+              "The paper gives no sc for concrete.";
     e.svg = to_svg(figure);
     return e;
 }
@@ -236,7 +266,13 @@ double r_squared(const std::vector<double> &seen, const std::vector<double> &pre
 } // namespace
 
 Experiment measured_bench(const ReproduceSettings &settings) {
-    Experiment e{.id = "fig 3, measured", .title = "Single-wheel bench of Carnegie Mellon University: fitted on half, judged on the other half", .paper = "(2) and (20) fit a bench", .ours = {}, .notes = {}, .svg = {}, .checks = {}};
+    Experiment e{.id = "fig 3, measured",
+                 .title = "Single-wheel bench of Carnegie Mellon University: fitted on half, judged on the other half",
+                 .paper = "(2) and (20) fit a bench",
+                 .ours = {},
+                 .notes = {},
+                 .svg = {},
+                 .checks = {}};
     const std::vector<BenchRow> rows = read_bench(settings.bench_data);
     if (rows.size() < 8) {
         e.ours = "left out: no data at " + settings.bench_data;
@@ -262,22 +298,30 @@ Experiment measured_bench(const ReproduceSettings &settings) {
         sink_model.push_back(1000 * model.sinkage_m(row.slip));
     }
     const double pull_r2 = r_squared(pull, pull_model), sink_r2 = r_squared(sink, sink_model);
-    e.ours = "held-out R2 " + number(pull_r2, 3) + " of drawbar pull, " + number(sink_r2, 3) + " of sinkage, over " + std::to_string(held_rows.size()) + " trials";
+    e.ours = "held-out R2 " + number(pull_r2, 3) + " of drawbar pull, " + number(sink_r2, 3) + " of sinkage, over " +
+             std::to_string(held_rows.size()) + " trials";
     const std::string why = "nine tenths of the variance at slips that the fit never saw; exactly 1 would be a leak";
-    e.checks = {{"held-out R2 of drawbar pull", "fits", "1", pull_r2, 0.9, 0.9999, why}, {"held-out R2 of sinkage", "fits", "1", sink_r2, 0.9, 0.9999, why}};
-    e.notes = "Pull = a Fn f(s/sc) - b z^2, the compaction (4) of a soil with n = 1, with z = z0 + z1 |s| + z2 max(-s, 0)^2 (slip-sinkage, stronger when braking, where the wheel ploughs): a = " +
-              number(model.grip, 2) + ", sc = " + number(model.shear_slip, 2) + ", b = " + number(model.compaction / 1000, 1) + " kN/m^2, z0 = " + number(1000 * model.z0, 1) + " mm. Fitted on " +
-              std::to_string(fit_rows.size()) + " trials at every other level of slip.";
+    e.checks = {{"held-out R2 of drawbar pull", "fits", "1", pull_r2, 0.9, 0.9999, why},
+                {"held-out R2 of sinkage", "fits", "1", sink_r2, 0.9, 0.9999, why}};
+    e.notes = "Pull = a Fn f(s/sc) - b z^2, the compaction (4) of a soil with n = 1, with z = z0 + z1 |s| + z2 max(-s, 0)^2 (slip-sinkage, "
+              "stronger when braking, where the wheel ploughs): a = " +
+              number(model.grip, 2) + ", sc = " + number(model.shear_slip, 2) + ", b = " + number(model.compaction / 1000, 1) +
+              " kN/m^2, z0 = " + number(1000 * model.z0, 1) + " mm. Fitted on " + std::to_string(fit_rows.size()) +
+              " trials at every other level of slip.";
     report::Figure figure{.title = "Smooth wheel, straight, 23 N", .x_label = "slip [1]"};
     const auto panel = [&](const std::string &label, auto pick, auto predict) {
-        report::Series fitted{.name = "fitted", .mark = report::Mark::scatter}, held{.name = "held out", .mark = report::Mark::scatter}, curve_of{.name = "model", .x = range(-1, 1, 201)};
+        report::Series fitted{.name = "fitted", .mark = report::Mark::scatter}, held{.name = "held out", .mark = report::Mark::scatter},
+            curve_of{.name = "model", .x = range(-1, 1, 201)};
         for (const BenchRow &row : fit_rows) fitted.x.push_back(row.slip), fitted.y.push_back(pick(row));
         for (const BenchRow &row : held_rows) held.x.push_back(row.slip), held.y.push_back(pick(row));
         for (const double slip : curve_of.x) curve_of.y.push_back(predict(slip));
         figure.panels.push_back({.y_label = label, .series = {fitted, held, curve_of}});
     };
-    panel("drawbar pull [N]", [](const BenchRow &row) { return row.pull_N; }, [&](double slip) { return model.pull_N(slip, 23); });
-    panel("sinkage [mm]", [](const BenchRow &row) { return 1000 * row.sinkage_m; }, [&](double slip) { return 1000 * model.sinkage_m(slip); });
+    panel(
+        "drawbar pull [N]", [](const BenchRow &row) { return row.pull_N; }, [&](double slip) { return model.pull_N(slip, 23); });
+    panel(
+        "sinkage [mm]", [](const BenchRow &row) { return 1000 * row.sinkage_m; },
+        [&](double slip) { return 1000 * model.sinkage_m(slip); });
     e.svg = to_svg(figure);
     return e;
 }

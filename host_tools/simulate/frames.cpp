@@ -11,11 +11,13 @@ namespace traction {
 
 namespace {
 [[noreturn]] void fail(const std::string &path) {
-    throw log::FileError(path, 0, 0, std::string("cannot be written: ") + std::strerror(errno), "check that the folder exists and has room");
+    throw log::FileError(path, 0, 0, std::string("cannot be written: ") + std::strerror(errno),
+                         "check that the folder exists and has room");
 }
 } // namespace
 
-FrameWriter::FrameWriter(const std::string &path, const std::string &config) : path_(path), file_(std::fopen((path + ".part").c_str(), "wb")) {
+FrameWriter::FrameWriter(const std::string &path, const std::string &config)
+    : path_(path), file_(std::fopen((path + ".part").c_str(), "wb")) {
     if (file_ == nullptr) fail(path);
     std::fprintf(file_, "# frames of traction simulate, firmware configuration %s; tests/replay/replay.c reads them\n", config.c_str());
 }

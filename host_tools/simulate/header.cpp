@@ -53,7 +53,8 @@ void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world,
     log.header["noise.camera.x_m"] = log.header["noise.camera.y_m"] = number(sensors.camera.noise_m);
     log.header["noise.camera.yaw_rad"] = number(sensors.camera.noise_rad);
     // the small sensors average over a tick (sim/sensors/analog.h)
-    for (const char *signal : {"wheel.current_A", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s"}) log.header[std::string("window.") + signal] = "0.01";
+    for (const char *signal : {"wheel.current_A", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s"})
+        log.header[std::string("window.") + signal] = "0.01";
     // a value of the firmware's Doppler stage: floor and share of the speed (docs/performance.md), mean over its window
     const bool paper = scenario.firmware.config == "paper";
     log.header["noise.radar.speed_m_s"] = paper ? "0.02" : "0.008";

@@ -86,8 +86,7 @@ double Recorder::exact(float value) {
     return result;
 }
 
-void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command,
-                         const wheel_trace_t &trace) {
+void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace) {
     const Wheel &at = wheel_[wheel];
     if ((frame.present & (FRAME_ENCODER_0 << static_cast<unsigned>(wheel))) != 0u) {
         put(at.speed, t_s, tidy(trace.speed_rad_s));
@@ -202,8 +201,7 @@ void TruthRecorder::add(const sim::Truth &truth) {
     put(truth.battery_voltage_V);
     for (const sim::WheelTruth &wheel : truth.wheel)
         for (const double value : {wheel.speed_rad_s, wheel.current_A, wheel.duty, wheel.slip, wheel.traction_N, wheel.rolling_N,
-                                   wheel.lateral_N, wheel.normal_N, wheel.sinkage_m, wheel.ground_speed_m_s,
-                                   wheel.winding_temperature_C})
+                                   wheel.lateral_N, wheel.normal_N, wheel.sinkage_m, wheel.ground_speed_m_s, wheel.winding_temperature_C})
             put(value);
 }
 

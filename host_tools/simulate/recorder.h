@@ -43,13 +43,13 @@ class Recorder {
     double last_exact_ = 0;
 
     struct Wheel {
-        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated,
-            command_speed, command_duty;
+        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated, command_speed,
+            command_duty;
     } wheel_[WHEEL_COUNT]{};
     struct {
-        std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y,
-            camera_yaw, speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate,
-            command_slip, command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable;
+        std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,
+            speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate, command_slip,
+            command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable;
     } at_{};
 };
 

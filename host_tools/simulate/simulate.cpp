@@ -27,12 +27,24 @@ control_config_t firmware_config(const sim::FirmwareChoice &choice, const std::o
 command_t command_of(const sim::Demand &demand) {
     command_t command{};
     switch (demand.mode) {
-    case sim::DriveMode::stop: command.mode = MODE_STOP; break;
-    case sim::DriveMode::open_loop: command.mode = MODE_OPEN_LOOP; break;
-    case sim::DriveMode::wheel_speed: command.mode = MODE_WHEEL_SPEED; break;
-    case sim::DriveMode::platform_speed: command.mode = MODE_PLATFORM_SPEED; break;
-    case sim::DriveMode::slip: command.mode = MODE_SLIP; break;
-    case sim::DriveMode::soil_sweep: command.mode = MODE_SOIL_SWEEP; break;
+    case sim::DriveMode::stop:
+        command.mode = MODE_STOP;
+        break;
+    case sim::DriveMode::open_loop:
+        command.mode = MODE_OPEN_LOOP;
+        break;
+    case sim::DriveMode::wheel_speed:
+        command.mode = MODE_WHEEL_SPEED;
+        break;
+    case sim::DriveMode::platform_speed:
+        command.mode = MODE_PLATFORM_SPEED;
+        break;
+    case sim::DriveMode::slip:
+        command.mode = MODE_SLIP;
+        break;
+    case sim::DriveMode::soil_sweep:
+        command.mode = MODE_SOIL_SWEEP;
+        break;
     }
     command.platform_speed_m_s = static_cast<float>(demand.speed_m_s);
     command.yaw_rate_rad_s = static_cast<float>(demand.yaw_rate_rad_s);
@@ -136,8 +148,7 @@ hal::SimHalConfig world_of(const sim::Scenario &scenario, const std::vector<sim:
     sim::apply_sensor_effects(effects, world.sensors);
     for (const sim::ActiveEffect &active : effects)
         if (active.effect->name == "actuation_delay") world.actuation_delay_s += active.value("delay_s");
-    for (const sim::WheelBlockSpan &block : scenario.wheel_blocks)
-        world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
+    for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
     return world;
 }
 
@@ -156,8 +167,8 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
 
     const hal::SimHalConfig config = world_of(scenario, effects, seed);
     hal::SimHal world(config);
-    hal::FaultHal faulty(world.hal(), {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops},
-                         config.scale, seed);
+    hal::FaultHal faulty(world.hal(), {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops}, config.scale,
+                         seed);
     const bool wrapped = !scenario.sensor_faults.empty() || !scenario.emergency_stops.empty();
     const hal_t hal = wrapped ? faulty.hal() : world.hal();
 
@@ -170,7 +181,8 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     Recorder recorder(options.record ? config.ticks : 0);
     TruthRecorder truth;
     std::unique_ptr<FrameWriter> frames;
-    if (!options.frames_path.empty()) frames = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
+    if (!options.frames_path.empty())
+        frames = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
 
     const auto start = std::chrono::steady_clock::now();
     result.trace_hash = 0xcbf29ce484222325u;

@@ -15,25 +15,25 @@
 namespace traction {
 
 struct SimulateOptions {
-    std::optional<std::uint64_t> seed;           // instead of the scenario's
-    std::vector<sim::ActiveEffect> effects;      // beside the scenario's
-    std::optional<sim::HiddenDraw> hide;         // instead of the scenario's [hidden]
-    std::optional<std::string> firmware;         // "default" or "paper", instead of the scenario's
-    bool record = true;                          // false: run only (benchmarks)
-    bool truth = false;                          // fill SimulationResult::truth
-    bool realtime = false;                       // keep pace with the wall clock
-    std::string frames_path;                     // replay text, one line a tick; empty: none
-    std::function<void()> after_second;          // called after every simulated second
+    std::optional<std::uint64_t> seed;      // instead of the scenario's
+    std::vector<sim::ActiveEffect> effects; // beside the scenario's
+    std::optional<sim::HiddenDraw> hide;    // instead of the scenario's [hidden]
+    std::optional<std::string> firmware;    // "default" or "paper", instead of the scenario's
+    bool record = true;                     // false: run only (benchmarks)
+    bool truth = false;                     // fill SimulationResult::truth
+    bool realtime = false;                  // keep pace with the wall clock
+    std::string frames_path;                // replay text, one line a tick; empty: none
+    std::function<void()> after_second;     // called after every simulated second
 };
 
 struct SimulationResult {
     log::Log log;
-    log::Log truth;                              // empty unless asked for
-    std::vector<sim::ActiveEffect> hidden;       // what was drawn; goes to the seal and nowhere else
+    log::Log truth;                        // empty unless asked for
+    std::vector<sim::ActiveEffect> hidden; // what was drawn; goes to the seal and nowhere else
     std::uint64_t hide_seed = 0;
     std::uint64_t ticks = 0;
-    std::uint32_t faults = 0;                    // fault_t bits that the firmware has latched
-    std::uint64_t trace_hash = 0;                // FNV-1a over every trace, for comparing runs
+    std::uint32_t faults = 0;     // fault_t bits that the firmware has latched
+    std::uint64_t trace_hash = 0; // FNV-1a over every trace, for comparing runs
 };
 
 SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &options = {});

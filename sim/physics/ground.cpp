@@ -10,8 +10,8 @@ namespace {
 
 // A number of -1..1 that belongs to a lattice point.
 double lattice(std::int64_t i, std::int64_t j, std::uint64_t seed) {
-    std::uint64_t h = seed ^ (static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15ull) ^
-                      (static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Full);
+    std::uint64_t h =
+        seed ^ (static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15ull) ^ (static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Full);
     h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9ull; // splitmix64's finaliser
     h = (h ^ (h >> 27)) * 0x94D049BB133111EBull;
     h ^= h >> 31;
@@ -37,8 +37,7 @@ const Soil &Ground::at(double x_m, double y_m) const {
 
 double Ground::grip_change(double x_m, double y_m) const {
     double trend = 0;
-    if (gradient_1_m != 0)
-        trend = gradient_1_m * (x_m * math::cos(gradient_direction_rad) + y_m * math::sin(gradient_direction_rad));
+    if (gradient_1_m != 0) trend = gradient_1_m * (x_m * math::cos(gradient_direction_rad) + y_m * math::sin(gradient_direction_rad));
     if (grip_noise <= 0) return trend > -0.95 ? trend : -0.95; // some grip is left everywhere
     const double u = x_m / grip_length_m, v = y_m / grip_length_m;
     const double iu = std::floor(u), iv = std::floor(v);

@@ -28,16 +28,16 @@ struct SoilPatch {
 };
 
 struct Ground {
-    Soil soil;                      // where no patch lies
-    std::vector<SoilPatch> patches; // the last that covers a place wins
+    Soil soil;                                   // where no patch lies
+    std::vector<SoilPatch> patches;              // the last that covers a place wins
     ContactLaw contact = ContactLaw::aggregated; // of every soil that has Bekker parameters; the others stay aggregated
-    double slope_rad = 0;           // the ground rises ...
-    double slope_direction_rad = 0; // ... towards this world heading
-    double grip_noise = 0;          // relative rms of the grip over the ground [1]; 0.06 on soil, 0.02 on concrete (assumed)
-    double grip_length_m = 0.2;     // its correlation length: lattice step of the noise
-    std::uint64_t seed = 1;         // of the grip noise
+    double slope_rad = 0;                        // the ground rises ...
+    double slope_direction_rad = 0;              // ... towards this world heading
+    double grip_noise = 0;                       // relative rms of the grip over the ground [1]; 0.06 on soil, 0.02 on concrete (assumed)
+    double grip_length_m = 0.2;                  // its correlation length: lattice step of the noise
+    std::uint64_t seed = 1;                      // of the grip noise
 
-    double gradient_1_m = 0;        // grip times (1 + gradient * distance along its direction)
+    double gradient_1_m = 0; // grip times (1 + gradient * distance along its direction)
     double gradient_direction_rad = 0;
 
     const Soil &at(double x_m, double y_m) const;

@@ -38,13 +38,17 @@ inline double exp(double x) {
 inline double log(double x) {
     x = x >= 2.2250738585072014e-308 ? x : 2.2250738585072014e-308;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
-    const std::uint64_t offset = 0x3fe6a09e667f3bcdu; // sqrt(1/2)
+    const std::uint64_t offset = 0x3fe6a09e667f3bcdu;                                 // sqrt(1/2)
     const std::uint64_t biased = (bits - offset + (std::uint64_t{1023} << 52)) >> 52; // e + 1023: unsigned shifts exist as vectors
     const double m = std::bit_cast<double>(bits - ((biased - 1023) << 52));
     const double e = std::bit_cast<double>(biased | 0x4330000000000000u) - (4503599627370496.0 + 1023); // integer to double by 2^52
     const double f = (m - 1) / (m + 1), q = f * f;
-    const double s = 1 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13 + q * (1.0 / 15 +
-                     q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21))))))))));
+    const double s =
+        1 + q * (1.0 / 3 +
+                 q * (1.0 / 5 +
+                      q * (1.0 / 7 +
+                           q * (1.0 / 9 +
+                                q * (1.0 / 11 + q * (1.0 / 13 + q * (1.0 / 15 + q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21))))))))));
     return e * ln2 + 2 * f * s;
 }
 
@@ -54,13 +58,20 @@ inline double pow(double x, double y) { return exp(y * log(x)); }
 namespace detail {
 inline double sine(double r) {
     const double q = r * r;
-    return r + r * q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 + q * (1.0 / 362880 + q * (-1.0 / 39916800 +
-                   q * (1.0 / 6227020800.0 + q * (-1.0 / 1307674368000.0 + q * (1.0 / 355687428096000.0))))))));
+    return r + r * q *
+                   (-1.0 / 6 +
+                    q * (1.0 / 120 +
+                         q * (-1.0 / 5040 + q * (1.0 / 362880 +
+                                                 q * (-1.0 / 39916800 + q * (1.0 / 6227020800.0 + q * (-1.0 / 1307674368000.0 +
+                                                                                                       q * (1.0 / 355687428096000.0))))))));
 }
 inline double cosine(double r) {
     const double q = r * r;
-    return 1 + q * (-1.0 / 2 + q * (1.0 / 24 + q * (-1.0 / 720 + q * (1.0 / 40320 + q * (-1.0 / 3628800 + q * (1.0 / 479001600 +
-               q * (-1.0 / 87178291200.0 + q * (1.0 / 20922789888000.0))))))));
+    return 1 + q * (-1.0 / 2 +
+                    q * (1.0 / 24 +
+                         q * (-1.0 / 720 +
+                              q * (1.0 / 40320 + q * (-1.0 / 3628800 + q * (1.0 / 479001600 +
+                                                                            q * (-1.0 / 87178291200.0 + q * (1.0 / 20922789888000.0))))))));
 }
 inline double reduce(double x, std::int64_t &quadrant) {
     const double k = std::floor(x * 0.63661977236758134308 + 0.5);

@@ -35,18 +35,39 @@ Bekker table_iii_ground(double kphi, double n, double c_Pa, double phi_deg, doub
 }
 
 Soil concrete() {
-    return {"concrete", TractionLaw::burckhardt, 0, 0.8, 0.05, 0.01, 0.8, std::nullopt,
+    return {"concrete",
+            TractionLaw::burckhardt,
+            0,
+            0.8,
+            0.05,
+            0.01,
+            0.8,
+            std::nullopt,
             "mu: (21) Lhomme-Desages, Fm = 5.6 N at Fn = 7 N; shear_slip, rolling, lateral: assumed"};
 }
 
 Soil gravel() {
-    return {"gravel", TractionLaw::janosi, 0, 6.8 / 7, 0.088, 0.03, 0.8, table_iii_ground(5e6, 1.0, 0, 44.17, 0.0035),
+    return {"gravel",
+            TractionLaw::janosi,
+            0,
+            6.8 / 7,
+            0.088,
+            0.03,
+            0.8,
+            table_iii_ground(5e6, 1.0, 0, 44.17, 0.0035),
             "Fm, sc: table III Lhomme-Desages at Fn = 7 N; rolling, lateral: assumed; Bekker: phi = atan(Fm/Fn), K = sc * 4 cm, "
             "the rest assumed"};
 }
 
 Soil sand() {
-    return {"sand", TractionLaw::janosi, 0, 5.1 / 7, 0.27, 0.05, 0.6, table_iii_ground(1.528e6, 1.1, 0, 36.08, 0.0108),
+    return {"sand",
+            TractionLaw::janosi,
+            0,
+            5.1 / 7,
+            0.27,
+            0.05,
+            0.6,
+            table_iii_ground(1.528e6, 1.1, 0, 36.08, 0.0108),
             "Fm, sc: table III Lhomme-Desages at Fn = 7 N; rolling, lateral: assumed; Bekker: phi = atan(Fm/Fn), K = sc * 4 cm, "
             "kphi and n of dry sand (Land Locomotion Laboratory, in Wong, Theory of Ground Vehicles), the rest assumed"};
 }

@@ -1,7 +1,7 @@
 #include "terramechanics.h"
 
-#include "math.h"
 #include "ground.h"
+#include "math.h"
 
 #include <array>
 #include <cmath>

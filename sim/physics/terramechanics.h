@@ -23,28 +23,28 @@ namespace traction::sim {
 
 struct SoilWheel {
     double radius_m, width_m, hysteresis;
-    double strength = 1;      // factor of all stresses that carry traction (Fm)
-    double shear = 1;         // factor of K (sc)
+    double strength = 1; // factor of all stresses that carry traction (Fm)
+    double shear = 1;    // factor of K (sc)
 };
 
 struct SoilContact {
     double sinkage_m, slip;
-    double rut_m;             // depth reached here before, 0: fresh
+    double rut_m; // depth reached here before, 0: fresh
 };
 
 struct SoilForce {
     double normal_N = 0;
-    double largest_N = 0;     // Fm
-    double shear_slip = 1;    // sc
-    double traction_N = 0;    // Ft
-    double resistance_N = 0;  // Rr >= 0
-    double torque_Nm = 0;     // about the axle
+    double largest_N = 0;                           // Fm
+    double shear_slip = 1;                          // sc
+    double traction_N = 0;                          // Ft
+    double resistance_N = 0;                        // Rr >= 0
+    double torque_Nm = 0;                           // about the axle
     double free_traction_N = 0, free_torque_Nm = 0; // the same at s = 0 and equal sinkage: 0 in closed form
 };
 
 // Numbers of one soil and wheel that do not change while rolling.
 struct SoilConstants {
-    double k_wide = 0;         // kc/ww + kphi
+    double k_wide = 0;               // kc/ww + kphi
     double tan_phi = 0, passive = 1; // tan^2(45 deg + phi/2)
 };
 SoilConstants soil_constants(const Bekker &soil, double wheel_width_m);

@@ -21,8 +21,7 @@ SlipChange slip_step(const ContactInput &in, ContactState &state, double dt_s) {
 
 double total_slip(const ContactState &state) { return std::sqrt(state.slip * state.slip + state.side_slip * state.side_slip); }
 
-ContactForce contact_force(const ContactInput &in, const ContactState &state, const SlipChange &change, double traction_N,
-                           double dt_s) {
+ContactForce contact_force(const ContactInput &in, const ContactState &state, const SlipChange &change, double traction_N, double dt_s) {
     ContactForce force;
     if (in.grip_N <= 0) return force;
     const double total = total_slip(state);

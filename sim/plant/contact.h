@@ -16,14 +16,14 @@ namespace traction::sim {
 
 struct ContactInput {
     TractionLaw law = TractionLaw::janosi;
-    double grip_N = 0;            // Fm >= 0
-    double shear_slip = 1;        // sc > 0
-    double relaxation_m = 0.005;  // sigma > 0
-    double rim_m_s = 0;           // R*w
-    double along_m_s = 0;         // v, along the wheel's heading
-    double across_m_s = 0;        // along body y
-    double side_ratio = 1;        // Fym/Fm, the friction ellipse's other axis
-    double load_kg = 0.7;         // mass that hangs on this contact, for the damping
+    double grip_N = 0;           // Fm >= 0
+    double shear_slip = 1;       // sc > 0
+    double relaxation_m = 0.005; // sigma > 0
+    double rim_m_s = 0;          // R*w
+    double along_m_s = 0;        // v, along the wheel's heading
+    double across_m_s = 0;       // along body y
+    double side_ratio = 1;       // Fym/Fm, the friction ellipse's other axis
+    double load_kg = 0.7;        // mass that hangs on this contact, for the damping
 };
 
 struct ContactState {
@@ -45,8 +45,7 @@ SlipChange slip_step(const ContactInput &input, ContactState &state, double dt_s
 double total_slip(const ContactState &state);
 
 // (3): `traction_N` >= 0 is what the ground gives at the total slip. Any input is accepted; grip 0 gives no force.
-ContactForce contact_force(const ContactInput &input, const ContactState &state, const SlipChange &change, double traction_N,
-                           double dt_s);
+ContactForce contact_force(const ContactInput &input, const ContactState &state, const SlipChange &change, double traction_N, double dt_s);
 
 // Both, with the traction of (20) or (21).
 ContactForce contact_step(const ContactInput &input, ContactState &state, double dt_s);

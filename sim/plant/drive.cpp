@@ -42,8 +42,7 @@ double advance(double &speed_rad_s, double inertia, double torque_Nm, double vis
 
 } // namespace
 
-double drive_current(const DriveParameters &p, const DriveEffects &e, const DriveState &s, double duty, double supply_V,
-                     double dt_s) {
+double drive_current(const DriveParameters &p, const DriveEffects &e, const DriveState &s, double duty, double supply_V, double dt_s) {
     const double drop = duty * supply_V - torque_constant(p, e, s) * s.motor_speed_rad_s;
     // dead time of the bridge: no current until it is overcome
     const double left = std::copysign(std::max(std::fabs(drop) - e.dead_voltage_V, 0.0), drop);
@@ -63,8 +62,8 @@ DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState
     if (e.play_rad <= 0) {
         const double before = s.wheel_speed_rad_s;
         const double torque = motor_torque - traction_torque_Nm - ripple(e, s.wheel_angle_rad);
-        work.friction = advance(s.wheel_speed_rad_s, p.inertia_kg_m2, torque, viscous,
-                                dry_friction(p, e, before, traction_torque_Nm), dt_s);
+        work.friction =
+            advance(s.wheel_speed_rad_s, p.inertia_kg_m2, torque, viscous, dry_friction(p, e, before, traction_torque_Nm), dt_s);
         const double mean = 0.5 * (before + s.wheel_speed_rad_s);
         work.motor = motor_torque * mean * dt_s;
         s.wheel_angle_rad += dt_s * s.wheel_speed_rad_s;
@@ -78,8 +77,8 @@ DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState
             const double mesh = law::backlash_Nm(e.play_rad, p.gear_stiffness_Nm_rad, p.gear_damping_Nms_rad,
                                                  s.motor_angle_rad - s.wheel_angle_rad, s.motor_speed_rad_s - s.wheel_speed_rad_s);
             const double before = s.motor_speed_rad_s;
-            work.friction += advance(s.motor_speed_rad_s, rotor_inertia, motor_torque - mesh - ripple(e, s.motor_angle_rad),
-                                     viscous, dry_friction(p, e, before, mesh), h);
+            work.friction += advance(s.motor_speed_rad_s, rotor_inertia, motor_torque - mesh - ripple(e, s.motor_angle_rad), viscous,
+                                     dry_friction(p, e, before, mesh), h);
             work.motor += motor_torque * 0.5 * (before + s.motor_speed_rad_s) * h;
             s.wheel_speed_rad_s += h * (mesh - traction_torque_Nm) / p.wheel_inertia_kg_m2;
             s.motor_angle_rad += h * s.motor_speed_rad_s;

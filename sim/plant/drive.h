@@ -15,12 +15,12 @@ struct DriveParameters {
     double resistance_ohm = 3.24;        // assumed: V^2/(4 Ra) = 4 W of mechanical power
     double inductance_H = 0;             // 0: the winding's lag (0.3 ms for 1 mH) is below the step, assumed
     double current_limit_A = std::numeric_limits<double>::infinity(); // of the bridge; the paper names none
-    double inertia_kg_m2 = 5e-3;         // J, rotor and wheel together
-    double wheel_inertia_kg_m2 = 5e-4;   // share of J on the wheel's side of the backlash, assumed
-    double viscous_Nms = 1.6e-3;         // (18)
-    double coulomb_Nm = 0.03;            // (18)
-    double gear_stiffness_Nm_rad = 40;   // of the teeth once they touch, with backlash only, assumed
-    double gear_damping_Nms_rad = 0.05;  // the same, assumed
+    double inertia_kg_m2 = 5e-3;                                      // J, rotor and wheel together
+    double wheel_inertia_kg_m2 = 5e-4;                                // share of J on the wheel's side of the backlash, assumed
+    double viscous_Nms = 1.6e-3;                                      // (18)
+    double coulomb_Nm = 0.03;                                         // (18)
+    double gear_stiffness_Nm_rad = 40;                                // of the teeth once they touch, with backlash only, assumed
+    double gear_damping_Nms_rad = 0.05;                               // the same, assumed
 };
 
 // Effects on one drive train, all zero when absent (catalogue names).
@@ -44,8 +44,8 @@ struct DriveWork {
 };
 
 // Current of (1) for a duty and a supply voltage, within the bridge's limit; with inductance the one after dt, implicit in I.
-double drive_current(const DriveParameters &parameters, const DriveEffects &effects, const DriveState &state, double duty,
-                     double supply_V, double dt_s);
+double drive_current(const DriveParameters &parameters, const DriveEffects &effects, const DriveState &state, double duty, double supply_V,
+                     double dt_s);
 
 // Advances by dt under the current in `state` and the traction torque R*Ft [N m] that brakes the wheel.
 DriveWork drive_step(const DriveParameters &parameters, const DriveEffects &effects, DriveState &state, double traction_torque_Nm,

@@ -94,9 +94,9 @@ void Plant::World::build_bodies() {
         dBodySetLinearVel(body, config.speed_m_s * cos_yaw, config.speed_m_s * sin_yaw, 0);
         for (int i = 0; i < wheel_count; ++i)
             if (is_left(i) == (h == 0))
-                contact_at[static_cast<std::size_t>(i)] = {
-                    (is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m) - effects.body.offset_x_m,
-                    side * r.half_track_m - aside - effects.body.offset_y_m, -height};
+                contact_at[static_cast<std::size_t>(i)] = {(is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m) -
+                                                               effects.body.offset_x_m,
+                                                           side * r.half_track_m - aside - effects.body.offset_y_m, -height};
     }
     const dJointID joint = dJointCreateHinge(world, nullptr);
     dJointAttach(joint, half[0], half[1]);
@@ -143,8 +143,7 @@ double Plant::World::kinetic() const {
         const bool two_masses = effects.wheel[i].drive.play_rad > 0;
         const double wheel = two_masses ? p.wheel_inertia_kg_m2 : p.inertia_kg_m2;
         sum += 0.5 * wheel * drive[i].wheel_speed_rad_s * drive[i].wheel_speed_rad_s;
-        if (two_masses)
-            sum += 0.5 * (p.inertia_kg_m2 - wheel) * drive[i].motor_speed_rad_s * drive[i].motor_speed_rad_s;
+        if (two_masses) sum += 0.5 * (p.inertia_kg_m2 - wheel) * drive[i].motor_speed_rad_s * drive[i].motor_speed_rad_s;
     }
     return sum;
 }
@@ -175,7 +174,8 @@ void Plant::World::step() {
     double supply_A = 0;
     for (std::size_t i = 0; i < wheel_count; ++i) supply_A += duty[i] * drive[i].current_A;
     used_C += supply_A * dt;
-    const double supply_V = config.rover.battery_voltage_V - config.rover.battery_fade_V_C * used_C - config.rover.battery_resistance_ohm * supply_A;
+    const double supply_V =
+        config.rover.battery_voltage_V - config.rover.battery_fade_V_C * used_C - config.rover.battery_resistance_ohm * supply_A;
     truth.battery_voltage_V = supply_V;
 
     const Vec3 before = mean_velocity();
@@ -270,8 +270,8 @@ std::uint64_t Plant::state_hash() const {
         }
     for (std::size_t i = 0; i < wheel_count; ++i) {
         const DriveState &d = world_->drive[i];
-        for (const double value : {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A,
-                                   d.heat_K, world_->contact[i].slip, world_->contact[i].side_slip})
+        for (const double value : {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A, d.heat_K,
+                                   world_->contact[i].slip, world_->contact[i].side_slip})
             mix(value);
     }
     for (const RutTrace &trace : world_->trace) mix(trace.found_m()), mix(trace.deepest_m());

@@ -22,12 +22,12 @@ struct RoverParameters {
     double mass_kg = 2.88, length_m = 0.30, width_m = 0.27, height_m = 0.185;
     double half_wheelbase_m = 0.083, half_track_m = 0.12;
     double wheel_radius_m = 0.057;
-    double wheel_mass_kg = 0.150;         // for the reaction of the wheel's own inertia on the chassis
-    double centre_height_m = 0;           // of the centre of mass over the ground; 0 as in the paper, which keeps Fn constant:
-                                          // the effect load_transfer raises it
-    double contact_stiffness_N_m = 6000;  // vertical, per wheel: 1.2 mm under 7 N, assumed for a foam-filled tyre
-    double contact_damping_Ns_m = 60;     // vertical, per wheel, assumed: a third of critical
-    double relaxation_length_m = 0.005;   // of the slip state, assumed: an eighth of the contact length
+    double wheel_mass_kg = 0.150;        // for the reaction of the wheel's own inertia on the chassis
+    double centre_height_m = 0;          // of the centre of mass over the ground; 0 as in the paper, which keeps Fn constant:
+                                         // the effect load_transfer raises it
+    double contact_stiffness_N_m = 6000; // vertical, per wheel: 1.2 mm under 7 N, assumed for a foam-filled tyre
+    double contact_damping_Ns_m = 60;    // vertical, per wheel, assumed: a third of critical
+    double relaxation_length_m = 0.005;  // of the slip state, assumed: an eighth of the contact length
     DriveParameters drive;
     double battery_voltage_V = 7.2;       // open circuit, assumed
     double battery_resistance_ohm = 0.06; // assumed
@@ -67,7 +67,7 @@ class Plant {
     void set_duty(int wheel, double duty); // clamped to -1..1; NaN counts as 0
     void set_enabled(bool enabled);        // false releases all bridges: no current
     void block_wheel(int wheel, bool blocked);
-    void step();                           // advances by dt_s
+    void step(); // advances by dt_s
 
     const Truth &truth() const;
     const Energy &energy() const;

@@ -10,33 +10,33 @@ namespace traction::sim {
 inline constexpr int wheel_count = 4;
 
 struct WheelTruth {
-    double angle_rad = 0;          // wheel side of the gear, cumulative
-    double speed_rad_s = 0;        // wheel side of the gear
-    double motor_angle_rad = 0;    // motor side, divided by the gear ratio; differs from angle_rad by the backlash
-    double motor_speed_rad_s = 0;  // motor side, divided by the gear ratio
-    double current_A = 0;          // winding current, signed
-    double duty = 0;               // as applied by the bridge, -1..1
-    double traction_N = 0;         // Ft of (2), along the wheel's heading, on the rover
-    double rolling_N = 0;          // Rr of (2), >= 0
-    double lateral_N = 0;          // on the rover, along body y
-    double normal_N = 0;           // Fn, >= 0
-    double slip = 0;               // slip state, (1) extended
+    double angle_rad = 0;         // wheel side of the gear, cumulative
+    double speed_rad_s = 0;       // wheel side of the gear
+    double motor_angle_rad = 0;   // motor side, divided by the gear ratio; differs from angle_rad by the backlash
+    double motor_speed_rad_s = 0; // motor side, divided by the gear ratio
+    double current_A = 0;         // winding current, signed
+    double duty = 0;              // as applied by the bridge, -1..1
+    double traction_N = 0;        // Ft of (2), along the wheel's heading, on the rover
+    double rolling_N = 0;         // Rr of (2), >= 0
+    double lateral_N = 0;         // on the rover, along body y
+    double normal_N = 0;          // Fn, >= 0
+    double slip = 0;              // slip state, (1) extended
     double sinkage_m = 0;
-    double ground_speed_m_s = 0;   // v of (1): speed of the wheel's centre along its heading
+    double ground_speed_m_s = 0; // v of (1): speed of the wheel's centre along its heading
     double winding_temperature_C = 25;
 };
 
 struct Truth {
     double t_s = 0;
-    std::array<double, 3> position_m{};              // world
-    std::array<double, 4> orientation{1, 0, 0, 0};   // body to world, unit quaternion w x y z
-    std::array<double, 3> v_body_m_s{};              // body frame
-    std::array<double, 3> rate_body_rad_s{};         // body frame
-    std::array<double, 3> specific_force_m_s2{};     // body frame: acceleration minus gravity, what an ideal accelerometer feels
-    double yaw_rad = 0;                              // continuous, not wrapped
-    double pitch_rad = 0;                            // nose down positive (rotation about +y)
-    double path_m = 0;                               // arc length travelled by the body, signed along x
-    double battery_voltage_V = 0;                    // at the terminals, under load
+    std::array<double, 3> position_m{};            // world
+    std::array<double, 4> orientation{1, 0, 0, 0}; // body to world, unit quaternion w x y z
+    std::array<double, 3> v_body_m_s{};            // body frame
+    std::array<double, 3> rate_body_rad_s{};       // body frame
+    std::array<double, 3> specific_force_m_s2{};   // body frame: acceleration minus gravity, what an ideal accelerometer feels
+    double yaw_rad = 0;                            // continuous, not wrapped
+    double pitch_rad = 0;                          // nose down positive (rotation about +y)
+    double path_m = 0;                             // arc length travelled by the body, signed along x
+    double battery_voltage_V = 0;                  // at the terminals, under load
     std::array<WheelTruth, wheel_count> wheel;
 };
 

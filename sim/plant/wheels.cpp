@@ -96,9 +96,13 @@ void Plant::World::step_wheel(int i, double supply_V) {
     const double rim = radius * drive[n].wheel_speed_rad_s;
     const Soil &soil = config.ground.at(point[0], point[1]);
     const double factor = grip_factor(i, point[0], point[1], rim - along);
-    const ContactInput input{.law = soil.law, .shear_slip = soil.shear_slip,
-                             .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, b.relaxation_m), .rim_m_s = rim,
-                             .along_m_s = along, .across_m_s = across, .load_kg = r.mass_kg / 4};
+    const ContactInput input{.law = soil.law,
+                             .shear_slip = soil.shear_slip,
+                             .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, b.relaxation_m),
+                             .rim_m_s = rim,
+                             .along_m_s = along,
+                             .across_m_s = across,
+                             .load_kg = r.mass_kg / 4};
     const bool soft = config.ground.contact != ContactLaw::aggregated && soil.bekker.has_value();
     const Meeting met =
         soft ? meet_soft(i, input, soil, factor, point, out.velocity[2])

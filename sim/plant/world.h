@@ -39,7 +39,7 @@ struct Plant::World {
     struct Meeting {
         ContactForce force;
         double load_N = 0, rolling_N = 0, sinkage_m = 0;
-        double arm_m = 0;             // of force.along_N about the axle; 0: the radius
+        double arm_m = 0;               // of force.along_N about the axle; 0: the radius
         double free_N = 0, free_Nm = 0; // pull and torque of rolling alone, in its direction
     };
     Meeting meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N);
@@ -70,7 +70,7 @@ struct Plant::World {
     RutMemory ruts;
     std::array<RutTrace, wheel_count> trace;
     struct Applied {
-        Vec3 force{}, velocity{}; // at the contact point, world
+        Vec3 force{}, velocity{};                                // at the contact point, world
         double resist_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
         Vec3 heading{};
     };

@@ -24,7 +24,8 @@ ActiveEffect draw_one(const Effect &effect, Random &random) {
         if (parameter.strength)
             active.values.push_back(draw_strength(parameter, random));
         else if (!parameter.variants.empty())
-            active.values.push_back(parameter.variants[static_cast<std::size_t>(random.below(static_cast<int>(parameter.variants.size())))]);
+            active.values.push_back(
+                parameter.variants[static_cast<std::size_t>(random.below(static_cast<int>(parameter.variants.size())))]);
         else
             active.values.push_back(random.uniform(parameter.minimum, parameter.maximum));
     }

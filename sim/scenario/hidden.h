@@ -13,8 +13,8 @@ namespace traction::sim {
 
 struct HiddenDraw {
     std::uint64_t seed = 0;
-    int count = 1;                   // how many effects
-    std::vector<std::string> among;  // names to draw from; empty: the whole catalogue
+    int count = 1;                  // how many effects
+    std::vector<std::string> among; // names to draw from; empty: the whole catalogue
 };
 
 // The drawn effects, each with a size between a quarter and three quarters of its plausible range, sign and wheel at random.

@@ -65,15 +65,11 @@ ScenarioError::ScenarioError(const std::string &file_, std::size_t line_, const 
     : std::runtime_error(build_message(file_, line_, key_, value_, what_is_wrong, mend)), file(file_), line(line_), key(key_),
       value(value_) {}
 
-Keys::Keys(const toml::table &table, std::string file, std::string path)
-    : table_(table), file_(std::move(file)), path_(std::move(path)) {}
+Keys::Keys(const toml::table &table, std::string file, std::string path) : table_(table), file_(std::move(file)), path_(std::move(path)) {}
 
-std::string Keys::full_name(std::string_view key) const {
-    return path_.empty() ? std::string(key) : path_ + '.' + std::string(key);
-}
+std::string Keys::full_name(std::string_view key) const { return path_.empty() ? std::string(key) : path_ + '.' + std::string(key); }
 
-void Keys::fail_at(const toml::node &node, std::string_view key, const std::string &what_is_wrong,
-                   const std::string &mend) const {
+void Keys::fail_at(const toml::node &node, std::string_view key, const std::string &what_is_wrong, const std::string &mend) const {
     throw ScenarioError(file_, node.source().begin.line, full_name(key), written(node), what_is_wrong, mend);
 }
 

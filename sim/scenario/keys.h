@@ -31,9 +31,9 @@ class Keys {
     // One of `words`; the index of the word.
     std::size_t word(std::string_view key, std::string_view fallback, std::span<const std::string_view> words);
     const toml::table *table(std::string_view key);
-    const toml::array *array(std::string_view key);     // any array
-    const toml::array *tables(std::string_view key);    // an array of tables: [[key]]
-    const toml::node *node(std::string_view key);       // marks the key as known
+    const toml::array *array(std::string_view key);  // any array
+    const toml::array *tables(std::string_view key); // an array of tables: [[key]]
+    const toml::node *node(std::string_view key);    // marks the key as known
 
     // Unknown keys are mistakes: call when every known key has been asked for.
     void finish() const;

@@ -54,7 +54,8 @@ void read_mode(Keys &keys, DriveSegment &segment) {
         segment.speed_m_s = read_reference(keys, "speed_m_s", {-2, 2});
     };
     switch (segment.mode) {
-    case DriveMode::stop: break;
+    case DriveMode::stop:
+        break;
     case DriveMode::open_loop:
         need("duty", "give one number or four, -1 to 1");
         segment.duty = read_wheels(keys, "duty", {-1, 1});
@@ -75,8 +76,12 @@ void read_mode(Keys &keys, DriveSegment &segment) {
         speed();
         break;
     }
-    case DriveMode::platform_speed: speed(); break;
-    case DriveMode::soil_sweep: speed(); break;
+    case DriveMode::platform_speed:
+        speed();
+        break;
+    case DriveMode::soil_sweep:
+        speed();
+        break;
     }
     if (segment.mode == DriveMode::platform_speed || segment.mode == DriveMode::slip)
         segment.yaw_rate_rad_s = read_reference(keys, "yaw_rate_rad_s", {-4, 4});

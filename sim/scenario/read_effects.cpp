@@ -64,8 +64,8 @@ ActiveEffect parse_effect(const std::string &text) {
         double value = 0;
         const char *end = part.data() + part.size();
         if (equals == std::string::npos || std::from_chars(part.data() + equals + 1, end, value).ptr != end || equals + 1 == part.size())
-            fail("'" + part + "' is not parameter=number", "write --effect '" + std::string(effect->name) + ":" +
-                                                               std::string(effect->parameters.front().name) + "=VALUE'");
+            fail("'" + part + "' is not parameter=number",
+                 "write --effect '" + std::string(effect->name) + ":" + std::string(effect->parameters.front().name) + "=VALUE'");
         const std::string key = part.substr(0, equals);
         if (key == "wheel") {
             if (!effect->per_wheel || value < 0 || value >= wheel_count || value != static_cast<int>(value))
@@ -73,10 +73,9 @@ ActiveEffect parse_effect(const std::string &text) {
             active.wheel = static_cast<int>(value);
             continue;
         }
-        const auto found = std::find_if(effect->parameters.begin(), effect->parameters.end(),
-                                        [&](const EffectParameter &p) { return p.name == key; });
-        if (found == effect->parameters.end())
-            fail("no parameter " + key, "traction effects " + std::string(effect->name) + " lists them");
+        const auto found =
+            std::find_if(effect->parameters.begin(), effect->parameters.end(), [&](const EffectParameter &p) { return p.name == key; });
+        if (found == effect->parameters.end()) fail("no parameter " + key, "traction effects " + std::string(effect->name) + " lists them");
         if (!(value >= found->minimum && value <= found->maximum))
             fail(key + " out of range", "give a number from " + std::to_string(found->minimum) + " to " + std::to_string(found->maximum));
         active.values[static_cast<std::size_t>(found - effect->parameters.begin())] = value;

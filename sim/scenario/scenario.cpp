@@ -73,7 +73,8 @@ Scenario read_scenario(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
-        throw std::filesystem::filesystem_error("cannot read the scenario", path, std::make_error_code(std::errc::no_such_file_or_directory));
+        throw std::filesystem::filesystem_error("cannot read the scenario", path,
+                                                std::make_error_code(std::errc::no_such_file_or_directory));
     return parse_scenario(text, path);
 }
 

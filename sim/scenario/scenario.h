@@ -31,13 +31,13 @@ struct FirmwareChoice {
 };
 
 struct Scenario {
-    std::string name;  // file name without folder and ending
+    std::string name; // file name without folder and ending
     std::string file;
     std::string title;
-    std::string text;  // the file, for its hash
+    std::string text; // the file, for its hash
     double duration_s = 0;
     std::uint64_t seed = 1;
-    PlantConfig plant; // its effects are filled at run time
+    PlantConfig plant;                        // its effects are filled at run time
     std::optional<std::uint64_t> ground_seed; // of the grip's field; none: each run seed has its own field
     SensorConfig sensors = default_sensors();
     FirmwareChoice firmware;

@@ -32,8 +32,7 @@ inline constexpr double gyro_noise_rad_s = 0.005;
 
 class AnalogSensor {
   public:
-    AnalogSensor(const AnalogConfig &config, std::uint64_t seed, std::string_view name)
-        : config_(config), random_(seed, name) {}
+    AnalogSensor(const AnalogConfig &config, std::uint64_t seed, std::string_view name) : config_(config), random_(seed, name) {}
 
     void add(double truth) { // once per plant step
         sum_ += truth;

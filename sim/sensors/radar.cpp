@@ -47,7 +47,10 @@ BandPass::BandPass(double low_Hz, double high_Hz, double rate_Hz) : high_pass_{}
         const double angle = math::pi * cut_Hz / rate_Hz, k = math::sin(angle) / math::cos(angle);
         const double norm = 1 / (1 + 1.4142135623730951 * k + k * k);
         const double gain = high ? norm : k * k * norm;
-        return Section{.b0 = gain, .b1 = high ? -2 * gain : 2 * gain, .b2 = gain, .a1 = 2 * (k * k - 1) * norm,
+        return Section{.b0 = gain,
+                       .b1 = high ? -2 * gain : 2 * gain,
+                       .b2 = gain,
+                       .a1 = 2 * (k * k - 1) * norm,
                        .a2 = (1 - 1.4142135623730951 * k + k * k) * norm};
     };
     high_pass_ = design(low_Hz, true);
@@ -71,8 +74,8 @@ void BandPass::settle(double x) {
 }
 
 Radar::Radar(const RadarConfig &config, std::uint64_t seed)
-    : config_(config), track_(beam_of(config), mix64(seed) ^ 0x7261646172u), filter_(filter_of(config)),
-      noise_(seed, "radar.noise"), fade_(seed, "radar.dropout") {}
+    : config_(config), track_(beam_of(config), mix64(seed) ^ 0x7261646172u), filter_(filter_of(config)), noise_(seed, "radar.noise"),
+      fade_(seed, "radar.dropout") {}
 
 std::uint16_t Radar::sample(double path_m) {
     // mean power of the complex echo is 1, so its real part has rms 1/sqrt 2

@@ -54,8 +54,8 @@ class BandPass {
 
 class Radar {
   public:
-    static constexpr double rate_Hz = 512;        // section IV: 256 points in about 0.5 s
-    static constexpr int count_max = 1023;        // 10 bits
+    static constexpr double rate_Hz = 512; // section IV: 256 points in about 0.5 s
+    static constexpr int count_max = 1023; // 10 bits
 
     Radar(const RadarConfig &config, std::uint64_t seed);
 

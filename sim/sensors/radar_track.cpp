@@ -9,13 +9,13 @@ namespace traction::sim {
 
 namespace {
 
-constexpr double near_m = 0.05;      // [m] footprint kept: at 20 deg and 0.3 m its middle lies at 0.8 m, and outside
-constexpr double far_m = 4.0;        // [m] these limits (2) has less than 1 % of its power (test: mean Doppler)
-constexpr double half_width_m = 2.0; // [m] likewise to the side
-constexpr int rows = 32;             // lines of scatterers beside the track; left and right give the same echo
+constexpr double near_m = 0.05;          // [m] footprint kept: at 20 deg and 0.3 m its middle lies at 0.8 m, and outside
+constexpr double far_m = 4.0;            // [m] these limits (2) has less than 1 % of its power (test: mean Doppler)
+constexpr double half_width_m = 2.0;     // [m] likewise to the side
+constexpr int rows = 32;                 // lines of scatterers beside the track; left and right give the same echo
 constexpr double scatterers_per_m = 160; // [1/m] of track: some 60 share the echo at any instant, enough for Rayleigh speckle
-constexpr int cell_nodes = 64;       // scatterers are drawn for so many nodes at once
-constexpr double row_bend_m = 0.35;  // [m] rows are dense below this offset and thin out beyond
+constexpr int cell_nodes = 64;           // scatterers are drawn for so many nodes at once
+constexpr double row_bend_m = 0.35;      // [m] rows are dense below this offset and thin out beyond
 
 struct Weight {
     double amplitude, range_m, direction; // direction: cosine between line of sight and travel
@@ -31,8 +31,7 @@ Weight weigh(const RadarBeam &beam, double x_m, double y_m) {
     const double sine = beam.height_m / range_m;
     // two-way power is the square of the one-way power, so two-way amplitude is the one-way power
     const double ground = beam.ground_exponent > 0 ? math::exp(0.5 * beam.ground_exponent * math::log(sine)) : 1.0;
-    const double amplitude =
-        math::exp(-half_power * (elevation * elevation + azimuth * azimuth)) * ground / (range_m * range_m);
+    const double amplitude = math::exp(-half_power * (elevation * elevation + azimuth * azimuth)) * ground / (range_m * range_m);
     return {amplitude, range_m, x_m / range_m};
 }
 

@@ -18,12 +18,12 @@ namespace traction::sim {
 
 // One radar of table II (Lhomme-Desages), as it is mounted.
 struct RadarBeam {
-    double frequency_Hz = 9.9e9;  // f0
-    double vertical_deg = 36;     // one-way beamwidth
-    double horizontal_deg = 72;   // one-way beamwidth
-    double depression_deg = 20;   // theta_d plus the mounting error
-    double height_m = 0.3;        // DSP.md section 2
-    double ground_exponent = 1;   // n, 0..2
+    double frequency_Hz = 9.9e9; // f0
+    double vertical_deg = 36;    // one-way beamwidth
+    double horizontal_deg = 72;  // one-way beamwidth
+    double depression_deg = 20;  // theta_d plus the mounting error
+    double height_m = 0.3;       // DSP.md section 2
+    double ground_exponent = 1;  // n, 0..2
 };
 
 inline constexpr double light_speed_m_s = 299792458.0;
@@ -57,8 +57,8 @@ class RadarTrack {
     std::uint64_t seed_;
     double wavelength_m_, node_m_, carrier_turns_m_;
     double mean_ratio_ = 0;
-    int first_tap_ = 0, taps_ = 0, per_cell_ = 0;                       // response reaches from first_tap_ nodes ahead
-    std::vector<Line> response_;                              // per row of scatterers, farthest tap first
+    int first_tap_ = 0, taps_ = 0, per_cell_ = 0; // response reaches from first_tap_ nodes ahead
+    std::vector<Line> response_;                  // per row of scatterers, farthest tap first
     std::map<std::int64_t, Chunk> chunks_;
     std::int64_t last_index_ = INT64_MIN;
     const Chunk *last_chunk_ = nullptr;

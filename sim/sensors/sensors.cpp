@@ -47,8 +47,7 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &st
     : config_(config), radar_(config.radar, mix64(seed + 1)), camera_(config.camera, mix64(seed + 2)),
       battery_(config.battery, seed, "battery"), accel_(config.accel, seed, "imu.accel"), gyro_(config.gyro, seed, "imu.gyro"),
       last_(start) {
-    constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current",
-                                                             "wheel3.current"};
+    constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current", "wheel3.current"};
     for (std::size_t i = 0; i < wheel_count; i++) current_.emplace_back(config.current[i], seed, name[i]);
     if (const auto pose = camera_.step({start.t_s, start.position_m[0], start.position_m[1], start.yaw_rad}))
         pending_.camera.push_back(*pose);
@@ -60,8 +59,7 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
     double stretch = (1 + config_.radar_scale) * (1 + config_.radar_pitch_s2_m * accel_m_s2);
     if (config_.radar_mount_pitch != 0) {
         double ground_rad = 0;
-        if (config_.ground_slope_rad != 0)
-            ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
+        if (config_.ground_slope_rad != 0) ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
         const double pitch = config_.radar_mount_pitch * (truth.pitch_rad - ground_rad);
         stretch *= 1 - 0.36397023426620234 * pitch - 0.5 * pitch * pitch; // tan 20 deg
     }

@@ -29,10 +29,10 @@ struct SensorConfig {
     AnalogConfig gyro;
     CameraConfig camera;
     std::array<double, wheel_count> encoder_missed{};
-    double radar_scale = 0;         // effect radar_scale
-    double radar_pitch_s2_m = 0;    // effect radar_pitch
-    double radar_mount_pitch = 1;   // how much of the body's pitch turns the beam (1: rigid mount)
-    double ground_slope_rad = 0;    // pitch is counted from the ground: rise along ground_direction_rad
+    double radar_scale = 0;       // effect radar_scale
+    double radar_pitch_s2_m = 0;  // effect radar_pitch
+    double radar_mount_pitch = 1; // how much of the body's pitch turns the beam (1: rigid mount)
+    double ground_slope_rad = 0;  // pitch is counted from the ground: rise along ground_direction_rad
     double ground_direction_rad = 0;
 };
 
@@ -56,8 +56,8 @@ class Sensors {
     // `start` is the truth before the first step.
     Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &start);
 
-    void step(const Truth &truth);        // once per plant step
-    void measure(Measurements &out);      // ends the tick
+    void step(const Truth &truth);   // once per plant step
+    void measure(Measurements &out); // ends the tick
 
   private:
     void step_radar(const Truth &truth, double accel_m_s2);

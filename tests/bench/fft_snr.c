@@ -1,7 +1,8 @@
-// fft_snr - how exact the firmware's power spectrum is, and KissFFT's where it is given, on the same samples. Prints one line a code: decibels of
-// the worst of 12 tones at 0, -20, -40 and -60 dBFS, and of noise at -12 dBFS.
+// fft_snr - how exact the firmware's power spectrum is, and KissFFT's where it is given, on the same samples. Prints one line a code:
+// decibels of the worst of 12 tones at 0, -20, -40 and -60 dBFS, and of noise at -12 dBFS.
 //
-// SNR = sum |X|^2 / sum (|X^| - |X|)^2 over bins 1..127, X in double, of the samples that the code was given, through a Hann window or none.
+// SNR = sum |X|^2 / sum (|X^| - |X|)^2 over bins 1..127, X in double, of the samples that the code was given, through a Hann window or
+// none.
 #include "firmware/core/fft.h"
 
 #include <math.h>
@@ -18,8 +19,7 @@ static double cosine[FFT_LENGTH];
 
 typedef void amplitude_t(const int16_t *sample, double *amplitude); // in units of X: sum x exp(...)
 
-static void ours(const int16_t *sample, double *amplitude)
-{
+static void ours(const int16_t *sample, double *amplitude) {
     uint64_t power[FFT_BINS];
     fft_power(sample, power);
     for (int k = 1; k < FFT_BINS; k++) {
@@ -28,8 +28,7 @@ static void ours(const int16_t *sample, double *amplitude)
 }
 
 #if WITH_KISSFFT
-static void kissfft(const int16_t *sample, double *amplitude)
-{
+static void kissfft(const int16_t *sample, double *amplitude) {
     kiss_fft_cpx out[FFT_LENGTH / 2 + 1];
     kiss_fftr_cfg cfg = kiss_fftr_alloc(FFT_LENGTH, 0, NULL, NULL);
     kiss_fftr(cfg, sample, out);
@@ -38,8 +37,7 @@ static void kissfft(const int16_t *sample, double *amplitude)
     }
     free(cfg);
 }
-static void windowed_kissfft(const int16_t *sample, double *amplitude)
-{
+static void windowed_kissfft(const int16_t *sample, double *amplitude) {
     int16_t windowed[FFT_LENGTH];
     for (int n = 0; n < FFT_LENGTH; n++) {
         windowed[n] = (int16_t)floor(sample[n] * (1 - cosine[n]) / 2 + 0.5);
@@ -48,8 +46,7 @@ static void windowed_kissfft(const int16_t *sample, double *amplitude)
 }
 #endif
 
-static double snr_dB(amplitude_t *code, bool hann, const int16_t *sample)
-{
+static double snr_dB(amplitude_t *code, bool hann, const int16_t *sample) {
     double amplitude[FFT_BINS] = {0};
     double signal = 0;
     double error = 0;
@@ -69,8 +66,7 @@ static double snr_dB(amplitude_t *code, bool hann, const int16_t *sample)
     return 10 * log10(signal / error);
 }
 
-static void print_row(const char *name, amplitude_t *code, bool hann)
-{
+static void print_row(const char *name, amplitude_t *code, bool hann) {
     printf("%-44s", name);
     for (int level = 0; level >= -60; level -= 20) {
         double worst = INFINITY;
@@ -96,8 +92,7 @@ static void print_row(const char *name, amplitude_t *code, bool hann)
     printf(" %8.1f\n", snr_dB(code, hann, noise));
 }
 
-int main(void)
-{
+int main(void) {
     for (int n = 0; n < FFT_LENGTH; n++) {
         cosine[n] = cos(2 * pi * n / FFT_LENGTH);
     }

@@ -17,14 +17,12 @@ void count_end(void);
 
 static uint64_t random_state = 7;
 
-static int draw(int range)
-{
+static int draw(int range) {
     random_state = random_state * 6364136223846793005u + 1442695040888963407u;
     return (int)((uint32_t)(random_state >> 33) % (uint32_t)range);
 }
 
-static sensor_frame_t frame_at(uint32_t tick)
-{
+static sensor_frame_t frame_at(uint32_t tick) {
     sensor_frame_t frame = {.tick = tick, .present = 0xfffu, .battery_count = 1800, .radar_samples = tick % 25 < 3 ? 6 : 5};
     for (int i = 0; i < WHEEL_COUNT; i++) {
         frame.encoder_count[i] = (int32_t)(40 * tick) + draw(4);
@@ -44,26 +42,26 @@ static sensor_frame_t frame_at(uint32_t tick)
 // Stack below this function: painted before a tick, looked at after it. The program has no signal handler that could write there.
 enum { PAINT_BYTES = 8192, PAINT = 0xa5 };
 
-static inline __attribute__((always_inline)) volatile uint8_t *stack_pointer(void)
-{
+static inline __attribute__((always_inline)) volatile uint8_t *stack_pointer(void) {
     volatile uint8_t *pointer;
     __asm__ volatile("mov %0, sp" : "=r"(pointer));
     return pointer;
 }
-#define PAINT_STACK()                                                                                                  \
-    for (volatile uint8_t *at = stack_pointer() - PAINT_BYTES; at != stack_pointer(); at++) {                          \
-        *at = PAINT;                                                                                                   \
+#define PAINT_STACK()                                                                                                                      \
+    for (volatile uint8_t *at = stack_pointer() - PAINT_BYTES; at != stack_pointer(); at++) {                                              \
+        *at = PAINT;                                                                                                                       \
     }
 
-static int tick_table(void)
-{
+static int tick_table(void) {
     int deepest = 0;
-    static const char *const names[] = {"tick stop", "tick open_loop", "tick wheel_speed", "tick platform_speed", "tick slip", "tick soil_sweep"};
+    static const char *const names[] = {"tick stop",           "tick open_loop", "tick wheel_speed",
+                                        "tick platform_speed", "tick slip",      "tick soil_sweep"};
     for (int mode = 0; mode < MODE_COUNT; mode++) {
         static control_state_t state;
         const control_config_t config = rover_config_default();
         control_reset(&config, &state);
-        command_t command = {.mode = (control_mode_t)mode, .platform_speed_m_s = 0.2f, .yaw_rate_rad_s = 0.1f, .slip_ref = 0.4f, .slip_wheels = 15};
+        command_t command = {
+            .mode = (control_mode_t)mode, .platform_speed_m_s = 0.2f, .yaw_rate_rad_s = 0.1f, .slip_ref = 0.4f, .slip_wheels = 15};
         for (int i = 0; i < WHEEL_COUNT; i++) {
             command.wheel_speed_rad_s[i] = 4.0f + 0.1f * (float)i;
             command.duty[i] = 0.3f;
@@ -86,8 +84,7 @@ static int tick_table(void)
     return deepest;
 }
 
-int main(void)
-{
+int main(void) {
     static int16_t sample[FFT_LENGTH];
     static uint64_t power[FFT_BINS];
     for (int n = 0; n < FFT_LENGTH; n++) {

@@ -27,10 +27,10 @@ namespace {
 
 struct Case {
     std::string name;
-    double seconds;                       // simulated, each round
-    std::function<double()> run;          // CPU seconds
-    double goal = 0;                      // 0: none
-    std::vector<double> factor = {};      // simulated seconds per CPU second
+    double seconds;                  // simulated, each round
+    std::function<double()> run;     // CPU seconds
+    double goal = 0;                 // 0: none
+    std::vector<double> factor = {}; // simulated seconds per CPU second
     double median() const {
         std::vector<double> sorted = factor;
         std::sort(sorted.begin(), sorted.end());
@@ -72,9 +72,12 @@ std::vector<Case> cases(const sim::Scenario &scenario) {
     const auto add = [&list](std::string name, double seconds, std::function<double()> run, double goal = 0) {
         list.push_back({std::move(name), seconds, std::move(run), goal});
     };
-    add("end to end, log file written, aggregated law", long_s, [=] { return end_to_end(scenario, aggregated, Keep::file); }, 400);
-    add("end to end, log file written, closed law (Bekker)", long_s, [=] { return end_to_end(scenario, bekker, Keep::file); }, 400);
-    add("end to end, log file written, arc law", long_s, [=] { return end_to_end(scenario, arc, Keep::file); }, 150);
+    add(
+        "end to end, log file written, aggregated law", long_s, [=] { return end_to_end(scenario, aggregated, Keep::file); }, 400);
+    add(
+        "end to end, log file written, closed law (Bekker)", long_s, [=] { return end_to_end(scenario, bekker, Keep::file); }, 400);
+    add(
+        "end to end, log file written, arc law", long_s, [=] { return end_to_end(scenario, arc, Keep::file); }, 150);
     add("end to end, log in memory, aggregated law", long_s, [=] { return end_to_end(scenario, aggregated, Keep::log); });
     add("end to end, no log, aggregated law", long_s, [=] { return end_to_end(scenario, aggregated, Keep::nothing); });
     add("plant alone, aggregated law", s, [=] { return plant_alone(s, aggregated); });
@@ -120,9 +123,12 @@ int main(int argc, char **argv) {
     int rounds = 5;
     const char *json = nullptr;
     for (int i = 1; i < argc; ++i) {
-        if (std::strcmp(argv[i], "--rounds") == 0 && i + 1 < argc) rounds = std::atoi(argv[++i]);
-        else if (std::strcmp(argv[i], "--json") == 0 && i + 1 < argc) json = argv[++i];
-        else rounds = 0;
+        if (std::strcmp(argv[i], "--rounds") == 0 && i + 1 < argc)
+            rounds = std::atoi(argv[++i]);
+        else if (std::strcmp(argv[i], "--json") == 0 && i + 1 < argc)
+            json = argv[++i];
+        else
+            rounds = 0;
     }
     if (rounds < 1) {
         std::fputs("usage: sim_bench [--rounds N] [--json FILE]\n", stderr);

@@ -43,14 +43,16 @@ const std::string halves_only = R"(<mujoco><option timestep="0.001" gravity="0 0
 <inertial pos="0 0 0" mass="1.44" diaginertia="0.0062937 0.0149070 0.012987"/></body></body></worldbody></mujoco>)";
 
 std::string wheel(const char *x, const char *y) {
-    return std::string("<body pos=\"") + x + " " + y + " 0\"><joint type=\"hinge\" axis=\"0 1 0\" armature=\"0.0048\"/>"
+    return std::string("<body pos=\"") + x + " " + y +
+           " 0\"><joint type=\"hinge\" axis=\"0 1 0\" armature=\"0.0048\"/>"
            "<geom type=\"sphere\" size=\"0.057\" mass=\"0.15\" friction=\"0.73 0.005 0.0001\"/></body>";
 }
 
 std::string with_wheels() {
     const std::string body = R"(<inertial pos="0 0 0" mass="1.14" diaginertia="0.0050 0.0118 0.0103"/>)";
     return R"(<mujoco><option timestep="0.001" gravity="0 0 -9.81"/><worldbody><geom type="plane" size="0 0 1"/>
-<body pos="0 0.0675 0.057"><freejoint/>)" + body + wheel("-0.083", "0.0525") + wheel("0.083", "0.0525") +
+<body pos="0 0.0675 0.057"><freejoint/>)" +
+           body + wheel("-0.083", "0.0525") + wheel("0.083", "0.0525") +
            R"(<body pos="0 -0.135 0"><joint type="hinge" axis="0 1 0" pos="0 0.0675 0"/>)" + body + wheel("-0.083", "-0.0525") +
            wheel("0.083", "-0.0525") + "</body></body></worldbody></mujoco>";
 }
@@ -68,8 +70,12 @@ struct Push {
 Push push(Wheel &w, const sim::Soil &soil, const sim::SoilConstants &constants, sim::ContactLaw law, double depth_m, const double v[3]) {
     const sim::DriveParameters motor;
     const double radius = 0.057;
-    sim::ContactInput in{.law = soil.law, .shear_slip = soil.shear_slip, .rim_m_s = radius * w.drive.wheel_speed_rad_s,
-                         .along_m_s = v[0], .across_m_s = v[1], .load_kg = 0.72};
+    sim::ContactInput in{.law = soil.law,
+                         .shear_slip = soil.shear_slip,
+                         .rim_m_s = radius * w.drive.wheel_speed_rad_s,
+                         .along_m_s = v[0],
+                         .across_m_s = v[1],
+                         .load_kg = 0.72};
     Push out;
     double resist = 0;
     sim::ContactForce force;
@@ -81,7 +87,8 @@ Push push(Wheel &w, const sim::Soil &soil, const sim::SoilConstants &constants, 
     } else {
         const sim::SlipChange change = sim::slip_step(in, w.contact, rival_dt_s);
         const auto function = law == sim::ContactLaw::arc ? sim::arc_force : sim::bekker_force;
-        const sim::SoilForce soft = function(*soil.bekker, constants, {radius, 0.042, 0.005}, {depth_m, std::clamp(w.contact.slip, -1.0, 1.0), 0});
+        const sim::SoilForce soft =
+            function(*soil.bekker, constants, {radius, 0.042, 0.005}, {depth_m, std::clamp(w.contact.slip, -1.0, 1.0), 0});
         out.up = std::max(0.0, soft.normal_N - 60 * v[2]);
         in.grip_N = soft.largest_N;
         in.shear_slip = soft.shear_slip;

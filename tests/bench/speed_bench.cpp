@@ -21,19 +21,32 @@ struct Profile {
     std::function<double(double)> speed;
 };
 
-double ramp(double t, double t0, double t1, double v0, double v1) { return t <= t0 ? v0 : t >= t1 ? v1 : v0 + (v1 - v0) * (t - t0) / (t1 - t0); }
+double ramp(double t, double t0, double t1, double v0, double v1) {
+    return t <= t0 ? v0 : t >= t1 ? v1 : v0 + (v1 - v0) * (t - t0) / (t1 - t0);
+}
 
-std::vector<Profile> profiles()
-{
+std::vector<Profile> profiles() {
     return {
         {"constant 0.1", [](double) { return 0.1; }},
         {"constant 0.2", [](double) { return 0.2; }},
         {"constant 0.5", [](double) { return 0.5; }},
         {"constant 1.0", [](double) { return 1.0; }},
         {"ramps 0.2 m/s2", [](double t) { return t < 10 ? ramp(t, 2, 6, 0.1, 0.9) : ramp(t, 12, 16, 0.9, 0.1); }},
-        {"ramps 1 m/s2", [](double t) { const double p = std::fmod(t, 5.0); return p < 2.5 ? ramp(p, 0.5, 1.2, 0.15, 0.85) : ramp(p, 3, 3.7, 0.85, 0.15); }},
-        {"stop and go", [](double t) { const double p = std::fmod(t, 6.0); return p < 3 ? ramp(p, 1, 1.8, 0, 0.4) : ramp(p, 4, 4.8, 0.4, 0); }},
-        {"slip events", [](double t) { const double p = std::fmod(t, 4.0); return p < 2 ? ramp(p, 1, 1.3, 0.5, 0.25) : ramp(p, 2.5, 2.8, 0.25, 0.5); }},
+        {"ramps 1 m/s2",
+         [](double t) {
+             const double p = std::fmod(t, 5.0);
+             return p < 2.5 ? ramp(p, 0.5, 1.2, 0.15, 0.85) : ramp(p, 3, 3.7, 0.85, 0.15);
+         }},
+        {"stop and go",
+         [](double t) {
+             const double p = std::fmod(t, 6.0);
+             return p < 3 ? ramp(p, 1, 1.8, 0, 0.4) : ramp(p, 4, 4.8, 0.4, 0);
+         }},
+        {"slip events",
+         [](double t) {
+             const double p = std::fmod(t, 4.0);
+             return p < 2 ? ramp(p, 1, 1.3, 0.5, 0.25) : ramp(p, 2.5, 2.8, 0.25, 0.5);
+         }},
         {"sine", [](double t) { return 0.4 + 0.25 * std::sin(2 * clutter::pi * t / 5); }},
     };
 }
@@ -55,8 +68,7 @@ using Samples = std::vector<std::uint16_t>;
 
 constexpr double duration_s = 20;
 
-std::vector<double> path_of(const Profile &profile)
-{
+std::vector<double> path_of(const Profile &profile) {
     std::vector<double> path{0};
     for (int i = 0; i < duration_s * 512 + 8; ++i) {
         path.push_back(path.back() + profile.speed((i + 0.5) / 512.0) / 512.0);
@@ -65,8 +77,7 @@ std::vector<double> path_of(const Profile &profile)
 }
 
 // The tests' own clutter; there and back, so that a long drive fits the track: the radar only sees |v|.
-Samples listen_clutter(const std::vector<double> &echo, const std::vector<double> &path, int seed, const Variant &variant)
-{
+Samples listen_clutter(const std::vector<double> &echo, const std::vector<double> &path, int seed, const Variant &variant) {
     const double track = (static_cast<double>(echo.size()) - 8) * clutter::grid_m;
     const auto position = [&](double t) {
         const double x = std::fmod(path[static_cast<std::size_t>(t * 512 + 0.5)], 2 * track);
@@ -78,8 +89,7 @@ Samples listen_clutter(const std::vector<double> &echo, const std::vector<double
     return clutter::drive(echo, duration_s, position, adc);
 }
 
-Samples listen_simulator(const std::vector<double> &path, int seed, const Variant &variant)
-{
+Samples listen_simulator(const std::vector<double> &path, int seed, const Variant &variant) {
     traction::sim::RadarConfig config;
     config.mounting_error_deg = variant.mounting_error_deg;
     config.ground_exponent = variant.exponent;
@@ -92,8 +102,7 @@ Samples listen_simulator(const std::vector<double> &path, int seed, const Varian
     return samples;
 }
 
-void run(const Profile &profile, const Samples &samples, int seed, const Variant &variant, const control_config_t &config, Score &score)
-{
+void run(const Profile &profile, const Samples &samples, int seed, const Variant &variant, const control_config_t &config, Score &score) {
     clutter::Random random{static_cast<std::uint64_t>(seed) * 31 + 7};
     doppler_state_t doppler = {};
     ground_speed_state_t filter;
@@ -145,8 +154,7 @@ struct Table {
     double rmse_cm_s = 0; // over all profiles alike
 };
 
-Table table_of(std::vector<Score> scores)
-{
+Table table_of(std::vector<Score> scores) {
     Table table;
     const std::vector<Profile> all = profiles();
     double square = 0;
@@ -166,8 +174,7 @@ struct Both {
 };
 
 // One radar, one variant: both methods on the same samples.
-Both measure(bool simulator, const Variant &variant, int seeds)
-{
+Both measure(bool simulator, const Variant &variant, int seeds) {
     const std::vector<Profile> all = profiles();
     const control_config_t paper = rover_config_paper();
     control_config_t ours = rover_config_default();
@@ -194,9 +201,9 @@ Both measure(bool simulator, const Variant &variant, int seeds)
     return {table_of(std::move(paper_scores)), table_of(std::move(our_scores))};
 }
 
-void print(const char *radar, int seeds, const Both &both)
-{
-    std::printf("%s, %d seeds\n%-16s | paper RMSE cm/s  p95 %%  lag s  fix s | ours RMSE cm/s  p95 %%  lag s  fix s\n", radar, seeds, "profile");
+void print(const char *radar, int seeds, const Both &both) {
+    std::printf("%s, %d seeds\n%-16s | paper RMSE cm/s  p95 %%  lag s  fix s | ours RMSE cm/s  p95 %%  lag s  fix s\n", radar, seeds,
+                "profile");
     for (std::size_t p = 0; p < both.ours.rows.size(); ++p) {
         const Row &a = both.paper.rows[p], &b = both.ours.rows[p];
         std::printf("%-16s |%15.2f %7.1f %6.3f %6.2f |%14.2f %7.1f %6.3f %6.2f\n", a.profile.c_str(), a.rmse_cm_s, a.p95_percent, a.lag_s,
@@ -205,39 +212,39 @@ void print(const char *radar, int seeds, const Both &both)
     std::printf("%-16s |%15.2f                       |%14.2f\n", "all", both.paper.rmse_cm_s, both.ours.rmse_cm_s);
 }
 
-nlohmann::json json_of(const Table &table)
-{
+nlohmann::json json_of(const Table &table) {
     nlohmann::json rows = nlohmann::json::array();
     for (const Row &row : table.rows) {
-        rows.push_back({{"profile", row.profile}, {"rmse_cm_s", row.rmse_cm_s}, {"p95_percent", row.p95_percent}, {"lag_s", row.lag_s},
+        rows.push_back({{"profile", row.profile},
+                        {"rmse_cm_s", row.rmse_cm_s},
+                        {"p95_percent", row.p95_percent},
+                        {"lag_s", row.lag_s},
                         {"first_fix_s", row.first_fix_s}});
     }
     return {{"rows", rows}, {"rmse_cm_s", table.rmse_cm_s}};
 }
 
 // DSP.md's goals; rows 1 and 3 are the constant speeds 0.2 and 1.0 m/s.
-bool goals_met(const Table &ours)
-{
-    bool met = ours.rmse_cm_s <= 1.8 && ours.rows[1].p95_percent <= 15 && ours.rows[3].p95_percent <= 4 && ours.rows[1].first_fix_s <= 0.5 &&
-               ours.rows[2].first_fix_s <= 0.5 && ours.rows[3].first_fix_s <= 0.5;
+bool goals_met(const Table &ours) {
+    bool met = ours.rmse_cm_s <= 1.8 && ours.rows[1].p95_percent <= 15 && ours.rows[3].p95_percent <= 4 &&
+               ours.rows[1].first_fix_s <= 0.5 && ours.rows[2].first_fix_s <= 0.5 && ours.rows[3].first_fix_s <= 0.5;
     for (const Row &row : ours.rows) {
         met = met && std::fabs(row.lag_s) <= 0.03;
     }
     return met;
 }
 
-bool say_goals(const Table &ours)
-{
+bool say_goals(const Table &ours) {
     const bool met = goals_met(ours);
-    std::printf("goals of DSP.md (RMSE 1.8 cm/s, p95 15 %% at 0.2 and 4 %% at 1.0 m/s, |lag| 0.03 s, first fix 0.5 s from 0.2 m/s on): %s\n",
-                met ? "met" : "missed");
+    std::printf(
+        "goals of DSP.md (RMSE 1.8 cm/s, p95 15 %% at 0.2 and 4 %% at 1.0 m/s, |lag| 0.03 s, first fix 0.5 s from 0.2 m/s on): %s\n",
+        met ? "met" : "missed");
     return met;
 }
 
 } // namespace
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     int seeds = 12;
     bool brief = false;
     std::string json_file;
@@ -275,8 +282,8 @@ int main(int argc, char **argv)
         std::printf("\n%-24s | RMSE cm/s, %d seeds: clutter paper, ours | simulator paper, ours\n", "misfit", few);
         for (const Variant &variant : variants) {
             const Both a = measure(false, variant, few), b = measure(true, variant, few);
-            std::printf("%-24s | %28.2f %7.2f   | %12.2f %7.2f\n", variant.name.c_str(), a.paper.rmse_cm_s, a.ours.rmse_cm_s, b.paper.rmse_cm_s,
-                        b.ours.rmse_cm_s);
+            std::printf("%-24s | %28.2f %7.2f   | %12.2f %7.2f\n", variant.name.c_str(), a.paper.rmse_cm_s, a.ours.rmse_cm_s,
+                        b.paper.rmse_cm_s, b.ours.rmse_cm_s);
             json["misfit"].push_back({{"name", variant.name},
                                       {"clutter", {{"paper_cm_s", a.paper.rmse_cm_s}, {"ours_cm_s", a.ours.rmse_cm_s}}},
                                       {"simulator", {{"paper_cm_s", b.paper.rmse_cm_s}, {"ours_cm_s", b.ours.rmse_cm_s}}}});

@@ -11,8 +11,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { REPEAT_MAX = 60 };
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
-{
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const size_t step = sizeof(sensor_frame_t) + sizeof(command_t) + 1;
     const control_config_t config = size > 0 && (data[0] & 1u) != 0u ? rover_config_paper() : rover_config_default();
     control_state_t state;

@@ -19,8 +19,7 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
       0 <= s->safety.turn < 4;
 */
 
-static control_state_t any_state_in_order(void)
-{
+static control_state_t any_state_in_order(void) {
     control_state_t state;
     Frama_C_make_unknown((char *)&state, sizeof state);
     //@ loop unroll 256;
@@ -46,8 +45,7 @@ static control_state_t any_state_in_order(void)
     return state;
 }
 
-static int any_tick(const control_config_t *config)
-{
+static int any_tick(const control_config_t *config) {
     control_state_t state;
     control_reset(config, &state);
     //@ check in_order(&state);
@@ -64,8 +62,7 @@ static int any_tick(const control_config_t *config)
 }
 
 // Any 256 samples, in two cases by the sign of one: without them the interval of bin 13 is 0.1 % wider than 32 bits.
-static int any_transform(void)
-{
+static int any_transform(void) {
     uint64_t power[FFT_BINS];
     int16_t sample[FFT_LENGTH];
     int sum = 0;
@@ -78,8 +75,7 @@ static int any_transform(void)
     return sum + (power[1] > 0u);
 }
 
-int prove(void)
-{
+int prove(void) {
     const control_config_t paper = rover_config_paper();
     control_config_t ours = rover_config_default();
     int sum = any_transform() + any_tick(&paper) + any_tick(&ours);

@@ -40,7 +40,8 @@ class Game : public testing::Test {
     static std::string copy(const std::string &name) {
         const fs::path to = home() / name;
         fs::create_directories(to);
-        for (const char *file : {"run.csv", "baseline.toml", "model.toml", "sealed.json", "game.json"}) fs::copy_file(home() / file, to / file, fs::copy_options::overwrite_existing);
+        for (const char *file : {"run.csv", "baseline.toml", "model.toml", "sealed.json", "game.json"})
+            fs::copy_file(home() / file, to / file, fs::copy_options::overwrite_existing);
         return to.string();
     }
     static nlohmann::json state(const std::string &folder) { return nlohmann::json::parse(content(fs::path(folder) / "game.json")); }
@@ -110,7 +111,8 @@ TEST_F(Game, the_same_seed_hides_the_same_thing) {
     EXPECT_EQ(content(again / "sealed.json"), content(home() / "sealed.json"));
     EXPECT_EQ(content(again / "run.csv"), content(home() / "run.csv"));
     expect_error([&] { start({.root = ".", .folder = again.string(), .seed = 4, .duration_s = 45}); }, "--replace");
-    expect_error([&] { start({.root = ".", .folder = (home() / "moon").string(), .soil = "moon", .seed = 4, .duration_s = 45}); }, "sand, gravel or concrete");
+    expect_error([&] { start({.root = ".", .folder = (home() / "moon").string(), .soil = "moon", .seed = 4, .duration_s = 45}); },
+                 "sand, gravel or concrete");
     EXPECT_FALSE(fs::exists(home() / "moon")); // nothing half made
 }
 
@@ -144,7 +146,12 @@ TEST(Points, are_those_of_the_rules) {
     EXPECT_EQ(points(p), 80);
     p = {.named = false, .wheel_right = false, .error_before = 4, .error_after = 4, .floor = 2, .wrong_guesses = 9};
     EXPECT_EQ(points(p), 0);
-    p = {.named = true, .wheel_right = true, .error_before = 2, .error_after = 2, .floor = 2, .wrong_guesses = 0}; // nothing to gain in this log
+    p = {.named = true,
+         .wheel_right = true,
+         .error_before = 2,
+         .error_after = 2,
+         .floor = 2,
+         .wrong_guesses = 0}; // nothing to gain in this log
     EXPECT_EQ(points(p), 100);
     p.named = false;
     EXPECT_EQ(points(p), 0);

@@ -161,8 +161,10 @@ TEST(FaultHal, a_dropped_sensor_loses_its_bit_and_no_other) {
     using enum sim::FaultySensor;
     for (const Case &c : {Case{encoder, 1, 0x002}, Case{encoder, -1, 0x00f}, Case{current, 3, 0x080}, Case{current, -1, 0x0f0},
                           Case{battery, -1, 0x100}, Case{accel, -1, 0x200}, Case{gyro, -1, 0x400}, Case{radar, -1, 0x800}}) {
-        const auto frames = run({.sensors = {{.sensor = c.sensor, .wheel = c.wheel, .kind = sim::FaultKind::dropped, .from_s = 0.1, .to_s = 0.2}},
-                                 .emergency_stop_s = {}}, 40);
+        const auto frames =
+            run({.sensors = {{.sensor = c.sensor, .wheel = c.wheel, .kind = sim::FaultKind::dropped, .from_s = 0.1, .to_s = 0.2}},
+                 .emergency_stop_s = {}},
+                40);
         for (std::size_t i = 0; i < frames.size(); i++) {
             const bool failing = i + 1 >= 10 && i + 1 < 20; // frame i ends at (i + 1) * 10 ms
             EXPECT_EQ(frames[i].present, failing ? 0xfffu & ~c.lost : 0xfffu) << i;
@@ -171,21 +173,27 @@ TEST(FaultHal, a_dropped_sensor_loses_its_bit_and_no_other) {
 }
 
 TEST(FaultHal, a_stuck_sensor_repeats_and_a_delayed_one_tells_the_past) {
-    const auto stuck = run({.sensors = {{.sensor = sim::FaultySensor::encoder, .wheel = 2, .kind = sim::FaultKind::stuck, .from_s = 0.1, .to_s = never_s}},
-                            .emergency_stop_s = {}}, 30);
+    const auto stuck =
+        run({.sensors = {{.sensor = sim::FaultySensor::encoder, .wheel = 2, .kind = sim::FaultKind::stuck, .from_s = 0.1, .to_s = never_s}},
+             .emergency_stop_s = {}},
+            30);
     EXPECT_EQ(stuck[8].encoder_count[2], 802);
     for (std::size_t i = 9; i < stuck.size(); i++) EXPECT_EQ(stuck[i].encoder_count[2], 902);
     EXPECT_EQ(stuck[29].encoder_count[1], 2901);
 
-    const auto late = run({.sensors = {{.sensor = sim::FaultySensor::accel, .kind = sim::FaultKind::delayed, .from_s = 0, .to_s = never_s, .amount = 0.05}},
-                           .emergency_stop_s = {}}, 30);
+    const auto late = run(
+        {.sensors = {{.sensor = sim::FaultySensor::accel, .kind = sim::FaultKind::delayed, .from_s = 0, .to_s = never_s, .amount = 0.05}},
+         .emergency_stop_s = {}},
+        30);
     for (std::size_t i = 5; i < late.size(); i++) EXPECT_EQ(late[i].accel_x_count, static_cast<int>(i) - 5);
     EXPECT_EQ(late[29].gyro_z_count, -29);
 }
 
 TEST(FaultHal, a_late_radar_loses_no_sample) {
-    const auto frames = run({.sensors = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::delayed, .from_s = 0, .to_s = never_s, .amount = 0.1}},
-                             .emergency_stop_s = {}}, 60);
+    const auto frames = run(
+        {.sensors = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::delayed, .from_s = 0, .to_s = never_s, .amount = 0.1}},
+         .emergency_stop_s = {}},
+        60);
     std::vector<int> samples;
     for (const sensor_frame_t &frame : frames) samples.insert(samples.end(), frame.radar_count, frame.radar_count + frame.radar_samples);
     const std::size_t late = 51; // 0.1 s at 512 Hz
@@ -193,8 +201,14 @@ TEST(FaultHal, a_late_radar_loses_no_sample) {
 }
 
 TEST(FaultHal, added_noise_has_the_stated_size) {
-    const auto frames = run({.sensors = {{.sensor = sim::FaultySensor::current, .wheel = 0, .kind = sim::FaultKind::noisy, .from_s = 0, .to_s = never_s, .amount = 0.1}},
-                             .emergency_stop_s = {}}, 4000);
+    const auto frames = run({.sensors = {{.sensor = sim::FaultySensor::current,
+                                          .wheel = 0,
+                                          .kind = sim::FaultKind::noisy,
+                                          .from_s = 0,
+                                          .to_s = never_s,
+                                          .amount = 0.1}},
+                             .emergency_stop_s = {}},
+                            4000);
     double square = 0;
     for (std::size_t i = 0; i < frames.size(); i++) {
         const double error = frames[i].current_count[0] - (2048.0 + static_cast<double>(i % 100));
@@ -292,13 +306,22 @@ TEST(SimHal, a_dead_sensor_never_stalls_the_loop) {
     for (const sim::FaultySensor sensor : {encoder, current, battery, accel, gyro, radar}) {
         for (const sim::FaultKind kind : {sim::FaultKind::dropped, sim::FaultKind::stuck, sim::FaultKind::noisy, sim::FaultKind::delayed}) {
             hal::SimHal world(sand());
-            hal::FaultHal faulty(world.hal(), {.sensors = {{.sensor = sensor, .kind = kind, .from_s = 0.5, .to_s = never_s, .amount = 0.3}}, .emergency_stop_s = {}}, {}, 3);
+            hal::FaultHal faulty(
+                world.hal(),
+                {.sensors = {{.sensor = sensor, .kind = kind, .from_s = 0.5, .to_s = never_s, .amount = 0.3}}, .emergency_stop_s = {}}, {},
+                3);
             const hal_t hal = faulty.hal();
             const control_config_t config = rover_config_default();
             static control_state_t state;
             control_reset(&config, &state);
-            const command_t command{.mode = MODE_PLATFORM_SPEED, .platform_speed_m_s = 0.3f, .yaw_rate_rad_s = 0, .wheel_speed_rad_s = {},
-                                    .duty = {}, .slip_ref = 0, .slip_wheels = 0, .age_ticks = 0};
+            const command_t command{.mode = MODE_PLATFORM_SPEED,
+                                    .platform_speed_m_s = 0.3f,
+                                    .yaw_rate_rad_s = 0,
+                                    .wheel_speed_rad_s = {},
+                                    .duty = {},
+                                    .slip_ref = 0,
+                                    .slip_wheels = 0,
+                                    .age_ticks = 0};
             int ticks = 0;
             while (hal.wait_tick(hal.context) == HAL_OK) {
                 sensor_frame_t frame{};

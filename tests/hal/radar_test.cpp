@@ -52,7 +52,8 @@ Echo study(double exponent, std::uint64_t seed, double length_m = 600) {
         double value = 1;
         for (std::size_t k = 1; k < lags; k++) {
             const double window = 0.5 + 0.5 * std::cos(std::numbers::pi * static_cast<double>(k) / lags);
-            value += 2 * window * std::real(rho[k] * std::polar(1.0, -2 * std::numbers::pi * ratio * nominal * static_cast<double>(k) * step_m));
+            value +=
+                2 * window * std::real(rho[k] * std::polar(1.0, -2 * std::numbers::pi * ratio * nominal * static_cast<double>(k) * step_m));
         }
         spectrum.push_back(value);
         sum += std::max(value, 0.0);
@@ -120,7 +121,8 @@ TEST(RadarClutter, the_same_place_gives_the_same_echo_from_either_side) {
 
 TEST(RadarClutter, every_radar_of_table_II_sees_its_own_carrier) {
     for (const RadarModel &model : radar_models()) {
-        RadarTrack track({.frequency_Hz = model.frequency_Hz, .vertical_deg = model.vertical_deg, .horizontal_deg = model.horizontal_deg}, 2);
+        RadarTrack track({.frequency_Hz = model.frequency_Hz, .vertical_deg = model.vertical_deg, .horizontal_deg = model.horizontal_deg},
+                         2);
         SCOPED_TRACE(model.name);
         // the phase of a step of 0.1 mm, averaged over 20 m, gives the mean Doppler
         std::complex<double> turn = 0;

@@ -27,7 +27,9 @@ Diagnosis ask(Soil soil, const std::string &hidden, std::uint64_t seed) {
     return ask(config);
 }
 
-bool is_nearest(const Diagnosis &d, const std::string &effect) { return std::find(d.nearest.begin(), d.nearest.end(), effect) != d.nearest.end(); }
+bool is_nearest(const Diagnosis &d, const std::string &effect) {
+    return std::find(d.nearest.begin(), d.nearest.end(), effect) != d.nearest.end();
+}
 
 TEST(Beyond, a_stand_in_is_the_nearest_and_not_the_cause) {
     const Diagnosis d = ask(Soil::sand, "friction_squared:coefficient_Nms2=8e-4", 31);
@@ -97,15 +99,18 @@ TEST(Beyond, a_shape_takes_no_name_that_is_about_something_else) {
     config.soil = Soil::gravel;
     config.seed = 35;
     config.duration_s = 120;
-    for (const char *hidden : {"speed_resistance:coefficient_s_m=0.175", "accel_scale:change=0.11"}) config.hidden.push_back(generator::parse_setting(hidden));
+    for (const char *hidden : {"speed_resistance:coefficient_s_m=0.175", "accel_scale:change=0.11"})
+        config.hidden.push_back(generator::parse_setting(hidden));
     const Diagnosis d = ask(config); // resistance(ground speed) holds the first, not the second
-    for (const char *effect : {"speed_resistance", "accel_scale"}) EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), effect), d.effects.end()) << effect << ": " << d.text;
+    for (const char *effect : {"speed_resistance", "accel_scale"})
+        EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), effect), d.effects.end()) << effect << ": " << d.text;
 }
 
 // The fit of the baseline lies at bounds there: what its linear steps promise of the blocks left out is less than its own error.
 TEST(Beyond, a_held_out_error_below_that_of_the_fit_is_not_believed) {
     const Diagnosis d = ask(generator::draw_case(30302, 120).config); // encoder_missed and accel_scale, on gravel
-    for (const char *effect : {"encoder_missed", "accel_scale"}) EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), effect), d.effects.end()) << effect << ": " << d.text;
+    for (const char *effect : {"encoder_missed", "accel_scale"})
+        EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), effect), d.effects.end()) << effect << ": " << d.text;
 }
 
 } // namespace

@@ -60,7 +60,8 @@ TEST(Diagnose, two_wheels_of_one_side_that_a_log_cannot_tell_apart_are_a_class) 
     const Diagnosis d = ask(Soil::sand, log_with(Soil::sand, "rolling_resistance:coefficient=0.1,wheel=1", 6));
     ASSERT_FALSE(d.classes.empty()) << d.text;
     const std::vector<std::string> &members = d.classes[0].members;
-    for (const char *wheel : {"rolling_resistance on wheel 1", "rolling_resistance on wheel 3"}) // both push on the right side: the same moment, the same sum
+    for (const char *wheel :
+         {"rolling_resistance on wheel 1", "rolling_resistance on wheel 3"}) // both push on the right side: the same moment, the same sum
         EXPECT_EQ(std::count(members.begin(), members.end(), wheel), 1) << d.text;
 }
 
@@ -70,8 +71,8 @@ Diagnosis ask_campaign(std::uint64_t seed) {
     return diagnose(model, make_dataset(model, generator::generate(config)), {});
 }
 
-// The baseline's own Coulomb torque lies at its bound, and the weight, the rolling resistance and the viscous friction with it: linear steps from there
-// go nowhere.
+// The baseline's own Coulomb torque lies at its bound, and the weight, the rolling resistance and the viscous friction with it: linear
+// steps from there go nowhere.
 TEST(Diagnose, names_a_friction_that_drove_the_baseline_to_its_bounds) {
     const Diagnosis d = ask_campaign(80009); // 0.0254 N m on concrete
     ASSERT_EQ(d.effects.size(), 1U) << d.text;
@@ -99,7 +100,8 @@ TEST(Diagnose, what_only_the_data_sheets_tolerances_decide_is_a_class) {
     const Diagnosis d = ask_campaign(80109); // torque_constant; voltage_gain leaves no more, and moves other parameters as far
     ASSERT_EQ(d.classes.size(), 1U) << d.text;
     for (const char *effect : {"torque_constant", "voltage_gain"})
-        EXPECT_NE(std::find(d.classes[0].members.begin(), d.classes[0].members.end(), effect), d.classes[0].members.end()) << effect << ": " << d.text;
+        EXPECT_NE(std::find(d.classes[0].members.begin(), d.classes[0].members.end(), effect), d.classes[0].members.end())
+            << effect << ": " << d.text;
 }
 
 // Twice the range: nothing smaller does as well, so it is named as a least size; what it dwarfs is not named at the end of its own range.
@@ -108,7 +110,8 @@ TEST(Diagnose, a_size_beyond_its_range_is_told_as_a_least_one) {
     ASSERT_EQ(d.effects.size(), 1U) << d.text;
     EXPECT_EQ(d.effects[0], "body_drag");
     EXPECT_NEAR(d.accepted[0].value[0], 7.5, 0.01); // the catalogue's 5 N and half of it
-    EXPECT_TRUE(std::any_of(d.messages.begin(), d.messages.end(), [](const std::string &m) { return m.find("at least that") != std::string::npos; }));
+    EXPECT_TRUE(std::any_of(d.messages.begin(), d.messages.end(),
+                            [](const std::string &m) { return m.find("at least that") != std::string::npos; }));
 }
 
 TEST(Diagnose, says_the_same_bytes_twice) {
@@ -124,8 +127,8 @@ TEST(Diagnose, says_the_same_bytes_twice) {
 TEST(Robustness, any_signal_may_be_missing_and_is_then_told) {
     const log::Log whole = log_with(Soil::sand, "", 7, 30);
     const Model model = model_for(Soil::sand);
-    for (const char *gone : {"wheel0.current_A", "wheel1.encoder_count", "wheel2.duty", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "radar.speed_m_s",
-                             "camera.x_m", "camera.yaw_rad"}) {
+    for (const char *gone : {"wheel0.current_A", "wheel1.encoder_count", "wheel2.duty", "battery.voltage_V", "imu.accel_x_m_s2",
+                             "imu.gyro_z_rad_s", "radar.speed_m_s", "camera.x_m", "camera.yaw_rad"}) {
         log::Log log = whole;
         std::erase_if(log.signals, [&](const log::Signal &s) { return s.name == gone; });
         const Dataset data = make_dataset(model, log);
@@ -172,7 +175,8 @@ TEST(Add, keeps_the_ladder_in_the_model) {
     const Model model = model_for(Soil::sand);
     const Added added = add_effect(model, make_dataset(model, log), "body_drag", -1, "");
     EXPECT_TRUE(added.helps);
-    EXPECT_NEAR(added.model.effects[0].parameters.at("force_N").value, 2, 0.3); // rolling resistance, known to 0.004 * 28 N = 0.11 N, stands in: 3 of that
+    EXPECT_NEAR(added.model.effects[0].parameters.at("force_N").value, 2,
+                0.3); // rolling resistance, known to 0.004 * 28 N = 0.11 N, stands in: 3 of that
     ASSERT_EQ(added.model.lineage.size(), 2U);
     EXPECT_LT(added.model.lineage[1].heldout, added.model.lineage[0].heldout);
     EXPECT_THROW(add_effect(added.model, make_dataset(model, log), "body_drag", -1, ""), ModelError);

@@ -18,10 +18,12 @@ constexpr double tick_s = 0.01, jump_s = 3.005, accel_rad_s2 = 30, counts_per_ra
 // A bench motor that turns at 2 rad/s and, from jump_s on, gains accel_rad_s2 for 0.3 s; the current is the torque's, the duty its own.
 log::Log motor(double jump_rad_s2) {
     log::Log log;
-    log::Signal count{"wheel0.encoder_count", {}, {}}, current{"wheel0.current_A", {}, {}}, duty{"wheel0.duty", {}, {}}, battery{"battery.voltage_V", {}, {}};
+    log::Signal count{"wheel0.encoder_count", {}, {}}, current{"wheel0.current_A", {}, {}}, duty{"wheel0.duty", {}, {}},
+        battery{"battery.voltage_V", {}, {}};
     for (int i = 0; i < 600; ++i) {
         const double t = tick_s * i, since = std::clamp(t - jump_s, 0.0, 0.3), after = std::max(0.0, t - jump_s - 0.3);
-        count.t_s.push_back(t), count.value.push_back(std::floor(counts_per_rad * (2 * t + jump_rad_s2 * (0.5 * since * since + 0.3 * after))));
+        count.t_s.push_back(t),
+            count.value.push_back(std::floor(counts_per_rad * (2 * t + jump_rad_s2 * (0.5 * since * since + 0.3 * after))));
         const bool gains = t > jump_s && t < jump_s + 0.3;
         current.t_s.push_back(t), current.value.push_back((0.03 + (gains ? 5e-3 * jump_rad_s2 : 0.0)) / 0.265);
         duty.t_s.push_back(t), duty.value.push_back(i < 300 ? 0.25 : 0.75);
@@ -33,8 +35,10 @@ log::Log motor(double jump_rad_s2) {
 }
 
 Model bench() {
-    return parse_model("[rover]\nmotion = \"none\"\n[[wheel]]\nradius_m = 0.057\n[motor]\ntorque_constant_Nm_A = 0.265\nresistance_ohm = 3.24\n"
-                       "inertia_kg_m2 = 5e-3\nviscous_Nms = 0\ncoulomb_Nm = 0.03\n[sensors.encoder]\ncounts_per_turn = 6000\n", "bench");
+    return parse_model(
+        "[rover]\nmotion = \"none\"\n[[wheel]]\nradius_m = 0.057\n[motor]\ntorque_constant_Nm_A = 0.265\nresistance_ohm = 3.24\n"
+        "inertia_kg_m2 = 5e-3\nviscous_Nms = 0\ncoulomb_Nm = 0.03\n[sensors.encoder]\ncounts_per_turn = 6000\n",
+        "bench");
 }
 
 const Balance &balance(const Dataset &data, BalanceKind kind) {
@@ -80,7 +84,7 @@ TEST(Inputs, rows_at_a_jump_are_doubted_and_calm_rows_are_not) {
         if (t < jump_s - 0.2) calm = std::max(calm, torque.noise_factor[r]);
         if (std::fabs(t - jump_s) < 0.05) jump = std::max(jump, torque.noise_factor[r]), ++rows_there;
     }
-    EXPECT_LT(calm, 1.2); // the encoder's own noise
+    EXPECT_LT(calm, 1.2);                            // the encoder's own noise
     EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: doubted, or left out
 }
 
@@ -113,7 +117,9 @@ TEST(Inputs, wheels_that_swing_at_4_Hz_are_integrated_in_steps_of_10_ms) {
     for (const auto &[hertz, step_s] : {std::pair{1.0, 0.02}, {4.0, 0.01}}) {
         log::Log log = motor(0);
         const double omega = 2 * std::numbers::pi * hertz;
-        for (std::size_t i = 0; i < log.signals[0].value.size(); ++i) log.signals[0].value[i] = std::floor(counts_per_rad * (6 * tick_s * static_cast<double>(i) - 3 / omega * std::cos(omega * tick_s * static_cast<double>(i))));
+        for (std::size_t i = 0; i < log.signals[0].value.size(); ++i)
+            log.signals[0].value[i] = std::floor(
+                counts_per_rad * (6 * tick_s * static_cast<double>(i) - 3 / omega * std::cos(omega * tick_s * static_cast<double>(i))));
         EXPECT_DOUBLE_EQ(make_dataset(bench(), log).step_s, step_s) << hertz; // (omega h)^2 / 3 is 0.5 % and 8 %
     }
 }
@@ -131,7 +137,8 @@ TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_noth
                 const double t = 0.5 * (b.t0_s[r] + b.t1_s[r]);
                 if (b.kind != BalanceKind::current_voltage || t < 0.5 || t > 2.8) continue; // duty 0.25, 2 rad/s
                 const double e = 0.25 * (8 - 0.1 * t) - 0.265 * 2;
-                EXPECT_NEAR(predicted[row], std::max(0.0, e - dead_V) / 3.24, 0.003) << dead_V; // a count's rounding in the speed: 3e-3 rad/s; the supply between two samples
+                EXPECT_NEAR(predicted[row], std::max(0.0, e - dead_V) / 3.24, 0.003)
+                    << dead_V; // a count's rounding in the speed: 3e-3 rad/s; the supply between two samples
             }
     }
 }
@@ -139,8 +146,10 @@ TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_noth
 TEST(Inputs, a_planar_rover_with_a_gyro_has_its_yaw_rate_and_its_sideways_way_and_a_path_with_a_sign) {
     Model model = read_model("models/rover_concrete.toml");
     model.motion = BodyMotion::planar;
-    sim::Scenario scenario = sim::parse_scenario("title = \"back\"\nduration_s = 8\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 4\nmode = \"platform_speed\"\n"
-                                                 "speed_m_s = 0.4\nyaw_rate_rad_s = 0.5\n[[drive]]\nfor_s = 4\nmode = \"platform_speed\"\nspeed_m_s = -0.4\n", "back");
+    sim::Scenario scenario = sim::parse_scenario(
+        "title = \"back\"\nduration_s = 8\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 4\nmode = \"platform_speed\"\n"
+        "speed_m_s = 0.4\nyaw_rate_rad_s = 0.5\n[[drive]]\nfor_s = 4\nmode = \"platform_speed\"\nspeed_m_s = -0.4\n",
+        "back");
     const Dataset data = make_dataset(model, simulate(scenario).log);
     EXPECT_NO_THROW(balance(data, BalanceKind::yaw_rate));
     EXPECT_NO_THROW(balance(data, BalanceKind::camera_y));

@@ -1,9 +1,9 @@
 // The model file: what is read, what is written back, and that every mistake is told with its place and its mend.
 #include "host_tools/lab/distribution.h"
 #include "host_tools/lab/model.h"
-#include "host_tools/lab/wheel_step.h"
 #include "host_tools/lab/physics.h"
 #include "host_tools/lab/smooth.h"
+#include "host_tools/lab/wheel_step.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,8 @@ TEST(Model, a_bench_an_unloaded_motor_and_an_omni_drive_can_be_expressed) {
 }
 
 TEST(Model, every_mistake_is_told_with_file_line_key_value_and_mend) {
-    EXPECT_NE(message_of("[rover]\nmass_kg = \"heavy\"\n[[wheel]]\nradius_m = 1\n").find("m.toml:2: rover.mass_kg: is not a number"), std::string::npos);
+    EXPECT_NE(message_of("[rover]\nmass_kg = \"heavy\"\n[[wheel]]\nradius_m = 1\n").find("m.toml:2: rover.mass_kg: is not a number"),
+              std::string::npos);
     EXPECT_NE(message_of("[rover]\nmas_kg = 1\n").find("did you mean mass_kg"), std::string::npos);
     EXPECT_NE(message_of("[rover]\nmass_kg = -3\n").find("-3 is outside 0"), std::string::npos);
     EXPECT_NE(message_of("[rover]\nmass_kg = { value = 3, unit = \"g\" }\n").find("this key is in kg"), std::string::npos);
@@ -54,20 +55,25 @@ TEST(Model, every_mistake_is_told_with_file_line_key_value_and_mend) {
     EXPECT_NE(message_of("[[wheel]]\nradius_m = 1\n").find("rover.mass_kg: is missing"), std::string::npos);
     EXPECT_NE(message_of(bench + "[[effect]]\nname = \"gremlin\"\n").find("unknown effect \"gremlin\""), std::string::npos);
     EXPECT_NE(message_of(bench + "[[effect]]\nname = \"slip_sinkage\"\nwheel = 4\n").find("wheels are 0 to 0"), std::string::npos);
-    EXPECT_NE(message_of(bench + "[[effect]]\nname = \"mine\"\nacts_on = \"wheel_torque\"\nexpression = \"q*w\"\nk = 1\n").find("expression"), std::string::npos);
+    EXPECT_NE(
+        message_of(bench + "[[effect]]\nname = \"mine\"\nacts_on = \"wheel_torque\"\nexpression = \"q*w\"\nk = 1\n").find("expression"),
+        std::string::npos);
     EXPECT_NE(message_of("[rover\n").find("m.toml:1"), std::string::npos);
 }
 
 TEST(Model, what_is_written_reads_back_to_the_same_numbers) {
-    const Model model = parse_model(bench + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = { value = 0.15, low = 0.1, high = 0.2 }\n", "b");
+    const Model model =
+        parse_model(bench + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = { value = 0.15, low = 0.1, high = 0.2 }\n", "b");
     const std::string once = model_text(model);
     EXPECT_EQ(once, model_text(parse_model(once, "b")));
     EXPECT_EQ(make_physics(parse_model(once, "b")).body.slip_sinkage, 0.15);
 }
 
 TEST(Model, bekker_parameters_become_those_of_the_literature_sand) {
-    const Model model = parse_model("[rover]\nmotion = \"imposed\"\n[[wheel]]\nradius_m = 0.057\nwidth_m = 0.042\nload_N = 7\n[soil]\nlaw = \"bekker\"\n"
-                                    "cohesion_Pa = 1040\nfriction_angle_rad = 0.4886921906\nshear_length_m = 0.02\ncontact_length_m = 0.04\n", "m");
+    const Model model =
+        parse_model("[rover]\nmotion = \"imposed\"\n[[wheel]]\nradius_m = 0.057\nwidth_m = 0.042\nload_N = 7\n[soil]\nlaw = \"bekker\"\n"
+                    "cohesion_Pa = 1040\nfriction_angle_rad = 0.4886921906\nshear_length_m = 0.02\ncontact_length_m = 0.04\n",
+                    "m");
     const WheelPhysics w = make_physics(model).wheel[0];
     EXPECT_NEAR(w.adhesion + w.mu * 7, 5.47, 0.005); // SPEC section 7, fig 15: Fm = 5.47 N, rounded to 0.01
     EXPECT_NEAR(w.sc, 0.5, 1e-12);                   // K/l = 2 cm / 4 cm
@@ -80,8 +86,8 @@ TEST(Slip, is_bounded_odd_and_zero_at_rest) {
             EXPECT_EQ(slip_of(-rim, -v), -slip_of(rim, v));
         }
     EXPECT_EQ(slip_of(0, 0), 0);
-    EXPECT_NEAR(slip_of(0.2, 0.15), 0.25, 1e-15);       // 1 - v/(R w)
-    EXPECT_NEAR(slip_of(0.15, 0.2), -0.25, 1e-15);      // R w/v - 1
+    EXPECT_NEAR(slip_of(0.2, 0.15), 0.25, 1e-15);  // 1 - v/(R w)
+    EXPECT_NEAR(slip_of(0.15, 0.2), -0.25, 1e-15); // R w/v - 1
 }
 
 TEST(Smooth, a_parabola_passes_unchanged_with_its_slope) {
@@ -96,15 +102,16 @@ TEST(Smooth, a_parabola_passes_unchanged_with_its_slope) {
 }
 
 TEST(Distribution, the_tail_of_F_agrees_with_tables_and_closed_forms) {
-    EXPECT_NEAR(f_tail(4.964602743730711, 1, 10), 0.05, 1e-9);  // tabulated 5 % point of F(1, 10)
+    EXPECT_NEAR(f_tail(4.964602743730711, 1, 10), 0.05, 1e-9);            // tabulated 5 % point of F(1, 10)
     EXPECT_NEAR(f_tail(3.0, 2, 8), std::pow(1 + 2 * 3.0 / 8, -4), 1e-12); // d1 = 2: (1 + 2 f/d2)^(-d2/2)
     EXPECT_EQ(f_tail(0, 1, 5), 1);
 }
 
 TEST(Distribution, signed_ranks_agree_with_tables) {
-    EXPECT_DOUBLE_EQ(signed_rank_tail({3, 1, 4, 1.5, 9}), 1.0 / 32);                             // all signs alike: one choice of 2^n
-    EXPECT_NEAR(signed_rank_tail({-1, -2, -3, -4, 5, 6, 7, 8, 9, 10}), 43.0 / 1024, 1e-12);      // tabulated: n = 10, W = 10
-    EXPECT_NEAR(signed_rank_tail({100, 0, -1, 2, 300, 4, 5, -0.5, 6}), 5.0 / 256, 1e-12);        // n = 8, W = 3: only ranks count, and zeros do not
+    EXPECT_DOUBLE_EQ(signed_rank_tail({3, 1, 4, 1.5, 9}), 1.0 / 32);                        // all signs alike: one choice of 2^n
+    EXPECT_NEAR(signed_rank_tail({-1, -2, -3, -4, 5, 6, 7, 8, 9, 10}), 43.0 / 1024, 1e-12); // tabulated: n = 10, W = 10
+    EXPECT_NEAR(signed_rank_tail({100, 0, -1, 2, 300, 4, 5, -0.5, 6}), 5.0 / 256,
+                1e-12); // n = 8, W = 3: only ranks count, and zeros do not
     EXPECT_GT(signed_rank_tail({-5, -6, -7, 1}), 0.9);
     std::vector<double> many;
     for (int i = 1; i <= 60; ++i) many.push_back(i % 5 == 0 ? -i : i);

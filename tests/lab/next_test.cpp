@@ -50,7 +50,7 @@ const Manoeuvre &titled(const std::string &part) {
 
 void expect_runs(const NextExperiment &next) {
     ASSERT_FALSE(next.scenario_toml.empty()) << next_text(next);
-    const log::Log log = drive(next.scenario_toml); // throws where the scenario is wrong
+    const log::Log log = drive(next.scenario_toml);          // throws where the scenario is wrong
     EXPECT_NEAR(log.duration_s(), next.duration_s + 4, 0.1); // rest of 2 s before and after; a tick is 10 ms
 }
 
@@ -64,7 +64,8 @@ double alone(const Model &model, const Manoeuvre &manoeuvre, const std::string &
     std::vector<Sized> pair;
     for (const std::string &name : {truth, rival})
         for (const Candidate &c : catalogue_candidates(model, data, problem.forward().motion()))
-            if (c.effect == name && c.wheel < 0 && (pair.empty() || pair.back().candidate.effect != name)) pair.push_back({c, {3 * c.of_interest[0]}});
+            if (c.effect == name && c.wheel < 0 && (pair.empty() || pair.back().candidate.effect != name))
+                pair.push_back({c, {3 * c.of_interest[0]}});
     const Eigen::MatrixXd gram = information(problem, scale_over_noise(problem), pair);
     return detectability(gram, problem.prior_precision(), pair, 0, 1);
 }
@@ -76,7 +77,8 @@ TEST(Detectability, is_the_distance_that_the_rival_and_the_parameters_leave) {
     const std::vector<Sized> pair = {{Candidate{}, {3.0}}, {Candidate{}, {1.0}}};
     for (const double p : {0.0, 1.0, 100.0}) {
         const Eigen::VectorXd precision = Eigen::VectorXd::Constant(1, p);
-        EXPECT_NEAR(detectability(X.transpose() * X, precision, pair, 0, 1), 3 * std::sqrt(2 - 4 / (4 + p)), 1e-6); // a whisper of 1e-9 holds R
+        EXPECT_NEAR(detectability(X.transpose() * X, precision, pair, 0, 1), 3 * std::sqrt(2 - 4 / (4 + p)),
+                    1e-6); // a whisper of 1e-9 holds R
         EXPECT_NEAR(detectability(X.transpose() * X, precision, pair, 0, -1), 3 * std::sqrt(3 - 4 / (4 + p)), 1e-6);
     }
 }
@@ -102,7 +104,8 @@ TEST(Detectability, rows_that_err_alike_count_less) {
     for (std::size_t b = 0; b < data.balance.size(); ++b)
         if (data.balance[b].name == name) first = problem.forward().first_row(b), n = data.balance[b].measured.size();
     const double noise = problem.noise_rows()[static_cast<Eigen::Index>(first)];
-    for (std::size_t r = 0; r < n; ++r) problem.residual[static_cast<Eigen::Index>(first + r)] += 3 * noise * ((r / 10) % 2 == 0 ? 1 : -1); // half-second blocks
+    for (std::size_t r = 0; r < n; ++r)
+        problem.residual[static_cast<Eigen::Index>(first + r)] += 3 * noise * ((r / 10) % 2 == 0 ? 1 : -1); // half-second blocks
     EXPECT_GT(scale_over_noise(problem).at(name), 3 * before); // amplitude 3 alone would be sqrt(10); ten rows alike add their share
 }
 
@@ -128,7 +131,8 @@ TEST(Next, warm_windings_stand_out_from_thin_wires_in_the_long_hard_drive_most) 
     const Model model = sand();
     const double lengthy = alone(model, titled("minute and a half"), "winding_heating", "wiring_resistance");
     EXPECT_GT(lengthy, 20); // 0.9 A^2 * 3 ohm * 9 K/W is 25 K, a tenth of the resistance: many times the noise of 4000 rows
-    for (const char *other : {"cruise straight", "there and back", "stairs", "turns", "hard starts"}) EXPECT_LT(alone(model, titled(other), "winding_heating", "wiring_resistance"), lengthy) << other;
+    for (const char *other : {"cruise straight", "there and back", "stairs", "turns", "hard starts"})
+        EXPECT_LT(alone(model, titled(other), "winding_heating", "wiring_resistance"), lengthy) << other;
     const NextExperiment next = next_experiment({"winding_heating", "wiring_resistance"}, model, &forward_only(), drive);
     EXPECT_LT(question(next, "winding_heating", "wiring_resistance").before, 2) << next_text(next);
     EXPECT_EQ(question(next, "winding_heating", "wiring_resistance").status, "answered") << next_text(next);
@@ -137,7 +141,8 @@ TEST(Next, warm_windings_stand_out_from_thin_wires_in_the_long_hard_drive_most) 
 TEST(Next, says_what_no_drive_can_tell_and_what_to_measure_instead) {
     const NextExperiment next = next_experiment({"wheel_radius", "encoder_missed", "camera_scale"}, sand(), &forward_only(), drive);
     ASSERT_EQ(next.questions.size(), 3U);
-    const Question &q = question(next, "wheel_radius", "encoder_missed"); // both scale wheel speed; only the back-EMF differs, within the motor constant's prior
+    const Question &q = question(next, "wheel_radius",
+                                 "encoder_missed"); // both scale wheel speed; only the back-EMF differs, within the motor constant's prior
     EXPECT_EQ(q.status, "never") << next_text(next);
     EXPECT_LT(q.after, 2);
     EXPECT_NE(q.measure.find("ten turns"), std::string::npos);
@@ -151,7 +156,9 @@ TEST(Next, says_what_no_drive_can_tell_and_what_to_measure_instead) {
 
 TEST(Next, a_sensor_that_the_log_lacks_is_not_counted_on) {
     log::Log log = simulate(sim::read_scenario("scenarios/cruise.toml")).log;
-    std::erase_if(log.signals, [](const log::Signal &s) { return s.name.rfind("camera.", 0) == 0 || s.name == "radar.speed_m_s" || s.name == "radar.adc_count"; });
+    std::erase_if(log.signals, [](const log::Signal &s) {
+        return s.name.rfind("camera.", 0) == 0 || s.name == "radar.speed_m_s" || s.name == "radar.adc_count";
+    });
     const Dataset blind = make_dataset(sand(), log);
     const NextExperiment next = next_experiment({"camera_scale"}, sand(), &blind, drive);
     ASSERT_EQ(next.questions.size(), 1U);
@@ -194,10 +201,12 @@ TEST(Next, a_class_that_a_diagnosis_left_is_what_it_asks_about) {
     EXPECT_TRUE(next_json(next_experiment(Diagnosis{}, model, data, false, drive)).is_null());
 }
 
-// The proof of the pudding: the proposed scenario is driven with one of the two hidden, and the diagnosis of that log holds it against the other.
+// The proof of the pudding: the proposed scenario is driven with one of the two hidden, and the diagnosis of that log holds it against the
+// other.
 TEST(Next, the_drive_it_proposes_tells_the_two_apart) {
     const Model model = sand();
-    for (const auto &[one, other] : {std::pair<std::string, std::string>{"multi_pass:gain=0.4", "mass_offset_x:offset_m=-0.03"}, {"mesh_loss:fraction=0.15", "slip_sinkage:coefficient=0.2"}}) {
+    for (const auto &[one, other] : {std::pair<std::string, std::string>{"multi_pass:gain=0.4", "mass_offset_x:offset_m=-0.03"},
+                                     {"mesh_loss:fraction=0.15", "slip_sinkage:coefficient=0.2"}}) {
         const std::vector<std::string> names = {one.substr(0, one.find(':')), other.substr(0, other.find(':'))};
         const NextExperiment next = next_experiment(names, model, &forward_only(), drive);
         ASSERT_EQ(next.questions[0].status, "answered") << next_text(next);
@@ -213,9 +222,12 @@ TEST(Next, the_drive_it_proposes_tells_the_two_apart) {
                     if (r.candidate.effect == names[static_cast<std::size_t>(i)]) gain[i] = r.heldout_gain;
             const int right = truth == one ? 0 : 1;
             EXPECT_GT(gain[right], 0.05) << truth << "\n" << d.text << "\n" << next.title;
-            EXPECT_GT(gain[right], 1.25 * gain[1 - right]) << truth << "\n" << d.text << "\n" << next.title; // the lab calls a class what lies within 1.1
+            EXPECT_GT(gain[right], 1.25 * gain[1 - right]) << truth << "\n"
+                                                           << d.text << "\n"
+                                                           << next.title; // the lab calls a class what lies within 1.1
             for (const std::string &effect : d.effects) EXPECT_NE(effect, names[static_cast<std::size_t>(1 - right)]) << d.text;
-            for (const ConfoundedClass &c : d.classes) EXPECT_EQ(std::count(c.members.begin(), c.members.end(), names[static_cast<std::size_t>(1 - right)]), 0) << d.text;
+            for (const ConfoundedClass &c : d.classes)
+                EXPECT_EQ(std::count(c.members.begin(), c.members.end(), names[static_cast<std::size_t>(1 - right)]), 0) << d.text;
         }
     }
 }
@@ -229,7 +241,8 @@ TEST(Next, names_kinds_without_numbers_where_the_plant_cannot_stand_in) {
     EXPECT_NE(text.find("no numbers"), std::string::npos) << text;
     EXPECT_NE(text.find("there and back"), std::string::npos) << text;
     EXPECT_FALSE(next_json(next)["questions"][0].contains("d_before"));
-    for (const char *file : {"models/cmu_wheel.toml", "models/robotino_unloaded.toml"}) EXPECT_NE(cannot_drive(read_model(file)), "") << file;
+    for (const char *file : {"models/cmu_wheel.toml", "models/robotino_unloaded.toml"})
+        EXPECT_NE(cannot_drive(read_model(file)), "") << file;
     EXPECT_EQ(cannot_drive(sand()), "");
 }
 

@@ -63,7 +63,8 @@ TEST(Profile, does_not_depend_on_the_coordinate) {
     logarithmic.effects.push_back(own("grease", "exp(k)*w", std::log(1e-3), -infinity, infinity));
     const Profile a = profile_likelihood(plain, data, {"grease.k"}).at(0), b = profile_likelihood(logarithmic, data, {"grease"}).at(0);
     const double half = 0.5 * (a.high - a.low);
-    EXPECT_NEAR(std::exp(b.value), a.value, 0.05 * half); // ends are found to 1 % of their root; phi (1 %) and row scales come from two fits
+    EXPECT_NEAR(std::exp(b.value), a.value,
+                0.05 * half); // ends are found to 1 % of their root; phi (1 %) and row scales come from two fits
     EXPECT_NEAR(std::exp(b.low), a.low, 0.05 * half);
     EXPECT_NEAR(std::exp(b.high), a.high, 0.05 * half);
 }

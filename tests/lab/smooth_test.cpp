@@ -47,7 +47,8 @@ TEST(smooth, samples_of_unequal_age_widen_the_smoothing_until_the_speed_scatters
         return std::sqrt(sum / 1400) / speed;
     };
     EXPECT_GT(scatter(usual_half_s), 0.04); // what the usual width leaves
-    // 28 s of speeds that are alike over 2 * half = 0.7 s: 40 of their own, so 11 % of the scatter (one sigma), and its estimate another 4 %
+    // 28 s of speeds that are alike over 2 * half = 0.7 s: 40 of their own, so 11 % of the scatter (one sigma), and its estimate another 4
+    // %
     EXPECT_NEAR(scatter(half), 0.01, 0.0035);
 }
 

@@ -41,11 +41,13 @@ TEST(Tangent, agrees_with_whole_integrations_for_every_parameter_and_effect) {
         forward.set_base(physics);
         for (const FreeParameter &p : free_parameters(model, physics)) compare(forward, physics, p, 20 * p.step, p.key);
         for (const Candidate &c : catalogue_candidates(model, data, forward.motion())) {
-            if (c.effect == "backlash" || c.effect == "relaxation_length" || c.wheel > 0) continue; // wheels with a memory: integrated whole
+            if (c.effect == "backlash" || c.effect == "relaxation_length" || c.wheel > 0)
+                continue; // wheels with a memory: integrated whole
             if (c.effect == "soil_patch" && c.variant[1].second != 1.0) continue;
             Physics base = physics;
             c.prepare(base);
-            for (std::size_t j = 0; j < c.strengths.size(); ++j) compare(forward, base, c.strengths[j], 1e-3 * c.of_interest[j], c.label() + " " + c.strengths[j].key);
+            for (std::size_t j = 0; j < c.strengths.size(); ++j)
+                compare(forward, base, c.strengths[j], 1e-3 * c.of_interest[j], c.label() + " " + c.strengths[j].key);
         }
     }
 }
@@ -83,7 +85,8 @@ TEST(Tangent, all_coefficients_of_a_shape_at_once_are_the_same_one_by_one) {
             const Eigen::VectorXd one = (forward.predict_from_base(moved, c.touched, -1) - forward.base()) / c.step[j];
             const auto col = static_cast<Eigen::Index>(j);
             // at once the body is moved by a whole unit, one by one by 1e-6 of it: the radar's |v| bends at standstill. Currents: rounding.
-            EXPECT_LT((all.col(col) - one).norm(), (moves ? 0.02 : 1e-5) * one.norm() + 1e-5) << c.effect << " " << j << ": " << all.col(col).norm() << " against " << one.norm();
+            EXPECT_LT((all.col(col) - one).norm(), (moves ? 0.02 : 1e-5) * one.norm() + 1e-5)
+                << c.effect << " " << j << ": " << all.col(col).norm() << " against " << one.norm();
         }
     }
 }
@@ -117,12 +120,14 @@ TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
     generator::GeneratorConfig config;
     config.seed = 7;
     config.duration_s = 20;
-    for (const auto &[relaxation_m, motion] : {std::pair{0.0, BodyMotion::planar}, {0.02, BodyMotion::planar}, {0.02, BodyMotion::longitudinal}}) {
+    for (const auto &[relaxation_m, motion] :
+         {std::pair{0.0, BodyMotion::planar}, {0.02, BodyMotion::planar}, {0.02, BodyMotion::longitudinal}}) {
         Model model = read_model("models/rover_gravel.toml");
         model.motion = motion;
         const Dataset data = make_dataset(model, generator::generate(config));
         Physics physics = make_physics(model);
-        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1, physics.body.load_height = 0.1, physics.body.offset_x = 0.01;
+        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1,
+        physics.body.load_height = 0.1, physics.body.offset_x = 0.01;
         for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.grip = 0.8;
         WheelStep four(data, physics), one(data, physics);
         std::array<Eigen::Vector3d, most_wheels> each{};

@@ -24,7 +24,8 @@ Dataset rolling(double yaw_rad_s, std::size_t count) {
     data.step_s = 0.02;
     data.count = count;
     data.wheel.resize(4);
-    for (WheelInput &w : data.wheel) w.speed_rad_s.assign(count, speed_m_s / radius_m), w.accel_rad_s2.assign(count, 0), w.angle_rad.assign(count, 0);
+    for (WheelInput &w : data.wheel)
+        w.speed_rad_s.assign(count, speed_m_s / radius_m), w.accel_rad_s2.assign(count, 0), w.angle_rad.assign(count, 0);
     data.yaw_rate_rad_s.assign(count, yaw_rad_s);
     data.gyro = true;
     return data;
@@ -42,7 +43,8 @@ TEST(WheelStep, slip_across_comes_over_the_relaxation_length) {
         step.prepare(k, speed_m_s, 0, 0, 0);
         step.forces({speed_m_s, aside_m_s, 0}, nullptr);
         left /= 1 + reach;
-        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).side_slip, -aside_m_s / speed_m_s * (1 - left), 1e-12); // (4) of wheel_laws.h, rounding
+        for (std::size_t i = 0; i < 4; ++i)
+            EXPECT_NEAR(step.state(i).side_slip, -aside_m_s / speed_m_s * (1 - left), 1e-12); // (4) of wheel_laws.h, rounding
         step.commit();
     }
     EXPECT_NEAR(left, std::exp(-static_cast<double>(data.count) * reach), 0.1); // of the length's own law, first order in reach = 0.08
@@ -57,7 +59,8 @@ TEST(WheelStep, in_a_turn_the_outer_wheels_carry_what_the_height_of_the_mass_ask
     step.prepare(1, speed_m_s, 0, 0, 0);
     step.forces({speed_m_s, 0, yaw_rad_s}, nullptr); // to the left: the right wheels are outside
     const BodyPhysics &b = physics.body;
-    const double outer = b.mass * speed_m_s * yaw_rad_s * 0.1 / (4 * 0.12), rest = b.mass * b.gravity / 4; // moments about the track's middle
+    const double outer = b.mass * speed_m_s * yaw_rad_s * 0.1 / (4 * 0.12),
+                 rest = b.mass * b.gravity / 4; // moments about the track's middle
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).load, rest + (i % 2 == 1 ? outer : -outer), 1e-9);
 }
 
@@ -72,7 +75,8 @@ TEST(WheelStep, each_half_of_the_chassis_is_tipped_by_its_own_pull) {
         step.prepare(1, speed_m_s, 0, 0, 0);
         step.forces({speed_m_s, 0, 0}, nullptr);
         const double shift = halves ? 3 * 0.1 / (2 * 0.083) : 0; // moments about the joint; rigid: the two cancel
-        const double rest = physics.body.mass * physics.body.gravity / 4, sign[4] = {1, -1, -1, 1}; // rear left, rear right, front left, front right
+        const double rest = physics.body.mass * physics.body.gravity / 4,
+                     sign[4] = {1, -1, -1, 1}; // rear left, rear right, front left, front right
         for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).load, rest + sign[i] * shift, 1e-9);
         step.commit();
         if (!halves) continue;
@@ -82,9 +86,12 @@ TEST(WheelStep, each_half_of_the_chassis_is_tipped_by_its_own_pull) {
 
 // The ODE plant on even ground, by a baseline that knows its numbers: what the sensors read is predicted to their noise.
 TEST(Forward, turns_of_the_plant_on_even_ground_are_predicted_to_the_gyros_noise) {
-    const sim::Scenario scenario = sim::parse_scenario("title = \"turns\"\nduration_s = 20\n[ground]\nsoil = \"concrete\"\ngrip_noise = 0\n[[drive]]\nfor_s = 3\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n"
-                                                       "[[drive]]\nfor_s = 9\nmode = \"platform_speed\"\nspeed_m_s = 0.4\nyaw_rate_rad_s = { amplitude = 0.6, period_s = 3.0 }\n"
-                                                       "[[drive]]\nfor_s = 8\nmode = \"platform_speed\"\nspeed_m_s = 0.3\nyaw_rate_rad_s = 0.8\n", "turns");
+    const sim::Scenario scenario = sim::parse_scenario(
+        "title = \"turns\"\nduration_s = 20\n[ground]\nsoil = \"concrete\"\ngrip_noise = 0\n[[drive]]\nfor_s = 3\nmode = "
+        "\"platform_speed\"\nspeed_m_s = 0.3\n"
+        "[[drive]]\nfor_s = 9\nmode = \"platform_speed\"\nspeed_m_s = 0.4\nyaw_rate_rad_s = { amplitude = 0.6, period_s = 3.0 }\n"
+        "[[drive]]\nfor_s = 8\nmode = \"platform_speed\"\nspeed_m_s = 0.3\nyaw_rate_rad_s = 0.8\n",
+        "turns");
     Model model = sliding("concrete");
     for (WheelSpec &w : model.wheel) w.soil.at("lateral_grip").value = 1; // as the plant's concrete has it
     const Dataset data = make_dataset(model, simulate(scenario, {}).log);

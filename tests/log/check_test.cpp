@@ -19,15 +19,25 @@ std::string listed(const check::Report &report, Severity from) {
     std::string out;
     for (const check::Finding &finding : report.findings) {
         if (finding.severity < from) continue;
-        out.append(check::severity_name(finding.severity)).append(" ").append(finding.id).append(" [").append(finding.signal).append("] ").append(finding.text).append("\n");
+        out.append(check::severity_name(finding.severity))
+            .append(" ")
+            .append(finding.id)
+            .append(" [")
+            .append(finding.signal)
+            .append("] ")
+            .append(finding.text)
+            .append("\n");
     }
     return out;
 }
 
-check::Machine spec_rover() { return {.wheel_radius_m = 0.057, .back_emf_Vs = 0.265, .resistance_ohm = 3.24, .wheels_point_forward = true}; }
+check::Machine spec_rover() {
+    return {.wheel_radius_m = 0.057, .back_emf_Vs = 0.265, .resistance_ohm = 3.24, .wheels_point_forward = true};
+}
 
 // Exactly this finding at warning level or above, with and without knowledge of the machine.
-void expect_only(const log::Log &log, const std::string &id, const std::string &signal, Severity severity, const std::vector<log::Repair> &repairs = {}, std::size_t how_many = 1) {
+void expect_only(const log::Log &log, const std::string &id, const std::string &signal, Severity severity,
+                 const std::vector<log::Repair> &repairs = {}, std::size_t how_many = 1) {
     for (const bool known : {false, true}) {
         const check::Report report = check::check(log, repairs, known ? spec_rover() : check::Machine{});
         const check::Finding *finding = report.find(id, signal);
@@ -61,22 +71,26 @@ void thin(log::Log &log, const std::string &only, const std::function<bool(doubl
 
 TEST(Check, finds_nothing_at_all_on_a_sound_and_rich_log) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        for (const check::Machine &machine : {check::Machine{}, spec_rover()}) EXPECT_EQ(listed(check::check(drive({.seed = seed}), {}, machine), Severity::note), "") << "seed " << seed;
+        for (const check::Machine &machine : {check::Machine{}, spec_rover()})
+            EXPECT_EQ(listed(check::check(drive({.seed = seed}), {}, machine), Severity::note), "") << "seed " << seed;
     }
 }
 
 TEST(Check, raises_no_alarm_on_noisy_slippery_or_dull_logs) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         for (const check::Machine &machine : {check::Machine{}, spec_rover()}) {
-            EXPECT_EQ(listed(check::check(drive({.seed = seed, .noise = 3}), {}, machine), Severity::warning), "") << "noisy, seed " << seed;
-            EXPECT_EQ(listed(check::check(drive({.seed = seed, .soil_noise_N = 0.5, .grip_N = 2.5}), {}, machine), Severity::warning), "") << "slippery, seed " << seed;
+            EXPECT_EQ(listed(check::check(drive({.seed = seed, .noise = 3}), {}, machine), Severity::warning), "")
+                << "noisy, seed " << seed;
+            EXPECT_EQ(listed(check::check(drive({.seed = seed, .soil_noise_N = 0.5, .grip_N = 2.5}), {}, machine), Severity::warning), "")
+                << "slippery, seed " << seed;
             EXPECT_TRUE(check::check(drive({.seed = seed, .rich = false}), {}, machine).passed()) << "dull, seed " << seed;
         }
     }
 }
 
 TEST(Check, names_a_wrong_sign) {
-    for (const char *name : {"wheel2.speed_rad_s", "wheel1.current_A", "wheel3.duty", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "camera.y_m", "battery.voltage_V"}) {
+    for (const char *name : {"wheel2.speed_rad_s", "wheel1.current_A", "wheel3.duty", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "camera.y_m",
+                             "battery.voltage_V"}) {
         SCOPED_TRACE(name);
         log::Log log = good();
         scale(log, name, -1);
@@ -113,8 +127,11 @@ TEST(Check, names_a_wrong_unit) {
         const char *signal;
         double factor;
         const char *word;
-    } cases[] = {{"wheel1.speed_rad_s", 9.5493, "rpm"}, {"wheel1.speed_rad_s", 57.2958, "deg/s"}, {"wheel3.current_A", 1000, "mA"}, {"imu.gyro_z_rad_s", 57.2958, "deg/s"}, {"imu.accel_x_m_s2", 1 / 9.80665, "g"},
-                 {"camera.yaw_rad", 57.2958, "degrees"}, {"radar.speed_m_s", 1000, "mm"}, {"wheel0.duty", 100, "duty"}, {"battery.voltage_V", 1000, "mV"}};
+    } cases[] = {{"wheel1.speed_rad_s", 9.5493, "rpm"},  {"wheel1.speed_rad_s", 57.2958, "deg/s"},
+                 {"wheel3.current_A", 1000, "mA"},       {"imu.gyro_z_rad_s", 57.2958, "deg/s"},
+                 {"imu.accel_x_m_s2", 1 / 9.80665, "g"}, {"camera.yaw_rad", 57.2958, "degrees"},
+                 {"radar.speed_m_s", 1000, "mm"},        {"wheel0.duty", 100, "duty"},
+                 {"battery.voltage_V", 1000, "mV"}};
     for (const auto &one : cases) {
         SCOPED_TRACE(std::string(one.signal) + " in " + one.word);
         log::Log log = good();
@@ -134,8 +151,10 @@ TEST(Check, names_a_unit_that_is_wrong_on_every_wheel) {
         for (int i = 0; i < 4; ++i) scale(log, "wheel" + std::to_string(i) + ".speed_rad_s", factor);
         const check::Report unknown = check::check(log, {}), known = check::check(log, {}, spec_rover());
         ASSERT_NE(unknown.find("unit", "wheel.speed_rad_s"), nullptr) << listed(unknown, Severity::note);
-        EXPECT_NE(unknown.find("unit", "wheel.speed_rad_s")->text.find(factor < 20 ? "rpm" : "deg/s"), std::string::npos) << unknown.find("unit")->text;
-        for (int i = 0; i < 4; ++i) EXPECT_NE(known.find("unit", "wheel" + std::to_string(i) + ".speed_rad_s"), nullptr) << listed(known, Severity::note);
+        EXPECT_NE(unknown.find("unit", "wheel.speed_rad_s")->text.find(factor < 20 ? "rpm" : "deg/s"), std::string::npos)
+            << unknown.find("unit")->text;
+        for (int i = 0; i < 4; ++i)
+            EXPECT_NE(known.find("unit", "wheel" + std::to_string(i) + ".speed_rad_s"), nullptr) << listed(known, Severity::note);
     }
     log::Log log = good();
     for (int i = 0; i < 4; ++i) scale(log, "wheel" + std::to_string(i) + ".current_A", 1000);
@@ -218,8 +237,10 @@ TEST(Check, names_a_dead_and_a_stuck_sensor_and_not_a_blocked_wheel) {
     const log::Signal &duty = at(log, "wheel0.duty"), &battery = at(log, "battery.voltage_V");
     const double turned = count.value[900] - count.value[500];
     for (std::size_t i = 500; i < speed.value.size(); ++i) {
-        if (i < 900) speed.value[i] = 0, current.value[i] = duty.value[i] * battery.value[i] / 3.24, count.value[i] = count.value[500];
-        else count.value[i] -= turned;
+        if (i < 900)
+            speed.value[i] = 0, current.value[i] = duty.value[i] * battery.value[i] / 3.24, count.value[i] = count.value[500];
+        else
+            count.value[i] -= turned;
     }
     EXPECT_EQ(listed(check::check(log, {}), Severity::warning), "");
 }
@@ -244,7 +265,8 @@ TEST(Check, names_clipping_outliers_and_coarse_steps) {
 TEST(Check, passes_on_what_the_reader_mended) {
     log::Log log = good();
     std::string text = "# format: traction-log 1\nt_s,imu.gyro_z_rad_s\n";
-    for (int i = 0; i < 1000; ++i) text.append(std::to_string(0.01 * i)).append(",").append(i % 10 < 3 ? "nan" : std::to_string(std::sin(0.1 * i))).append("\n");
+    for (int i = 0; i < 1000; ++i)
+        text.append(std::to_string(0.01 * i)).append(",").append(i % 10 < 3 ? "nan" : std::to_string(std::sin(0.1 * i))).append("\n");
     const File file("nan.csv", text);
     const check::Report report = check::check_file(file.path());
     ASSERT_NE(report.find("not_finite", "imu.gyro_z_rad_s"), nullptr);
@@ -264,18 +286,19 @@ TEST(Check, names_times_in_milliseconds_and_a_log_without_anything_known) {
 
 TEST(Excitation, tells_what_a_dull_drive_cannot_show_and_measures_a_rich_one) {
     const check::Report dull = check::check(drive({.rich = false}), {});
-    for (const char *id : {"no_reverse", "no_standstill", "few_starts", "no_turns", "no_place_twice", "constant_input"}) EXPECT_NE(dull.find(id), nullptr) << id << "\n" << listed(dull, Severity::note);
+    for (const char *id : {"no_reverse", "no_standstill", "few_starts", "no_turns", "no_place_twice", "constant_input"})
+        EXPECT_NE(dull.find(id), nullptr) << id << "\n" << listed(dull, Severity::note);
     const check::Excitation rich = check::check(good(), {}).excitation;
     EXPECT_NEAR(rich.duration_s, 80, 0.2);
-    EXPECT_NEAR(rich.speed_max_m_s, 0.5, 0.03);  // the last leg; the camera's slope has 3 mm/s of noise
+    EXPECT_NEAR(rich.speed_max_m_s, 0.5, 0.03); // the last leg; the camera's slope has 3 mm/s of noise
     EXPECT_NEAR(rich.speed_min_m_s, -0.4, 0.03);
     EXPECT_NEAR(rich.standstill_s, 3, 0.4);
     EXPECT_NEAR(rich.yaw_rate_max_rad_s, 0.6, 0.05);
-    EXPECT_GT(rich.reverse_s, 18);               // legs of 17 s and 7 s in reverse, less their ramps
+    EXPECT_GT(rich.reverse_s, 18); // legs of 17 s and 7 s in reverse, less their ramps
     EXPECT_LT(rich.reverse_s, 26);
     EXPECT_EQ(rich.starts, 5);
     EXPECT_GT(rich.revisited, 0.3);
-    EXPECT_GT(rich.slip_high, 0.25);             // the sweep imposes 0.35
+    EXPECT_GT(rich.slip_high, 0.25); // the sweep imposes 0.35
     EXPECT_LT(rich.slip_low, -0.25);
     ASSERT_EQ(rich.wheel.size(), 4u);
 }
@@ -287,10 +310,13 @@ TEST(MeasuredData, robotino_and_cmu_logs_pass_the_check) {
         const std::string name = entry.path().filename().string();
         if (name.rfind("wheel_", 0) == 0) continue;
         const bool floor = name.find("_dir") != std::string::npos;
-        const check::Report report = check::check_file(entry.path().string(), floor ? "models/maps/robotino.toml" : "models/maps/robotino_unloaded.toml");
+        const check::Report report =
+            check::check_file(entry.path().string(), floor ? "models/maps/robotino.toml" : "models/maps/robotino_unloaded.toml");
         EXPECT_TRUE(report.passed()) << name << "\n" << listed(report, Severity::warning);
     }
-    for (const auto &[file, map] : {std::pair{"cmu_wheel_smooth_steady_state.csv", "cmu_steady_state.toml"}, std::pair{"motion_smooth_rim100_trial1_12-3-20.csv", "cmu_motion.toml"}, std::pair{"plate_100mm_4.csv", "cmu_plate.toml"}}) {
+    for (const auto &[file, map] :
+         {std::pair{"cmu_wheel_smooth_steady_state.csv", "cmu_steady_state.toml"},
+          std::pair{"motion_smooth_rim100_trial1_12-3-20.csv", "cmu_motion.toml"}, std::pair{"plate_100mm_4.csv", "cmu_plate.toml"}}) {
         const check::Report report = check::check_file((data / "cmu_single_wheel" / file).string(), std::string("models/maps/") + map);
         EXPECT_TRUE(report.passed()) << file << "\n" << listed(report, Severity::warning);
     }

@@ -23,8 +23,8 @@ namespace {
 
 struct Corruption {
     const char *name;
-    std::function<void(log::Log &)> spoil;            // the log before it is written
-    const char *finding, *signal, *word;              // what check must say, of what, in which words
+    std::function<void(log::Log &)> spoil;             // the log before it is written
+    const char *finding, *signal, *word;               // what check must say, of what, in which words
     std::function<std::string(std::string)> rewrite{}; // the file's text
 };
 
@@ -32,7 +32,8 @@ void drop(log::Log &log, const std::function<bool(std::size_t)> &gone) {
     for (log::Signal &signal : log.signals) {
         log::Signal kept{signal.name, {}, {}};
         for (std::size_t i = 0; i < signal.t_s.size(); ++i)
-            if (!gone(static_cast<std::size_t>(std::lround(signal.t_s[i] * 100)))) kept.t_s.push_back(signal.t_s[i]), kept.value.push_back(signal.value[i]);
+            if (!gone(static_cast<std::size_t>(std::lround(signal.t_s[i] * 100))))
+                kept.t_s.push_back(signal.t_s[i]), kept.value.push_back(signal.value[i]);
         signal = std::move(kept);
     }
 }
@@ -63,15 +64,27 @@ std::string with_nan(const std::string &text, const std::string &column) {
 
 const std::vector<Corruption> &corruptions() {
     static const std::vector<Corruption> list = {
-        {"nan", [](log::Log &) {}, "not_finite", "wheel1.current_A", "", [](std::string text) { return with_nan(text, "wheel1.current_A"); }},
-        {"dead_sensor", [](log::Log &log) { for (double &v : at(log, "wheel2.current_A").value) v = 0; }, "dead_sensor", "wheel2.current_A", ""},
-        {"swapped_wheels", [](log::Log &log) { exchange(log, "wheel0.current_A", "wheel3.current_A"); }, "swapped_wheels", "wheel0.current_A", ""},
+        {"nan", [](log::Log &) {}, "not_finite", "wheel1.current_A", "",
+         [](std::string text) { return with_nan(text, "wheel1.current_A"); }},
+        {"dead_sensor",
+         [](log::Log &log) {
+             for (double &v : at(log, "wheel2.current_A").value) v = 0;
+         },
+         "dead_sensor", "wheel2.current_A", ""},
+        {"swapped_wheels", [](log::Log &log) { exchange(log, "wheel0.current_A", "wheel3.current_A"); }, "swapped_wheels",
+         "wheel0.current_A", ""},
         {"deg_per_s", [](log::Log &log) { scale(log, "imu.gyro_z_rad_s", 57.2958); }, "unit", "imu.gyro_z_rad_s", "deg/s"},
         {"rpm", [](log::Log &log) { scale(log, "wheel1.speed_rad_s", 9.5493); }, "unit", "wheel1.speed_rad_s", "rpm"},
         {"milliampere", [](log::Log &log) { scale(log, "wheel3.current_A", 1000); }, "unit", "wheel3.current_A", "mA"},
         {"wrong_sign", [](log::Log &log) { scale(log, "wheel1.current_A", -1); }, "sign", "wheel1.current_A", ""},
-        {"thirty_percent_missing", [](log::Log &log) { drop(log, [](std::size_t tick) { return (tick * 2654435761U >> 7U) % 10 < 3; }); }, "samples_missing", "wheel0.speed_rad_s", "30"},
-        {"clock_jump", [](log::Log &log) { for (log::Signal &s : log.signals) for (double &t : s.t_s) t += t > 20 ? 7 : 0; }, "clock_jump", "", "7"},
+        {"thirty_percent_missing", [](log::Log &log) { drop(log, [](std::size_t tick) { return (tick * 2654435761U >> 7U) % 10 < 3; }); },
+         "samples_missing", "wheel0.speed_rad_s", "30"},
+        {"clock_jump",
+         [](log::Log &log) {
+             for (log::Signal &s : log.signals)
+                 for (double &t : s.t_s) t += t > 20 ? 7 : 0;
+         },
+         "clock_jump", "", "7"},
         {"clock_set_back", [](log::Log &) {}, "clock_jump", "", "",
          [](const std::string &text) { // the second half once more, behind the end
              const std::size_t half = text.find('\n', text.size() / 2) + 1;
@@ -102,7 +115,8 @@ log::Log drive_of(const std::string &source) {
 
 std::string listed(const check::Report &report) {
     std::string out;
-    for (const check::Finding &f : report.findings) out += std::string(check::severity_name(f.severity)) + " " + f.id + " [" + f.signal + "] " + f.text + "\n";
+    for (const check::Finding &f : report.findings)
+        out += std::string(check::severity_name(f.severity)) + " " + f.id + " [" + f.signal + "] " + f.text + "\n";
     return out;
 }
 
@@ -145,6 +159,7 @@ TEST_P(Corrupted, log_is_named_for_what_it_is_and_the_sound_one_passes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Corrupted, testing::Values("plant", "independent_rover"), [](const auto &source) { return std::string(source.param); });
+INSTANTIATE_TEST_SUITE_P(Of, Corrupted, testing::Values("plant", "independent_rover"),
+                         [](const auto &source) { return std::string(source.param); });
 
 } // namespace

@@ -13,7 +13,8 @@ namespace traction::test {
 
 class File {
   public:
-    File(const std::string &name, const std::string &text) : path_(::testing::TempDir() + "traction_" + std::to_string(::getpid()) + "_" + name) {
+    File(const std::string &name, const std::string &text)
+        : path_(::testing::TempDir() + "traction_" + std::to_string(::getpid()) + "_" + name) {
         std::ofstream(path_, std::ios::binary) << text;
     }
     ~File() { std::remove(path_.c_str()); }

@@ -38,13 +38,14 @@ std::string signal(const std::string &name, const std::string &rest) { return "[
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 const std::filesystem::path data = "../shared/data";
-#define NEED_DATA() \
+#define NEED_DATA()                                                                                                                        \
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "the measured data (" << data << ") is not here"
 
 } // namespace
 
 TEST(Map, scales_shifts_and_delays) {
-    const Log log = through(top + signal("wheel1.current_A", "column = \"i\"\nscale = 0.001\nsign = -1\noffset = 0.5\ndelay_s = 0.02"), "time_ms,i,text\n100,250,abc\n200,-500,def\n");
+    const Log log = through(top + signal("wheel1.current_A", "column = \"i\"\nscale = 0.001\nsign = -1\noffset = 0.5\ndelay_s = 0.02"),
+                            "time_ms,i,text\n100,250,abc\n200,-500,def\n");
     ASSERT_EQ(log.signals.size(), 1u);
     EXPECT_EQ(log.signals[0].name, "wheel1.current_A");
     EXPECT_NEAR(log.signals[0].t_s[0], 0.08, 1e-15); // one rounding of 0.1
@@ -60,7 +61,9 @@ TEST(Map, a_magnitude_only_current_is_marked_for_the_lab) {
 }
 
 TEST(Map, constants_noise_and_header_entries_reach_the_log) {
-    const Log log = through(top + signal("battery.voltage_V", "value = 24") + signal("camera.x_m", "column = \"a\"\nnoise = 0.001") + "[header]\nmachine = \"cart\"\nmass_kg = 11.5\n", "time_ms,a\n0,1\n10,1\n");
+    const Log log = through(top + signal("battery.voltage_V", "value = 24") + signal("camera.x_m", "column = \"a\"\nnoise = 0.001") +
+                                "[header]\nmachine = \"cart\"\nmass_kg = 11.5\n",
+                            "time_ms,a\n0,1\n10,1\n");
     EXPECT_EQ(log.find("battery.voltage_V")->value, (std::vector<double>{24, 24}));
     EXPECT_EQ(log.header.at("constant.battery.voltage_V"), "1");
     EXPECT_EQ(log.header.at("noise.camera.x_m"), "0.001");
@@ -71,16 +74,19 @@ TEST(Map, constants_noise_and_header_entries_reach_the_log) {
 TEST(Map, an_angle_that_wraps_becomes_continuous_and_its_rate_a_speed) {
     std::string csv = "time_ms,deg\n";
     for (int i = 0; i < 200; ++i) csv += std::to_string(10 * i) + "," + std::to_string((i * 7) % 360 - 180) + "\n";
-    const Log log = through(top + signal("wheel0.angle_rad", "column = \"deg\"\nscale = 0.017453292519943295\nunwrap = true") +
-                                signal("wheel0.speed_rad_s", "column = \"deg\"\nscale = 0.017453292519943295\nunwrap = true\ndifferentiate = true\nwindow_s = 0.05"),
-                            csv);
+    const Log log =
+        through(top + signal("wheel0.angle_rad", "column = \"deg\"\nscale = 0.017453292519943295\nunwrap = true") +
+                    signal("wheel0.speed_rad_s",
+                           "column = \"deg\"\nscale = 0.017453292519943295\nunwrap = true\ndifferentiate = true\nwindow_s = 0.05"),
+                csv);
     const Signal &angle = *log.find("wheel0.angle_rad"), &speed = *log.find("wheel0.speed_rad_s");
     EXPECT_NEAR(angle.value.back() - angle.value.front(), 199 * 7 * 0.017453292519943295, 1e-9); // sum of 200 roundings of 25
     for (const double w : speed.value) EXPECT_NEAR(w, 700 * 0.017453292519943295, 1e-9);         // 7 deg per 10 ms
 }
 
 TEST(Map, missing_numbers_repeats_filters_and_skipped_rows_are_left_out) {
-    const Log log = through("format = \"traction-map 1\"\nskip_rows = 2\nseparator = \";\"\n[time]\ncolumn = \"t\"\nfrom_zero = true\n[[where]]\ncolumn = \"ok\"\nequals = 1\n" +
+    const Log log = through("format = \"traction-map 1\"\nskip_rows = 2\nseparator = \";\"\n[time]\ncolumn = \"t\"\nfrom_zero = "
+                            "true\n[[where]]\ncolumn = \"ok\"\nequals = 1\n" +
                                 signal("camera.x_m", "column = \"x\"\nmissing = [-999]\ndrop_repeats = true"),
                             "logger 3000\nserial,12;x\nt;x;ok\n5,0;1,5;1\n5,1;1,5;1\n5,2;-999;1\n5,3;7;0\n5,4;2,5;1\n");
     EXPECT_EQ(log.signals[0].value, (std::vector<double>{1.5, 2.5}));
@@ -88,7 +94,9 @@ TEST(Map, missing_numbers_repeats_filters_and_skipped_rows_are_left_out) {
 }
 
 TEST(Map, a_file_without_names_is_read_by_column_number_and_row_period) {
-    const Log log = through("format = \"traction-map 1\"\nrow_of_names = false\n[time]\nrow_period_s = 0.5\n" + signal("camera.x_m", "column = 2"), "7,1\n8,2\n9,3\n");
+    const Log log =
+        through("format = \"traction-map 1\"\nrow_of_names = false\n[time]\nrow_period_s = 0.5\n" + signal("camera.x_m", "column = 2"),
+                "7,1\n8,2\n9,3\n");
     EXPECT_EQ(log.signals[0].t_s, (std::vector<double>{0, 0.5, 1}));
     EXPECT_EQ(log.signals[0].value, (std::vector<double>{1, 2, 3}));
 }
@@ -99,14 +107,18 @@ TEST(Map, wrong_keys_and_values_are_named_with_their_line) {
     EXPECT_HAS(refusal("format = \"traction-map 1\"\n" + signal("camera.x_m", "column = \"a\"")), "the map has no [time]");
     EXPECT_HAS(refusal(top), "the map has no [[signal]]");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nscael = 2")),
-               "map.toml, line 8: unknown key 'scael' in [[signal]] number 1; to mend: use one of: column, delay_s, differentiate, drop_repeats, missing, name, noise, offset,");
-    EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nscale = \"2\"")), "map.toml, line 8: 'scale' in [[signal]] number 1 has the wrong value; to mend: write a finite number");
+               "map.toml, line 8: unknown key 'scael' in [[signal]] number 1; to mend: use one of: column, delay_s, differentiate, "
+               "drop_repeats, missing, name, noise, offset,");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nscale = \"2\"")),
+               "map.toml, line 8: 'scale' in [[signal]] number 1 has the wrong value; to mend: write a finite number");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nunsigned = 1")), "write true or false");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "")), "map.toml, line 5: signal 'camera.x_m' needs either 'column' or 'value'");
-    EXPECT_HAS(refusal(top + signal("wheel0.speed_rpm", "column = \"a\"")), "signal 'wheel0.speed_rpm' is not in SI; to mend: write name = \"wheel0.speed_rad_s\" and scale = 0.104720");
+    EXPECT_HAS(refusal(top + signal("wheel0.speed_rpm", "column = \"a\"")),
+               "signal 'wheel0.speed_rpm' is not in SI; to mend: write name = \"wheel0.speed_rad_s\" and scale = 0.104720");
     EXPECT_HAS(refusal(top + signal("wheel0.sped_rad_s", "column = \"a\"")), "is not in the vocabulary");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nsign = 2")), "is neither 1 nor -1");
-    EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"") + signal("camera.x_m", "column = \"a\"")), "map.toml, line 8: signal 'camera.x_m' stands twice");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"") + signal("camera.x_m", "column = \"a\"")),
+               "map.toml, line 8: signal 'camera.x_m' stands twice");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"b\"")), "map.toml, line 5: signal 'camera.x_m' wants column 'b', which");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\""), "time,a\n0,1\n"), "there is no column 'time_ms'");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\""), "time_ms,a\n0,x1\n"), "'x1' in column 'a' is not a number");
@@ -137,7 +149,8 @@ TEST(MeasuredData, robotino_runs_are_read_and_the_camera_moves_as_commanded) {
             // The authors' kinematics, rows of M: set speeds at the wheel follow from the commanded velocity. 1e-4: six printed digits.
             const double d = (60 + 120 * i) * 3.141592653589793 / 180;
             EXPECT_NEAR(log.find(wheel + ".set_speed_rad_s")->value[0], (-std::sin(d) * vx + std::cos(d) * vy) / 0.04, 1e-4) << name;
-            // The angle advances as the speed says: within the tick count's doubt (1976 against 2000) and one quantum of speed (0.177 rad/s).
+            // The angle advances as the speed says: within the tick count's doubt (1976 against 2000) and one quantum of speed (0.177
+            // rad/s).
             const Signal &w = *log.find(wheel + ".speed_rad_s"), &angle = *log.find(wheel + ".angle_rad");
             double turned = 0;
             for (std::size_t k = 1; k < w.value.size(); ++k) turned += 0.5 * (w.value[k] + w.value[k - 1]) * (w.t_s[k] - w.t_s[k - 1]);
@@ -149,16 +162,20 @@ TEST(MeasuredData, robotino_runs_are_read_and_the_camera_moves_as_commanded) {
 
 TEST(MeasuredData, robotino_unloaded_motors_and_the_cmu_wheel_are_read) {
     NEED_DATA();
-    const Log motors = read_csv((data / "robotino/motor_data_for_identification_with_integral.csv").string(), "models/maps/robotino_unloaded.toml");
+    const Log motors =
+        read_csv((data / "robotino/motor_data_for_identification_with_integral.csv").string(), "models/maps/robotino_unloaded.toml");
     EXPECT_EQ(motors.signals.size(), 9u);
-    const Log trials = read_csv((data / "cmu_single_wheel/cmu_wheel_smooth_steady_state.csv").string(), "models/maps/cmu_steady_state_straight.toml");
+    const Log trials =
+        read_csv((data / "cmu_single_wheel/cmu_wheel_smooth_steady_state.csv").string(), "models/maps/cmu_steady_state_straight.toml");
     const Signal &slip = *trials.find("wheel0.slip"), &w = *trials.find("wheel0.speed_rad_s"), &v = *trials.find("carriage.speed_m_s");
     EXPECT_EQ(slip.value.size(), 27u); // 27 of the 189 trials have slip angle 0
     for (std::size_t i = 0; i < slip.value.size(); ++i) {
         const double rim = 0.058 * w.value[i];
-        EXPECT_NEAR(slip.value[i], (rim - v.value[i]) / std::max(rim, v.value[i]), 2e-3); // the file's slip is the mean of the ratio over 70-75 s, this the ratio of the means
+        EXPECT_NEAR(slip.value[i], (rim - v.value[i]) / std::max(rim, v.value[i]),
+                    2e-3); // the file's slip is the mean of the ratio over 70-75 s, this the ratio of the means
     }
-    const Log motion = read_csv((data / "cmu_single_wheel/motion_smooth_rim100_trial1_12-3-20.csv").string(), "models/maps/cmu_motion.toml");
+    const Log motion =
+        read_csv((data / "cmu_single_wheel/motion_smooth_rim100_trial1_12-3-20.csv").string(), "models/maps/cmu_motion.toml");
     EXPECT_NEAR(motion.find("wheel0.sinkage_m")->value.back(), 0.05715, 1e-9);
     const Log plate = read_csv((data / "cmu_single_wheel/plate_100mm_4.csv").string(), "models/maps/cmu_plate.toml");
     EXPECT_NEAR(plate.find("plate.normal_N")->value.back(), 292.91, 1e-9);

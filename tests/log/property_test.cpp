@@ -17,16 +17,19 @@ namespace {
 
 // Doubles of all sizes, denormals and -0 included.
 rc::Gen<double> any_double() {
-    return rc::gen::map(rc::gen::pair(rc::gen::arbitrary<std::uint64_t>(), rc::gen::inRange(0, 3)), [](const std::pair<std::uint64_t, int> &raw) {
-        double value = 0;
-        std::memcpy(&value, &raw.first, sizeof value);
-        if (raw.second == 0 || !std::isfinite(value)) value = static_cast<double>(static_cast<std::int64_t>(raw.first % 2000001) - 1000000) / 1000.0;
-        return value;
-    });
+    return rc::gen::map(rc::gen::pair(rc::gen::arbitrary<std::uint64_t>(), rc::gen::inRange(0, 3)),
+                        [](const std::pair<std::uint64_t, int> &raw) {
+                            double value = 0;
+                            std::memcpy(&value, &raw.first, sizeof value);
+                            if (raw.second == 0 || !std::isfinite(value))
+                                value = static_cast<double>(static_cast<std::int64_t>(raw.first % 2000001) - 1000000) / 1000.0;
+                            return value;
+                        });
 }
 
 Log any_log() {
-    const char *const names[] = {"wheel0.speed_rad_s", "camera.x_m", "arm.joint, left", "say \"hi\"", "a;b", "imu.gyro_z_rad_s", " padded ", "x#1"};
+    const char *const names[] = {"wheel0.speed_rad_s", "camera.x_m", "arm.joint, left", "say \"hi\"", "a;b", "imu.gyro_z_rad_s",
+                                 " padded ",           "x#1"};
     Log log;
     const int count = *rc::gen::inRange(0, 8);
     for (int k = 0; k < count; ++k) {
@@ -58,19 +61,34 @@ void expect_sound(const Log &log) {
     }
 }
 
-const char *const map_text = "format = \"traction-map 1\"\nskip_rows = 0\n[time]\ncolumn = \"t_s\"\nscale = 1.0\n[header]\na = \"b\"\n[[signal]]\nname = \"wheel0.speed_rad_s\"\n"
-                             "column = \"wheel0.speed_rad_s\"\nscale = 2.0\nunwrap = true\ndifferentiate = true\n[[where]]\ncolumn = \"t_s\"\nmin = 0\n";
+const char *const map_text =
+    "format = \"traction-map 1\"\nskip_rows = 0\n[time]\ncolumn = \"t_s\"\nscale = 1.0\n[header]\na = \"b\"\n[[signal]]\nname = "
+    "\"wheel0.speed_rad_s\"\n"
+    "column = \"wheel0.speed_rad_s\"\nscale = 2.0\nunwrap = true\ndifferentiate = true\n[[where]]\ncolumn = \"t_s\"\nmin = 0\n";
 
 std::string damaged(std::string text) {
     for (int k = *rc::gen::inRange(1, 6); k > 0 && !text.empty(); --k) {
         const std::size_t at = *rc::gen::inRange<std::size_t>(0, text.size());
         switch (*rc::gen::inRange(0, 6)) {
-        case 0: text[at] = static_cast<char>(*rc::gen::inRange(0, 256)); break;
-        case 1: text.erase(at, *rc::gen::inRange<std::size_t>(1, 20)); break;
-        case 2: text.insert(at, text.substr(*rc::gen::inRange<std::size_t>(0, text.size()), 30)); break;
-        case 3: text.insert(at, *rc::gen::element<std::string>("\"", ",", ";", "\n", "\r\n", "nan", "-", "1e999", "#", "\t", "=", "[", "-1e308", "0")); break;
-        case 4: text.resize(at); break;
-        default: std::swap(text[at], text[*rc::gen::inRange<std::size_t>(0, text.size())]); break;
+        case 0:
+            text[at] = static_cast<char>(*rc::gen::inRange(0, 256));
+            break;
+        case 1:
+            text.erase(at, *rc::gen::inRange<std::size_t>(1, 20));
+            break;
+        case 2:
+            text.insert(at, text.substr(*rc::gen::inRange<std::size_t>(0, text.size()), 30));
+            break;
+        case 3:
+            text.insert(
+                at, *rc::gen::element<std::string>("\"", ",", ";", "\n", "\r\n", "nan", "-", "1e999", "#", "\t", "=", "[", "-1e308", "0"));
+            break;
+        case 4:
+            text.resize(at);
+            break;
+        default:
+            std::swap(text[at], text[*rc::gen::inRange<std::size_t>(0, text.size())]);
+            break;
         }
     }
     return text;

@@ -70,7 +70,8 @@ TEST(Read, a_missing_file_is_a_file_error_that_names_it) {
         read_csv("/nonexistent/log.csv");
         FAIL();
     } catch (const FileError &error) {
-        EXPECT_STREQ(error.what(), "/nonexistent/log.csv: cannot be opened: No such file or directory; to mend: check the path and its permissions");
+        EXPECT_STREQ(error.what(),
+                     "/nonexistent/log.csv: cannot be opened: No such file or directory; to mend: check the path and its permissions");
     }
 }
 
@@ -84,13 +85,15 @@ TEST(Read, an_empty_file_is_refused) {
 TEST(Read, a_binary_file_is_refused) { EXPECT_HAS(refusal(std::string("PK\x03\x04", 4)), "this is not a text file"); }
 
 TEST(Read, a_missing_row_of_names_is_refused) {
-    EXPECT_EQ(refusal("0,1,2\n0.01,1,2\n"), "log.csv, line 1, column 1: there is no row of names: this first row begins with the number '0'; to mend: put "
-                                            "'t_s,<object>.<quantity>_<unit>,...' above the data, or read the file through a map (--map)");
+    EXPECT_EQ(refusal("0,1,2\n0.01,1,2\n"),
+              "log.csv, line 1, column 1: there is no row of names: this first row begins with the number '0'; to mend: put "
+              "'t_s,<object>.<quantity>_<unit>,...' above the data, or read the file through a map (--map)");
 }
 
 TEST(Read, a_missing_time_column_is_refused) {
-    EXPECT_EQ(refusal("time,wheel0.speed_rad_s\n0,1\n"), "log.csv, line 1: there is no column 't_s' (found: time, wheel0.speed_rad_s); to mend: call the column of "
-                                                         "seconds 't_s', or read the file through a map (--map)");
+    EXPECT_EQ(refusal("time,wheel0.speed_rad_s\n0,1\n"),
+              "log.csv, line 1: there is no column 't_s' (found: time, wheel0.speed_rad_s); to mend: call the column of "
+              "seconds 't_s', or read the file through a map (--map)");
 }
 
 TEST(Read, a_duplicate_column_is_refused) {
@@ -98,37 +101,43 @@ TEST(Read, a_duplicate_column_is_refused) {
               "log.csv, line 1, column 3: column 'camera.x_m' stands twice, first as column 2; to mend: rename or delete one of them");
 }
 
-TEST(Read, a_nameless_column_is_refused) { EXPECT_HAS(refusal("t_s,,camera.x_m\n0,1,2\n"), "log.csv, line 1, column 2: this column has no name"); }
+TEST(Read, a_nameless_column_is_refused) {
+    EXPECT_HAS(refusal("t_s,,camera.x_m\n0,1,2\n"), "log.csv, line 1, column 2: this column has no name");
+}
 
 TEST(Read, a_wrong_format_version_is_refused) {
-    EXPECT_EQ(refusal("# format: traction-log 9\nt_s\n"),
-              "log.csv, line 1: format 'traction-log 9' is not known to this version; to mend: write '# format: traction-log 1', or read it with the traction that wrote it");
+    EXPECT_EQ(refusal("# format: traction-log 9\nt_s\n"), "log.csv, line 1: format 'traction-log 9' is not known to this version; to mend: "
+                                                          "write '# format: traction-log 1', or read it with the traction that wrote it");
 }
 
 TEST(Read, a_missing_format_line_is_a_stated_repair) { EXPECT_NE(read("t_s,camera.x_m\n0,1\n").find("no_format"), nullptr); }
 
 TEST(Read, a_cell_that_is_no_number_is_refused_with_its_place) {
-    EXPECT_EQ(refusal(head + "0,1,\n0.01,12a4,\n"), "log.csv, line 5, column 2: '12a4' in column 'wheel0.speed_rad_s' is not a number; to mend: write a number, or leave the "
-                                                    "cell empty where there is no sample");
+    EXPECT_EQ(refusal(head + "0,1,\n0.01,12a4,\n"),
+              "log.csv, line 5, column 2: '12a4' in column 'wheel0.speed_rad_s' is not a number; to mend: write a number, or leave the "
+              "cell empty where there is no sample");
     EXPECT_HAS(refusal(head + "0,1 2,\n"), "'1 2' in column");
     EXPECT_HAS(refusal(head + "0,0x10,\n"), "'0x10' in column");
 }
 
 TEST(Read, a_wrong_number_of_fields_is_refused) {
-    EXPECT_EQ(refusal(head + "0,1\n0.01,1,\n"),
-              "log.csv, line 4: 2 fields, but the row of names (line 3) has 3; to mend: give every row one field a column, empty where there is no sample");
+    EXPECT_EQ(refusal(head + "0,1\n0.01,1,\n"), "log.csv, line 4: 2 fields, but the row of names (line 3) has 3; to mend: give every row "
+                                                "one field a column, empty where there is no sample");
     EXPECT_HAS(refusal(head + "0,1,5,2,5\n"), "decimal commas need ';' between columns");
 }
 
 TEST(Read, a_row_without_time_is_refused) { EXPECT_HAS(refusal(head + "0,1,\n,2,\n"), "log.csv, line 5, column 1: the row has no time"); }
 
-TEST(Read, an_open_quote_is_refused) { EXPECT_HAS(refusal(head + "0,\"1,\n"), "log.csv, line 4, column 2: a quote is opened and never closed"); }
+TEST(Read, an_open_quote_is_refused) {
+    EXPECT_HAS(refusal(head + "0,\"1,\n"), "log.csv, line 4, column 2: a quote is opened and never closed");
+}
 
 TEST(Read, nan_and_infinite_cells_become_no_sample_and_are_said) {
     const Read r = read(head + "0,nan,1\n0.01,inf,2\n0.02,3,NA\n0.03,-1e999,\n");
     EXPECT_EQ(r.log.find("wheel0.speed_rad_s")->value, (std::vector<double>{3}));
     ASSERT_NE(r.find("not_finite"), nullptr);
-    EXPECT_EQ(r.find("not_finite")->text, "line 4, column 2: 3 cells of 'wheel0.speed_rad_s' are NaN, infinite or say 'none', read as no sample");
+    EXPECT_EQ(r.find("not_finite")->text,
+              "line 4, column 2: 3 cells of 'wheel0.speed_rad_s' are NaN, infinite or say 'none', read as no sample");
     EXPECT_EQ(r.find("not_finite")->count, 3u);
 }
 
@@ -141,7 +150,8 @@ TEST(Read, a_time_that_is_not_finite_loses_its_row_and_is_said) {
 TEST(Read, duplicate_times_keep_the_first_and_are_said) {
     const Read r = read(head + "0,1,\n0.01,2,\n0.01,9,\n0.02,3,\n");
     EXPECT_EQ(r.log.find("wheel0.speed_rad_s")->value, (std::vector<double>{1, 2, 3}));
-    EXPECT_EQ(r.repairs.at(0).text, "line 6, column 2: 1 samples of 'wheel0.speed_rad_s' have a time already taken, the first of each is kept");
+    EXPECT_EQ(r.repairs.at(0).text,
+              "line 6, column 2: 1 samples of 'wheel0.speed_rad_s' have a time already taken, the first of each is kept");
 }
 
 TEST(Read, rows_of_one_time_that_fill_different_columns_are_no_duplicates) {
@@ -160,7 +170,8 @@ TEST(Read, unsorted_times_are_sorted_and_said) {
 TEST(Read, a_clock_set_back_while_logging_is_refused_with_its_line) {
     std::string text = head;
     for (int i = 0; i < 200; ++i) text += std::to_string(i < 120 ? 0.01 * i : 0.01 * i - 0.5) + ",1,\n";
-    EXPECT_HAS(refusal(text), "log.csv, line 124, column 2: the time of 'wheel0.speed_rad_s' jumps back from 1.19 s to 0.7 s and runs over the same span again: the clock was set");
+    EXPECT_HAS(refusal(text), "log.csv, line 124, column 2: the time of 'wheel0.speed_rad_s' jumps back from 1.19 s to 0.7 s and runs over "
+                              "the same span again: the clock was set");
 }
 
 TEST(Read, blocks_in_the_wrong_order_are_no_clock_jump) {
@@ -204,13 +215,15 @@ TEST(Read, a_separator_at_the_end_of_lines_is_mended) {
 TEST(Read, an_unknown_name_is_kept_and_said) {
     const Read r = read("# format: traction-log 1\nt_s,arm.joint_rad,camera.x_m\n0,1,2\n");
     EXPECT_NE(r.log.find("arm.joint_rad"), nullptr);
-    EXPECT_EQ(r.find("unknown_name")->text, "1 column is not in the vocabulary ('arm.joint_rad'): kept under their own names, used by no balance");
+    EXPECT_EQ(r.find("unknown_name")->text,
+              "1 column is not in the vocabulary ('arm.joint_rad'): kept under their own names, used by no balance");
     const Read foreign = read("t_s,a,b\n0,1,2\n");
     EXPECT_EQ(foreign.find("unknown_name")->text, "no column is in the vocabulary ('a', 'b'): a foreign file wants a map (--map)");
 }
 
 TEST(Read, a_known_quantity_in_another_unit_is_converted_and_said) {
-    const Read r = read("# format: traction-log 1\nt_s,wheel0.speed_rpm,wheel0.current_mA,imu.gyro_z_deg_s,camera.x_furlong\n0,60,250,180,1\n");
+    const Read r =
+        read("# format: traction-log 1\nt_s,wheel0.speed_rpm,wheel0.current_mA,imu.gyro_z_deg_s,camera.x_furlong\n0,60,250,180,1\n");
     EXPECT_NEAR(r.log.find("wheel0.speed_rad_s")->value[0], 6.283185307179586, 1e-14); // 60 rpm is 2 pi rad/s; 1e-14: a few roundings of 7
     EXPECT_DOUBLE_EQ(r.log.find("wheel0.current_A")->value[0], 0.25);
     EXPECT_NEAR(r.log.find("imu.gyro_z_rad_s")->value[0], 3.141592653589793, 1e-14);
@@ -222,7 +235,8 @@ TEST(Read, a_known_quantity_in_another_unit_is_converted_and_said) {
 TEST(Read, a_file_or_a_number_of_samples_beyond_the_limit_is_refused) {
     ReadLimits limits;
     limits.bytes = 1 << 20;
-    EXPECT_EQ(refusal(std::string(3 << 20, 'x'), limits), "log.csv: is too large: 3 MiB, the limit is 1 MiB; to mend: cut it into parts, or leave out the fastest columns");
+    EXPECT_EQ(refusal(std::string(3 << 20, 'x'), limits),
+              "log.csv: is too large: 3 MiB, the limit is 1 MiB; to mend: cut it into parts, or leave out the fastest columns");
     limits.samples = 2;
     EXPECT_HAS(refusal(head + "0,1,1\n1,1,1\n", limits), "log.csv, line 5, column 2: the log holds more than 2 samples");
 }
@@ -277,14 +291,17 @@ TEST(Write, refuses_what_could_not_be_read_back_and_leaves_no_file) {
 TEST(Write, to_a_folder_that_is_not_there_is_a_file_error) { EXPECT_THROW(write_csv(Log{}, "/nonexistent/x.csv"), FileError); }
 
 TEST(Vocabulary, has_every_name_of_the_interchange_and_each_once) {
-    for (const char *name : {"wheel3.speed_rad_s", "wheel0.encoder_count", "wheel12.current_A", "wheel0.duty", "wheel0.set_speed_rad_s", "battery.voltage_V", "radar.adc_count",
-                             "radar.speed_m_s", "imu.accel_x_m_s2", "imu.gyro_z_rad_s", "estimate.speed_m_s", "wheel0.slip", "camera.x_m", "camera.y_m", "camera.yaw_rad"}) {
+    for (const char *name : {"wheel3.speed_rad_s", "wheel0.encoder_count", "wheel12.current_A", "wheel0.duty", "wheel0.set_speed_rad_s",
+                             "battery.voltage_V", "radar.adc_count", "radar.speed_m_s", "imu.accel_x_m_s2", "imu.gyro_z_rad_s",
+                             "estimate.speed_m_s", "wheel0.slip", "camera.x_m", "camera.y_m", "camera.yaw_rad"}) {
         EXPECT_NE(find_quantity(name), nullptr) << name;
     }
-    for (const char *name : {"wheel.speed_rad_s", "wheelx.duty", "wheel0.speed", "wheel0.duty_V", "speed_rad_s", "", ".", "wheel0."}) EXPECT_EQ(find_quantity(name), nullptr) << name;
+    for (const char *name : {"wheel.speed_rad_s", "wheelx.duty", "wheel0.speed", "wheel0.duty_V", "speed_rad_s", "", ".", "wheel0."})
+        EXPECT_EQ(find_quantity(name), nullptr) << name;
     for (const Quantity &entry : vocabulary()) {
         const std::string object(entry.object == "wheel<i>" ? "wheel0" : entry.object);
-        EXPECT_EQ(find_quantity(object + "." + std::string(entry.quantity) + (entry.unit.empty() ? "" : "_") + std::string(entry.unit)), &entry);
+        EXPECT_EQ(find_quantity(object + "." + std::string(entry.quantity) + (entry.unit.empty() ? "" : "_") + std::string(entry.unit)),
+                  &entry);
     }
     EXPECT_EQ(wheel_of("wheel12.duty"), 12);
     EXPECT_EQ(wheel_of("camera.x_m"), -1);

@@ -28,8 +28,9 @@ struct Leg {
     double until_s, speed_m_s, yaw_rate_rad_s, sweep; // sweep: extra slip, + front, - rear
 };
 // Out and back on one track, turns to both sides, a slip sweep; three standstills.
-const Leg rich[] = {{3, 0, 0, 0},      {10, 0.25, 0, 0},   {13, 0.25, 0.6, 0},  {16, 0.25, -0.6, 0}, {20, 0.4, 0, 0},   {22, 0, 0, 0},      {26, -0.4, 0, 0}, {29, -0.25, 0.6, 0},
-                    {32, -0.25, -0.6, 0}, {39, -0.25, 0, 0}, {42, 0, 0, 0},     {50, 0.3, 0, 0.35},  {53, 0, 0, 0},     {60, -0.3, 0, -0.2}, {62, 0, 0, 0},    {70, 0.15, 0.3, 0}, {76, 0.5, 0, 0}, {80, 0, 0, 0}};
+const Leg rich[] = {{3, 0, 0, 0},     {10, 0.25, 0, 0},    {13, 0.25, 0.6, 0},   {16, 0.25, -0.6, 0}, {20, 0.4, 0, 0}, {22, 0, 0, 0},
+                    {26, -0.4, 0, 0}, {29, -0.25, 0.6, 0}, {32, -0.25, -0.6, 0}, {39, -0.25, 0, 0},   {42, 0, 0, 0},   {50, 0.3, 0, 0.35},
+                    {53, 0, 0, 0},    {60, -0.3, 0, -0.2}, {62, 0, 0, 0},        {70, 0.15, 0.3, 0},  {76, 0.5, 0, 0}, {80, 0, 0, 0}};
 const Leg plain[] = {{60, 0.25, 0, 0}};
 
 } // namespace
@@ -93,13 +94,15 @@ log::Log drive(const Drive &how) {
         for (std::size_t k = 1; k < count; ++k) angle[k] = angle[k - 1] + w[i][k] * dt;
         add(wheel + ".speed_rad_s", 1, [&](std::size_t k) { return w[i][k] == 0 ? 0.0 : w[i][k] + 0.03 * n * random.normal(); });
         add(wheel + ".encoder_count", 1, [&](std::size_t k) { return std::floor(angle[k] * 6000 / 6.283185307179586); });
-        add(wheel + ".current_A", 1, [&](std::size_t k) { return 0.0024 * std::round((current[i][k] + 0.015 * n * random.normal()) / 0.0024); });
+        add(wheel + ".current_A", 1,
+            [&](std::size_t k) { return 0.0024 * std::round((current[i][k] + 0.015 * n * random.normal()) / 0.0024); });
         add(wheel + ".duty", 1, [&](std::size_t k) { return (ke * w[i][k] + Ra * current[i][k]) / battery[k]; });
     }
     add("battery.voltage_V", 1, [&](std::size_t k) { return 0.005 * std::round((battery[k] + 0.01 * n * random.normal()) / 0.005); });
     add("imu.accel_x_m_s2", 1, [&](std::size_t k) { return a[k] + 0.08 + 0.06 * n * random.normal(); });
     add("imu.gyro_z_rad_s", 1, [&](std::size_t k) { return r[k] + 0.01 * n * random.normal(); });
-    add("radar.speed_m_s", 50, [&](std::size_t k) { return std::fabs(v[k]) < 0.03 ? 0.0 : std::fabs(v[k] * (1 + 0.06 * n * random.normal())); });
+    add("radar.speed_m_s", 50,
+        [&](std::size_t k) { return std::fabs(v[k]) < 0.03 ? 0.0 : std::fabs(v[k] * (1 + 0.06 * n * random.normal())); });
     add("camera.x_m", 14, [&](std::size_t k) { return x[k] + 0.001 * n * random.normal(); });
     add("camera.y_m", 14, [&](std::size_t k) { return y[k] + 0.001 * n * random.normal(); });
     add("camera.yaw_rad", 14, [&](std::size_t k) { return std::remainder(yaw[k] + 0.005 * n * random.normal(), 6.283185307179586); });

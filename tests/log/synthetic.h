@@ -13,10 +13,10 @@ namespace traction::test {
 
 struct Drive {
     std::uint64_t seed = 1;
-    double noise = 1;        // factor on every sensor noise
+    double noise = 1;          // factor on every sensor noise
     double soil_noise_N = 0.2; // standard deviation of the force on each wheel
-    double grip_N = 5.6;     // Fm of (21)
-    bool rich = true;        // false: constant speed straight ahead
+    double grip_N = 5.6;       // Fm of (21)
+    bool rich = true;          // false: constant speed straight ahead
 };
 
 log::Log drive(const Drive &how);

@@ -21,7 +21,8 @@ namespace {
 
 log::Log drive(const std::string &radar, const std::string &effect = "", int seed = 3) {
     const std::string text = "duration_s = 60\nseed = " + std::to_string(seed) + "\n[ground]\nsoil = \"concrete\"\n" + radar +
-                             "[[drive]]\nfor_s = 20.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n[[drive]]\nfor_s = 20.0\nmode = \"platform_speed\"\nspeed_m_s = 0.5\n"
+                             "[[drive]]\nfor_s = 20.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n[[drive]]\nfor_s = 20.0\nmode = "
+                             "\"platform_speed\"\nspeed_m_s = 0.5\n"
                              "[[drive]]\nfor_s = 20.0\nmode = \"platform_speed\"\nspeed_m_s = 0.7\n";
     SimulateOptions options;
     if (!effect.empty()) options.effects = {sim::parse_effect(effect)};
@@ -47,13 +48,15 @@ TEST(Calibrate, finds_the_scale_within_its_own_uncertainty_from_camera_and_from_
 TEST(Calibrate, tells_a_mounting_error_by_its_direction_and_size) {
     const Calibration level = calibrate(drive(""), CalibrationTruth::camera, 0.057);
     const Calibration steep = calibrate(drive("[radar]\nmounting_error_deg = 6.0\n"), CalibrationTruth::camera, 0.057);
-    const double found = steep.angle_deg - level.angle_deg, std = std::hypot(steep.angle_known_ground_std_deg, level.angle_known_ground_std_deg);
+    const double found = steep.angle_deg - level.angle_deg,
+                 std = std::hypot(steep.angle_known_ground_std_deg, level.angle_known_ground_std_deg);
     EXPECT_NEAR(found, 6, 3 * std); // the same ground: its exponent falls out
     EXPECT_GT(found, 2);
     EXPECT_LT(std, 4);
     EXPECT_GT(std, 0.1);
-    std::printf("mounted 6 deg steeper: found %.1f +- %.1f deg, level %.1f +- %.1f deg; were the ground known +- %.1f and %.1f\n", steep.angle_deg, steep.angle_std_deg,
-                level.angle_deg, level.angle_std_deg, steep.angle_known_ground_std_deg, level.angle_known_ground_std_deg);
+    std::printf("mounted 6 deg steeper: found %.1f +- %.1f deg, level %.1f +- %.1f deg; were the ground known +- %.1f and %.1f\n",
+                steep.angle_deg, steep.angle_std_deg, level.angle_deg, level.angle_std_deg, steep.angle_known_ground_std_deg,
+                level.angle_known_ground_std_deg);
 }
 
 // Truth 20 deg on each. Eight drives: their mean is right to 3/sqrt(8) of one's uncertainty. Before, all of them were 2 to 3 deg too steep.
@@ -64,8 +67,8 @@ TEST(Calibrate, angle_of_a_level_radar_is_right_on_the_mean_of_eight_drives) {
         EXPECT_NEAR(c.angle_deg, 20, 3 * c.angle_known_ground_std_deg) << seed;
         sum += c.angle_deg / 8;
         claimed += c.angle_known_ground_std_deg / 8;
-        std::printf("seed %d: scale %.4f +- %.4f, angle %.1f +- %.1f deg, the ground known +- %.1f\n", seed, c.scale, c.scale_std, c.angle_deg, c.angle_std_deg,
-                    c.angle_known_ground_std_deg);
+        std::printf("seed %d: scale %.4f +- %.4f, angle %.1f +- %.1f deg, the ground known +- %.1f\n", seed, c.scale, c.scale_std,
+                    c.angle_deg, c.angle_std_deg, c.angle_known_ground_std_deg);
     }
     EXPECT_NEAR(sum, 20, 3 * claimed / std::sqrt(8.0));
     std::printf("mean %.2f deg, one claims +- %.2f\n", sum, claimed);
@@ -73,13 +76,16 @@ TEST(Calibrate, angle_of_a_level_radar_is_right_on_the_mean_of_eight_drives) {
 
 TEST(Calibrate, says_that_the_ground_may_be_taken_for_an_angle_and_covers_it) {
     for (const int exponent : {0, 2}) {
-        const Calibration c = calibrate(drive("[radar]\nground_exponent = " + std::to_string(exponent) + ".0\n"), CalibrationTruth::camera, 0.057);
+        const Calibration c =
+            calibrate(drive("[radar]\nground_exponent = " + std::to_string(exponent) + ".0\n"), CalibrationTruth::camera, 0.057);
         const double known = c.angle_by_exponent_deg[static_cast<std::size_t>(exponent)];
-        std::printf("exponent %d: %.1f +- %.1f deg; by exponent %.1f, %.1f, %.1f\n", exponent, c.angle_deg, c.angle_std_deg, c.angle_by_exponent_deg[0],
-                    c.angle_by_exponent_deg[1], c.angle_by_exponent_deg[2]);
+        std::printf("exponent %d: %.1f +- %.1f deg; by exponent %.1f, %.1f, %.1f\n", exponent, c.angle_deg, c.angle_std_deg,
+                    c.angle_by_exponent_deg[0], c.angle_by_exponent_deg[1], c.angle_by_exponent_deg[2]);
         EXPECT_NEAR(known, 20, 3 * c.angle_known_ground_std_deg) << exponent; // who knows the ground knows the angle
-        EXPECT_GT(std::fabs(c.angle_deg - 20), c.angle_known_ground_std_deg) << exponent; // who does not is off by more than the radar's spread,
-        EXPECT_NEAR(c.angle_deg, 20, 2.5 * c.angle_std_deg) << exponent;                  // as the uncertainty says: exponents at the ends of 0..2 are 1.7 sigma
+        EXPECT_GT(std::fabs(c.angle_deg - 20), c.angle_known_ground_std_deg)
+            << exponent; // who does not is off by more than the radar's spread,
+        EXPECT_NEAR(c.angle_deg, 20, 2.5 * c.angle_std_deg)
+            << exponent; // as the uncertainty says: exponents at the ends of 0..2 are 1.7 sigma
         EXPECT_GT(c.angle_by_exponent_deg[0], c.angle_by_exponent_deg[1]);
         EXPECT_GT(c.angle_by_exponent_deg[1], c.angle_by_exponent_deg[2]);
     }
@@ -115,10 +121,28 @@ struct Watched {
     int fail_at = -1, ticks = 0;
     static hal_t wrap(Watched &w) {
         return {.context = &w,
-                .wait_tick = [](void *c) { auto &x = *static_cast<Watched *>(c); return ++x.ticks == x.fail_at ? HAL_ERR_IO : x.inner.wait_tick(x.inner.context); },
-                .read = [](void *c, sensor_frame_t *f) { auto &x = *static_cast<Watched *>(c); return x.inner.read(x.inner.context, f); },
-                .write = [](void *c, const actuator_frame_t *a) { auto &x = *static_cast<Watched *>(c); x.driven_after_stop = x.stopped; return x.inner.write(x.inner.context, a); },
-                .safe_stop = [](void *c) { auto &x = *static_cast<Watched *>(c); x.stopped = true; x.inner.safe_stop(x.inner.context); }};
+                .wait_tick =
+                    [](void *c) {
+                        auto &x = *static_cast<Watched *>(c);
+                        return ++x.ticks == x.fail_at ? HAL_ERR_IO : x.inner.wait_tick(x.inner.context);
+                    },
+                .read =
+                    [](void *c, sensor_frame_t *f) {
+                        auto &x = *static_cast<Watched *>(c);
+                        return x.inner.read(x.inner.context, f);
+                    },
+                .write =
+                    [](void *c, const actuator_frame_t *a) {
+                        auto &x = *static_cast<Watched *>(c);
+                        x.driven_after_stop = x.stopped;
+                        return x.inner.write(x.inner.context, a);
+                    },
+                .safe_stop =
+                    [](void *c) {
+                        auto &x = *static_cast<Watched *>(c);
+                        x.stopped = true;
+                        x.inner.safe_stop(x.inner.context);
+                    }};
     }
 };
 
@@ -137,12 +161,13 @@ TEST(Tune, finds_the_gripping_motor_within_its_limits_and_stops_it) {
     Watched watched{.inner = rover.hal()};
     const TuneLimits limits{.torque_Nm = 0.25};
     const TuneResult r = tune(Watched::wrap(watched), rover_config_default(), limits);
-    std::printf("tune: pole %.2f 1/s, gain %.0f rad/s^2, kp %.3f ki %.3f, torque %.2f N m, %.1f s\n", r.pole_1_s[0], r.gain_rad_s2[0], r.kp_s, r.ki_1, r.largest_torque_Nm, r.used_s);
+    std::printf("tune: pole %.2f 1/s, gain %.0f rad/s^2, kp %.3f ki %.3f, torque %.2f N m, %.1f s\n", r.pole_1_s[0], r.gain_rad_s2[0],
+                r.kp_s, r.ki_1, r.largest_torque_Nm, r.used_s);
     EXPECT_TRUE(watched.stopped);
     EXPECT_FALSE(watched.driven_after_stop);
     // docs/firmware.md: 80 rad/s^2 per duty gripping, 118 free; poles 3.2 and 4.65 1/s; the wheels slip in the pulses: in between
-    EXPECT_GT(r.kp_s, 0.24 * 0.2 / 0.24 * 0.9);  // 24.4/118 = 0.207
-    EXPECT_LT(r.kp_s, 24.4 / 80 * 1.15);         // 0.305, and the rover's body counts less while its wheels slip
+    EXPECT_GT(r.kp_s, 0.24 * 0.2 / 0.24 * 0.9); // 24.4/118 = 0.207
+    EXPECT_LT(r.kp_s, 24.4 / 80 * 1.15);        // 0.305, and the rover's body counts less while its wheels slip
     EXPECT_LT(r.used_s, limits.time_s);
     EXPECT_LE(r.largest_torque_Nm, 0.25);
     EXPECT_GT(r.largest_torque_Nm, 0.15); // and it is made use of

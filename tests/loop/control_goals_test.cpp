@@ -60,14 +60,15 @@ Slip slip_of(const std::string &soil, const std::string &firmware) {
 } // namespace
 
 TEST(Goal, slip_is_held_at_0_4_on_every_soil_where_the_papers_settings_wander) {
-    for (const auto &[soil, band] : {std::pair{std::string("concrete"), 0.02}, {std::string("gravel"), 0.04}, {std::string("sand"), 0.04}}) {
+    for (const auto &[soil, band] :
+         {std::pair{std::string("concrete"), 0.02}, {std::string("gravel"), 0.04}, {std::string("sand"), 0.04}}) {
         const Slip ours = slip_of(soil, "default"), paper = slip_of(soil, "paper");
-        std::printf("slip servo 0.4 on %-8s ours mean %.3f settling %.2f s | paper mean %.3f settling %.2f s\n", soil.c_str(), ours.mean, ours.settling_s,
-                    paper.mean, paper.settling_s);
-        EXPECT_NEAR(ours.mean, 0.4, band) << soil;          // the goal of issue 5
+        std::printf("slip servo 0.4 on %-8s ours mean %.3f settling %.2f s | paper mean %.3f settling %.2f s\n", soil.c_str(), ours.mean,
+                    ours.settling_s, paper.mean, paper.settling_s);
+        EXPECT_NEAR(ours.mean, 0.4, band) << soil;           // the goal of issue 5
         EXPECT_GT(std::fabs(ours.mean - 0.4), 1e-5) << soil; // a noisy estimate cannot be perfect
         EXPECT_LT(ours.settling_s, 1.5) << soil;
-        EXPECT_GT(ours.settling_s, 0.1) << soil;             // nor instant: the wheel has inertia
+        EXPECT_GT(ours.settling_s, 0.1) << soil; // nor instant: the wheel has inertia
         EXPECT_LT(ours.settling_s, paper.settling_s) << soil;
     }
 }
@@ -76,7 +77,8 @@ TEST(Goal, a_blocked_wheel_costs_less_than_a_twentieth_of_the_speed) {
     const auto ours = mean_over_seeds("fig16_blocked_wheels", "default", "truth.speed_m_s");
     const auto paper = mean_over_seeds("fig16_blocked_wheels", "paper", "truth.speed_m_s");
     for (const auto &[from_s, to_s] : {std::pair{2.0, 5.0}, {5.5, 9.0}, {10.5, 15.0}}) {
-        std::printf("0.2 m/s, %4.1f to %4.1f s: ours %.4f m/s, paper %.4f m/s\n", from_s, to_s, mean(ours, from_s, to_s), mean(paper, from_s, to_s));
+        std::printf("0.2 m/s, %4.1f to %4.1f s: ours %.4f m/s, paper %.4f m/s\n", from_s, to_s, mean(ours, from_s, to_s),
+                    mean(paper, from_s, to_s));
         EXPECT_NEAR(mean(ours, from_s, to_s), 0.2, 0.05 * 0.2) << from_s;
         EXPECT_GT(std::fabs(mean(ours, from_s, to_s) - 0.2), 1e-6) << from_s;
     }

@@ -28,12 +28,12 @@ std::string sensor_fault(const std::string &sensor, const std::string &how, cons
 SimulationResult run(const std::string &text, double duration_s = 7, const std::string &ground = "[ground]\nsoil = \"concrete\"\n") {
     SimulateOptions options;
     options.truth = true;
-    return simulate(sim::parse_scenario("duration_s = " + std::to_string(duration_s) + "\nseed = 5\n" + ground + text, "fault.toml"), options);
+    return simulate(sim::parse_scenario("duration_s = " + std::to_string(duration_s) + "\nseed = 5\n" + ground + text, "fault.toml"),
+                    options);
 }
 
 // Ticks from `since_s` until the condition on a signal first holds; -1 when it never does.
-template <typename Condition>
-int ticks_until(const log::Log &log, const std::string &name, double since_s, Condition holds) {
+template <typename Condition> int ticks_until(const log::Log &log, const std::string &name, double since_s, Condition holds) {
     const log::Signal *signal = log.find(name);
     if (signal == nullptr) return -1;
     std::size_t first = 0;
@@ -67,7 +67,7 @@ void expect_stays_off(const SimulationResult &result, double since_s) {
 struct Loss {
     const char *name;
     std::string text;
-    std::uint32_t fault; // the latches it must set in the tick that ends the drive, and no others
+    std::uint32_t fault;  // the latches it must set in the tick that ends the drive, and no others
     int earliest, latest; // ticks from the first bad tick to motors off, [earliest, latest]
 };
 
@@ -83,9 +83,11 @@ std::vector<Loss> losses() {
         {"gyro silent", sensor_fault("gyro", "dropped"), FAULT_GYRO_LOST, 7, 9},
         {"radar silent", sensor_fault("radar", "dropped"), FAULT_RADAR_LOST, 7, 9},
         // noise of 10000 pulses a tick: a step is believable (573 pulses) in one tick of 30
-        {"encoder 0 absurd", sensor_fault("encoder", "noisy", "wheel = 0\nnoise = 10000\n"), FAULT_ABSURD_SENSOR | FAULT_ENCODER_LOST, 7, 40},
+        {"encoder 0 absurd", sensor_fault("encoder", "noisy", "wheel = 0\nnoise = 10000\n"), FAULT_ABSURD_SENSOR | FAULT_ENCODER_LOST, 7,
+         40},
         // noise of 10000 A: between the rails of +-4.1 A in one tick of 3000
-        {"current 3 absurd", sensor_fault("current", "noisy", "wheel = 3\nnoise = 10000\n"), FAULT_ABSURD_SENSOR | FAULT_CURRENT_LOST, 7, 9},
+        {"current 3 absurd", sensor_fault("current", "noisy", "wheel = 3\nnoise = 10000\n"), FAULT_ABSURD_SENSOR | FAULT_CURRENT_LOST, 7,
+         9},
         {"command lost", "[[fault]]\nwhat = \"command_lost\"\nfrom_s = 2.0\n", FAULT_COMMAND_TIMEOUT, 9, 9},
         // one value for more than 1 s while every wheel turns: [100, 103] ticks
         {"radar stuck", sensor_fault("radar", "stuck"), FAULT_RADAR_LOST, 98, 104},
@@ -107,12 +109,14 @@ TEST(Fault, an_emergency_stop_turns_the_motors_off_within_two_ticks_and_a_latch_
 TEST(Fault, a_latch_is_cleared_by_a_stop_command_once_its_cause_is_gone) {
     const auto result = run("[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = 0.4\n[[drive]]\nfor_s = 0.5\nmode = \"stop\"\n"
                             "[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = 0.4\n"
-                            "[[fault]]\nwhat = \"emergency_stop\"\nfrom_s = 2.0\nto_s = 2.5\n", 6.5);
+                            "[[fault]]\nwhat = \"emergency_stop\"\nfrom_s = 2.0\nto_s = 2.5\n",
+                            6.5);
     EXPECT_EQ(result.log.find("control.faults")->value.back(), 0);
     EXPECT_NEAR(result.truth.find("truth.speed_m_s")->value.back(), 0.4, 0.06);
     const auto held = run("[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = 0.4\n[[drive]]\nfor_s = 0.5\nmode = \"stop\"\n"
                           "[[drive]]\nfor_s = 3.0\nmode = \"platform_speed\"\nspeed_m_s = 0.4\n"
-                          "[[fault]]\nwhat = \"emergency_stop\"\nfrom_s = 2.0\n", 6.5);
+                          "[[fault]]\nwhat = \"emergency_stop\"\nfrom_s = 2.0\n",
+                          6.5);
     EXPECT_NE(static_cast<std::uint32_t>(held.log.find("control.faults")->value.back()) & FAULT_EMERGENCY_STOP, 0u);
     expect_stays_off(held, from_s + 0.02); // the line is still active
 }
@@ -162,7 +166,8 @@ TEST(Fault, an_empty_battery_stops_the_rover_after_half_a_second) {
 
 TEST(Fault, a_blocked_wheel_is_limited_to_its_continuous_current_and_the_others_drive_on) {
     const auto result = run("[[drive]]\nfor_s = 8.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = [5.0, 5.0, 5.0, 5.0]\n"
-                            "[[fault]]\nwhat = \"wheel_blocked\"\nwheel = 2\nfrom_s = 2.0\n", 8);
+                            "[[fault]]\nwhat = \"wheel_blocked\"\nwheel = 2\nfrom_s = 2.0\n",
+                            8);
     EXPECT_EQ(result.faults, static_cast<std::uint32_t>(FAULT_STALL));
     const int latched = ticks_until_latched(result.log, FAULT_STALL);
     EXPECT_GE(latched, 100); // 1 s of stall, which begins when the integral has driven the current beyond 1.4 A
@@ -186,7 +191,7 @@ TEST(Fault, reversing_without_end_trips_the_i2t_limit_before_the_winding_is_hot)
     const auto &current = result.truth.find("truth.wheel0.current_A")->value;
     double square = 0;
     for (std::size_t k = 0; k <= static_cast<std::size_t>(latched); k++) square += (current[k] * current[k] - 2.25) * 0.01;
-    EXPECT_GT(square, 4.0);  // 8 A^2 s of i^2 t; the plant's current is sampled here, the firmware's is clamped at 0 from below
+    EXPECT_GT(square, 4.0); // 8 A^2 s of i^2 t; the plant's current is sampled here, the firmware's is clamped at 0 from below
     EXPECT_LT(square, 12.0);
     double worst = 0;
     for (std::size_t k = static_cast<std::size_t>(latched + 5); k < current.size(); k++) worst = std::max(worst, std::fabs(current[k]));
@@ -197,11 +202,15 @@ TEST(Fault, reversing_without_end_trips_the_i2t_limit_before_the_winding_is_hot)
 TEST(Fault, a_winding_beyond_its_temperature_turns_the_motors_off) {
     SimulateOptions options;
     options.effects = {sim::parse_effect("current_gain:change=0.4,wheel=0")};
-    const auto result = simulate(sim::parse_scenario("duration_s = 90\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 90.0\nmode = \"open_loop\"\n"
-                                                     "duty = [1.0, 0.0, 0.0, 0.0]\n[[fault]]\nwhat = \"wheel_blocked\"\nwheel = 0\n", "hot.toml"), options);
+    const auto result =
+        simulate(sim::parse_scenario("duration_s = 90\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 90.0\nmode = \"open_loop\"\n"
+                                     "duty = [1.0, 0.0, 0.0, 0.0]\n[[fault]]\nwhat = \"wheel_blocked\"\nwheel = 0\n",
+                                     "hot.toml"),
+                 options);
     EXPECT_NE(result.faults & FAULT_OVER_TEMPERATURE, 0u);
     const int off = ticks_until_off(result.log, 0);
-    // rise (2.1 A)^2 3.24 ohm 12 K/W = 171 K with 60 s: 95 K after 48.6 s; earlier by the 1 s at up to 3.1 A: 5 s; later by a current of 1.45 A: 5 s
+    // rise (2.1 A)^2 3.24 ohm 12 K/W = 171 K with 60 s: 95 K after 48.6 s; earlier by the 1 s at up to 3.1 A: 5 s; later by a current
+    // of 1.45 A: 5 s
     EXPECT_GT(off, 4000);
     EXPECT_LT(off, 5500);
     EXPECT_EQ(ticks_until_latched(result.log, FAULT_OVER_TEMPERATURE, 0), off);

@@ -34,11 +34,13 @@ SimulationResult run_file(const std::string &name, std::uint64_t seed = 1) {
 }
 
 sim::Scenario on(const std::string &soil, const std::string &rest, double duration_s) {
-    return sim::parse_scenario("duration_s = " + std::to_string(duration_s) + "\n[ground]\nsoil = \"" + soil + "\"\n" + rest, soil + ".toml");
+    return sim::parse_scenario("duration_s = " + std::to_string(duration_s) + "\n[ground]\nsoil = \"" + soil + "\"\n" + rest,
+                               soil + ".toml");
 }
 
-double mean_between(const log::Log &log, const std::string &name, double from_s, double to_s,
-                    const std::function<double(double)> &of = [](double x) { return x; }) {
+double mean_between(
+    const log::Log &log, const std::string &name, double from_s, double to_s,
+    const std::function<double(double)> &of = [](double x) { return x; }) {
     const log::Signal *signal = log.find(name);
     if (signal == nullptr) return std::nan("");
     double sum = 0;
@@ -84,7 +86,8 @@ speed_m_s = 0.4
 for_s = 8.0
 mode = "platform_speed"
 speed_m_s = -0.4
-)", 16));
+)",
+                               16));
     // the loop rests on the fused speed: 4.5 % relative error of a window at 0.4 m/s (DSP.md), averaged over 5 s and
     // 10 windows to 1.5 %; the lower bound on the deviation: a loop that rides on a noisy estimate cannot be perfect
     EXPECT_NEAR(mean_between(result.truth, "truth.speed_m_s", 3, 8), 0.4, 0.4 * 0.045);
@@ -102,7 +105,8 @@ for_s = 8.0
 mode = "platform_speed"
 speed_m_s = 0.3
 yaw_rate_rad_s = 0.8
-)", 8));
+)",
+                               8));
     // open-loop by wheel speeds: skid steering loses part of the rate to scrub and slip, and never gains any
     const double rate = mean_between(result.log, "imu.gyro_z_rad_s", 3, 8);
     EXPECT_LT(rate, 0.85);
@@ -115,14 +119,15 @@ TEST_P(EachSoil, wheel_speed_is_held_to_an_encoder_step) {
 for_s = 5.0
 mode = "wheel_speed"
 wheel_speed_rad_s = [6.0, 6.0, 6.0, 2.0]
-)", 5));
+)",
+                               5));
     for (int wheel = 0; wheel < 4; wheel++) {
         const std::string name = "wheel" + std::to_string(wheel) + ".speed_rad_s";
         const double asked = wheel == 3 ? 2 : 6;
         EXPECT_NEAR(mean_between(result.log, name, 2, 5), asked, 0.03) << name; // integral action: 0.105/sqrt(12) rounding and soil noise
         const double ripple = rms_between(result.log, name, asked, 2, 5);
-        EXPECT_LT(ripple, 0.2) << name;   // twice the step of 0.105 rad/s that a 10 ms count resolves
-        EXPECT_GT(ripple, 0.01) << name;  // and never without its rounding
+        EXPECT_LT(ripple, 0.2) << name;  // twice the step of 0.105 rad/s that a 10 ms count resolves
+        EXPECT_GT(ripple, 0.01) << name; // and never without its rounding
     }
 }
 
@@ -170,7 +175,8 @@ duty = [0.5, 0.5, 0.5, 0.25]
 [[drive]]
 for_s = 2.0
 mode = "stop"
-)", 6));
+)",
+                               6));
     EXPECT_EQ(mean_between(result.truth, "truth.wheel0.speed_rad_s", 0, 1.99), 0);
     EXPECT_NEAR(mean_between(result.log, "wheel0.duty", 2.5, 3.9), 0.5, 1e-4); // Q15
     EXPECT_NEAR(mean_between(result.log, "wheel3.duty", 2.5, 3.9), 0.25, 1e-4);
@@ -180,8 +186,10 @@ mode = "stop"
 
 TEST(Loop, the_rover_drives_on_full_terramechanics_and_sinks) {
     for (const char *contact : {"bekker", "arc"}) {
-        const auto result = run(sim::parse_scenario(std::string("duration_s = 8\n[ground]\nsoil = \"dry_sand_literature\"\ncontact = \"") + contact +
-                                "\"\n[[drive]]\nfor_s = 8.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n", "x.toml"));
+        const auto result =
+            run(sim::parse_scenario(std::string("duration_s = 8\n[ground]\nsoil = \"dry_sand_literature\"\ncontact = \"") + contact +
+                                        "\"\n[[drive]]\nfor_s = 8.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n",
+                                    "x.toml"));
         // resistance takes over half of the grip here, so the rover labours at large slip and the loop, whose gain dv/dw falls with
         // (1 - s), holds its speed within a fifth (measured 0.27 to 0.29 m/s)
         EXPECT_NEAR(mean_between(result.truth, "truth.speed_m_s", 4, 8), 0.3, 0.06) << contact;
@@ -214,7 +222,8 @@ TEST(Loop, the_fused_speed_tracks_the_truth) {
     EXPECT_LT(std::sqrt(square / count), 0.036);
     EXPECT_GT(std::sqrt(square / count), 0.005);
     EXPECT_LT(std::fabs(error_sum / count), 0.01);
-    std::printf("fused speed over %d ticks: rmse %.4f m/s, mean %.4f, worst %.3f\n", count, std::sqrt(square / count), error_sum / count, worst);
+    std::printf("fused speed over %d ticks: rmse %.4f m/s, mean %.4f, worst %.3f\n", count, std::sqrt(square / count), error_sum / count,
+                worst);
 }
 
 TEST(Loop, speed_is_roughly_held_and_heading_drifts_with_a_blocked_wheel) {
@@ -277,7 +286,8 @@ TEST(Loop, the_log_holds_all_that_a_replay_needs) {
         frame.accel_x_count = static_cast<std::int16_t>(at("imu.accel_x_count", t_s));
         frame.gyro_z_count = static_cast<std::int16_t>(at("imu.gyro_z_count", t_s));
         frame.radar_samples = static_cast<std::uint8_t>(at("frame.radar_samples", t_s));
-        for (int i = 0; i < frame.radar_samples; i++) frame.radar_count[i] = static_cast<std::uint16_t>(log.find("radar.adc_count")->value[sample++]);
+        for (int i = 0; i < frame.radar_samples; i++)
+            frame.radar_count[i] = static_cast<std::uint16_t>(log.find("radar.adc_count")->value[sample++]);
         command_t command{};
         command.mode = static_cast<control_mode_t>(at("command.mode", t_s));
         command.platform_speed_m_s = static_cast<float>(at("command.speed_m_s", t_s));
@@ -305,15 +315,22 @@ TEST(Loop, the_log_holds_all_that_a_replay_needs) {
 TEST(Loop, every_scripted_fault_runs_to_the_end) {
     for (const char *sensor : {"encoder", "current", "battery", "accel", "gyro", "radar", "camera"})
         for (const char *how : {"stuck", "noisy", "dropped", "delayed"}) {
-            const std::string text = std::string("[[fault]]\nwhat = \"sensor\"\nsensor = \"") + sensor + "\"\nhow = \"" + how + "\"\nfrom_s = 1.0\nto_s = 2.0\n" +
-                                     (std::string(how) == "noisy" ? "noise = 0.5\n" : std::string(how) == "delayed" ? "delay_s = 0.1\n" : "");
+            const std::string text = std::string("[[fault]]\nwhat = \"sensor\"\nsensor = \"") + sensor + "\"\nhow = \"" + how +
+                                     "\"\nfrom_s = 1.0\nto_s = 2.0\n" +
+                                     (std::string(how) == "noisy"     ? "noise = 0.5\n"
+                                      : std::string(how) == "delayed" ? "delay_s = 0.1\n"
+                                                                      : "");
             const auto result = run(on("sand", "[[drive]]\nfor_s = 4.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n" + text, 4));
             EXPECT_EQ(result.ticks, 400u) << sensor << ' ' << how;
         }
-    const auto stopped = run(on("sand", "[[drive]]\nfor_s = 4.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n[[fault]]\nwhat = \"emergency_stop\"\nfrom_s = 2.0\n", 4));
+    const auto stopped = run(
+        on("sand",
+           "[[drive]]\nfor_s = 4.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n[[fault]]\nwhat = \"emergency_stop\"\nfrom_s = 2.0\n", 4));
     EXPECT_NE(stopped.faults & FAULT_EMERGENCY_STOP, 0u);
     EXPECT_LT(std::fabs(mean_between(stopped.truth, "truth.speed_m_s", 3.5, 4)), 0.01);
-    const auto lost = run(on("sand", "[[drive]]\nfor_s = 4.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n[[fault]]\nwhat = \"command_lost\"\nfrom_s = 2.0\n", 4));
+    const auto lost = run(
+        on("sand", "[[drive]]\nfor_s = 4.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n[[fault]]\nwhat = \"command_lost\"\nfrom_s = 2.0\n",
+           4));
     EXPECT_NE(lost.faults & FAULT_COMMAND_TIMEOUT, 0u);
     EXPECT_LT(std::fabs(mean_between(lost.truth, "truth.speed_m_s", 3.5, 4)), 0.01);
 }

@@ -43,26 +43,35 @@ TEST(Scenario, a_mistake_is_told_with_file_line_key_value_and_mend) {
     const Case cases[] = {
         {"duration_s = 1\nseeds = 3\n" + drive, "x.toml:2: seeds = 3: unknown key; did you mean seed?"},
         {"duration_s = 1\n[ground]\nsoil = \"snd\"\n" + drive, "x.toml:3: ground.soil = 'snd': no such soil; use one of: concrete"},
-        {"duration_s = 1\n[ground]\nslope_rad = \"up\"\n" + drive, "x.toml:3: ground.slope_rad = 'up': not a finite number; give a number from -0.5 to 0.5"},
-        {"duration_s = 1\n[ground]\nslope_rad = 2\n" + drive, "x.toml:3: ground.slope_rad = 2: out of range; give a number from -0.5 to 0.5"},
+        {"duration_s = 1\n[ground]\nslope_rad = \"up\"\n" + drive,
+         "x.toml:3: ground.slope_rad = 'up': not a finite number; give a number from -0.5 to 0.5"},
+        {"duration_s = 1\n[ground]\nslope_rad = 2\n" + drive,
+         "x.toml:3: ground.slope_rad = 2: out of range; give a number from -0.5 to 0.5"},
         {"duration_s = nan\n" + drive, "x.toml:1: duration_s = nan: not a finite number"},
         {"duration_s = -1\n" + drive, "x.toml:1: duration_s = -1: out of range"},
         {drive, "duration_s: missing; give a number"},
         {"duration_s = 1\n", "drive: missing; add at least one [[drive]]"},
         {"duration_s = 1\nseed = 1.5\n" + drive, "x.toml:2: seed = 1.5: not a whole number"},
         {"duration_s = 1\n[drive]\nfor_s = 1\n", "x.toml:2: drive = {...}: not a list of tables; write [[drive]]"},
-        {"duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"fly\"\n", "x.toml:4: drive[0].mode = 'fly': not known here; use one of: stop, open_loop"},
+        {"duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"fly\"\n",
+         "x.toml:4: drive[0].mode = 'fly': not known here; use one of: stop, open_loop"},
         {"duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"platform_speed\"\n", "drive[0].speed_m_s: missing in this mode"},
-        {"duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"platform_speed\"\nspeed_m_s = [1, 2, 3]\n", "drive[0].speed_m_s = [ 1, 2, 3 ]: a ramp has two ends; write [from, to]"},
+        {"duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"platform_speed\"\nspeed_m_s = [1, 2, 3]\n",
+         "drive[0].speed_m_s = [ 1, 2, 3 ]: a ramp has two ends; write [from, to]"},
         {"duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"stop\"\nduty = 1\n", "x.toml:5: drive[0].duty = 1: unknown key"},
-        {"duration_s = 1\n" + drive + "[[drive]]\nfrom_s = 0.5\nfor_s = 1\nmode = \"stop\"\n", "drive[1].from_s = 0.5: begins before the segment above ends"},
+        {"duration_s = 1\n" + drive + "[[drive]]\nfrom_s = 0.5\nfor_s = 1\nmode = \"stop\"\n",
+         "drive[1].from_s = 0.5: begins before the segment above ends"},
         {"duration_s = 1\n" + drive + "[[fault]]\nwhat = \"sensor\"\nsensor = \"radar\"\nhow = \"noisy\"\n", "fault[0].noise: missing"},
         {"duration_s = 1\n" + drive + "[[fault]]\nwhat = \"wheel_blocked\"\n", "fault[0].wheel: missing; give 0, 1, 2 or 3"},
-        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkag\"\n", "effect[0].name = 'slip_sinkag': no such effect; use one of: coulomb_friction"},
-        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkage\"\nwheel = 1\n", "effect[0].wheel = 1: this effect is not confined to a wheel"},
-        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = 7\n", "effect[0].coefficient = 7: out of range; give a number from 0 to 0.6"},
+        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkag\"\n",
+         "effect[0].name = 'slip_sinkag': no such effect; use one of: coulomb_friction"},
+        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkage\"\nwheel = 1\n",
+         "effect[0].wheel = 1: this effect is not confined to a wheel"},
+        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = 7\n",
+         "effect[0].coefficient = 7: out of range; give a number from 0 to 0.6"},
         {"duration_s = 1\n" + drive + "[hidden]\n", "hidden.draw_from_seed: missing"},
-        {"duration_s = 1\n[radar]\nmodel = \"X\"\n" + drive, "x.toml:3: radar.model = 'X': not known here; use one of: MDU1130, DJ Radar II"},
+        {"duration_s = 1\n[radar]\nmodel = \"X\"\n" + drive,
+         "x.toml:3: radar.model = 'X': not known here; use one of: MDU1130, DJ Radar II"},
         {"duration_s = = 1\n", "x.toml:1: "},
     };
     for (const Case &c : cases) EXPECT_NE(message(c.text).find(c.expected), std::string::npos) << c.text << "\ngave: " << message(c.text);
@@ -81,7 +90,8 @@ from_s = 12.0
 for_s = 2.0
 mode = "wheel_speed"
 wheel_speed_rad_s = [1.0, [0.0, 2.0], 3.0, 4.0]
-)", "x.toml");
+)",
+                                             "x.toml");
     EXPECT_DOUBLE_EQ(demand_at(scenario.drive, 2.5).speed_m_s, 0.25);
     EXPECT_NEAR(demand_at(scenario.drive, 1).yaw_rate_rad_s, 0.3, 1e-12); // a quarter period: mean + amplitude
     EXPECT_EQ(demand_at(scenario.drive, 11).mode, DriveMode::stop);

@@ -31,7 +31,8 @@ Data sample(SoilCurve law, double fm_N, double sc, double noise_N, std::uint64_t
 } // namespace
 
 TEST(SoilFit, recovers_table_III_from_exact_curves) {
-    for (const auto &[law, fm_N, sc] : {std::tuple{SoilCurve::janosi, 5.1, 0.27}, {SoilCurve::janosi, 6.8, 0.088}, {SoilCurve::burckhardt, 5.6, 0.05}}) {
+    for (const auto &[law, fm_N, sc] :
+         {std::tuple{SoilCurve::janosi, 5.1, 0.27}, {SoilCurve::janosi, 6.8, 0.088}, {SoilCurve::burckhardt, 5.6, 0.05}}) {
         const Data data = sample(law, fm_N, sc, 0, 1);
         const SoilFit fit = fit_soil(law, data.slip, data.force_N);
         EXPECT_NEAR(fit.fm_N, fm_N, 1e-6 * fm_N); // golden section to 1e-12 of the range; the square root of rounding is 1e-8
@@ -56,7 +57,8 @@ TEST(SoilFit, is_unbiased_in_force_noise) {
 TEST(SoilFit, the_wrong_law_leaves_a_larger_residual) {
     const Data data = sample(SoilCurve::burckhardt, 5.6, 0.1, 0, 3);
     EXPECT_LT(fit_soil(SoilCurve::burckhardt, data.slip, data.force_N).rms_N, 1e-5);
-    EXPECT_GT(fit_soil(SoilCurve::janosi, data.slip, data.force_N).rms_N, 0.05); // (20) rises linearly where (21) has bent: 1 % of Fm or more
+    EXPECT_GT(fit_soil(SoilCurve::janosi, data.slip, data.force_N).rms_N,
+              0.05); // (20) rises linearly where (21) has bent: 1 % of Fm or more
 }
 
 TEST(SoilFit, nothing_gives_nothing) { EXPECT_EQ(fit_soil(SoilCurve::janosi, {}, {}).count, 0u); }

@@ -64,9 +64,10 @@ TEST(Catalogue, a_shape_stays_within_its_range) {
 
 TEST(Catalogue, a_parameter_carries_its_unit_in_its_name) {
     const std::map<std::string_view, std::string_view> suffix{
-        {"N m", "_Nm"}, {"N m s", "_Nms"}, {"rad/s", "_rad_s"}, {"rad", "_rad"}, {"K/W", "_K_W"}, {"s", "_s"}, {"ohm", "_ohm"},
-        {"V", "_V"}, {"A", "_A"}, {"N", "_N"}, {"N/m", "_N_m"}, {"m", "_m"}, {"1/m", "_per_m"}, {"s/m", "_s_m"}, {"m/s^2", "_m_s2"},
-        {"m/s^3", "_m_s3"}, {"s^2/m", "_s2_m"}, {"rad s^2/m", "_rad_s2_m"}, {"1", ""}, {"1/turn", ""}};
+        {"N m", "_Nm"},    {"N m s", "_Nms"}, {"rad/s", "_rad_s"}, {"rad", "_rad"},    {"K/W", "_K_W"},    {"s", "_s"},
+        {"ohm", "_ohm"},   {"V", "_V"},       {"A", "_A"},         {"N", "_N"},        {"N/m", "_N_m"},    {"m", "_m"},
+        {"1/m", "_per_m"}, {"s/m", "_s_m"},   {"m/s^2", "_m_s2"},  {"m/s^3", "_m_s3"}, {"s^2/m", "_s2_m"}, {"rad s^2/m", "_rad_s2_m"},
+        {"1", ""},         {"1/turn", ""}};
     for (const Effect &effect : catalogue())
         for (const EffectParameter &p : effect.parameters) {
             const auto known = suffix.find(p.unit);
@@ -129,9 +130,9 @@ TEST(Laws, ground) {
 }
 
 TEST(Laws, loads_and_body_forces) {
-    EXPECT_NEAR(law::load_transfer_N(2.88, 1, 0.08, 0.166), -0.6939759036144578, rounding); // 0.2304 N m over twice the wheelbase
-    EXPECT_NEAR(law::mass_offset_N(2.88, 9.81, 0.0083, 0.083), 0.70632, rounding);           // a tenth of the weight's quarter
-    EXPECT_NEAR(law::grade_N(2.88, 9.81, 0.5235987755982988, 1, 1), -14.1264, 1e-11);        // half the weight up 30 degrees
+    EXPECT_NEAR(law::load_transfer_N(2.88, 1, 0.08, 0.166), -0.6939759036144578, rounding);     // 0.2304 N m over twice the wheelbase
+    EXPECT_NEAR(law::mass_offset_N(2.88, 9.81, 0.0083, 0.083), 0.70632, rounding);              // a tenth of the weight's quarter
+    EXPECT_NEAR(law::grade_N(2.88, 9.81, 0.5235987755982988, 1, 1), -14.1264, 1e-11);           // half the weight up 30 degrees
     EXPECT_NEAR(law::grade_N(2.88, 9.81, 0.5235987755982988, 0, 1.5707963267948966), 0, 1e-14); // across the slope: cos is 6e-17
     EXPECT_NEAR(law::tether_drag_N(0.6, 2), -1.2, rounding);
     EXPECT_EQ(law::body_drag_N(1.2, -0.1), 1.2);
@@ -208,16 +209,18 @@ TEST(Drive, the_motor_crosses_its_play_freely_and_then_takes_the_wheel_along) {
     int steps = 0;
     while (s.wheel_speed_rad_s == 0 && steps < 1000) drive_step(p, e, s, 0, 1e-3), ++steps;
     const double rotor = p.inertia_kg_m2 - p.wheel_inertia_kg_m2, torque = 0.265 * 0.4 - 0.03;
-    const double crossing_s = std::sqrt(2 * 0.06 * rotor / torque); // viscous friction adds b*t/(6 J) = 0.5 %
+    const double crossing_s = std::sqrt(2 * 0.06 * rotor / torque);  // viscous friction adds b*t/(6 J) = 0.5 %
     EXPECT_NEAR(steps * 1e-3, crossing_s, 1e-3 + 0.01 * crossing_s); // and the answer comes in whole steps
     for (int i = 0; i < 1000; ++i) drive_step(p, e, s, 0, 1e-3);
     EXPECT_NEAR(s.wheel_speed_rad_s, s.motor_speed_rad_s, 0.01 * s.motor_speed_rad_s); // in mesh: ringing is damped out in 0.1 s
-    EXPECT_LE(std::fabs(s.motor_angle_rad - s.wheel_angle_rad), 0.031); // half the play and the teeth's 0.04 Nm / 40 Nm/rad
+    EXPECT_LE(std::fabs(s.motor_angle_rad - s.wheel_angle_rad), 0.031);                // half the play and the teeth's 0.04 Nm / 40 Nm/rad
 }
 
 // ---------------------------------------------------------------- the plant obeys them
 
-ActiveEffect with(std::string_view name, std::vector<double> values, int wheel = -1) { return {find_effect(name), wheel, std::move(values)}; }
+ActiveEffect with(std::string_view name, std::vector<double> values, int wheel = -1) {
+    return {find_effect(name), wheel, std::move(values)};
+}
 
 PlantConfig on(const char *soil, std::vector<ActiveEffect> effects) {
     PlantConfig config;
@@ -255,9 +258,10 @@ TEST(PlantEffects, a_slope_pulls_by_its_law_and_a_high_centre_then_loads_the_low
         (i >= 2 ? front : rear) += plant.truth().wheel[i].normal_N / 2;
     }
     const double pull = law::grade_N(2.88, 9.81, 0.1, 0.2, 0.7);
-    EXPECT_LT(pull, -2); // uphill in front
+    EXPECT_LT(pull, -2);             // uphill in front
     EXPECT_NEAR(along, -pull, 0.01); // N: yaw drifts by less than 3 mrad while the contact settles, 2.5 N * tan(0.5) * 3 mrad = 4 mN
-    EXPECT_NEAR(plant.truth().specific_force_m_s2[0], -pull / 2.88, 0.015); // the springs tilt it by 0.6 N/(6000 N/m * 83 mm): 1.2 mrad of g
+    EXPECT_NEAR(plant.truth().specific_force_m_s2[0], -pull / 2.88,
+                0.015); // the springs tilt it by 0.6 N/(6000 N/m * 83 mm): 1.2 mrad of g
     const double shift = law::load_transfer_N(2.88, -pull / 2.88, 0.08, 0.166);
     EXPECT_NEAR((front - rear) / 2, shift, 0.02 * std::fabs(shift)); // the springs' tilt of 1 mrad moves the centre: 1.4 % of the shift
 }
@@ -288,8 +292,10 @@ TEST(PlantEffects, a_patch_is_met_by_each_wheel_where_it_stands) {
     for (int i = 0; i < 4; ++i) plant.set_duty(i, 0.5);
     while (plant.truth().path_m < 0.3 && plant.truth().t_s < 20) plant.step(); // front wheels 83 mm inside, rear wheels 83 mm before
     const auto &wheel = plant.truth().wheel;
-    const auto share = [&](std::size_t i) { return wheel[i].traction_N / (wheel[i].normal_N * traction_share(TractionLaw::janosi, std::fabs(wheel[i].slip), 0.27)); };
-    const double sand = 5.1 / 7; // table III
+    const auto share = [&](std::size_t i) {
+        return wheel[i].traction_N / (wheel[i].normal_N * traction_share(TractionLaw::janosi, std::fabs(wheel[i].slip), 0.27));
+    };
+    const double sand = 5.1 / 7;              // table III
     EXPECT_NEAR(share(0), sand, 0.02 * sand); // damping of the contact fades out above 0.2 m/s, below it adds at most 2 %
     EXPECT_NEAR(share(2), 0.5 * sand, 0.02 * sand);
 }
@@ -297,7 +303,8 @@ TEST(PlantEffects, a_patch_is_met_by_each_wheel_where_it_stands) {
 // A drive with starts, stops, turns, reversals and rests, 20 s.
 constexpr double drive_s = 20;
 void command(Plant &plant, double t_s) {
-    static constexpr double left[] = {0.15, 0.6, -0.6, 0.8, 0.5, -0.3, 0.0, 0.9, 0.6, 0.2}, right[] = {0.15, 0.6, -0.6, 0.8, -0.5, 0.3, 0.0, 0.9, 0.3, 0.2};
+    static constexpr double left[] = {0.15, 0.6, -0.6, 0.8, 0.5, -0.3, 0.0, 0.9, 0.6, 0.2},
+                            right[] = {0.15, 0.6, -0.6, 0.8, -0.5, 0.3, 0.0, 0.9, 0.3, 0.2};
     const auto part = static_cast<std::size_t>(std::fmin(t_s / 2, 9));
     for (int i = 0; i < 4; ++i) plant.set_duty(i, i % 2 == 0 ? left[part] : right[part]);
 }

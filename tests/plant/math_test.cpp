@@ -33,8 +33,7 @@ double relative(double value, long double exact) { return static_cast<double>(st
 double absolute(double value, long double exact) { return static_cast<double>(std::fabs(value - exact)); }
 
 // Worst error of `mine` over random arguments and the ends of the range.
-template <class Mine, class Exact, class Error>
-double worst(Mine mine, Exact exact, Error error, double low, double high) {
+template <class Mine, class Exact, class Error> double worst(Mine mine, Exact exact, Error error, double low, double high) {
     Draw draw{20261121};
     double most = std::fmax(error(mine(low), exact(low)), error(mine(high), exact(high)));
     for (int i = 0; i < draws; ++i) {

@@ -10,9 +10,9 @@
 namespace traction::oracle {
 
 struct Ground {
-    bool hard = false;               // (21), else (20)
+    bool hard = false; // (21), else (20)
     double adhesion_N = 0, mu = 0, lateral = 0, sc = 1, rolling = 0;
-    double rise_x = 0, rise_y = 0;   // g*sin(slope) along world x and y [m/s^2]
+    double rise_x = 0, rise_y = 0; // g*sin(slope) along world x and y [m/s^2]
 };
 
 struct Setup {

@@ -90,8 +90,8 @@ Residuals run(const std::vector<ActiveEffect> &effects, std::uint64_t *hash = nu
                                 r.drive.coulomb_Nm * (w.speed_rad_s > 0 ? 1 : -1) - r.drive.inertia_kg_m2 * spin[i] -
                                 r.wheel_radius_m * w.traction_N);
             // the winding sees the motor's speed at the beginning of the step
-            add(voltage, w.duty * t.battery_voltage_V - r.drive.torque_constant_Nm_A * o.motor_speed_rad_s -
-                             r.drive.resistance_ohm * w.current_A);
+            add(voltage,
+                w.duty * t.battery_voltage_V - r.drive.torque_constant_Nm_A * o.motor_speed_rad_s - r.drive.resistance_ohm * w.current_A);
             // (20) with the combined slip; straight parts only, where the sideways slip is nil
             const double rim = r.wheel_radius_m * o.speed_rad_s, v = w.ground_speed_m_s, fast = std::max(std::fabs(rim), std::fabs(v));
             if (std::fabs(t.rate_body_rad_s[2]) < 1e-9 && fast > 0.25)
@@ -174,13 +174,13 @@ std::array<double, balances> floors() {
 
 TEST(baseline, obeys_every_balance_of_the_specification) {
     const Residuals clean = run({});
-    EXPECT_LT(clean.rms[torque], 1e-12);   // discretised exactly so
+    EXPECT_LT(clean.rms[torque], 1e-12); // discretised exactly so
     EXPECT_LT(clean.rms[voltage], 1e-12);
     EXPECT_LT(clean.rms[rolling], 1e-12);
     EXPECT_LT(clean.rms[slipping], 1e-12);
-    EXPECT_LT(clean.rms[strength], 1e-9);  // series of (20) near zero slip: 5e-11 of 5 N
-    EXPECT_LT(clean.rms[body], 1e-3);      // N; pitch of 1e-3 rad turns the wheels' pull of a few N by its square
-    EXPECT_LT(clean.rms[load], 0.07);      // 1 % of a wheel's load: the bounce after the five steps of duty
+    EXPECT_LT(clean.rms[strength], 1e-9); // series of (20) near zero slip: 5e-11 of 5 N
+    EXPECT_LT(clean.rms[body], 1e-3);     // N; pitch of 1e-3 rad turns the wheels' pull of a few N by its square
+    EXPECT_LT(clean.rms[load], 0.07);     // 1 % of a wheel's load: the bounce after the five steps of duty
 }
 
 TEST(effects, each_disturbs_what_it_claims_and_no_other_balance) {

@@ -18,10 +18,10 @@ struct Case {
 };
 
 constexpr Case cases[] = {
-    {0.50, 0.50, 0, 0, 0},          // straight, as the paper takes it
-    {0.50, 0.50, 0.0925, 0, 0},     // straight, real height: loads shift
-    {0.40, 0.55, 0.06, 0, 0},       // a bend
-    {0.55, 0.50, 0.06, 0.04, 0.7},  // a bend on a slope
+    {0.50, 0.50, 0, 0, 0},         // straight, as the paper takes it
+    {0.50, 0.50, 0.0925, 0, 0},    // straight, real height: loads shift
+    {0.40, 0.55, 0.06, 0, 0},      // a bend
+    {0.55, 0.50, 0.06, 0.04, 0.7}, // a bend on a slope
 };
 
 TEST(second_formulation, agrees_in_pose_after_ten_seconds_on_all_grounds) {
@@ -41,8 +41,13 @@ TEST(second_formulation, agrees_in_pose_after_ten_seconds_on_all_grounds) {
             }
             oracle::Setup setup;
             const double rise = 9.81 * std::sin(c.slope_rad);
-            setup.ground = {soil.law == sim::TractionLaw::burckhardt, soil.adhesion_N, soil.fm_per_fn, soil.lateral_coefficient,
-                            soil.shear_slip, soil.rolling_coefficient, rise * std::cos(c.slope_direction_rad),
+            setup.ground = {soil.law == sim::TractionLaw::burckhardt,
+                            soil.adhesion_N,
+                            soil.fm_per_fn,
+                            soil.lateral_coefficient,
+                            soil.shear_slip,
+                            soil.rolling_coefficient,
+                            rise * std::cos(c.slope_direction_rad),
                             rise * std::sin(c.slope_direction_rad)};
             setup.duty = {c.left, c.right, c.left, c.right};
             setup.speed_m_s = 0.3;

@@ -43,7 +43,8 @@ TEST(SensorEffects, a_rocking_body_adds_gravity_a_tenth_of_a_second_late) {
 
 TEST(SensorEffects, a_nodding_beam_is_a_wrong_scale_as_long_as_the_rover_accelerates) {
     const auto nod = spurt(default_sensors(), effect("radar_pitch", 0.1), 0.5, 1.2);
-    const auto scaled = spurt(default_sensors(), effect("radar_scale", 0.05), 0.5, 1.2), plain = spurt(default_sensors(), effect("radar_scale", 0), 0.5, 1.2);
+    const auto scaled = spurt(default_sensors(), effect("radar_scale", 0.05), 0.5, 1.2),
+               plain = spurt(default_sensors(), effect("radar_scale", 0), 0.5, 1.2);
     double to_scaled = 0, to_plain = 0;
     for (std::size_t i = 0; i < nod.size(); ++i)
         for (std::size_t k = 0; k < nod[i].radar_count.size(); ++k) {

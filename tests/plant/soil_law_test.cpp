@@ -147,13 +147,14 @@ TEST(ruts, the_load_is_continuous_where_old_soil_ends) {
 }
 
 TEST(catalogue, holds_every_effect_of_the_contract_once_with_sane_ranges) {
-    const char *expected[] = {
-        "coulomb_friction", "viscous_friction", "stribeck_friction", "mesh_loss", "backlash", "torque_ripple", "winding_heating",
-        "wiring_resistance", "bridge_dead_time", "torque_constant", "rolling_resistance", "slip_sinkage", "speed_resistance",
-        "multi_pass", "load_transfer", "mass_offset_x", "mass_offset_y", "soil_patch", "soil_gradient", "relaxation_length",
-        "sliding_speed_loss", "shear_stiffness", "wheel_radius", "lateral_scrub", "grade", "tether_drag", "body_drag", "accel_bias",
-        "accel_drift", "accel_scale", "accel_tilt", "radar_scale", "radar_pitch", "current_gain", "current_offset", "voltage_gain",
-        "encoder_missed", "camera_delay", "camera_scale", "actuation_delay"};
+    const char *expected[] = {"coulomb_friction",   "viscous_friction", "stribeck_friction", "mesh_loss",        "backlash",
+                              "torque_ripple",      "winding_heating",  "wiring_resistance", "bridge_dead_time", "torque_constant",
+                              "rolling_resistance", "slip_sinkage",     "speed_resistance",  "multi_pass",       "load_transfer",
+                              "mass_offset_x",      "mass_offset_y",    "soil_patch",        "soil_gradient",    "relaxation_length",
+                              "sliding_speed_loss", "shear_stiffness",  "wheel_radius",      "lateral_scrub",    "grade",
+                              "tether_drag",        "body_drag",        "accel_bias",        "accel_drift",      "accel_scale",
+                              "accel_tilt",         "radar_scale",      "radar_pitch",       "current_gain",     "current_offset",
+                              "voltage_gain",       "encoder_missed",   "camera_delay",      "camera_scale",     "actuation_delay"};
     std::set<std::string_view> names;
     for (const Effect &effect : catalogue()) {
         EXPECT_TRUE(names.insert(effect.name).second) << effect.name;

@@ -6,28 +6,24 @@
 
 static uint64_t state = 20260101;
 
-static uint32_t draw(uint32_t range)
-{
+static uint32_t draw(uint32_t range) {
     state = state * 6364136223846793005u + 1442695040888963407u;
     return (uint32_t)(state >> 33) % range;
 }
 
-static uint32_t bits_of(float value)
-{
+static uint32_t bits_of(float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     return bits;
 }
 
 // A triangle wave of a phase in 2^16ths of a turn: -256..256.
-static int triangle(uint32_t phase)
-{
+static int triangle(uint32_t phase) {
     const int p = (int)(phase & 0xffffu);
     return p < 32768 ? p / 64 - 256 : 768 - p / 64;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     FILE *out = argc == 2 ? fopen(argv[1], "w") : NULL;
     if (out == NULL) {
         fprintf(stderr, "usage: make_frames OUT.txt\n");

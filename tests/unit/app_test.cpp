@@ -18,37 +18,44 @@ struct Bench {
     bool silent = false; // devices time out from tick 10 on
     std::vector<actuator_frame_t> written;
 
-    hal_t hal()
-    {
+    hal_t hal() {
         return {.context = this,
-                .wait_tick = [](void *c) { auto &b = *static_cast<Bench *>(c); return b.done++ < b.ticks ? HAL_OK : HAL_END; },
-                .read = [](void *c, sensor_frame_t *frame) {
-                    auto &b = *static_cast<Bench *>(c);
-                    frame->tick = static_cast<uint32_t>(b.done - 1);
-                    if (b.done - 1 == b.fail_read_at) return b.failure;
-                    if (b.silent && b.done > 10) return HAL_ERR_TIMEOUT;
-                    frame->present = 0xfffu;
-                    for (auto &count : frame->current_count) count = 2048;
-                    frame->battery_count = 1800; // 7.2 V
-                    frame->radar_samples = 5;
-                    for (int i = 0; i < 5; ++i) frame->radar_count[i] = static_cast<uint16_t>(512 + (i + b.done) % 2);
-                    return HAL_OK;
-                },
-                .write = [](void *c, const actuator_frame_t *actuator) {
-                    auto &b = *static_cast<Bench *>(c);
-                    b.written.push_back(*actuator);
-                    return b.writes++ == b.fail_write_at ? HAL_ERR_IO : HAL_OK;
-                },
+                .wait_tick =
+                    [](void *c) {
+                        auto &b = *static_cast<Bench *>(c);
+                        return b.done++ < b.ticks ? HAL_OK : HAL_END;
+                    },
+                .read =
+                    [](void *c, sensor_frame_t *frame) {
+                        auto &b = *static_cast<Bench *>(c);
+                        frame->tick = static_cast<uint32_t>(b.done - 1);
+                        if (b.done - 1 == b.fail_read_at) return b.failure;
+                        if (b.silent && b.done > 10) return HAL_ERR_TIMEOUT;
+                        frame->present = 0xfffu;
+                        for (auto &count : frame->current_count) count = 2048;
+                        frame->battery_count = 1800; // 7.2 V
+                        frame->radar_samples = 5;
+                        for (int i = 0; i < 5; ++i) frame->radar_count[i] = static_cast<uint16_t>(512 + (i + b.done) % 2);
+                        return HAL_OK;
+                    },
+                .write =
+                    [](void *c, const actuator_frame_t *actuator) {
+                        auto &b = *static_cast<Bench *>(c);
+                        b.written.push_back(*actuator);
+                        return b.writes++ == b.fail_write_at ? HAL_ERR_IO : HAL_OK;
+                    },
                 .safe_stop = [](void *c) { static_cast<Bench *>(c)->stops++; }};
     }
-    daemon_link_t link()
-    {
+    daemon_link_t link() {
         return {.context = this,
-                .command = [](void *, uint32_t, command_t *command) { command->mode = MODE_OPEN_LOOP; command->duty[0] = 0.25f; },
+                .command =
+                    [](void *, uint32_t, command_t *command) {
+                        command->mode = MODE_OPEN_LOOP;
+                        command->duty[0] = 0.25f;
+                    },
                 .log = [](void *c, const sensor_frame_t *, const command_t *, const trace_t *) { static_cast<Bench *>(c)->logged++; }};
     }
-    daemon_result_t run()
-    {
+    daemon_result_t run() {
         const control_config_t config = rover_config_default();
         const hal_t world = hal();
         const daemon_link_t person = link();
@@ -56,8 +63,7 @@ struct Bench {
     }
 };
 
-TEST(Daemon, drives_logs_every_tick_and_ends_with_the_motors_stopped)
-{
+TEST(Daemon, drives_logs_every_tick_and_ends_with_the_motors_stopped) {
     Bench bench;
     const daemon_result_t result = bench.run();
     EXPECT_EQ(result.ended_by, HAL_END);
@@ -68,8 +74,7 @@ TEST(Daemon, drives_logs_every_tick_and_ends_with_the_motors_stopped)
     EXPECT_NEAR(bench.written.back().duty_q15[0], 0.25 * 32767, 1);
 }
 
-TEST(Daemon, stops_the_rover_when_a_device_is_lost)
-{
+TEST(Daemon, stops_the_rover_when_a_device_is_lost) {
     for (const hal_result_t failure : {HAL_ERR_IO, HAL_ERR_CONFIG}) {
         Bench bench;
         bench.fail_read_at = 20;
@@ -85,8 +90,7 @@ TEST(Daemon, stops_the_rover_when_a_device_is_lost)
     EXPECT_EQ(bench.writes, 21);
 }
 
-TEST(Daemon, leaves_a_silent_device_to_safety)
-{
+TEST(Daemon, leaves_a_silent_device_to_safety) {
     Bench bench;
     bench.silent = true;
     const daemon_result_t result = bench.run();
@@ -98,8 +102,7 @@ TEST(Daemon, leaves_a_silent_device_to_safety)
     EXPECT_LE(off, 10 + 10); // 100 ms after the first silent tick
 }
 
-std::string refused(const std::string &text)
-{
+std::string refused(const std::string &text) {
     control_config_t config = rover_config_default();
     const control_config_t before = config;
     char message[PARAMETERS_MESSAGE];
@@ -111,10 +114,11 @@ std::string refused(const std::string &text)
 
 const std::string format = "format = \"traction.firmware/1\"\n";
 
-TEST(Parameters, set_what_they_name_and_all_that_follows_from_it)
-{
-    const std::string text = "# from a model\r\n" + format + "wheel_radius_m = 0.06 # m\n\ntorque_constant_Nm_A=0.3\nresistance_ohm = 4\nviscous_Nms = 2e-3\n"
-                             "coulomb_Nm = 0.05\ninertia_kg_m2 = 6e-3\nmass_kg = 3\ndoppler_scale = 1.02\nwheel_kp_s = 0.1\nwheel_ki_1 = 0.5\n";
+TEST(Parameters, set_what_they_name_and_all_that_follows_from_it) {
+    const std::string text =
+        "# from a model\r\n" + format +
+        "wheel_radius_m = 0.06 # m\n\ntorque_constant_Nm_A=0.3\nresistance_ohm = 4\nviscous_Nms = 2e-3\n"
+        "coulomb_Nm = 0.05\ninertia_kg_m2 = 6e-3\nmass_kg = 3\ndoppler_scale = 1.02\nwheel_kp_s = 0.1\nwheel_ki_1 = 0.5\n";
     control_config_t config = rover_config_default();
     const control_config_t before = config;
     char message[PARAMETERS_MESSAGE];
@@ -122,16 +126,15 @@ TEST(Parameters, set_what_they_name_and_all_that_follows_from_it)
     EXPECT_FLOAT_EQ(config.slip.wheel_radius_m, 0.06f);
     EXPECT_FLOAT_EQ(config.motor.per_radius_1_m, 1 / 0.06f);
     EXPECT_FLOAT_EQ(config.speed_control.half_track_per_radius, 0.12f / 0.06f);
-    EXPECT_FLOAT_EQ(config.soil_sweep.ramp_1_m, 0.01f / (0.06f * 10));           // (15)
-    EXPECT_FLOAT_EQ(config.motor.volt_per_speed_Vs, 4 * 2e-3f / 0.3f + 0.3f);    // (a) and (18)
+    EXPECT_FLOAT_EQ(config.soil_sweep.ramp_1_m, 0.01f / (0.06f * 10));        // (15)
+    EXPECT_FLOAT_EQ(config.motor.volt_per_speed_Vs, 4 * 2e-3f / 0.3f + 0.3f); // (a) and (18)
     EXPECT_FLOAT_EQ(config.motor.volt_dry_V, 4 * 0.05f / 0.3f);
     EXPECT_FLOAT_EQ(config.safety.heating_K_A2, before.safety.heating_K_A2 * 4 / 3.24f);
     EXPECT_FLOAT_EQ(config.doppler.scale, 1.02f);
     EXPECT_FLOAT_EQ(config.wheel_pid.ki_T_s, 0.005f);
 }
 
-TEST(Parameters, an_empty_list_changes_nothing)
-{
+TEST(Parameters, an_empty_list_changes_nothing) {
     control_config_t config = rover_config_default();
     const control_config_t before = config;
     char message[PARAMETERS_MESSAGE];
@@ -140,11 +143,11 @@ TEST(Parameters, an_empty_list_changes_nothing)
     EXPECT_EQ(config.soil_sweep.ramp_1_m, before.soil_sweep.ramp_1_m);
 }
 
-TEST(Parameters, a_mistake_is_told_with_file_line_key_value_and_mend)
-{
+TEST(Parameters, a_mistake_is_told_with_file_line_key_value_and_mend) {
     EXPECT_EQ(refused(format + "mass_kg = heavy\n"), "rover.txt:2: mass_kg = heavy: not a finite number");
     EXPECT_EQ(refused(format + "mass_kg = nan\n"), "rover.txt:2: mass_kg = nan: not a finite number");
-    EXPECT_EQ(refused(format + "\nwheel_radius_m = 57\n"), "rover.txt:3: wheel_radius_m = 57: out of range; give a number from 0.01 to 0.5");
+    EXPECT_EQ(refused(format + "\nwheel_radius_m = 57\n"),
+              "rover.txt:3: wheel_radius_m = 57: out of range; give a number from 0.01 to 0.5");
     EXPECT_NE(refused(format + "radius = 1\n").find("rover.txt:2: radius = 1: unknown key"), std::string::npos);
     EXPECT_NE(refused(format + "mass_kg = 3\nmass_kg = 3\n").find("given twice"), std::string::npos);
     EXPECT_NE(refused(format + "mass_kg 3\n").find("no '='"), std::string::npos);
@@ -158,8 +161,7 @@ TEST(Parameters, a_mistake_is_told_with_file_line_key_value_and_mend)
     EXPECT_NE(std::string(message).find("no/such/file: cannot be read"), std::string::npos);
 }
 
-TEST(Parameters, any_bytes_are_read_or_refused)
-{
+TEST(Parameters, any_bytes_are_read_or_refused) {
     uint32_t random = 1;
     const std::string alphabet = "=#\n\" .e-+0123456789mass_kgformatraction/wheel\r\t";
     for (int repeat = 0; repeat < 2000; ++repeat) {

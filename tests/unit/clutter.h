@@ -17,8 +17,7 @@ namespace clutter {
 
 struct Random { // splitmix64; the normal is a sum of 12 uniform numbers
     std::uint64_t state;
-    std::uint64_t next()
-    {
+    std::uint64_t next() {
         state += 0x9e3779b97f4a7c15u;
         std::uint64_t z = state;
         z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -26,8 +25,7 @@ struct Random { // splitmix64; the normal is a sum of 12 uniform numbers
         return z ^ (z >> 31);
     }
     double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    double normal()
-    {
+    double normal() {
         double sum = -6;
         for (int i = 0; i < 12; ++i) {
             sum += uniform();
@@ -46,8 +44,7 @@ inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double grid_m = 0.0015; // the echo turns at most 2/lambda = 66 times a metre: 10 points a turn
 
 // I(x) on a grid along the track, unit variance.
-inline std::vector<double> echo_along_track(const Ground &ground)
-{
+inline std::vector<double> echo_along_track(const Ground &ground) {
     Random random{ground.seed * 0x1000003u + 17};
     const double near = 0.12, far = 2.2, side = 1.3, rad = pi / 180;
     const double wave = 4 * pi * ground.f0_Hz / 299792458.0;
@@ -87,16 +84,14 @@ struct Biquad {
     std::array<double, 3> b{};
     std::array<double, 2> a{};
     double x1 = 0, x2 = 0, y1 = 0, y2 = 0;
-    double step(double x)
-    {
+    double step(double x) {
         const double y = b[0] * x + b[1] * x1 + b[2] * x2 - a[0] * y1 - a[1] * y2;
         x2 = x1, x1 = x, y2 = y1, y1 = y;
         return y;
     }
 };
 
-inline Biquad butterworth(double corner_Hz, double rate_Hz, bool high_pass)
-{
+inline Biquad butterworth(double corner_Hz, double rate_Hz, bool high_pass) {
     const double k = std::tan(pi * corner_Hz / rate_Hz), q = std::sqrt(0.5), norm = 1 / (1 + k / q + k * k);
     Biquad out;
     out.b = high_pass ? std::array<double, 3>{norm, -2 * norm, norm} : std::array<double, 3>{k * k * norm, 2 * k * k * norm, k * k * norm};
@@ -106,16 +101,15 @@ inline Biquad butterworth(double corner_Hz, double rate_Hz, bool high_pass)
 
 // A drive over a track: ADC counts at 512 Hz. `position` gives metres along the track over seconds.
 struct Adc {
-    double signal_count = 120;  // rms of the echo [count]
-    double snr_dB = 20;         // in the band-pass output
+    double signal_count = 120; // rms of the echo [count]
+    double snr_dB = 20;        // in the band-pass output
     double offset_count = 512;
     double high_Hz = 80;
     std::uint64_t seed = 1;
 };
 
 inline std::vector<std::uint16_t> drive(const std::vector<double> &echo, double duration_s, const std::function<double(double)> &position,
-                                        const Adc &adc)
-{
+                                        const Adc &adc) {
     Random random{adc.seed * 77 + 5};
     Biquad high = butterworth(3, 512, true), low = butterworth(adc.high_Hz, 512, false);
     const double noise = adc.signal_count * std::pow(10, -adc.snr_dB / 20);
@@ -126,7 +120,8 @@ inline std::vector<std::uint16_t> drive(const std::vector<double> &echo, double 
         const double u = x - static_cast<double>(i);
         const double *e = &echo[i];
         // Catmull-Rom through four neighbours
-        const double value = e[0] + 0.5 * u * (e[1] - e[-1] + u * (2 * e[-1] - 5 * e[0] + 4 * e[1] - e[2] + u * (3 * (e[0] - e[1]) + e[2] - e[-1])));
+        const double value =
+            e[0] + 0.5 * u * (e[1] - e[-1] + u * (2 * e[-1] - 5 * e[0] + 4 * e[1] - e[2] + u * (3 * (e[0] - e[1]) + e[2] - e[-1])));
         const double count = adc.offset_count + low.step(high.step(adc.signal_count * value)) + noise * random.normal();
         out.push_back(static_cast<std::uint16_t>(std::clamp(std::floor(count + 0.5), 0.0, 1023.0)));
     }

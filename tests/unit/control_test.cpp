@@ -8,15 +8,15 @@
 
 namespace {
 
-sensor_frame_t frame_at(uint32_t tick, int32_t pulses)
-{
+sensor_frame_t frame_at(uint32_t tick, int32_t pulses) {
     sensor_frame_t frame = {};
     frame.tick = tick;
     frame.present = 0xfffu;
     frame.battery_count = 1800;
     frame.radar_samples = 5;
     for (int n = 0; n < 5; ++n) {
-        frame.radar_count[n] = static_cast<uint16_t>(512 + 100 * std::cos(2 * clutter::pi * 10 * (5 * tick + static_cast<uint32_t>(n)) / 512));
+        frame.radar_count[n] =
+            static_cast<uint16_t>(512 + 100 * std::cos(2 * clutter::pi * 10 * (5 * tick + static_cast<uint32_t>(n)) / 512));
     }
     for (int i = 0; i < WHEEL_COUNT; ++i) {
         frame.encoder_count[i] = pulses;
@@ -25,8 +25,7 @@ sensor_frame_t frame_at(uint32_t tick, int32_t pulses)
     return frame;
 }
 
-TEST(Control, every_pair_of_modes_changes_without_a_jump_in_duty)
-{
+TEST(Control, every_pair_of_modes_changes_without_a_jump_in_duty) {
     const control_config_t config = rover_config_default();
     for (int from = MODE_OPEN_LOOP; from < MODE_COUNT; ++from) {
         for (int to = MODE_WHEEL_SPEED; to < MODE_COUNT; ++to) {
@@ -62,8 +61,7 @@ TEST(Control, every_pair_of_modes_changes_without_a_jump_in_duty)
     }
 }
 
-TEST(Control, open_loop_writes_the_duty_it_was_given)
-{
+TEST(Control, open_loop_writes_the_duty_it_was_given) {
     const control_config_t config = rover_config_default();
     control_state_t state;
     control_reset(&config, &state);
@@ -79,8 +77,7 @@ TEST(Control, open_loop_writes_the_duty_it_was_given)
     EXPECT_EQ(trace.actuator.duty_q15[2], 0);
 }
 
-TEST(Control, an_unknown_mode_stops)
-{
+TEST(Control, an_unknown_mode_stops) {
     const control_config_t config = rover_config_default();
     control_state_t state;
     control_reset(&config, &state);
@@ -91,8 +88,7 @@ TEST(Control, an_unknown_mode_stops)
 }
 
 // 20,000 ticks of frames and commands made of random bits: every output bounded, nothing undefined (preset dev runs it under UBSan).
-TEST(Control, is_bounded_for_arbitrary_frames_and_commands)
-{
+TEST(Control, is_bounded_for_arbitrary_frames_and_commands) {
     const control_config_t config = rover_config_default();
     control_state_t state;
     control_reset(&config, &state);
@@ -152,8 +148,7 @@ class Rolling : public ::testing::Test {
     sensor_frame_t frame = {};
     trace_t trace = {};
 
-    void SetUp() override
-    {
+    void SetUp() override {
         config.safety.required = 0;
         control_reset(&config, &state);
         state.ground_speed.speed_m_s = 0.3f;
@@ -163,8 +158,7 @@ class Rolling : public ::testing::Test {
             count = 2048;
         }
     }
-    void run(int ticks)
-    {
+    void run(int ticks) {
         for (int k = 0; k < ticks; ++k) {
             for (int i = 0; i < WHEEL_COUNT; ++i) {
                 frame.encoder_count[i] += pulses[i];
@@ -176,8 +170,7 @@ class Rolling : public ::testing::Test {
     int pulses[WHEEL_COUNT] = {50, 50, 50, 50}; // 5.24 rad/s, 0.298 m/s
 };
 
-TEST_F(Rolling, every_wheel_of_the_slip_servo_is_driven_by_its_own_slip_loop_and_says_when_it_is_saturated)
-{
+TEST_F(Rolling, every_wheel_of_the_slip_servo_is_driven_by_its_own_slip_loop_and_says_when_it_is_saturated) {
     command.mode = MODE_SLIP;
     command.slip_wheels = 15;
     command.slip_ref = 0.9f;
@@ -197,8 +190,7 @@ TEST_F(Rolling, every_wheel_of_the_slip_servo_is_driven_by_its_own_slip_loop_and
     }
 }
 
-TEST_F(Rolling, full_slip_is_asked_for_by_a_bounded_wheel_speed_while_slip_means_nothing)
-{
+TEST_F(Rolling, full_slip_is_asked_for_by_a_bounded_wheel_speed_while_slip_means_nothing) {
     state.ground_speed.speed_m_s = 0;
     config.speed_control.ki_T_rad_m = 0;
     command.mode = MODE_SLIP;
@@ -215,20 +207,19 @@ TEST_F(Rolling, full_slip_is_asked_for_by_a_bounded_wheel_speed_while_slip_means
     }
 }
 
-TEST_F(Rolling, turning_left_slows_both_left_wheels_and_speeds_both_right_ones)
-{
+TEST_F(Rolling, turning_left_slows_both_left_wheels_and_speeds_both_right_ones) {
     command.mode = MODE_PLATFORM_SPEED;
     command.platform_speed_m_s = 0.3f;
     command.yaw_rate_rad_s = 0.5f;
     run(100);
-    const float set[] = {trace.wheel[0].set_speed_rad_s, trace.wheel[1].set_speed_rad_s, trace.wheel[2].set_speed_rad_s, trace.wheel[3].set_speed_rad_s};
+    const float set[] = {trace.wheel[0].set_speed_rad_s, trace.wheel[1].set_speed_rad_s, trace.wheel[2].set_speed_rad_s,
+                         trace.wheel[3].set_speed_rad_s};
     EXPECT_EQ(set[WHEEL_REAR_LEFT], set[WHEEL_FRONT_LEFT]);
     EXPECT_EQ(set[WHEEL_REAR_RIGHT], set[WHEEL_FRONT_RIGHT]);
     EXPECT_NEAR(set[WHEEL_REAR_RIGHT] - set[WHEEL_REAR_LEFT], 2 * 0.12 * 0.5 / 0.057, 1e-3); // 2 b psi / R
 }
 
-TEST_F(Rolling, soil_sweep_ramps_both_front_wheels_and_rolls_both_rear_ones)
-{
+TEST_F(Rolling, soil_sweep_ramps_both_front_wheels_and_rolls_both_rear_ones) {
     command.mode = MODE_SOIL_SWEEP;
     command.platform_speed_m_s = 0.3f;
     run(501);
@@ -240,8 +231,7 @@ TEST_F(Rolling, soil_sweep_ramps_both_front_wheels_and_rolls_both_rear_ones)
     }
 }
 
-TEST_F(Rolling, any_one_saturated_wheel_freezes_the_integral_of_the_platform)
-{
+TEST_F(Rolling, any_one_saturated_wheel_freezes_the_integral_of_the_platform) {
     command.mode = MODE_WHEEL_SPEED;
     for (int wheel = 0; wheel < WHEEL_COUNT; ++wheel) {
         for (int i = 0; i < WHEEL_COUNT; ++i) {
@@ -258,8 +248,7 @@ TEST_F(Rolling, any_one_saturated_wheel_freezes_the_integral_of_the_platform)
     }
 }
 
-TEST_F(Rolling, one_turning_wheel_is_enough_not_to_be_at_rest)
-{
+TEST_F(Rolling, one_turning_wheel_is_enough_not_to_be_at_rest) {
     for (int wheel = 0; wheel < WHEEL_COUNT; ++wheel) {
         control_reset(&config, &state);
         for (int i = 0; i < WHEEL_COUNT; ++i) {
@@ -275,8 +264,7 @@ TEST_F(Rolling, one_turning_wheel_is_enough_not_to_be_at_rest)
     EXPECT_TRUE(trace.standstill);
 }
 
-TEST(Control, a_rover_that_hears_nothing_reports_nothing)
-{
+TEST(Control, a_rover_that_hears_nothing_reports_nothing) {
     const control_config_t config = rover_config_default();
     control_state_t state;
     control_reset(&config, &state);
@@ -296,8 +284,7 @@ TEST(Control, a_rover_that_hears_nothing_reports_nothing)
     }
 }
 
-TEST_F(Rolling, accelerometer_and_radar_are_used_when_they_are_there_and_left_alone_when_not)
-{
+TEST_F(Rolling, accelerometer_and_radar_are_used_when_they_are_there_and_left_alone_when_not) {
     for (const bool there : {false, true}) {
         SetUp();
         frame.present = 0xffu | FRAME_BATTERY | (there ? static_cast<uint32_t>(FRAME_ACCEL | FRAME_RADAR) : 0u);
@@ -310,8 +297,7 @@ TEST_F(Rolling, accelerometer_and_radar_are_used_when_they_are_there_and_left_al
 }
 
 // The composition that control.h draws, by hand: a radar value reaches the filter with its age in seconds.
-TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age)
-{
+TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
     frame.present |= FRAME_ACCEL | FRAME_RADAR;
     doppler_state_t doppler = {};
     ground_speed_state_t filter = state.ground_speed;
@@ -325,9 +311,13 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age)
         frame.accel_x_count = static_cast<int16_t>(tick < 150 ? 20 : -20);
         run(1);
         const doppler_output_t value = doppler_step(&config.doppler, &doppler, frame.radar_count, frame.radar_samples);
-        const ground_speed_input_t input = {.accel_x_m_s2 = trace.accel_x_m_s2, .doppler_m_s = value.speed_m_s,
-                                            .doppler_late_s = static_cast<float>(value.late_samples) / 512.0f, .wheel_m_s = 0.298f, .accel_valid = true,
-                                            .doppler_fresh = value.fresh, .doppler_quiet = value.quiet};
+        const ground_speed_input_t input = {.accel_x_m_s2 = trace.accel_x_m_s2,
+                                            .doppler_m_s = value.speed_m_s,
+                                            .doppler_late_s = static_cast<float>(value.late_samples) / 512.0f,
+                                            .wheel_m_s = 0.298f,
+                                            .accel_valid = true,
+                                            .doppler_fresh = value.fresh,
+                                            .doppler_quiet = value.quiet};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;
         last = value.fresh ? value.speed_m_s : last;
@@ -337,15 +327,15 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age)
     EXPECT_GT(fresh, 15);
 }
 
-TEST(PaperConfiguration, is_the_papers_laws)
-{
+TEST(PaperConfiguration, is_the_papers_laws) {
     const control_config_t config = rover_config_paper();
     speed_control_state_t platform = {};
     const speed_control_input_t error = {.speed_ref_m_s = 0.3f, .yaw_rate_ref_rad_s = 0, .speed_m_s = 0.2f, .saturated = false};
     wheel_pid_state_t wheel = {};
     EXPECT_NEAR(wheel_pid_slew(&config.wheel_pid, &wheel, 20.0f), 20.0f, 1e-5f); // no slew
     for (int k = 0; k < 100; ++k) {
-        EXPECT_NEAR(speed_control_step(&config.speed_control, &platform, &error).left_rad_s, 0.3 / 0.057 + 17.5 * 0.1, 1e-4); // (22): no integral
+        EXPECT_NEAR(speed_control_step(&config.speed_control, &platform, &error).left_rad_s, 0.3 / 0.057 + 17.5 * 0.1,
+                    1e-4); // (22): no integral
     }
     for (const float v : {0.0f, 0.3f, 1.0f}) { // (23): no schedule
         slip_pi_state_t slip = {};
@@ -354,8 +344,7 @@ TEST(PaperConfiguration, is_the_papers_laws)
     }
 }
 
-TEST_F(Rolling, below_the_speed_where_slip_means_something_the_wheel_follows_the_speed_that_has_it)
-{
+TEST_F(Rolling, below_the_speed_where_slip_means_something_the_wheel_follows_the_speed_that_has_it) {
     config.speed_control.ki_T_rad_m = 0;
     command.mode = MODE_SLIP;
     command.slip_wheels = 15;
@@ -369,13 +358,13 @@ TEST_F(Rolling, below_the_speed_where_slip_means_something_the_wheel_follows_the
             command.platform_speed_m_s = 0.04f * forward;
             run(200);
             const double rolling = (0.04 / 0.057 + 17.5 * 0.04) * static_cast<double>(forward); // (22) at rest
-            EXPECT_NEAR(trace.wheel[1].set_speed_rad_s, slip > 0 ? rolling / 0.5 : rolling * 0.5, 1e-3) << forward << " " << slip; // (1) solved for w
+            EXPECT_NEAR(trace.wheel[1].set_speed_rad_s, slip > 0 ? rolling / 0.5 : rolling * 0.5, 1e-3)
+                << forward << " " << slip; // (1) solved for w
         }
     }
 }
 
-TEST_F(Rolling, slip_loop_integrates_from_tick_to_tick)
-{
+TEST_F(Rolling, slip_loop_integrates_from_tick_to_tick) {
     command.mode = MODE_SLIP;
     command.slip_wheels = 1;
     command.slip_ref = 0.02f;
@@ -386,21 +375,20 @@ TEST_F(Rolling, slip_loop_integrates_from_tick_to_tick)
     EXPECT_NEAR(trace.wheel[0].duty - first, 10 * 0.09 * gain * error, 1e-4); // ten steps of Ki T g e
 }
 
-TEST_F(Rolling, a_turning_rover_slips_by_the_ground_speed_of_each_wheel)
-{
+TEST_F(Rolling, a_turning_rover_slips_by_the_ground_speed_of_each_wheel) {
     frame.present |= FRAME_GYRO;
     frame.gyro_z_count = 1000; // 0.5 rad/s to the left
     command.mode = MODE_STOP;
     run(20);
     for (int i = 0; i < WHEEL_COUNT; ++i) {
-        const double ground = 0.3 + (i == WHEEL_REAR_LEFT || i == WHEEL_FRONT_LEFT ? -1 : 1) * 0.12 * 0.5, w = 50 * 100 * 2 * clutter::pi / 6000, rim = 0.057 * w;
+        const double ground = 0.3 + (i == WHEEL_REAR_LEFT || i == WHEEL_FRONT_LEFT ? -1 : 1) * 0.12 * 0.5,
+                     w = 50 * 100 * 2 * clutter::pi / 6000, rim = 0.057 * w;
         EXPECT_NEAR(trace.wheel[i].slip, rim > ground ? 1 - ground / rim : rim / ground - 1, 1e-4) << i; // (1)
         EXPECT_NEAR(trace.wheel[i].traction_N, -(1.6e-3 * w + 0.03) / 0.057, 1e-4) << i;                 // (18), (19) without current
     }
 }
 
-TEST_F(Rolling, without_feed_forward_the_wheel_loop_is_a_plain_pid)
-{
+TEST_F(Rolling, without_feed_forward_the_wheel_loop_is_a_plain_pid) {
     config.feed_forward = false;
     command.mode = MODE_WHEEL_SPEED;
     for (float &w : command.wheel_speed_rad_s) {

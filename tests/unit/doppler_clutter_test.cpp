@@ -11,8 +11,7 @@
 namespace {
 
 // From power-on over many places of the tests' own clutter, whose first half second the band-pass takes to settle as the rover's does.
-TEST(Doppler, first_value_comes_after_128_samples_and_reads_the_same_speed_as_a_full_window)
-{
+TEST(Doppler, first_value_comes_after_128_samples_and_reads_the_same_speed_as_a_full_window) {
     const doppler_config_t config = rover_config_default().doppler;
     clutter::Ground ground;
     ground.track_m = 10;
@@ -25,7 +24,8 @@ TEST(Doppler, first_value_comes_after_128_samples_and_reads_the_same_speed_as_a_
         for (int run = 0; run < runs; ++run) {
             clutter::Adc adc;
             adc.seed = static_cast<std::uint64_t>(run);
-            const auto samples = clutter::drive(echo, 0.55, [v, run](double t) { return v * (t + 0.55 * run); }, adc);
+            const auto samples = clutter::drive(
+                echo, 0.55, [v, run](double t) { return v * (t + 0.55 * run); }, adc);
             doppler_state_t state = {};
             std::vector<double> value;
             for (std::size_t n = 0; n < samples.size(); ++n) {
@@ -40,18 +40,18 @@ TEST(Doppler, first_value_comes_after_128_samples_and_reads_the_same_speed_as_a_
             late += value[2] / v / runs;
             square += std::pow(value[0] / v - 1, 2) / runs;
         }
-        // A value of 128 samples spreads by 7 % at 0.2 m/s and less above; 80 runs at 0.2 m/s, 20 at 0.8 m/s: the mean to 1 %, three of them
+        // A value of 128 samples spreads by 7 % at 0.2 m/s and less above; 80 runs at 0.2 m/s, 20 at 0.8 m/s: the mean to 1 %, three of
+        // them
         EXPECT_NEAR(early, late, 0.03) << v;
         EXPECT_NEAR(early, 1, 0.04) << v;
-        EXPECT_LT(std::sqrt(square), 0.10) << v;  // its mirror image instead spread by 15 %
-        EXPECT_GT(std::sqrt(square), 0.01) << v;  // speckle
+        EXPECT_LT(std::sqrt(square), 0.10) << v; // its mirror image instead spread by 15 %
+        EXPECT_GT(std::sqrt(square), 0.01) << v; // speckle
     }
 }
 
-// The grid's speeds are where the minimum lies on average, so on another signal of the same geometry the mean over windows is the speed. Before,
-// it was 1.8 % low at 0.2 m/s.
-TEST(Doppler, mean_over_windows_of_the_tests_clutter_is_the_speed)
-{
+// The grid's speeds are where the minimum lies on average, so on another signal of the same geometry the mean over windows is the speed.
+// Before, it was 1.8 % low at 0.2 m/s.
+TEST(Doppler, mean_over_windows_of_the_tests_clutter_is_the_speed) {
     const doppler_config_t config = rover_config_default().doppler;
     std::vector<std::vector<double>> echoes;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

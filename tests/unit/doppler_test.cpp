@@ -12,8 +12,7 @@
 
 namespace {
 
-TEST(GroundSpeed, is_bounded_for_any_input)
-{
+TEST(GroundSpeed, is_bounded_for_any_input) {
     const control_config_t config = rover_config_default();
     const float inf = std::numeric_limits<float>::infinity();
     const float extremes[] = {0.0f, 1e-45f, -3e38f, 3e38f, inf, -inf, std::nanf(""), 0.4f};
@@ -23,8 +22,13 @@ TEST(GroundSpeed, is_bounded_for_any_input)
         for (const float a : extremes) {
             for (const float b : extremes) {
                 for (const float c : extremes) {
-                    const ground_speed_input_t input = {.accel_x_m_s2 = a, .doppler_m_s = b, .doppler_late_s = c, .wheel_m_s = a,
-                                                        .accel_valid = true, .doppler_fresh = true, .doppler_quiet = repeat == 1};
+                    const ground_speed_input_t input = {.accel_x_m_s2 = a,
+                                                        .doppler_m_s = b,
+                                                        .doppler_late_s = c,
+                                                        .wheel_m_s = a,
+                                                        .accel_valid = true,
+                                                        .doppler_fresh = true,
+                                                        .doppler_quiet = repeat == 1};
                     const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &state, &input);
                     ASSERT_LE(std::fabs(out.speed_m_s), 20.0f);
                     ASSERT_TRUE(std::isfinite(out.std_m_s));
@@ -35,8 +39,7 @@ TEST(GroundSpeed, is_bounded_for_any_input)
     }
 }
 
-TEST(Doppler, hears_nothing_in_white_noise_and_in_a_dead_converter)
-{
+TEST(Doppler, hears_nothing_in_white_noise_and_in_a_dead_converter) {
     const control_config_t config = rover_config_default();
     clutter::Random random{5};
     doppler_state_t state = {};
@@ -57,8 +60,7 @@ TEST(Doppler, hears_nothing_in_white_noise_and_in_a_dead_converter)
     }
 }
 
-TEST(Doppler, argmax_finds_a_pure_tone_to_half_a_bin)
-{
+TEST(Doppler, argmax_finds_a_pure_tone_to_half_a_bin) {
     control_config_t config = rover_config_paper();
     for (double v = 0.1; v <= 1.0; v += 0.05) {
         const double f = 2 * v * 9.9e9 / 299792458.0 * std::cos(20 * clutter::pi / 180); // (11)
@@ -73,10 +75,9 @@ TEST(Doppler, argmax_finds_a_pure_tone_to_half_a_bin)
     }
 }
 
-// A window of noise with the spectrum that the template gives a grid speed, and white noise; 256 samples. No trigonometry but a table: this runs
-// on the target too.
-std::vector<uint16_t> echo_of(const doppler_template_t &beam, int speed, double rms_count, double white_count, clutter::Random &random)
-{
+// A window of noise with the spectrum that the template gives a grid speed, and white noise; 256 samples. No trigonometry but a table: this
+// runs on the target too.
+std::vector<uint16_t> echo_of(const doppler_template_t &beam, int speed, double rms_count, double white_count, clutter::Random &random) {
     static const std::vector<double> cosine = [] {
         std::vector<double> table;
         for (int n = 0; n < 256; ++n) {
@@ -91,7 +92,8 @@ std::vector<uint16_t> echo_of(const doppler_template_t &beam, int speed, double 
         sum += power;
         for (int n = 0; n < 256; ++n) {
             const int turn = n * (k + beam.first_bin);
-            x[static_cast<std::size_t>(n)] += std::sqrt(power) * (re * cosine[static_cast<std::size_t>(turn % 256)] + im * cosine[static_cast<std::size_t>((turn + 192) % 256)]);
+            x[static_cast<std::size_t>(n)] += std::sqrt(power) * (re * cosine[static_cast<std::size_t>(turn % 256)] +
+                                                                  im * cosine[static_cast<std::size_t>((turn + 192) % 256)]);
         }
     }
     std::vector<uint16_t> out;
@@ -102,9 +104,9 @@ std::vector<uint16_t> echo_of(const doppler_template_t &beam, int speed, double 
     return out;
 }
 
-// Equation (2) in double over the whole grid, from the powers of the window: the reference that the integers and the coarse search are held to.
-TEST(Doppler, speed_is_the_vertex_of_the_likelihood_over_the_whole_grid)
-{
+// Equation (2) in double over the whole grid, from the powers of the window: the reference that the integers and the coarse search are held
+// to.
+TEST(Doppler, speed_is_the_vertex_of_the_likelihood_over_the_whole_grid) {
     doppler_config_t config = rover_config_default().doppler;
     const doppler_template_t &beam = *config.beam;
     clutter::Random random{17};
@@ -134,7 +136,8 @@ TEST(Doppler, speed_is_the_vertex_of_the_likelihood_over_the_whole_grid)
         const auto step = static_cast<double>(beam.log_step);
         const double expected = static_cast<double>(beam.speed_m_s[best]) * std::exp(0.5 * (left - right) / (left + right) * step);
         ++windows;
-        if (std::fabs(std::log(static_cast<double>(out.speed_m_s) / expected)) > 0.02 * step) { // 15 bits: the reference itself is flat to this
+        if (std::fabs(std::log(static_cast<double>(out.speed_m_s) / expected)) >
+            0.02 * step) { // 15 bits: the reference itself is flat to this
             ++elsewhere;
         }
     }
@@ -142,8 +145,7 @@ TEST(Doppler, speed_is_the_vertex_of_the_likelihood_over_the_whole_grid)
     EXPECT_LE(elsewhere, windows / 20); // a window with two valleys: the coarse grid may see the other one
 }
 
-TEST(Doppler, an_echo_below_the_stated_power_is_quiet)
-{
+TEST(Doppler, an_echo_below_the_stated_power_is_quiet) {
     doppler_config_t config = rover_config_default().doppler;
     const doppler_template_t &beam = *config.beam;
     config.quiet_power_count2 = 400;
@@ -166,8 +168,7 @@ TEST(Doppler, an_echo_below_the_stated_power_is_quiet)
     }
 }
 
-TEST(Doppler, every_hop_gives_what_a_fresh_window_of_the_same_samples_gives)
-{
+TEST(Doppler, every_hop_gives_what_a_fresh_window_of_the_same_samples_gives) {
     doppler_config_t config = rover_config_paper().doppler;
     clutter::Random random{29};
     for (const int hop : {64, 30, 63, 1, 256, 0, -4, 300}) {
@@ -199,8 +200,7 @@ TEST(Doppler, every_hop_gives_what_a_fresh_window_of_the_same_samples_gives)
     }
 }
 
-TEST(Doppler, counts_beyond_the_converter_are_its_largest)
-{
+TEST(Doppler, counts_beyond_the_converter_are_its_largest) {
     const doppler_config_t config = rover_config_paper().doppler;
     doppler_state_t rail = {}, beyond = {};
     for (int n = 0; n < 256; ++n) {
@@ -212,8 +212,7 @@ TEST(Doppler, counts_beyond_the_converter_are_its_largest)
     EXPECT_TRUE(std::equal(rail.power, rail.power + FFT_BINS, beyond.power));
 }
 
-TEST(Doppler, a_value_says_how_many_samples_came_after_its_window)
-{
+TEST(Doppler, a_value_says_how_many_samples_came_after_its_window) {
     const doppler_config_t config = rover_config_default().doppler;
     doppler_state_t state = {};
     const uint16_t sample[8] = {512, 600, 512, 400, 512, 600, 512, 400};
@@ -246,8 +245,7 @@ class OfRadar : public ::testing::TestWithParam<const doppler_template_t *> {};
 
 // J of doppler.c is linear in the powers, and what it adds to the first term is not negative: its extremes over all powers with a sum
 // of at most `total` have all of it in one bin. So these cases are all cases.
-TEST_P(OfRadar, likelihood_never_leaves_32_bits)
-{
+TEST_P(OfRadar, likelihood_never_leaves_32_bits) {
     const doppler_template_t &beam = *GetParam();
     const int64_t total = 128 * 256 + 120 * 256; // the sum is below 128 * 2^8, and >> 8 dropped less than 2^8 in each of 120 bins
     for (int i = 0; i < beam.speeds; ++i) {
@@ -263,8 +261,7 @@ TEST_P(OfRadar, likelihood_never_leaves_32_bits)
     }
 }
 
-TEST_P(OfRadar, template_is_a_normalised_spectrum_with_rising_speeds)
-{
+TEST_P(OfRadar, template_is_a_normalised_spectrum_with_rising_speeds) {
     const doppler_template_t &beam = *GetParam();
     for (int i = 0; i < beam.speeds; ++i) {
         EXPECT_GT(beam.speed_m_s[i], i > 0 ? beam.speed_m_s[i - 1] : 0);
@@ -282,7 +279,8 @@ TEST_P(OfRadar, template_is_a_normalised_spectrum_with_rising_speeds)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Doppler, OfRadar, ::testing::Values(&doppler_template_mdu1130, &doppler_template_dj_radar_2,
-                                                             &doppler_template_dj_radar_3, &doppler_template_drs1000));
+INSTANTIATE_TEST_SUITE_P(Doppler, OfRadar,
+                         ::testing::Values(&doppler_template_mdu1130, &doppler_template_dj_radar_2, &doppler_template_dj_radar_3,
+                                           &doppler_template_drs1000));
 
 } // namespace

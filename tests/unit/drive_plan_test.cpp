@@ -8,13 +8,13 @@
 
 namespace {
 
-TEST(SpeedControl, is_equation_22_without_its_integral)
-{
+TEST(SpeedControl, is_equation_22_without_its_integral) {
     speed_control_config_t config = rover_config_default().speed_control;
     config.ki_T_rad_m = 0;
     speed_control_state_t state = {};
     for (double v = -0.5; v <= 0.5; v += 0.1) {
-        const speed_control_input_t input = {.speed_ref_m_s = 0.2f, .yaw_rate_ref_rad_s = 0, .speed_m_s = static_cast<float>(v), .saturated = false};
+        const speed_control_input_t input = {
+            .speed_ref_m_s = 0.2f, .yaw_rate_ref_rad_s = 0, .speed_m_s = static_cast<float>(v), .saturated = false};
         const speed_control_output_t out = speed_control_step(&config, &state, &input);
         const double expected = 0.2 / 0.057 + 17.5 * (0.2 - v); // (22)
         EXPECT_NEAR(out.left_rad_s, expected, 1e-5);            // 4 float roundings of numbers below 20
@@ -22,8 +22,7 @@ TEST(SpeedControl, is_equation_22_without_its_integral)
     }
 }
 
-TEST(SpeedControl, turns_left_with_faster_right_wheels)
-{
+TEST(SpeedControl, turns_left_with_faster_right_wheels) {
     const speed_control_config_t config = rover_config_default().speed_control;
     speed_control_state_t state = {};
     const speed_control_input_t input = {.speed_ref_m_s = 0, .yaw_rate_ref_rad_s = 1, .speed_m_s = 0, .saturated = false};
@@ -32,8 +31,7 @@ TEST(SpeedControl, turns_left_with_faster_right_wheels)
     EXPECT_NEAR(out.left_rad_s, -0.12 / 0.057, 1e-6);
 }
 
-TEST(SpeedControl, integral_is_frozen_while_saturated_and_bounded_always)
-{
+TEST(SpeedControl, integral_is_frozen_while_saturated_and_bounded_always) {
     const speed_control_config_t config = rover_config_default().speed_control;
     speed_control_state_t state = {};
     speed_control_input_t input = {.speed_ref_m_s = 0.5f, .yaw_rate_ref_rad_s = 0, .speed_m_s = 0, .saturated = false};
@@ -50,8 +48,7 @@ TEST(SpeedControl, integral_is_frozen_while_saturated_and_bounded_always)
     EXPECT_EQ(state.integral_rad_s, config.integral_max_rad_s);
 }
 
-TEST(SpeedControl, is_bounded_for_any_input)
-{
+TEST(SpeedControl, is_bounded_for_any_input) {
     const speed_control_config_t config = rover_config_default().speed_control;
     const float inf = std::numeric_limits<float>::infinity();
     for (const float a : {0.0f, 3e38f, -3e38f, inf, -inf, std::nanf("")}) {
@@ -65,8 +62,7 @@ TEST(SpeedControl, is_bounded_for_any_input)
     }
 }
 
-TEST(SoilSweep, passes_zero_slip_at_ten_seconds)
-{
+TEST(SoilSweep, passes_zero_slip_at_ten_seconds) {
     const soil_sweep_config_t config = rover_config_default().soil_sweep;
     soil_sweep_state_t state = {};
     for (int k = 0; k <= 2000; ++k) {
@@ -78,12 +74,12 @@ TEST(SoilSweep, passes_zero_slip_at_ten_seconds)
     EXPECT_NEAR(soil_sweep_step(&config, &state, 0.3f).front_rad_s, 2 * 0.3 / 0.057, 1e-5);
 }
 
-TEST(SpeedControl, integral_shrinks_although_saturated)
-{
+TEST(SpeedControl, integral_shrinks_although_saturated) {
     const speed_control_config_t config = rover_config_default().speed_control;
     for (const float sign : {1.0f, -1.0f}) {
         speed_control_state_t state = {.integral_rad_s = 2.0f * sign};
-        const speed_control_input_t input = {.speed_ref_m_s = 0.3f * sign, .yaw_rate_ref_rad_s = 0, .speed_m_s = 0.35f * sign, .saturated = true};
+        const speed_control_input_t input = {
+            .speed_ref_m_s = 0.3f * sign, .yaw_rate_ref_rad_s = 0, .speed_m_s = 0.35f * sign, .saturated = true};
         speed_control_step(&config, &state, &input);
         EXPECT_NEAR(state.integral_rad_s, (2.0f - 0.05f * config.ki_T_rad_m) * sign, 1e-6f); // (1)
     }

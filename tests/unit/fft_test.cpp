@@ -10,8 +10,7 @@
 namespace {
 
 // |X[k]| of (1), directly and in double.
-std::vector<double> reference(const int16_t *x)
-{
+std::vector<double> reference(const int16_t *x) {
     static const std::vector<double> cosine = [] {
         std::vector<double> table;
         for (int n = 0; n < 256; ++n) {
@@ -32,8 +31,7 @@ std::vector<double> reference(const int16_t *x)
     return out;
 }
 
-double snr_dB(const int16_t *x)
-{
+double snr_dB(const int16_t *x) {
     uint64_t power[FFT_BINS];
     fft_power(x, power);
     const std::vector<double> expected = reference(x);
@@ -45,8 +43,7 @@ double snr_dB(const int16_t *x)
     return 10 * std::log10(signal / error);
 }
 
-TEST(Fft, keeps_88_dB_from_full_scale_to_minus_60_dB)
-{
+TEST(Fft, keeps_88_dB_from_full_scale_to_minus_60_dB) {
     for (const double level : {0.0, -20.0, -40.0, -60.0}) {
         for (int i = 0; i < 12; i += 3) {
             int16_t x[256];
@@ -59,8 +56,7 @@ TEST(Fft, keeps_88_dB_from_full_scale_to_minus_60_dB)
     }
 }
 
-TEST(Fft, keeps_88_dB_for_noise)
-{
+TEST(Fft, keeps_88_dB_for_noise) {
     clutter::Random random{3};
     int16_t x[256];
     for (auto &value : x) {
@@ -69,13 +65,13 @@ TEST(Fft, keeps_88_dB_for_noise)
     EXPECT_GE(snr_dB(x), 88);
 }
 
-TEST(Fft, neither_wraps_nor_saturates_at_any_extreme)
-{
+TEST(Fft, neither_wraps_nor_saturates_at_any_extreme) {
     for (int k = 1; k < 128; k += 21) {
         for (const double turn : {0.0, 0.3}) {
             int16_t x[256];
             for (int n = 0; n < 256; ++n) {
-                x[n] = static_cast<int16_t>(std::cos(2 * clutter::pi * (k * n / 256.0 + turn)) >= 0 ? INT16_MAX : INT16_MIN); // drives bin k to its largest
+                x[n] = static_cast<int16_t>(
+                    std::cos(2 * clutter::pi * (k * n / 256.0 + turn)) >= 0 ? INT16_MAX : INT16_MIN); // drives bin k to its largest
             }
             EXPECT_GE(snr_dB(x), 88) << "bin " << k;
         }
@@ -85,14 +81,13 @@ TEST(Fft, neither_wraps_nor_saturates_at_any_extreme)
         std::fill(std::begin(x), std::end(x), value);
         uint64_t power[FFT_BINS];
         fft_power(x, power);
-        const double expected = std::pow(512.0 * 64 * value, 2); // a constant through the Hann window: bin 1 is half of bin 0
+        const double expected = std::pow(512.0 * 64 * value, 2);               // a constant through the Hann window: bin 1 is half of bin 0
         EXPECT_NEAR(static_cast<double>(power[1]), expected, 1e-4 * expected); // Q15 twiddles: 2 * 2^-15
-        EXPECT_LT(static_cast<double>(power[5]), 1e-8 * expected); // nothing but rounding: 80 dB down
+        EXPECT_LT(static_cast<double>(power[5]), 1e-8 * expected);             // nothing but rounding: 80 dB down
     }
 }
 
-TEST(Fft, of_silence_is_silence)
-{
+TEST(Fft, of_silence_is_silence) {
     const int16_t x[256] = {};
     uint64_t power[FFT_BINS];
     fft_power(x, power);
@@ -101,8 +96,7 @@ TEST(Fft, of_silence_is_silence)
     }
 }
 
-TEST(Fft, tables_are_their_formulas)
-{
+TEST(Fft, tables_are_their_formulas) {
     for (int n = 0; n < 64; ++n) {
         for (int half = 0; half < 2; ++half) {
             const double h = (1 - std::cos(2 * clutter::pi * (n + 64 * half) / 256)) / 2;

@@ -27,8 +27,7 @@ namespace {
 uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
 
 // xorshift32, Marsaglia 2003
-uint32_t draw()
-{
+uint32_t draw() {
     static uint32_t state = 20261121;
     state ^= state << 13;
     state ^= state >> 17;
@@ -37,8 +36,7 @@ uint32_t draw()
 }
 
 // Both zeros, denormals, neighbours of 1, huge numbers, infinities, quiet and signalling NaN of both signs; and floats of any bits.
-std::vector<float> floats(int random)
-{
+std::vector<float> floats(int random) {
     std::vector<float> out;
     for (const uint32_t magnitude : {0x0u, 0x1u, 0x7fffffu, 0x800000u, 0x3f7fffffu, 0x3f800000u, 0x3f800001u, 0x7f7fffffu, 0x7f800000u,
                                      0x7f800001u, 0x7fc00000u, 0x7fffffffu}) {
@@ -51,8 +49,7 @@ std::vector<float> floats(int random)
     return out;
 }
 
-TEST(Fixed, clamp_lies_between_its_limits_for_any_float_and_both_forms_have_the_same_bits)
-{
+TEST(Fixed, clamp_lies_between_its_limits_for_any_float_and_both_forms_have_the_same_bits) {
     const std::vector<float> all = floats(60);
     for (const float low : all) {
         for (const float high : all) {
@@ -68,8 +65,7 @@ TEST(Fixed, clamp_lies_between_its_limits_for_any_float_and_both_forms_have_the_
     }
 }
 
-TEST(Fixed, finite_keeps_finite_numbers_and_both_forms_have_the_same_bits)
-{
+TEST(Fixed, finite_keeps_finite_numbers_and_both_forms_have_the_same_bits) {
     for (const float value : floats(20000)) {
         const float kept = plain::fixed_finite(value);
         ASSERT_EQ(bits(kept), bits(whole::fixed_finite(value)));
@@ -78,8 +74,7 @@ TEST(Fixed, finite_keeps_finite_numbers_and_both_forms_have_the_same_bits)
     }
 }
 
-TEST(Fixed, greater_is_the_order_of_numbers_with_nan_outside)
-{
+TEST(Fixed, greater_is_the_order_of_numbers_with_nan_outside) {
     const std::vector<float> all = floats(200);
     for (const float a : all) {
         for (const float b : all) {
@@ -92,25 +87,25 @@ TEST(Fixed, greater_is_the_order_of_numbers_with_nan_outside)
     }
 }
 
-TEST(Fixed, products_are_the_floor_of_the_exact_quotient)
-{
+TEST(Fixed, products_are_the_floor_of_the_exact_quotient) {
     const std::vector<int32_t> values = {0, 1, -1, 65535, 65536, -65536, 65537, INT32_MAX, INT32_MIN, INT32_MIN + 1};
     for (int i = 0; i < 2000; ++i) {
-        const int32_t value = static_cast<std::size_t>(i) < values.size() ? values[static_cast<std::size_t>(i)] : static_cast<int32_t>(draw());
+        const int32_t value =
+            static_cast<std::size_t>(i) < values.size() ? values[static_cast<std::size_t>(i)] : static_cast<int32_t>(draw());
         for (const uint32_t q : {0u, 1u, 0x7fffu, 0x8000u, 0xffffu, 0x7fff8000u, 0x80007fffu, 0xffff0001u, draw()}) {
             const auto exact = [&](uint32_t half) { // double holds 47 bits without rounding
                 return std::floor(static_cast<double>(value) * static_cast<int16_t>(half) / 65536.0);
             };
             ASSERT_EQ(fixed_mul_low(value, q), exact(q & 0xffffu));
             ASSERT_EQ(fixed_mul_high(value, q), exact(q >> 16));
-            ASSERT_EQ(fixed_mac_high(-5, value / 2, q), -5 + std::floor(static_cast<double>(value / 2) * static_cast<int16_t>(q >> 16) / 65536.0));
+            ASSERT_EQ(fixed_mac_high(-5, value / 2, q),
+                      -5 + std::floor(static_cast<double>(value / 2) * static_cast<int16_t>(q >> 16) / 65536.0));
             ASSERT_EQ(fixed_mul(value, static_cast<int16_t>(q & 0xffffu)), exact(q & 0xffffu));
         }
     }
 }
 
-TEST(Fixed, dot_product_is_exact_modulo_2_to_the_32)
-{
+TEST(Fixed, dot_product_is_exact_modulo_2_to_the_32) {
     alignas(8) int16_t a[120];
     alignas(8) int16_t b[120];
     for (int repeat = 0; repeat < 200; ++repeat) {
@@ -126,8 +121,7 @@ TEST(Fixed, dot_product_is_exact_modulo_2_to_the_32)
     }
 }
 
-TEST(Fixed, q15_is_the_nearest_and_saturates)
-{
+TEST(Fixed, q15_is_the_nearest_and_saturates) {
     for (const float value : floats(20000)) {
         const double limited = std::fmin(1.0, std::fmax(-1.0, static_cast<double>(value)));
         const int16_t got = fixed_q15_from_float(value);
@@ -142,8 +136,7 @@ TEST(Fixed, q15_is_the_nearest_and_saturates)
     }
 }
 
-TEST(Fixed, difference_of_wrapping_counters_is_the_short_way)
-{
+TEST(Fixed, difference_of_wrapping_counters_is_the_short_way) {
     EXPECT_EQ(fixed_wrap_difference(INT32_MIN, INT32_MAX), 1);
     EXPECT_EQ(fixed_wrap_difference(INT32_MAX, INT32_MIN), -1);
     EXPECT_EQ(fixed_wrap_difference(3, 10), -7);

@@ -9,8 +9,7 @@
 
 namespace {
 
-const std::vector<double> &track()
-{
+const std::vector<double> &track() {
     static const std::vector<double> echo = [] {
         clutter::Ground ground;
         ground.seed = 101;
@@ -24,8 +23,7 @@ const std::vector<double> &track()
 struct Drive {
     std::vector<double> truth, estimate, bias;
     std::vector<bool> standstill;
-    double rmse(double from_s, double to_s) const
-    {
+    double rmse(double from_s, double to_s) const {
         double sum = 0;
         int n = 0;
         for (std::size_t k = 0; k < truth.size(); ++k) {
@@ -39,9 +37,9 @@ struct Drive {
 };
 
 // `sign` -1 drives backwards. `bias` is the accelerometer's error over time.
-Drive drive(const control_config_t &config, double duration, const std::function<double(double)> &speed,
-            const std::function<double(double)> &bias = [](double) { return 0.05; }, double sign = 1)
-{
+Drive drive(
+    const control_config_t &config, double duration, const std::function<double(double)> &speed,
+    const std::function<double(double)> &bias = [](double) { return 0.05; }, double sign = 1) {
     std::vector<double> path{0};
     for (int i = 0; i < static_cast<int>(duration * 512) + 8; ++i) {
         path.push_back(path.back() + std::fabs(speed((i + 0.5) / 512.0)) / 512.0);
@@ -77,15 +75,13 @@ Drive drive(const control_config_t &config, double duration, const std::function
     return out;
 }
 
-double stop_and_go(double t)
-{
+double stop_and_go(double t) {
     const double p = std::fmod(t, 6.0);
     const double up = std::fmin(1.0, std::fmax(0.0, (p - 1.0) / 0.8)), down = std::fmin(1.0, std::fmax(0.0, (p - 4.0) / 0.8));
     return 0.4 * (up - down);
 }
 
-TEST(GroundSpeed, is_right_within_the_goal_at_constant_speeds)
-{
+TEST(GroundSpeed, is_right_within_the_goal_at_constant_speeds) {
     for (const double v : {0.2, 0.4}) {
         const Drive run = drive(rover_config_default(), 15, [v](double) { return v; });
         EXPECT_LT(run.rmse(2, 15), 0.018 * 1.5) << v; // goal 1.8 cm/s over all profiles; one run of 15 s spreads by half
@@ -93,23 +89,20 @@ TEST(GroundSpeed, is_right_within_the_goal_at_constant_speeds)
     }
 }
 
-TEST(GroundSpeed, beats_the_papers_method_on_the_same_data)
-{
+TEST(GroundSpeed, beats_the_papers_method_on_the_same_data) {
     const auto speed = [](double t) { return 0.4 + 0.25 * std::sin(2 * clutter::pi * t / 5); };
     const double paper = drive(rover_config_paper(), 15, speed).rmse(4, 15), ours = drive(rover_config_default(), 15, speed).rmse(4, 15);
-    EXPECT_LT(ours, paper / 2);   // measured over 12 seeds: 3.2 times better on this profile (docs/performance.md)
-    EXPECT_GT(paper, 0.02);       // the paper reports +-10 % at constant speed: it cannot be this good
+    EXPECT_LT(ours, paper / 2); // measured over 12 seeds: 3.2 times better on this profile (docs/performance.md)
+    EXPECT_GT(paper, 0.02);     // the paper reports +-10 % at constant speed: it cannot be this good
 }
 
-TEST(GroundSpeed, paper_method_has_the_papers_spread_on_concrete)
-{
+TEST(GroundSpeed, paper_method_has_the_papers_spread_on_concrete) {
     const Drive run = drive(rover_config_paper(), 30, [](double) { return 0.17; }); // w* = 3 rad/s, fig 10
     EXPECT_LT(run.rmse(8, 30), 0.5 * 0.17);
     EXPECT_GT(run.rmse(8, 30), 0.02 * 0.17); // +-10 % in the paper
 }
 
-TEST(GroundSpeed, stops_and_goes_without_losing_sign_or_scale)
-{
+TEST(GroundSpeed, stops_and_goes_without_losing_sign_or_scale) {
     const Drive run = drive(rover_config_default(), 18, stop_and_go);
     EXPECT_LT(run.rmse(2, 18), 0.018 * 1.5);
     for (std::size_t k = 200; k < run.truth.size(); ++k) {
@@ -119,15 +112,14 @@ TEST(GroundSpeed, stops_and_goes_without_losing_sign_or_scale)
     EXPECT_FALSE(run.standstill[900]);
 }
 
-TEST(GroundSpeed, has_the_sign_of_the_wheels_in_reverse)
-{
-    const Drive run = drive(rover_config_default(), 12, stop_and_go, [](double) { return 0.05; }, -1);
+TEST(GroundSpeed, has_the_sign_of_the_wheels_in_reverse) {
+    const Drive run = drive(
+        rover_config_default(), 12, stop_and_go, [](double) { return 0.05; }, -1);
     EXPECT_LT(run.rmse(2, 12), 0.018 * 1.5);
 }
 
 // The same drive with and without the step, noise and all: what differs is the step's own error.
-TEST(GroundSpeed, a_slope_of_one_degree_settles_within_two_and_a_half_seconds)
-{
+TEST(GroundSpeed, a_slope_of_one_degree_settles_within_two_and_a_half_seconds) {
     const double step = 9.81 * std::sin(clutter::pi / 180); // what the accelerometer feels of it
     for (const double v : {0.2, 0.5}) {
         const double duration = v < 0.3 ? 14 : 12;
@@ -152,8 +144,7 @@ TEST(GroundSpeed, a_slope_of_one_degree_settles_within_two_and_a_half_seconds)
 }
 
 // With exact sensors the filter's delay compensation has nothing left to hide behind.
-TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag)
-{
+TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag) {
     control_config_t config = rover_config_default();
     for (const double a : {0.2, -0.2, 1.0}) {
         ground_speed_state_t state;
@@ -174,10 +165,13 @@ TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag)
                 mean += h * past[past.size() - 256 + j];
                 weight += h;
             }
-            const ground_speed_input_t input = {
-                .accel_x_m_s2 = static_cast<float>(t > 2.005 && t < 3.005 ? a : 0),
-                .doppler_m_s = static_cast<float>(fresh ? mean / weight : 0), .doppler_late_s = 0, .wheel_m_s = static_cast<float>(speed),
-                .accel_valid = true, .doppler_fresh = fresh, .doppler_quiet = false};
+            const ground_speed_input_t input = {.accel_x_m_s2 = static_cast<float>(t > 2.005 && t < 3.005 ? a : 0),
+                                                .doppler_m_s = static_cast<float>(fresh ? mean / weight : 0),
+                                                .doppler_late_s = 0,
+                                                .wheel_m_s = static_cast<float>(speed),
+                                                .accel_valid = true,
+                                                .doppler_fresh = fresh,
+                                                .doppler_quiet = false};
             const double estimate = static_cast<double>(ground_speed_step(&config.ground_speed, &state, &input).speed_m_s);
             if (t > 2.1 && t < 4) error = std::fmax(error, std::fabs(estimate - speed));
         }
@@ -189,14 +183,17 @@ TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag)
 // --- the filter alone: measurements made from its own model
 
 // One tick without a radar value; the wheels turn at `wheel_m_s`.
-ground_speed_input_t only_accel(double accel, double wheel_m_s = 0.3)
-{
-    return {.accel_x_m_s2 = static_cast<float>(accel), .doppler_m_s = 0, .doppler_late_s = 0, .wheel_m_s = static_cast<float>(wheel_m_s),
-            .accel_valid = true, .doppler_fresh = false, .doppler_quiet = false};
+ground_speed_input_t only_accel(double accel, double wheel_m_s = 0.3) {
+    return {.accel_x_m_s2 = static_cast<float>(accel),
+            .doppler_m_s = 0,
+            .doppler_late_s = 0,
+            .wheel_m_s = static_cast<float>(wheel_m_s),
+            .accel_valid = true,
+            .doppler_fresh = false,
+            .doppler_quiet = false};
 }
 
-ground_speed_input_t with_radar(double accel, double doppler_m_s, bool quiet = false, double wheel_m_s = 0.3)
-{
+ground_speed_input_t with_radar(double accel, double doppler_m_s, bool quiet = false, double wheel_m_s = 0.3) {
     ground_speed_input_t input = only_accel(accel, wheel_m_s);
     input.doppler_m_s = static_cast<float>(doppler_m_s);
     input.doppler_fresh = true;
@@ -205,8 +202,7 @@ ground_speed_input_t with_radar(double accel, double doppler_m_s, bool quiet = f
 }
 
 // At `v` with exact sensors for five seconds.
-ground_speed_state_t settled(const ground_speed_config_t &config, double v)
-{
+ground_speed_state_t settled(const ground_speed_config_t &config, double v) {
     ground_speed_state_t state;
     ground_speed_reset(&config, &state);
     for (int k = 0; k < 500; ++k) {
@@ -218,15 +214,13 @@ ground_speed_state_t settled(const ground_speed_config_t &config, double v)
 }
 
 // Variance with which the filter expects a radar value now: P of v + tau b, and R by ground_speed.h; no acceleration.
-double expected_variance(const ground_speed_config_t &config, const ground_speed_state_t &state, double v)
-{
+double expected_variance(const ground_speed_config_t &config, const ground_speed_state_t &state, double v) {
     const double tau = 0.249; // (256 - 1)/2 samples at 512 Hz
     return static_cast<double>(state.p_vv) + 2 * tau * static_cast<double>(state.p_vb) + tau * tau * static_cast<double>(state.p_bb) +
            static_cast<double>(config.doppler_noise_m2_s2) + static_cast<double>(config.doppler_noise_m_s) * v;
 }
 
-TEST(GroundSpeed, gate_refuses_beyond_three_and_a_half_sigma_and_weighs_what_it_accepts)
-{
+TEST(GroundSpeed, gate_refuses_beyond_three_and_a_half_sigma_and_weighs_what_it_accepts) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     const double v = 0.4;
     for (const double sigmas : {-3.7, -3.3, -1.0, 1.0, 3.3, 3.7}) {
@@ -245,8 +239,7 @@ TEST(GroundSpeed, gate_refuses_beyond_three_and_a_half_sigma_and_weighs_what_it_
     }
 }
 
-TEST(GroundSpeed, believes_a_new_speed_after_as_many_refusals_as_configured)
-{
+TEST(GroundSpeed, believes_a_new_speed_after_as_many_refusals_as_configured) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     ground_speed_state_t state = settled(config, 0.3);
     for (int value = 1; value <= config.gate_patience + 1; ++value) {
@@ -260,8 +253,7 @@ TEST(GroundSpeed, believes_a_new_speed_after_as_many_refusals_as_configured)
     }
 }
 
-TEST(GroundSpeed, three_quiet_echoes_mean_a_low_speed_when_the_prediction_allows_it_and_a_fade_when_it_does_not)
-{
+TEST(GroundSpeed, three_quiet_echoes_mean_a_low_speed_when_the_prediction_allows_it_and_a_fade_when_it_does_not) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     for (const double v : {0.06, 0.5}) {
         ground_speed_state_t state = settled(config, v);
@@ -280,8 +272,7 @@ TEST(GroundSpeed, three_quiet_echoes_mean_a_low_speed_when_the_prediction_allows
     }
 }
 
-TEST(GroundSpeed, stands_from_the_third_quiet_echo_on_and_slides_while_the_echo_is_loud)
-{
+TEST(GroundSpeed, stands_from_the_third_quiet_echo_on_and_slides_while_the_echo_is_loud) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     ground_speed_state_t state = settled(config, 0.5);
     for (int k = 0; k < 60; ++k) { // four blocked wheels on a slope: 0.5 m/s and a loud echo
@@ -295,8 +286,7 @@ TEST(GroundSpeed, stands_from_the_third_quiet_echo_on_and_slides_while_the_echo_
 }
 
 // Values drawn from the model that the filter has: independent errors of variance R, windows of the Hann window's square.
-TEST(GroundSpeed, knows_its_own_uncertainty)
-{
+TEST(GroundSpeed, knows_its_own_uncertainty) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     clutter::Random random{41};
     ground_speed_state_t state;
@@ -316,11 +306,11 @@ TEST(GroundSpeed, knows_its_own_uncertainty)
         }
     }
     std::printf("rms error %.2f cm/s, claimed %.2f cm/s\n", 100 * std::sqrt(square / n), 100 * std::sqrt(claimed / n));
-    EXPECT_NEAR(std::sqrt(square / claimed), 1, 0.1); // the claim is made at the values; between them noise adds up to 12 * 4e-6 of 2.3e-4 m^2/s^2
+    EXPECT_NEAR(std::sqrt(square / claimed), 1,
+                0.1); // the claim is made at the values; between them noise adds up to 12 * 4e-6 of 2.3e-4 m^2/s^2
 }
 
-TEST(GroundSpeed, measures_the_accelerometers_noise_and_never_believes_less_than_stated)
-{
+TEST(GroundSpeed, measures_the_accelerometers_noise_and_never_believes_less_than_stated) {
     ground_speed_config_t config = rover_config_default().ground_speed;
     for (const double noise : {0.05, 0.2, 0.4, 1.0, 5.0}) {
         clutter::Random random{43};
@@ -335,8 +325,8 @@ TEST(GroundSpeed, measures_the_accelerometers_noise_and_never_believes_less_than
             mean += static_cast<double>(state.speed_noise_m2_s2) / 20000;
         }
         const double truth = std::pow(noise * 0.01, 2), stated = static_cast<double>(config.speed_noise_m2_s2);
-        // the four ramps' edges of 400 ticks add (1 m/s^2)^2 4/400/2 (0.01 s)^2 = 5e-7; where truth is the stated one, the larger of it and a mean that
-        // spreads by 10 % is 4 % more; beyond the limit it stays there
+        // the four ramps' edges of 400 ticks add (1 m/s^2)^2 4/400/2 (0.01 s)^2 = 5e-7; where truth is the stated one, the larger of it and
+        // a mean that spreads by 10 % is 4 % more; beyond the limit it stays there
         const double expected = std::fmin(std::fmax(truth + 5e-7, stated), static_cast<double>(config.speed_noise_max_m2_s2));
         EXPECT_NEAR(mean, expected, 0.08 * expected + 1e-7) << noise;
         EXPECT_GE(state.speed_noise_m2_s2, config.speed_noise_m2_s2);
@@ -351,21 +341,20 @@ TEST(GroundSpeed, measures_the_accelerometers_noise_and_never_believes_less_than
     EXPECT_EQ(state.speed_noise_m2_s2, config.speed_noise_m2_s2);
 }
 
-TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels)
-{
+TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels) {
     for (const bool paper : {false, true}) {
         const ground_speed_config_t config = (paper ? rover_config_paper() : rover_config_default()).ground_speed;
         for (const double wheel : {-0.4, 0.4}) {
             ground_speed_state_t state;
             ground_speed_reset(&config, &state);
             const ground_speed_input_t input = with_radar(0, 0.35, false, wheel);
-            EXPECT_NEAR(ground_speed_step(&config, &state, &input).speed_m_s, wheel < 0 ? -0.35 : 0.35, 0.35 * 0.01) << paper; // P = (1 m/s)^2, so the gain is 1 but for 4e-4
+            EXPECT_NEAR(ground_speed_step(&config, &state, &input).speed_m_s, wheel < 0 ? -0.35 : 0.35, 0.35 * 0.01)
+                << paper; // P = (1 m/s)^2, so the gain is 1 but for 4e-4
         }
     }
 }
 
-TEST(GroundSpeed, takes_a_value_of_a_short_window_only_while_the_speed_is_steady)
-{
+TEST(GroundSpeed, takes_a_value_of_a_short_window_only_while_the_speed_is_steady) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     for (const double accel : {0.1, 0.3}) { // 0.2 m/s^2 is the limit
         ground_speed_state_t state;

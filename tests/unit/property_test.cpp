@@ -12,8 +12,7 @@
 namespace {
 
 // Any 32 bits as a float: NaN, infinities and denormals included.
-float any_float()
-{
+float any_float() {
     const auto bits = *rc::gen::arbitrary<std::uint32_t>();
     float value = 0;
     std::memcpy(&value, &bits, sizeof value);
@@ -22,8 +21,7 @@ float any_float()
 
 float finite(int limit) { return static_cast<float>(*rc::gen::inRange(-limit * 1000, limit * 1000)) / 1000.0f; }
 
-RC_GTEST_PROP(Property, slip_is_bounded_and_odd, ())
-{
+RC_GTEST_PROP(Property, slip_is_bounded_and_odd, ()) {
     const slip_config_t config = rover_config_default().slip;
     const float w = any_float(), v = any_float();
     const slip_output_t out = slip_measure(&config, w, v), back = slip_measure(&config, -w, -v);
@@ -32,16 +30,14 @@ RC_GTEST_PROP(Property, slip_is_bounded_and_odd, ())
     RC_ASSERT(out.valid == back.valid);
 }
 
-RC_GTEST_PROP(Property, slip_rises_with_the_wheel_and_falls_with_the_ground, ())
-{
+RC_GTEST_PROP(Property, slip_rises_with_the_wheel_and_falls_with_the_ground, ()) {
     const slip_config_t config = rover_config_default().slip;
     const float v = std::fabs(finite(1)) + 0.1f, w = finite(20), more = std::fabs(finite(5));
     RC_ASSERT(slip_measure(&config, w + more, v).slip >= slip_measure(&config, w, v).slip - 1e-6f); // rounding of one division
     RC_ASSERT(slip_measure(&config, w, v + more).slip <= slip_measure(&config, w, v).slip + 1e-6f);
 }
 
-RC_GTEST_PROP(Property, wheel_loop_never_exceeds_its_duty_and_its_integral_never_its_bound, ())
-{
+RC_GTEST_PROP(Property, wheel_loop_never_exceeds_its_duty_and_its_integral_never_its_bound, ()) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     wheel_pid_state_t state = {};
     for (int i = 0; i < 20; ++i) {
@@ -52,8 +48,7 @@ RC_GTEST_PROP(Property, wheel_loop_never_exceeds_its_duty_and_its_integral_never
     }
 }
 
-RC_GTEST_PROP(Property, slip_loop_never_exceeds_its_duty, ())
-{
+RC_GTEST_PROP(Property, slip_loop_never_exceeds_its_duty, ()) {
     const slip_pi_config_t config = rover_config_default().slip_pi;
     slip_pi_state_t state = {};
     for (int i = 0; i < 20; ++i) {
@@ -62,8 +57,7 @@ RC_GTEST_PROP(Property, slip_loop_never_exceeds_its_duty, ())
     }
 }
 
-RC_GTEST_PROP(Property, no_command_drives_a_rover_whose_emergency_stop_is_active, ())
-{
+RC_GTEST_PROP(Property, no_command_drives_a_rover_whose_emergency_stop_is_active, ()) {
     const control_config_t config = rover_config_default();
     const auto state = std::make_unique<control_state_t>();
     control_reset(&config, state.get());

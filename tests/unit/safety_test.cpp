@@ -17,8 +17,7 @@ class DrivingRover : public ::testing::Test {
     trace_t trace = {};
     int tick = 0;
 
-    void SetUp() override
-    {
+    void SetUp() override {
         control_reset(&config, &state);
         command.mode = MODE_WHEEL_SPEED;
         for (float &speed : command.wheel_speed_rad_s) {
@@ -35,8 +34,7 @@ class DrivingRover : public ::testing::Test {
         ASSERT_NE(trace.actuator.duty_q15[0], 0);
     }
     // A change of the frame made before run() lasts.
-    void run(int ticks)
-    {
+    void run(int ticks) {
         for (int i = 0; i < ticks; ++i) {
             frame.tick = static_cast<uint32_t>(tick);
             for (int w = 0; w < WHEEL_COUNT; ++w) {
@@ -52,8 +50,7 @@ class DrivingRover : public ::testing::Test {
         }
     }
     // How many ticks pass until the bridges are released; -1 when they are not within `most`.
-    int ticks_until_off(int most)
-    {
+    int ticks_until_off(int most) {
         for (int i = 1; i <= most; ++i) {
             run(1);
             if (!trace.actuator.motor_enable) {
@@ -71,15 +68,13 @@ class DrivingRover : public ::testing::Test {
     double phase = 0;
 };
 
-TEST_F(DrivingRover, emergency_stop_releases_the_motors_in_its_own_tick)
-{
+TEST_F(DrivingRover, emergency_stop_releases_the_motors_in_its_own_tick) {
     frame.emergency_stop = true;
     EXPECT_EQ(ticks_until_off(10), 1); // asked for: two ticks
     EXPECT_EQ(trace.faults, FAULT_EMERGENCY_STOP);
 }
 
-TEST_F(DrivingRover, emergency_stop_stays_latched_until_stop_is_commanded_without_it)
-{
+TEST_F(DrivingRover, emergency_stop_stays_latched_until_stop_is_commanded_without_it) {
     frame.emergency_stop = true;
     run(1);
     frame.emergency_stop = false;
@@ -99,24 +94,24 @@ struct Loss {
 };
 class Losing : public DrivingRover, public ::testing::WithParamInterface<Loss> {};
 
-TEST_P(Losing, a_silent_sensor_releases_the_motors_within_100_ms)
-{
+TEST_P(Losing, a_silent_sensor_releases_the_motors_within_100_ms) {
     frame.present &= ~GetParam().bit;
     const int ticks = ticks_until_off(30);
-    EXPECT_GT(ticks, 2);   // one lost frame is forgiven
-    EXPECT_LE(ticks, 10);  // 100 ms
+    EXPECT_GT(ticks, 2);  // one lost frame is forgiven
+    EXPECT_LE(ticks, 10); // 100 ms
     EXPECT_EQ(trace.faults, GetParam().fault);
 }
 
 INSTANTIATE_TEST_SUITE_P(Safety, Losing,
-                         ::testing::Values(Loss{"encoder0", FRAME_ENCODER_0, FAULT_ENCODER_LOST}, Loss{"encoder3", FRAME_ENCODER_0 << 3u, FAULT_ENCODER_LOST},
-                                           Loss{"current0", FRAME_CURRENT_0, FAULT_CURRENT_LOST}, Loss{"current3", FRAME_CURRENT_0 << 3u, FAULT_CURRENT_LOST},
+                         ::testing::Values(Loss{"encoder0", FRAME_ENCODER_0, FAULT_ENCODER_LOST},
+                                           Loss{"encoder3", FRAME_ENCODER_0 << 3u, FAULT_ENCODER_LOST},
+                                           Loss{"current0", FRAME_CURRENT_0, FAULT_CURRENT_LOST},
+                                           Loss{"current3", FRAME_CURRENT_0 << 3u, FAULT_CURRENT_LOST},
                                            Loss{"battery", FRAME_BATTERY, FAULT_BATTERY_LOST}, Loss{"accel", FRAME_ACCEL, FAULT_ACCEL_LOST},
                                            Loss{"gyro", FRAME_GYRO, FAULT_GYRO_LOST}, Loss{"radar", FRAME_RADAR, FAULT_RADAR_LOST}),
                          [](const auto &loss) { return loss.param.name; });
 
-TEST_F(DrivingRover, one_silent_tick_of_every_sensor_is_forgiven)
-{
+TEST_F(DrivingRover, one_silent_tick_of_every_sensor_is_forgiven) {
     frame.present = 0;
     run(1);
     frame.present = 0xfffu;
@@ -124,23 +119,20 @@ TEST_F(DrivingRover, one_silent_tick_of_every_sensor_is_forgiven)
     EXPECT_EQ(trace.faults, 0u);
 }
 
-TEST_F(DrivingRover, a_sensor_that_the_rover_does_not_have_is_not_missed)
-{
+TEST_F(DrivingRover, a_sensor_that_the_rover_does_not_have_is_not_missed) {
     config.safety.required &= ~static_cast<uint32_t>(FRAME_GYRO);
     frame.present &= ~static_cast<uint32_t>(FRAME_GYRO);
     run(100);
     EXPECT_EQ(trace.faults, 0u);
 }
 
-TEST_F(DrivingRover, an_absurd_sensor_releases_the_motors_within_100_ms)
-{
+TEST_F(DrivingRover, an_absurd_sensor_releases_the_motors_within_100_ms) {
     frame.current_count[1] = 4095;
     EXPECT_LE(ticks_until_off(30), 10);
     EXPECT_EQ(trace.faults, FAULT_ABSURD_SENSOR | FAULT_CURRENT_LOST);
 }
 
-TEST_F(DrivingRover, an_old_command_releases_the_motors_within_100_ms)
-{
+TEST_F(DrivingRover, an_old_command_releases_the_motors_within_100_ms) {
     for (uint32_t age = 1; age <= 10; ++age) {
         command.age_ticks = age;
         run(1);
@@ -149,8 +141,7 @@ TEST_F(DrivingRover, an_old_command_releases_the_motors_within_100_ms)
     EXPECT_EQ(trace.faults, FAULT_COMMAND_TIMEOUT);
 }
 
-TEST_F(DrivingRover, missed_ticks_release_the_motors_and_a_single_one_does_not)
-{
+TEST_F(DrivingRover, missed_ticks_release_the_motors_and_a_single_one_does_not) {
     tick += 1;
     run(1);
     EXPECT_EQ(trace.faults, 0u);
@@ -164,15 +155,13 @@ TEST_F(DrivingRover, missed_ticks_release_the_motors_and_a_single_one_does_not)
     EXPECT_FALSE(trace.actuator.motor_enable);
 }
 
-TEST_F(DrivingRover, a_clock_that_stands_still_releases_the_motors)
-{
+TEST_F(DrivingRover, a_clock_that_stands_still_releases_the_motors) {
     tick -= 1;
     run(1);
     EXPECT_EQ(trace.faults, FAULT_MISSED_TICKS);
 }
 
-TEST_F(DrivingRover, a_low_battery_releases_the_motors_after_half_a_second_and_a_dip_does_not)
-{
+TEST_F(DrivingRover, a_low_battery_releases_the_motors_after_half_a_second_and_a_dip_does_not) {
     frame.battery_count = 1300; // 5.2 V
     run(40);
     EXPECT_EQ(trace.faults, 0u);
@@ -185,8 +174,7 @@ TEST_F(DrivingRover, a_low_battery_releases_the_motors_after_half_a_second_and_a
     EXPECT_EQ(trace.faults, FAULT_LOW_BATTERY);
 }
 
-TEST_F(DrivingRover, over_current_limits_that_wheel_alone_after_its_i2t)
-{
+TEST_F(DrivingRover, over_current_limits_that_wheel_alone_after_its_i2t) {
     frame.current_count[2] = 2048 + 1100; // 2.2 A: (2.2^2 - 1.5^2) t = 8 at 3.09 s
     run(300);
     EXPECT_EQ(trace.faults, 0u);
@@ -198,13 +186,13 @@ TEST_F(DrivingRover, over_current_limits_that_wheel_alone_after_its_i2t)
         duty = 1;
     }
     run(1);
-    const double current = (static_cast<double>(trace.wheel[2].duty) * 7.2 - 0.265 * static_cast<double>(trace.wheel[2].speed_rad_s)) / 3.24;
+    const double current =
+        (static_cast<double>(trace.wheel[2].duty) * 7.2 - 0.265 * static_cast<double>(trace.wheel[2].speed_rad_s)) / 3.24;
     EXPECT_NEAR(current, 1.5, 0.01); // the continuous current; float rounding and Q15
     EXPECT_EQ(trace.wheel[1].duty, 1.0f);
 }
 
-TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second)
-{
+TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second) {
     turn[0] = 0;
     frame.current_count[0] = 2048 + 800;
     run(99);
@@ -215,8 +203,7 @@ TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second)
     EXPECT_LE(trace.wheel[0].duty, 1.5f * 3.24f / 7.2f + 1e-3f);
 }
 
-TEST_F(DrivingRover, an_overheated_winding_releases_the_motors)
-{
+TEST_F(DrivingRover, an_overheated_winding_releases_the_motors) {
     config.safety.i2t_max_A2_ticks = 1e9f; // so that temperature alone decides
     frame.current_count[3] = 2048 + 1100;
     // 2.2 A: 15.7 W * 12 K/W = 188 K after many 60 s; 95 K after 60 ln(188/(188 - 95)) = 42 s
@@ -227,8 +214,7 @@ TEST_F(DrivingRover, an_overheated_winding_releases_the_motors)
     EXPECT_FALSE(trace.actuator.motor_enable);
 }
 
-TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motors)
-{
+TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motors) {
     for (int &step : turn) {
         step = 0;
     }
@@ -245,8 +231,7 @@ TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motor
     EXPECT_FALSE(trace.actuator.motor_enable);
 }
 
-TEST_F(DrivingRover, a_radar_that_repeats_one_value_while_the_wheels_turn_is_lost)
-{
+TEST_F(DrivingRover, a_radar_that_repeats_one_value_while_the_wheels_turn_is_lost) {
     frozen = true;
     for (auto &count : frame.radar_count) {
         count = 512;
@@ -256,8 +241,7 @@ TEST_F(DrivingRover, a_radar_that_repeats_one_value_while_the_wheels_turn_is_los
     EXPECT_EQ(trace.faults, FAULT_RADAR_LOST);
 }
 
-TEST_F(DrivingRover, one_missed_tick_in_150_is_forgiven_for_ever_and_one_in_50_is_not)
-{
+TEST_F(DrivingRover, one_missed_tick_in_150_is_forgiven_for_ever_and_one_in_50_is_not) {
     for (int i = 0; i < 20; ++i) {
         tick += 1;
         run(149);
@@ -270,12 +254,11 @@ TEST_F(DrivingRover, one_missed_tick_in_150_is_forgiven_for_ever_and_one_in_50_i
         ++rounds;
     }
     EXPECT_EQ(trace.faults, FAULT_MISSED_TICKS);
-    EXPECT_GE(rounds, 6);  // five are tolerated
-    EXPECT_LE(rounds, 7);  // 49 good ticks forget none before the count starts again
+    EXPECT_GE(rounds, 6); // five are tolerated
+    EXPECT_LE(rounds, 7); // 49 good ticks forget none before the count starts again
 }
 
-TEST_F(DrivingRover, a_rising_radar_signal_is_not_a_frozen_one_and_a_radar_that_is_not_there_cannot_freeze)
-{
+TEST_F(DrivingRover, a_rising_radar_signal_is_not_a_frozen_one_and_a_radar_that_is_not_there_cannot_freeze) {
     frozen = true; // the fixture leaves the samples alone
     for (int i = 0; i < 150; ++i) {
         for (int n = 0; n < 6; ++n) {
@@ -293,8 +276,7 @@ TEST_F(DrivingRover, a_rising_radar_signal_is_not_a_frozen_one_and_a_radar_that_
     EXPECT_EQ(trace.faults, 0u);
 }
 
-TEST_F(DrivingRover, a_radar_may_repeat_itself_while_one_wheel_hardly_turns)
-{
+TEST_F(DrivingRover, a_radar_may_repeat_itself_while_one_wheel_hardly_turns) {
     frozen = true;
     for (auto &count : frame.radar_count) {
         count = 512;
@@ -308,8 +290,7 @@ TEST_F(DrivingRover, a_radar_may_repeat_itself_while_one_wheel_hardly_turns)
     }
 }
 
-TEST_F(DrivingRover, the_lamp_is_lit_while_a_fault_is_latched)
-{
+TEST_F(DrivingRover, the_lamp_is_lit_while_a_fault_is_latched) {
     EXPECT_FALSE(trace.actuator.status_led);
     frame.emergency_stop = true;
     run(1);
@@ -317,8 +298,7 @@ TEST_F(DrivingRover, the_lamp_is_lit_while_a_fault_is_latched)
 }
 
 // SPEED_DISAGREE through the whole tick: 0.5 m/s that only the accelerometer's integral knows of, 0.057 m wheels.
-TEST(Disagreement, is_measured_against_the_fastest_wheel)
-{
+TEST(Disagreement, is_measured_against_the_fastest_wheel) {
     for (int fastest = 0; fastest < WHEEL_COUNT; ++fastest) {
         for (const int pulses : {43, 36}) { // 4.5 and 3.8 rad/s: 1.5 R w + 0.15 is 0.535 and 0.472 m/s
             control_config_t config = rover_config_default();
@@ -345,8 +325,7 @@ TEST(Disagreement, is_measured_against_the_fastest_wheel)
     }
 }
 
-TEST_F(DrivingRover, windings_warm_up_by_their_thermal_model)
-{
+TEST_F(DrivingRover, windings_warm_up_by_their_thermal_model) {
     for (float &rise : state.safety.rise_K) {
         rise = 0;
     }
@@ -360,8 +339,7 @@ TEST_F(DrivingRover, windings_warm_up_by_their_thermal_model)
     }
 }
 
-TEST_F(DrivingRover, a_battery_that_is_not_measured_is_not_low)
-{
+TEST_F(DrivingRover, a_battery_that_is_not_measured_is_not_low) {
     config.safety.required &= ~static_cast<uint32_t>(FRAME_BATTERY);
     control_reset(&config, &state);
     frame.present &= ~static_cast<uint32_t>(FRAME_BATTERY);
@@ -370,8 +348,7 @@ TEST_F(DrivingRover, a_battery_that_is_not_measured_is_not_low)
     EXPECT_EQ(trace.faults, 0u);
 }
 
-TEST_F(DrivingRover, a_long_gap_is_forgotten_as_soon_as_a_short_one)
-{
+TEST_F(DrivingRover, a_long_gap_is_forgotten_as_soon_as_a_short_one) {
     for (const int gap : {6, 5000}) {
         tick += gap;
         run(1);

@@ -7,8 +7,7 @@
 
 namespace {
 
-sensor_frame_t quiet_frame()
-{
+sensor_frame_t quiet_frame() {
     sensor_frame_t frame = {};
     frame.present = 0xfffu;
     for (auto &count : frame.current_count) {
@@ -22,8 +21,7 @@ sensor_frame_t quiet_frame()
     return frame;
 }
 
-TEST(Sense, speed_and_its_derivative_follow_a_ramp_across_the_counters_wrap)
-{
+TEST(Sense, speed_and_its_derivative_follow_a_ramp_across_the_counters_wrap) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     const double q = 2 * M_PI / 6000;
@@ -44,8 +42,7 @@ TEST(Sense, speed_and_its_derivative_follow_a_ramp_across_the_counters_wrap)
     }
 }
 
-TEST(Sense, noise_of_the_speed_is_what_the_header_says)
-{
+TEST(Sense, noise_of_the_speed_is_what_the_header_says) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     const double q = 2 * M_PI / 6000;
@@ -66,8 +63,7 @@ TEST(Sense, noise_of_the_speed_is_what_the_header_says)
     EXPECT_NEAR(std::sqrt(sum_a / n), 0.46, 0.25);
 }
 
-TEST(Sense, a_silent_encoder_is_bridged_without_a_false_speed)
-{
+TEST(Sense, a_silent_encoder_is_bridged_without_a_false_speed) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     for (int k = 0; k < 50; ++k) {
@@ -84,8 +80,7 @@ TEST(Sense, a_silent_encoder_is_bridged_without_a_false_speed)
     }
 }
 
-TEST(Sense, impossible_counts_are_called_absurd_and_not_used)
-{
+TEST(Sense, impossible_counts_are_called_absurd_and_not_used) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     sensor_frame_t frame = quiet_frame();
@@ -103,8 +98,7 @@ TEST(Sense, impossible_counts_are_called_absurd_and_not_used)
     EXPECT_FLOAT_EQ(out.battery_V, 7.2f);
 }
 
-TEST(Sense, scales_every_raw_count)
-{
+TEST(Sense, scales_every_raw_count) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     sensor_frame_t frame = quiet_frame();
@@ -118,8 +112,7 @@ TEST(Sense, scales_every_raw_count)
     EXPECT_FLOAT_EQ(out.battery_V, 7.2f);
 }
 
-TEST(Sense, derivative_is_its_formula_for_a_wheel_that_jumps)
-{
+TEST(Sense, derivative_is_its_formula_for_a_wheel_that_jumps) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     sensor_frame_t frame = quiet_frame();
@@ -138,8 +131,7 @@ TEST(Sense, derivative_is_its_formula_for_a_wheel_that_jumps)
     }
 }
 
-TEST(Sense, an_encoder_that_falls_silent_after_its_first_count_is_at_rest)
-{
+TEST(Sense, an_encoder_that_falls_silent_after_its_first_count_is_at_rest) {
     const sense_config_t config = rover_config_default().sense;
     sense_state_t state = {};
     sensor_frame_t frame = quiet_frame();
@@ -159,8 +151,7 @@ TEST(Sense, an_encoder_that_falls_silent_after_its_first_count_is_at_rest)
     }
 }
 
-TEST(Sense, both_rails_of_a_signed_converter_are_absurd)
-{
+TEST(Sense, both_rails_of_a_signed_converter_are_absurd) {
     const sense_config_t config = rover_config_default().sense;
     for (const int16_t rail : {int16_t{INT16_MIN}, int16_t{INT16_MAX}}) {
         sense_state_t state = {};

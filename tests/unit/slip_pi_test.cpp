@@ -15,14 +15,12 @@ struct SlippingWheel {
     double v = 0.2;
     double w = 0.2 / 0.057;
     double slip() const { return 0.057 * w >= v ? 1 - v / (0.057 * w) : 0.057 * w / v - 1; }
-    double traction() const
-    {
+    double traction() const {
         const double s = std::fabs(slip()) + 1e-12;
         const double f = concrete ? 1 - std::exp(-s / sc) : 1 - sc / s * (1 - std::exp(-s / sc));
         return slip() < 0 ? -fm_N * f : fm_N * f;
     }
-    void tick(double duty)
-    {
+    void tick(double duty) {
         for (int i = 0; i < 20; ++i) {
             const double current = (duty * 7.2 - 0.265 * w) / 3.24;
             w += 5e-4 * (0.265 * current - 1.6e-3 * w - 0.03 - 0.057 * traction()) / 5e-3;
@@ -32,8 +30,7 @@ struct SlippingWheel {
 
 class OnSoil : public ::testing::TestWithParam<std::tuple<SlippingWheel, double>> {};
 
-TEST_P(OnSoil, settles_at_the_set_point_within_one_and_a_half_seconds)
-{
+TEST_P(OnSoil, settles_at_the_set_point_within_one_and_a_half_seconds) {
     auto [wheel, speed] = GetParam();
     wheel.v = speed;
     wheel.w = speed / 0.057;
@@ -44,7 +41,8 @@ TEST_P(OnSoil, settles_at_the_set_point_within_one_and_a_half_seconds)
     int last_outside = 0;
     double mean = 0;
     for (int k = 0; k < 400; ++k) {
-        const slip_pi_input_t input = {.slip_ref = 0.4f, .slip = static_cast<float>(wheel.slip()), .speed_m_s = static_cast<float>(wheel.v)};
+        const slip_pi_input_t input = {
+            .slip_ref = 0.4f, .slip = static_cast<float>(wheel.slip()), .speed_m_s = static_cast<float>(wheel.v)};
         wheel.tick(slip_pi_step(&config, &state, &input).duty);
         last_outside = std::fabs(wheel.slip() - 0.4) > 0.04 ? k : last_outside;
         mean += k >= 200 ? wheel.slip() / 200 : 0;
@@ -58,8 +56,7 @@ INSTANTIATE_TEST_SUITE_P(SlipPi, OnSoil,
                                                               SlippingWheel{5.1, 0.27, false}),
                                             ::testing::Values(0.1, 0.2, 0.3)));
 
-TEST(SlipPi, is_the_papers_law_without_a_schedule)
-{
+TEST(SlipPi, is_the_papers_law_without_a_schedule) {
     const slip_pi_config_t config = {.kp = 0.5f, .ki_T = 0.01f, .duty_max = 1, .per_speed_s_m = 0, .gain_min = 1, .gain_max = 1};
     slip_pi_state_t state = {};
     double integral = 0;
@@ -71,8 +68,7 @@ TEST(SlipPi, is_the_papers_law_without_a_schedule)
     }
 }
 
-TEST(SlipPi, starts_without_a_jump_from_any_duty)
-{
+TEST(SlipPi, starts_without_a_jump_from_any_duty) {
     const slip_pi_config_t config = rover_config_default().slip_pi;
     for (float duty = -1.0f; duty <= 1.0f; duty += 0.25f) {
         slip_pi_state_t state = {};
@@ -82,8 +78,7 @@ TEST(SlipPi, starts_without_a_jump_from_any_duty)
     }
 }
 
-TEST(SlipPi, never_exceeds_the_limit_for_any_input)
-{
+TEST(SlipPi, never_exceeds_the_limit_for_any_input) {
     const slip_pi_config_t config = rover_config_default().slip_pi;
     const float inf = std::numeric_limits<float>::infinity();
     const float extremes[] = {0.0f, 1e-45f, -3e38f, 3e38f, inf, -inf, std::nanf(""), 0.4f};
@@ -98,8 +93,7 @@ TEST(SlipPi, never_exceeds_the_limit_for_any_input)
     }
 }
 
-TEST(SlipPi, integral_stands_still_beyond_the_limit_and_comes_back_at_once)
-{
+TEST(SlipPi, integral_stands_still_beyond_the_limit_and_comes_back_at_once) {
     const slip_pi_config_t config = {.kp = 2, .ki_T = 0.01f, .duty_max = 1, .per_speed_s_m = 0, .gain_min = 1, .gain_max = 1};
     for (const float sign : {1.0f, -1.0f}) {
         slip_pi_state_t state = {.integral = 0.5f * sign};
@@ -119,8 +113,7 @@ TEST(SlipPi, integral_stands_still_beyond_the_limit_and_comes_back_at_once)
     }
 }
 
-TEST(SlipPi, integrates_both_ways_within_the_limit)
-{
+TEST(SlipPi, integrates_both_ways_within_the_limit) {
     const slip_pi_config_t config = {.kp = 0.5f, .ki_T = 0.01f, .duty_max = 1, .per_speed_s_m = 0, .gain_min = 1, .gain_max = 1};
     for (const float error : {-0.3f, 0.3f}) {
         slip_pi_state_t state = {};
@@ -132,8 +125,7 @@ TEST(SlipPi, integrates_both_ways_within_the_limit)
     }
 }
 
-TEST(SlipPi, a_slip_that_is_no_number_gives_no_duty_and_leaves_the_state_alone)
-{
+TEST(SlipPi, a_slip_that_is_no_number_gives_no_duty_and_leaves_the_state_alone) {
     const slip_pi_config_t config = rover_config_default().slip_pi;
     slip_pi_state_t state = {.integral = 0.3f};
     const slip_pi_input_t input = {.slip_ref = 0.4f, .slip = std::nanf(""), .speed_m_s = 0.3f};

@@ -11,8 +11,7 @@ constexpr slip_config_t config = {.wheel_radius_m = 0.057f, .valid_m_s = 0.05f};
 
 float slip(float w, float v) { return slip_measure(&config, w, v).slip; }
 
-TEST(Slip, follows_equation_1_for_forward_travel)
-{
+TEST(Slip, follows_equation_1_for_forward_travel) {
     for (float v = 0.05f; v <= 1.0f; v += 0.05f) {
         for (float w = 1.0f; w <= 25.0f; w += 0.5f) {
             const double rim = 0.057 * static_cast<double>(w);
@@ -23,8 +22,7 @@ TEST(Slip, follows_equation_1_for_forward_travel)
     }
 }
 
-TEST(Slip, is_odd_under_reversal_of_both)
-{
+TEST(Slip, is_odd_under_reversal_of_both) {
     for (float v = -1.0f; v <= 1.0f; v += 0.07f) {
         for (float w = -20.0f; w <= 20.0f; w += 0.7f) {
             EXPECT_EQ(slip(-w, -v), -slip(w, v));
@@ -32,28 +30,24 @@ TEST(Slip, is_odd_under_reversal_of_both)
     }
 }
 
-TEST(Slip, is_full_where_wheel_and_ground_oppose)
-{
+TEST(Slip, is_full_where_wheel_and_ground_oppose) {
     EXPECT_EQ(slip(3.0f, -0.2f), 1.0f);
     EXPECT_EQ(slip(-3.0f, 0.2f), -1.0f);
 }
 
-TEST(Slip, is_one_for_a_wheel_that_spins_in_place_and_minus_one_for_a_blocked_wheel)
-{
+TEST(Slip, is_one_for_a_wheel_that_spins_in_place_and_minus_one_for_a_blocked_wheel) {
     EXPECT_EQ(slip(3.0f, 0.0f), 1.0f);
     EXPECT_EQ(slip(0.0f, 0.2f), -1.0f);
     EXPECT_EQ(slip(0.0f, 0.0f), 0.0f);
 }
 
-TEST(Slip, is_valid_only_where_one_of_the_speeds_means_something)
-{
+TEST(Slip, is_valid_only_where_one_of_the_speeds_means_something) {
     EXPECT_FALSE(slip_measure(&config, 0.1f, 0.04f).valid);
     EXPECT_TRUE(slip_measure(&config, 0.1f, 0.06f).valid);
     EXPECT_TRUE(slip_measure(&config, 1.0f, 0.0f).valid);
 }
 
-TEST(Slip, is_continuous_away_from_rest)
-{
+TEST(Slip, is_continuous_away_from_rest) {
     // |ds| <= (R |dw| + |dv|) * 2 / max(|R w|, |v|): derived from (1)'s partial derivatives
     for (float v = -1.0f; v <= 1.0f; v += 0.013f) {
         for (float w = -20.0f; w <= 20.0f; w += 0.13f) {
@@ -67,8 +61,7 @@ TEST(Slip, is_continuous_away_from_rest)
     }
 }
 
-TEST(Slip, is_bounded_and_defined_for_every_extreme)
-{
+TEST(Slip, is_bounded_and_defined_for_every_extreme) {
     const float inf = std::numeric_limits<float>::infinity();
     const float extremes[] = {0.0f, -0.0f, 1e-45f, -1e-45f, 1e-38f, 3e38f, -3e38f, inf, -inf, std::nanf(""), 1.0f, -1.0f};
     for (const float w : extremes) {
@@ -83,8 +76,7 @@ TEST(Slip, is_bounded_and_defined_for_every_extreme)
     }
 }
 
-TEST(Slip, is_full_where_the_difference_is_beyond_any_float)
-{
+TEST(Slip, is_full_where_the_difference_is_beyond_any_float) {
     EXPECT_EQ(slip(3.4e38f, -3.4e38f), 1.0f);
     EXPECT_EQ(slip(-3.4e38f, 3.4e38f), -1.0f);
 }

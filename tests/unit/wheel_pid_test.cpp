@@ -13,8 +13,7 @@ struct Wheel {
     double w = 0;
     double load_Nm = 0;
     bool blocked = false;
-    void tick(double duty)
-    {
+    void tick(double duty) {
         for (int i = 0; i < 10; ++i) {
             const double current = (duty * 7.2 - 0.265 * w) / 3.24;
             const double dry = 0.03 * std::fmax(-1.0, std::fmin(1.0, w / 0.05));
@@ -24,15 +23,13 @@ struct Wheel {
     }
 };
 
-wheel_pid_output_t drive(const wheel_pid_config_t &config, wheel_pid_state_t &state, float reference, double w)
-{
+wheel_pid_output_t drive(const wheel_pid_config_t &config, wheel_pid_state_t &state, float reference, double w) {
     wheel_pid_slew(&config, &state, reference);
     const wheel_pid_input_t input = {.speed_rad_s = static_cast<float>(w), .accel_rad_s2 = 0, .feed_forward = 0};
     return wheel_pid_step(&config, &state, &input);
 }
 
-TEST(WheelPid, settles_without_error_under_load)
-{
+TEST(WheelPid, settles_without_error_under_load) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     wheel_pid_state_t state = {};
     Wheel wheel;
@@ -43,8 +40,7 @@ TEST(WheelPid, settles_without_error_under_load)
     EXPECT_NEAR(wheel.w, 5.0, 1e-3); // integral action: what is left after 3 s is exp(-3 s * 4.6 rad/s) = 1e-6 of the step
 }
 
-TEST(WheelPid, overshoots_less_than_a_tenth_after_a_step)
-{
+TEST(WheelPid, overshoots_less_than_a_tenth_after_a_step) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     wheel_pid_state_t state = {};
     Wheel wheel;
@@ -57,8 +53,7 @@ TEST(WheelPid, overshoots_less_than_a_tenth_after_a_step)
     EXPECT_GT(peak, 7.9);
 }
 
-TEST(WheelPid, recovers_at_once_after_being_blocked)
-{
+TEST(WheelPid, recovers_at_once_after_being_blocked) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     wheel_pid_state_t state = {};
     Wheel wheel;
@@ -78,8 +73,7 @@ TEST(WheelPid, recovers_at_once_after_being_blocked)
     EXPECT_LT(settled, 100); // 1 s
 }
 
-TEST(WheelPid, starts_without_a_jump_from_any_duty)
-{
+TEST(WheelPid, starts_without_a_jump_from_any_duty) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     for (float duty = -1.0f; duty <= 1.0f; duty += 0.25f) {
         for (float w = -20.0f; w <= 20.0f; w += 5.0f) {
@@ -93,8 +87,7 @@ TEST(WheelPid, starts_without_a_jump_from_any_duty)
     }
 }
 
-TEST(WheelPid, never_exceeds_the_limit_for_any_input)
-{
+TEST(WheelPid, never_exceeds_the_limit_for_any_input) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     const float inf = std::numeric_limits<float>::infinity();
     const float extremes[] = {0.0f, 1e-45f, -3e38f, 3e38f, inf, -inf, std::nanf(""), 5.0f};
@@ -114,8 +107,7 @@ TEST(WheelPid, never_exceeds_the_limit_for_any_input)
     }
 }
 
-TEST(WheelPid, derivative_brakes_by_the_measured_acceleration)
-{
+TEST(WheelPid, derivative_brakes_by_the_measured_acceleration) {
     wheel_pid_config_t config = rover_config_default().wheel_pid;
     config.kd_s2 = 0.01f;
     for (const float accel : {-3.0f, 0.0f, 5.0f}) {
@@ -125,8 +117,7 @@ TEST(WheelPid, derivative_brakes_by_the_measured_acceleration)
     }
 }
 
-TEST(WheelPid, integral_stands_still_beyond_either_limit_and_comes_back_at_once)
-{
+TEST(WheelPid, integral_stands_still_beyond_either_limit_and_comes_back_at_once) {
     const wheel_pid_config_t config = rover_config_default().wheel_pid;
     for (const float sign : {1.0f, -1.0f}) {
         wheel_pid_state_t state = {.integral = 0.5f * sign, .reference_rad_s = 10.0f * sign};

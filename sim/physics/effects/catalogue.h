@@ -18,13 +18,13 @@ enum class ActsOn { wheel_torque, wheel_force, body_force, motor_voltage, kinema
 // tried over a few `variants`.
 struct EffectParameter {
     std::string_view name;
-    std::string_view unit;      // SI, "1" where dimensionless
+    std::string_view unit; // SI, "1" where dimensionless
     std::string_view meaning;
     bool strength = true;
-    double minimum = 0;         // plausible range
+    double minimum = 0; // plausible range
     double maximum = 0;
-    double typical = 0;         // what the simulator uses when a scenario names the effect and not the value
-    double of_interest = 0;     // smallest size worth knowing (strength parameters only)
+    double typical = 0;           // what the simulator uses when a scenario names the effect and not the value
+    double of_interest = 0;       // smallest size worth knowing (strength parameters only)
     std::vector<double> variants; // values to try (shape parameters only)
 };
 
@@ -32,7 +32,7 @@ struct Effect {
     std::string_view name;
     std::string_view title;
     ActsOn acts_on = ActsOn::wheel_torque;
-    bool per_wheel = false;     // may be confined to one wheel: key `wheel` = index, or absent for all
+    bool per_wheel = false; // may be confined to one wheel: key `wheel` = index, or absent for all
     std::string_view equation;
     std::string_view source;    // citation, or "derived here: ..."
     std::string_view signature; // what its residual looks like

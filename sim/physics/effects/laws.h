@@ -46,7 +46,9 @@ inline double bridge_dead_time_V(double voltage_V, double current_A) { return vo
 // ---- wheel force
 inline double rolling_resistance_N(double coefficient, double load_N) { return coefficient * load_N; }
 inline double slip_sinkage_N(double coefficient, double slip, double load_N) { return coefficient * std::fabs(slip) * load_N; }
-inline double speed_resistance_N(double coefficient_s_m, double v_m_s, double load_N) { return coefficient_s_m * std::fabs(v_m_s) * load_N; }
+inline double speed_resistance_N(double coefficient_s_m, double v_m_s, double load_N) {
+    return coefficient_s_m * std::fabs(v_m_s) * load_N;
+}
 // Factors of Fm.
 inline double multi_pass(double gain, double follows) { return 1 + gain * follows; } // follows: 0 leads, 1 trails
 inline double soil_patch(double change, double start_m, double length_m, double place_m) {
@@ -56,7 +58,9 @@ inline double soil_gradient(double change_per_m, double path_m) {
     const double factor = 1 + change_per_m * path_m;
     return factor > 0.05 ? factor : 0.05;
 }
-inline double sliding_speed_loss(double coefficient_s_m, double sliding_m_s) { return math::exp(-coefficient_s_m * std::fabs(sliding_m_s)); }
+inline double sliding_speed_loss(double coefficient_s_m, double sliding_m_s) {
+    return math::exp(-coefficient_s_m * std::fabs(sliding_m_s));
+}
 inline double relaxation_length_m(double base_m, double added_m) { return base_m + added_m; }
 inline double shear_stiffness(double shear_slip, double change) { return shear_slip * (1 + change); }
 inline double wheel_radius_m(double radius_m, double change) { return radius_m * (1 + change); }

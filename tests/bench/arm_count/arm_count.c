@@ -29,20 +29,17 @@ int qemu_plugin_version = 1;
 
 static uint64_t executed, started, begin_address, end_address;
 
-static void on_begin(unsigned int cpu, void *data)
-{
+static void on_begin(unsigned int cpu, void *data) {
     (void)cpu, (void)data;
     started = executed;
 }
 
-static void on_end(unsigned int cpu, void *data)
-{
+static void on_end(unsigned int cpu, void *data) {
     (void)cpu, (void)data;
     fprintf(stderr, "%" PRIu64 "\n", executed - started);
 }
 
-static void on_translation(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
-{
+static void on_translation(qemu_plugin_id_t id, struct qemu_plugin_tb *tb) {
     (void)id;
     for (size_t i = 0; i < qemu_plugin_tb_n_insns(tb); i++) {
         struct qemu_plugin_insn *insn = qemu_plugin_tb_get_insn(tb, i);
@@ -57,8 +54,7 @@ static void on_translation(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
     }
 }
 
-int qemu_plugin_install(qemu_plugin_id_t id, const void *info, int argc, char **argv)
-{
+int qemu_plugin_install(qemu_plugin_id_t id, const void *info, int argc, char **argv) {
     (void)info;
     for (int i = 0; i < argc; i++) {
         if (strncmp(argv[i], "begin=", 6) == 0) {

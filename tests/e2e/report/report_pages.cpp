@@ -14,7 +14,8 @@ namespace {
 
 Figure every_mark() {
     Figure figure{.title = "Drawbar pull against slip", .x_label = "slip [1]", .note = "Made-up numbers."};
-    Series band{.name = "95 % band", .mark = Mark::band}, line{.name = "fit"}, scatter{.name = "measured", .mark = Mark::scatter}, step{.name = "set point", .mark = Mark::step};
+    Series band{.name = "95 % band", .mark = Mark::band}, line{.name = "fit"}, scatter{.name = "measured", .mark = Mark::scatter},
+        step{.name = "set point", .mark = Mark::step};
     for (int i = 0; i <= 60; ++i) {
         const double s = i / 60.0, pull = 40 * (1 - std::exp(-s / 0.15));
         for (Series *series : {&band, &line, &scatter, &step}) series->x.push_back(s);
@@ -24,13 +25,21 @@ Figure every_mark() {
         scatter.y.push_back(pull + 4 * std::sin(37.0 * i));
         step.y.push_back(10.0 * (i / 12));
     }
-    figure.panels.push_back({.title = "Sand", .y_label = "pull [N]", .series = {band, line, scatter}, .rules = {{.value = 38, .name = "paper"}}});
+    figure.panels.push_back(
+        {.title = "Sand", .y_label = "pull [N]", .series = {band, line, scatter}, .rules = {{.value = 38, .name = "paper"}}});
     figure.panels.push_back({.y_label = "set point [N]", .series = {step}, .rules = {{.value = 0.4, .name = "servo", .vertical = true}}});
-    figure.panels.push_back({.title = "Error after each step", .y_label = "error [σ]",
-                             .series = {{.name = "training", .mark = Mark::bar, .y = {3.05, 1.01}}, {.name = "held out", .mark = Mark::bar, .y = {3.12, 1.03}}},
-                             .rules = {{.value = 1, .name = "noise floor"}}, .categories = {"baseline", "+ slip_sinkage"}});
-    figure.panels.push_back({.title = "Residual over the noise", .y_label = "wheel",
-                             .heat = {.x_label = "slip [1]", .x_edges = {-1, -0.3, 0, 0.3, 1}, .y_labels = {"0", "1"}, .value = {{1, 1.1, 2.2, 6.1}, {1, NAN, 1.4, 3.3}}}});
+    figure.panels.push_back(
+        {.title = "Error after each step",
+         .y_label = "error [σ]",
+         .series = {{.name = "training", .mark = Mark::bar, .y = {3.05, 1.01}}, {.name = "held out", .mark = Mark::bar, .y = {3.12, 1.03}}},
+         .rules = {{.value = 1, .name = "noise floor"}},
+         .categories = {"baseline", "+ slip_sinkage"}});
+    figure.panels.push_back({.title = "Residual over the noise",
+                             .y_label = "wheel",
+                             .heat = {.x_label = "slip [1]",
+                                      .x_edges = {-1, -0.3, 0, 0.3, 1},
+                                      .y_labels = {"0", "1"},
+                                      .value = {{1, 1.1, 2.2, 6.1}, {1, NAN, 1.4, 3.3}}}});
     return figure;
 }
 

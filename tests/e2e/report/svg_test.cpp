@@ -56,7 +56,8 @@ void expect_sound(const std::string &svg) {
 
 TEST(XmlCheck, finds_what_is_wrong) {
     EXPECT_EQ(XmlCheck("<a b=\"1\"><c/>x &amp; y</a>").fault(), "");
-    for (const char *bad : {"<a>", "<a></b>", "<a b=1/>", "<a b=\"1\" b=\"2\"/>", "<a>&</a>", "<a>\x01</a>", "<a/><b/>", "x<a/>", "<a b=\"<\"/>", ""})
+    for (const char *bad :
+         {"<a>", "<a></b>", "<a b=1/>", "<a b=\"1\" b=\"2\"/>", "<a>&</a>", "<a>\x01</a>", "<a/><b/>", "x<a/>", "<a b=\"<\"/>", ""})
         EXPECT_NE(XmlCheck(bad).fault(), "") << bad;
 }
 
@@ -68,10 +69,11 @@ TEST(Svg, every_sample_stands_where_the_axes_say) {
     const auto points = curve_points(svg);
     ASSERT_EQ(points.size(), 3u);
     const double width = points[2].first - points[0].first, scale = (points[0].second - points[1].second) / 3; // px per m
-    EXPECT_NEAR(points[1].first - points[0].first, width / 2, 0.011);          // two roundings to 0.01 px
-    EXPECT_NEAR(points[0].second - points[2].second, scale * (2 - 1), 0.015);  // three roundings to 0.01 px, a third of one
+    EXPECT_NEAR(points[1].first - points[0].first, width / 2, 0.011);                                          // two roundings to 0.01 px
+    EXPECT_NEAR(points[0].second - points[2].second, scale * (2 - 1), 0.015); // three roundings to 0.01 px, a third of one
     std::smatch frame;
-    ASSERT_TRUE(std::regex_search(svg, frame, std::regex("class=\"frame\" x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
+    ASSERT_TRUE(std::regex_search(svg, frame,
+                                  std::regex("class=\"frame\" x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
     EXPECT_NEAR(points[0].first, std::stod(frame[1]), 0.011);
     EXPECT_NEAR(points[2].first, std::stod(frame[1]) + std::stod(frame[3]), 0.011);
     EXPECT_NEAR(points[1].second, std::stod(frame[2]) + std::stod(frame[4]) * 0.12 / 3.24, 0.011);
@@ -107,15 +109,27 @@ TEST(Svg, a_missing_sample_leaves_a_gap) {
 }
 
 TEST(Svg, no_data_whatever_breaks_the_drawing) {
-    const std::vector<std::vector<double>> sets{{}, {1}, {2, 2, 2}, {nan_value, nan_value}, {infinity, -infinity, 0}, {1e-300, 1e300, -1e300},
-        {5e-324, 0, -5e-324}, {1e300, 1e300}, {-1.7e308, 1.7e308, 0}, {1, 1 + 2.3e-16, 1}, {1e-300, 2e-300, 3e-300}, {-0.0, 0.0}, {1e15, 1e15 + 1, 1e15 + 2}};
+    const std::vector<std::vector<double>> sets{{},
+                                                {1},
+                                                {2, 2, 2},
+                                                {nan_value, nan_value},
+                                                {infinity, -infinity, 0},
+                                                {1e-300, 1e300, -1e300},
+                                                {5e-324, 0, -5e-324},
+                                                {1e300, 1e300},
+                                                {-1.7e308, 1.7e308, 0},
+                                                {1, 1 + 2.3e-16, 1},
+                                                {1e-300, 2e-300, 3e-300},
+                                                {-0.0, 0.0},
+                                                {1e15, 1e15 + 1, 1e15 + 2}};
     for (const auto &x : sets)
         for (const auto &y : sets)
             for (const Mark mark : {Mark::line, Mark::scatter, Mark::step, Mark::band, Mark::bar})
                 for (const bool logarithmic : {false, true}) {
                     Figure figure = of(x, y, mark);
                     figure.panels[0].log_y = logarithmic;
-                    figure.panels[0].rules = {{.value = y.empty() ? nan_value : y[0], .name = "r"}, {.value = x.empty() ? infinity : x[0], .name = "v", .vertical = true}};
+                    figure.panels[0].rules = {{.value = y.empty() ? nan_value : y[0], .name = "r"},
+                                              {.value = x.empty() ? infinity : x[0], .name = "v", .vertical = true}};
                     expect_sound(to_svg(figure));
                     if (HasFatalFailure()) return;
                 }
@@ -123,7 +137,9 @@ TEST(Svg, no_data_whatever_breaks_the_drawing) {
 
 TEST(Svg, a_heat_map_writes_its_numbers_and_leaves_empty_cells) {
     Figure figure{.title = "h"};
-    figure.panels.push_back({.y_label = "wheel", .heat = {.x_label = "slip", .x_edges = {0, 1, 2}, .y_labels = {"0", "1"}, .value = {{1.5, nan_value}, {1e300, -1e300}}}});
+    figure.panels.push_back(
+        {.y_label = "wheel",
+         .heat = {.x_label = "slip", .x_edges = {0, 1, 2}, .y_labels = {"0", "1"}, .value = {{1.5, nan_value}, {1e300, -1e300}}}});
     const std::string svg = to_svg(figure);
     expect_sound(svg);
     EXPECT_NE(svg.find(">1.5<"), std::string::npos);
@@ -135,7 +151,8 @@ TEST(Svg, a_heat_map_writes_its_numbers_and_leaves_empty_cells) {
 TEST(Svg, words_of_the_data_are_never_markup) {
     Figure figure = of({0, 1}, {0, 1});
     figure.title = "a < b & \"c\" \x01 \xff </svg><script>";
-    figure.panels[0].series[0].name = "\xc3\xa9 \xed\xa0\x80 \xf4\x90\x80\x80"; // e acute; a surrogate and a value past the last are no characters
+    figure.panels[0].series[0].name =
+        "\xc3\xa9 \xed\xa0\x80 \xf4\x90\x80\x80"; // e acute; a surrogate and a value past the last are no characters
     const std::string svg = to_svg(figure);
     expect_sound(svg);
     EXPECT_EQ(svg.find("<script"), std::string::npos);
@@ -164,7 +181,8 @@ TEST(Axis, labels_tell_neighbouring_ticks_apart_however_small_their_difference) 
 TEST(LogFigure, signals_of_one_unit_share_a_panel) {
     traction::log::Log log;
     log.source = "x/drive.csv";
-    for (const char *name : {"wheel0.speed_rad_s", "wheel0.current_A", "wheel1.speed_rad_s", "wheel0.duty", "radar.adc_count", "wheel0.encoder_count", "imu.accel_x_m_s2"})
+    for (const char *name : {"wheel0.speed_rad_s", "wheel0.current_A", "wheel1.speed_rad_s", "wheel0.duty", "radar.adc_count",
+                             "wheel0.encoder_count", "imu.accel_x_m_s2"})
         log.signals.push_back({.name = name, .t_s = {0, 1, 2}, .value = {1, 2, 3}});
     const Figure figure = log_figure(log, {.signals = {}, .from_s = 0.5});
     ASSERT_EQ(figure.panels.size(), 6u);
@@ -204,7 +222,8 @@ class Files : public testing::Test {
 };
 
 TEST_F(Files, a_png_has_the_size_of_the_figure_and_leaves_nothing_else) {
-    if (std::system("command -v rsvg-convert >/dev/null") != 0) GTEST_SKIP() << "no rsvg-convert here (Debian: apt-get install librsvg2-bin)";
+    if (std::system("command -v rsvg-convert >/dev/null") != 0)
+        GTEST_SKIP() << "no rsvg-convert here (Debian: apt-get install librsvg2-bin)";
     Figure figure = of({0, 1, 2}, {1, 4, 2});
     figure.width_px = 400;
     write_png(to_svg(figure), (folder / "f.png").string(), 2);

@@ -17,8 +17,10 @@ class XmlCheck {
     // "" when well formed, otherwise what and where.
     std::string fault() {
         while (at_ < text_.size() && fault_.empty()) {
-            if (text_[at_] == '<') element();
-            else character_data();
+            if (text_[at_] == '<')
+                element();
+            else
+                character_data();
         }
         if (fault_.empty() && !open_.empty()) fail("not closed: " + open_.back());
         if (fault_.empty() && roots_ != 1) fail(std::to_string(roots_) + " root elements");
@@ -49,7 +51,9 @@ class XmlCheck {
     }
     std::string name() {
         const std::size_t from = at_;
-        while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '-' || text_[at_] == ':' || text_[at_] == '_')) ++at_;
+        while (at_ < text_.size() &&
+               (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '-' || text_[at_] == ':' || text_[at_] == '_'))
+            ++at_;
         if (at_ == from) fail("a name was expected");
         return std::string(text_.substr(from, at_ - from));
     }
@@ -69,9 +73,12 @@ class XmlCheck {
         if (!take('=') || !take('"')) return fail("attribute without a quoted value: " + key);
         const std::size_t from = at_;
         while (at_ < text_.size() && text_[at_] != '"' && fault_.empty()) {
-            if (text_[at_] == '&') reference();
-            else if (text_[at_] == '<' || !allowed(text_[at_])) fail("forbidden in an attribute");
-            else ++at_;
+            if (text_[at_] == '&')
+                reference();
+            else if (text_[at_] == '<' || !allowed(text_[at_]))
+                fail("forbidden in an attribute");
+            else
+                ++at_;
         }
         values.emplace_back(text_.substr(from, at_ - from));
         if (!take('"')) fail("value not closed");

@@ -57,7 +57,8 @@ TEST(IndependentRover, holds_the_voltage_balance_whatever_the_friction) {
     config.hidden = {parse_setting("coulomb_friction:torque_Nm=0.05")};
     const log::Log log = generate(config);
     const Machine m = nominal(Soil::sand);
-    const log::Signal &I = signal_of(log, "wheel1.current_A"), &count = signal_of(log, "wheel1.encoder_count"), &V = signal_of(log, "battery.voltage_V");
+    const log::Signal &I = signal_of(log, "wheel1.current_A"), &count = signal_of(log, "wheel1.encoder_count"),
+                      &V = signal_of(log, "battery.voltage_V");
     const log::Signal &duty = signal_of(log, "wheel1.duty");
     double worst = 0;
     for (std::size_t k = 1; k < I.value.size(); ++k) { // row k: means over the 10 ms that end there; duty[k] of the row that began them
@@ -80,7 +81,8 @@ TEST(IndependentRover, repeats_to_the_last_digit_and_differs_by_seed) {
     config.duration_s = 5;
     config.drive = "stairs";
     const log::Log first = generate(config), again = generate(config);
-    for (std::size_t i = 0; i < first.signals.size(); ++i) EXPECT_EQ(first.signals[i].value, again.signals[i].value) << first.signals[i].name;
+    for (std::size_t i = 0; i < first.signals.size(); ++i)
+        EXPECT_EQ(first.signals[i].value, again.signals[i].value) << first.signals[i].name;
     config.seed = 2;
     EXPECT_NE(signal_of(first, "imu.accel_x_m_s2").value, signal_of(generate(config), "imu.accel_x_m_s2").value);
 }
@@ -103,7 +105,8 @@ TEST(IndependentRover, every_kind_changes_the_log_and_none_diverges) {
     const log::Log clean = generate(config);
     for (const Kind &kind : kinds()) {
         config.hidden.assign(1, {std::string(kind.name), -1, {}});
-        for (const KindParameter &p : kind.parameters) config.hidden[0].values.emplace_back(p.name, p.strength ? p.high : p.choices.front());
+        for (const KindParameter &p : kind.parameters)
+            config.hidden[0].values.emplace_back(p.name, p.strength ? p.high : p.choices.front());
         const log::Log log = generate(config);
         bool changed = false;
         for (std::size_t i = 0; i < clean.signals.size() && !changed; ++i) changed = clean.signals[i].value != log.signals[i].value;

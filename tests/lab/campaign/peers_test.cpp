@@ -28,8 +28,10 @@ bench_lab::Judged one(const std::string &category, const std::string &hidden, co
 } // namespace
 
 TEST(Peers, stand_beside_the_lab_with_its_seconds_and_are_judged_alike) {
-    const std::vector<bench_lab::Judged> logs = {one("one", "grade", {"grade"}, 2), one("clean", "", {}, 3), one("one", "mesh_loss", {"grade"}, 4)};
-    const json answers = {{"peers", {{"P", {{"answers", {{"grade", "mesh_loss"}, {"grade"}, {"mesh_loss"}}}, {"seconds", {5, 7, 6}}, {"use", "as it is"}}}}}};
+    const std::vector<bench_lab::Judged> logs = {one("one", "grade", {"grade"}, 2), one("clean", "", {}, 3),
+                                                 one("one", "mesh_loss", {"grade"}, 4)};
+    const json answers = {
+        {"peers", {{"P", {{"answers", {{"grade", "mesh_loss"}, {"grade"}, {"mesh_loss"}}}, {"seconds", {5, 7, 6}}, {"use", "as it is"}}}}}};
     const json rows = bench_lab::judge_peers(answers, logs);
     EXPECT_EQ(rows["P"]["right_first"]["value"], 1.0);
     EXPECT_EQ(rows["P"]["exact_model"]["value"], 0.5); // a term too many on the first

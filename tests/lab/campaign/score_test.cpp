@@ -11,15 +11,25 @@ namespace {
 json seal(const std::string &category, const std::string &effect, int wheel = -1, const std::string &variable = "") {
     json one = {{"schema", "traction.seal/1"}, {"category", category}, {"soil", "sand"}, {"seed", 1}, {"effects", json::array()}};
     if (!effect.empty())
-        one["effects"].push_back({{"name", effect}, {"wheel", wheel}, {"outside", category == "outside"}, {"variable", variable}, {"parameters", {{"size", 2.0}}}});
+        one["effects"].push_back({{"name", effect},
+                                  {"wheel", wheel},
+                                  {"outside", category == "outside"},
+                                  {"variable", variable},
+                                  {"parameters", {{"size", 2.0}}}});
     return one;
 }
 
 json answer(const std::string &kind, const std::vector<std::string> &effects) {
-    json one = {{"verdict", {{"kind", kind}, {"effects", effects}}}, {"candidates", json::array()}, {"accepted", json::array()}, {"classes", json::array()}};
+    json one = {{"verdict", {{"kind", kind}, {"effects", effects}}},
+                {"candidates", json::array()},
+                {"accepted", json::array()},
+                {"classes", json::array()}};
     for (const std::string &effect : effects) {
         const std::string plain = effect.substr(0, effect.find(' '));
-        one["candidates"].push_back({{"effect", plain}, {"wheel", plain == effect ? -1 : effect.back() - '0'}, {"verdict", "named"}, {"detectability", 10.0},
+        one["candidates"].push_back({{"effect", plain},
+                                     {"wheel", plain == effect ? -1 : effect.back() - '0'},
+                                     {"verdict", "named"},
+                                     {"detectability", 10.0},
                                      {"parameters", {{"size", {{"value", 2.1}, {"low", 1.9}, {"high", 2.3}}}}}});
         one["accepted"].push_back(one["candidates"].back());
     }

@@ -15,13 +15,40 @@ Segment go(double duration, double speed, double ramp, double yaw = 0) { return 
 
 std::vector<Segment> full_plan() {
     return {
-        go(1.5, 0, 1), go(6, 0.22, 0.15), go(3, 0.5, 3), go(1.5, 0, 6), go(3, 0.4, 4), go(4, -0.35, 5), go(3, -0.1, 0.5), go(1.5, 0, 2),
-        {K::front_sweep, 17, 0.25, 1}, go(1.2, 0, 3), go(9, -0.3, 1),
-        go(5, 0.2, 1, 0.6), go(5, 0.2, 1, -0.6), go(2.5, 0, 1, 0.9), go(2.5, 0, 1, -0.9), go(1, 0, 3),
-        {K::rear_sweep, 13, 0.25, 1}, go(1, 0, 3),
-        {K::drag_one, 2.5, 0.25, 1, 0, 0}, {K::drag_one, 2.5, 0.25, 1, 0, 1}, {K::drag_one, 2.5, 0.25, 1, 0, 2}, {K::drag_one, 2.5, 0.25, 1, 0, 3},
-        {K::coast, 1.5}, go(2.5, 0.55, 8), {K::coast, 1.5}, go(8, -0.45, 2),
-        go(3, 0.1, 1), go(3, 0.2, 1), go(3, 0.35, 1), go(3, 0.5, 1), go(1.5, 0, 8), go(2.5, -0.5, 8), go(2.5, 0.45, 8), go(2, 0, 1),
+        go(1.5, 0, 1),
+        go(6, 0.22, 0.15),
+        go(3, 0.5, 3),
+        go(1.5, 0, 6),
+        go(3, 0.4, 4),
+        go(4, -0.35, 5),
+        go(3, -0.1, 0.5),
+        go(1.5, 0, 2),
+        {K::front_sweep, 17, 0.25, 1},
+        go(1.2, 0, 3),
+        go(9, -0.3, 1),
+        go(5, 0.2, 1, 0.6),
+        go(5, 0.2, 1, -0.6),
+        go(2.5, 0, 1, 0.9),
+        go(2.5, 0, 1, -0.9),
+        go(1, 0, 3),
+        {K::rear_sweep, 13, 0.25, 1},
+        go(1, 0, 3),
+        {K::drag_one, 2.5, 0.25, 1, 0, 0},
+        {K::drag_one, 2.5, 0.25, 1, 0, 1},
+        {K::drag_one, 2.5, 0.25, 1, 0, 2},
+        {K::drag_one, 2.5, 0.25, 1, 0, 3},
+        {K::coast, 1.5},
+        go(2.5, 0.55, 8),
+        {K::coast, 1.5},
+        go(8, -0.45, 2),
+        go(3, 0.1, 1),
+        go(3, 0.2, 1),
+        go(3, 0.35, 1),
+        go(3, 0.5, 1),
+        go(1.5, 0, 8),
+        go(2.5, -0.5, 8),
+        go(2.5, 0.45, 8),
+        go(2, 0, 1),
     };
 }
 
@@ -29,11 +56,16 @@ std::vector<Segment> full_plan() {
 
 std::vector<Segment> make_plan(const std::string &name, double duration_s, Random &random) {
     std::vector<Segment> plan;
-    if (name == "full") plan = full_plan();
-    else if (name == "cruise") plan = {go(2, 0, 1), go(10, 0.25, 0.3)};
-    else if (name == "stairs") plan = {go(2, 0, 1), go(8, 0.1, 0.2), go(8, 0.2, 0.2), go(8, 0.3, 0.2), go(8, 0.15, 0.2)};
-    else if (name == "sweep") plan = {go(2, 0, 1), {K::front_sweep, 20, 0.3, 1}, go(2, 0, 2), {K::rear_sweep, 20, 0.3, 1}, go(2, 0, 2)};
-    else throw std::invalid_argument("unknown drive \"" + name + "\"; use full, cruise, stairs or sweep");
+    if (name == "full")
+        plan = full_plan();
+    else if (name == "cruise")
+        plan = {go(2, 0, 1), go(10, 0.25, 0.3)};
+    else if (name == "stairs")
+        plan = {go(2, 0, 1), go(8, 0.1, 0.2), go(8, 0.2, 0.2), go(8, 0.3, 0.2), go(8, 0.15, 0.2)};
+    else if (name == "sweep")
+        plan = {go(2, 0, 1), {K::front_sweep, 20, 0.3, 1}, go(2, 0, 2), {K::rear_sweep, 20, 0.3, 1}, go(2, 0, 2)};
+    else
+        throw std::invalid_argument("unknown drive \"" + name + "\"; use full, cruise, stairs or sweep");
     double total = 0;
     for (Segment &segment : plan) { // nobody drives the same plan twice
         segment.duration_s *= random.uniform(0.9, 1.1);
@@ -54,17 +86,27 @@ PerWheel Driver::command(double t_s, const PerWheel &w, double estimate, double 
     const Segment &now = plan_[index_];
     const double since = t_s - segment_start_;
     speed_ += std::clamp(now.speed_m_s - speed_, -now.ramp_m_s2 * tick_s, now.ramp_m_s2 * tick_s);
-    const double hold = (speed_ + 0.8 * (speed_ - estimate)) / radius_; // (22) with Kv R = 0.8
+    const double hold = (speed_ + 0.8 * (speed_ - estimate)) / radius_;           // (22) with Kv R = 0.8
     const double rising = 1.5 * now.speed_m_s / radius_ * since / now.duration_s; // (15): slip zero at two thirds
     PerWheel duty{};
     for (std::size_t i = 0; i < wheels; ++i) {
         const double left = (i % 2 == 0) ? 1 : -1;
         switch (now.kind) {
-        case K::drive: set_[i] = (speed_ - left * half_track_ * now.yaw_rate_rad_s) / radius_; break;
-        case K::front_sweep: set_[i] = i >= 2 ? rising : hold; break;
-        case K::rear_sweep: set_[i] = i < 2 ? rising : hold; break;
-        case K::drag_one: set_[i] = hold * (static_cast<int>(i) == now.wheel ? now.drag_share : 1); break;
-        case K::coast: set_[i] = 0; break;
+        case K::drive:
+            set_[i] = (speed_ - left * half_track_ * now.yaw_rate_rad_s) / radius_;
+            break;
+        case K::front_sweep:
+            set_[i] = i >= 2 ? rising : hold;
+            break;
+        case K::rear_sweep:
+            set_[i] = i < 2 ? rising : hold;
+            break;
+        case K::drag_one:
+            set_[i] = hold * (static_cast<int>(i) == now.wheel ? now.drag_share : 1);
+            break;
+        case K::coast:
+            set_[i] = 0;
+            break;
         }
         if (now.kind == K::coast) {
             integral_[i] = 0;

@@ -12,10 +12,10 @@ namespace traction::generator {
 struct Segment {
     enum class Kind { drive, front_sweep, rear_sweep, drag_one, coast } kind = Kind::drive;
     double duration_s = 1;
-    double speed_m_s = 0;      // wanted platform speed at the end
-    double ramp_m_s2 = 1;      // how fast the set point moves there
+    double speed_m_s = 0; // wanted platform speed at the end
+    double ramp_m_s2 = 1; // how fast the set point moves there
     double yaw_rate_rad_s = 0;
-    int wheel = 0;             // drag_one: that wheel turns slower
+    int wheel = 0; // drag_one: that wheel turns slower
     double drag_share = 0.5;
 };
 

@@ -52,13 +52,15 @@ class Recorder {
             speed[i] = (count - count_[i]) * 2 * std::numbers::pi / counts_per_turn / tick_s;
             count_[i] = count;
             put(wheel_name(i, "encoder_count"), world.t, count);
-            const double I = current_sum_[i] / n * (1 + h_.current_gain[i]) + h_.current_offset[i] + scale_ * current_noise_A * noise_.normal();
+            const double I =
+                current_sum_[i] / n * (1 + h_.current_gain[i]) + h_.current_offset[i] + scale_ * current_noise_A * noise_.normal();
             put(wheel_name(i, "current_A"), world.t, c_.quiet ? I : current_step_A * std::round(I / current_step_A));
             current_sum_[i] = 0;
         }
         const double tilt = g_m_s2 * h_.accel_tilt * leaned_;
-        put("imu.accel_x_m_s2", world.t, accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt +
-                                             accel_offset_ + scale_ * accel_noise * noise_.normal());
+        put("imu.accel_x_m_s2", world.t,
+            accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt + accel_offset_ +
+                scale_ * accel_noise * noise_.normal());
         put("imu.gyro_z_rad_s", world.t, world.yaw_rate() + gyro_offset_ + scale_ * gyro_noise * noise_.normal());
         battery_now_ = battery_sum_ / n * (1 + h_.voltage_gain) + scale_ * battery_noise_V * noise_.normal();
         if (c_.battery) put("battery.voltage_V", world.t, battery_now_);
@@ -86,7 +88,9 @@ class Recorder {
     std::vector<log::Signal> take() { return std::move(signals_); }
 
   private:
-    struct Pose { double x, y, yaw; };
+    struct Pose {
+        double x, y, yaw;
+    };
     static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
     static std::string wheel_name(std::size_t i, const char *what) { return "wheel" + std::to_string(i) + "." + what; }
 
@@ -154,8 +158,8 @@ void write_header(const GeneratorConfig &config, log::Log &log) {
     header["noise.radar.speed_m_s.relative"] = number(radar_relative);
     header["noise.camera.x_m"] = header["noise.camera.y_m"] = number(camera_noise_m);
     header["noise.camera.yaw_rad"] = number(camera_noise_rad);
-    header["window.radar.speed_m_s"] = number(radar_window_s);   // a value is the mean of the window that ends at its time
-    header["window.wheel.current_A"] = number(tick_s);           // likewise: current is averaged over the control period
+    header["window.radar.speed_m_s"] = number(radar_window_s); // a value is the mean of the window that ends at its time
+    header["window.wheel.current_A"] = number(tick_s);         // likewise: current is averaged over the control period
     header["window.imu.accel_x_m_s2"] = number(tick_s);
     header["counts_per_turn"] = number(counts_per_turn);
     header["ground.grip_noise"] = config.soil == Soil::concrete ? "0.02" : "0.06";
@@ -222,8 +226,10 @@ Setting draw_setting(bool outside, Random &random, const std::string &not_this) 
     if (kind.per_wheel() && random.uniform() < 0.5) setting.wheel = random.below(wheels);
     for (const KindParameter &parameter : kind.parameters) {
         double value = 0;
-        if (parameter.strength) value = random.log_uniform(parameter.low, parameter.high) * (parameter.either_sign ? random.sign() : 1.0);
-        else value = parameter.choices[static_cast<std::size_t>(random.below(static_cast<int>(parameter.choices.size())))];
+        if (parameter.strength)
+            value = random.log_uniform(parameter.low, parameter.high) * (parameter.either_sign ? random.sign() : 1.0);
+        else
+            value = parameter.choices[static_cast<std::size_t>(random.below(static_cast<int>(parameter.choices.size())))];
         setting.values.emplace_back(parameter.name, value);
     }
     return setting;
@@ -239,10 +245,14 @@ BlindCase draw_case(std::uint64_t seed, double duration_s) {
     const double soil = random.uniform();
     blind.config.soil = soil < 0.45 ? Soil::sand : soil < 0.65 ? Soil::gravel : Soil::concrete;
     const double category = random.uniform(); // LAB.md's mixture: clean 15 %, one 55 %, two 15 %, outside 15 %
-    if (category < 0.15) blind.category = "clean";
-    else if (category < 0.70) blind.category = "one";
-    else if (category < 0.85) blind.category = "two";
-    else blind.category = "outside";
+    if (category < 0.15)
+        blind.category = "clean";
+    else if (category < 0.70)
+        blind.category = "one";
+    else if (category < 0.85)
+        blind.category = "two";
+    else
+        blind.category = "outside";
     if (blind.category != "clean") blind.config.hidden.push_back(draw_setting(blind.category == "outside", random, ""));
     if (blind.category == "two") blind.config.hidden.push_back(draw_setting(false, random, blind.config.hidden.front().name));
     return blind;

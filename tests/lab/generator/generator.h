@@ -14,15 +14,15 @@ namespace traction::generator {
 
 struct GeneratorConfig {
     Soil soil = Soil::sand;
-    std::string drive = "full";      // full, cruise, stairs, sweep
+    std::string drive = "full"; // full, cruise, stairs, sweep
     double duration_s = 120;
-    std::uint64_t seed = 1;          // machine, drive, ground and noise
-    std::uint64_t noise_seed = 0;    // another value: the same run with other sensor noise (a repeat run)
+    std::uint64_t seed = 1;       // machine, drive, ground and noise
+    std::uint64_t noise_seed = 0; // another value: the same run with other sensor noise (a repeat run)
     std::vector<Setting> hidden;
-    bool exact = false;              // nominal machine, no ground noise (for checks)
-    bool quiet = false;              // no sensor noise (for checks)
+    bool exact = false; // nominal machine, no ground noise (for checks)
+    bool quiet = false; // no sensor noise (for checks)
     bool camera = true, radar = true, battery = true;
-    bool truth = false;              // add truth.* columns (for checks; sealed logs never have them)
+    bool truth = false; // add truth.* columns (for checks; sealed logs never have them)
 };
 
 // The measured log, header with the sensors' specifications ("noise.<signal>"), never with what is hidden.

@@ -27,15 +27,21 @@ std::vector<Kind> inside() {
     return {
         {"coulomb_friction", false, "", {on_wheels("torque_Nm", &H::coulomb, 0.012, 0.06)}},
         {"viscous_friction", false, "", {on_wheels("coefficient_Nms", &H::viscous, 1.2e-3, 8e-3)}},
-        {"stribeck_friction", false, "", {on_wheels("torque_Nm", &H::stribeck, 0.015, 0.06),
-                                          wheel_shape("speed_rad_s", &H::stribeck_speed, {0.5, 1, 2, 4})}},
+        {"stribeck_friction",
+         false,
+         "",
+         {on_wheels("torque_Nm", &H::stribeck, 0.015, 0.06), wheel_shape("speed_rad_s", &H::stribeck_speed, {0.5, 1, 2, 4})}},
         {"mesh_loss", false, "", {whole("fraction", &H::mesh, 0.06, 0.35)}},
         {"backlash", false, "", {on_wheels("play_rad", &H::play, 0.03, 0.15)}},
-        {"torque_ripple", false, "", {on_wheels("cos_Nm", &H::ripple_cos, 0.008, 0.03, true),
-                                      on_wheels("sin_Nm", &H::ripple_sin, 0.004, 0.03, true),
-                                      wheel_shape("order", &H::ripple_order, {1, 2, 3, 4, 6, 8})}},
-        {"winding_heating", false, "", {whole("resistance_K_W", &H::heating, 10, 55),
-                                        shape("time_constant_s", &H::heating_time, {20, 60, 180})}},
+        {"torque_ripple",
+         false,
+         "",
+         {on_wheels("cos_Nm", &H::ripple_cos, 0.008, 0.03, true), on_wheels("sin_Nm", &H::ripple_sin, 0.004, 0.03, true),
+          wheel_shape("order", &H::ripple_order, {1, 2, 3, 4, 6, 8})}},
+        {"winding_heating",
+         false,
+         "",
+         {whole("resistance_K_W", &H::heating, 10, 55), shape("time_constant_s", &H::heating_time, {20, 60, 180})}},
         {"wiring_resistance", false, "", {on_wheels("resistance_ohm", &H::wiring, 0.2, 1.2)}},
         {"bridge_dead_time", false, "", {on_wheels("voltage_V", &H::dead_voltage, 0.15, 0.9)}},
         {"torque_constant", false, "", {on_wheels("change", &H::constant_change, 0.08, 0.25, true)}},
@@ -46,15 +52,21 @@ std::vector<Kind> inside() {
         {"load_transfer", false, "", {whole("height_m", &H::height, 0.05, 0.19)}},
         {"mass_offset_x", false, "", {whole("offset_m", &H::offset_x, 0.012, 0.04, true)}},
         {"mass_offset_y", false, "", {whole("offset_m", &H::offset_y, 0.012, 0.05, true)}},
-        {"soil_patch", false, "", {whole("change", &H::patch, 0.2, 0.6, true), shape("start_m", &H::patch_start, {0.5, 1, 1.5, 2, 3}),
-                                   shape("length_m", &H::patch_length, {0.5, 1, 1.5})}},
+        {"soil_patch",
+         false,
+         "",
+         {whole("change", &H::patch, 0.2, 0.6, true), shape("start_m", &H::patch_start, {0.5, 1, 1.5, 2, 3}),
+          shape("length_m", &H::patch_length, {0.5, 1, 1.5})}},
         {"soil_gradient", false, "", {whole("change_per_m", &H::gradient, 0.04, 0.12, true)}},
         {"relaxation_length", false, "", {whole("length_m", &H::relaxation, 0.05, 0.25)}},
         {"sliding_speed_loss", false, "", {whole("coefficient_s_m", &H::sliding_loss, 0.3, 1.8)}},
         {"shear_stiffness", false, "", {whole("change", &H::shear, 0.4, 1.5)}},
         {"wheel_radius", false, "", {on_wheels("change", &H::radius_change, 0.02, 0.1, true)}},
         {"lateral_scrub", false, "", {whole("coefficient", &H::scrub, 0.2, 0.9)}},
-        {"grade", false, "", {whole("slope_rad", &H::slope, 0.02, 0.12, true), shape("direction_rad", &H::slope_direction, {0, 1.5707963267948966})}},
+        {"grade",
+         false,
+         "",
+         {whole("slope_rad", &H::slope, 0.02, 0.12, true), shape("direction_rad", &H::slope_direction, {0, 1.5707963267948966})}},
         {"tether_drag", false, "", {whole("stiffness_N_m", &H::tether, 0.15, 1.2)}},
         {"body_drag", false, "", {whole("force_N", &H::drag, 0.5, 3)}},
         {"accel_bias", false, "", {whole("bias_m_s2", &H::accel_bias, 0.2, 0.45, true)}},
@@ -78,16 +90,25 @@ std::vector<Kind> outside() {
         {"friction_squared", true, "speed", {whole("coefficient_Nms2", &H::friction_squared, 3e-4, 1.2e-3)}},
         {"duty_dead_band", true, "duty|speed", {whole("duty", &H::dead_band, 0.04, 0.1)}},
         {"friction_hysteresis", true, "angle|direction|speed|acceleration", {whole("torque_Nm", &H::hysteresis, 0.02, 0.06)}},
-        {"grip_wave_in_place", true, "path|place", {whole("change", &H::place_wave, 0.2, 0.5), shape("length_m", &H::place_length, {0.4, 0.6, 1.0})}},
+        {"grip_wave_in_place",
+         true,
+         "path|place",
+         {whole("change", &H::place_wave, 0.2, 0.5), shape("length_m", &H::place_length, {0.4, 0.6, 1.0})}},
         {"turn_resistance", true, "yaw|turn|direction", {whole("coefficient_s", &H::turn_resistance, 0.1, 0.4)}},
         {"wheel_coupling", true, "other wheel|time|speed|load|slip|current", {whole("ohm", &H::coupling, 0.4, 1.5)}},
         {"torque_limit", true, "torque|current|slip|acceleration|load", {whole("torque_Nm", &H::torque_limit, 0.2, 0.4)}},
         {"friction_drift", true, "time", {whole("torque_Nm", &H::friction_drift, 0.015, 0.06)}},
         {"reverse_friction", true, "direction|speed", {whole("torque_Nm", &H::reverse_friction, 0.015, 0.05)}},
-        {"friction_resonance", true, "speed", {whole("torque_Nm", &H::resonance, 0.02, 0.06), shape("speed_rad_s", &H::resonance_speed, {4, 6})}},
+        {"friction_resonance",
+         true,
+         "speed",
+         {whole("torque_Nm", &H::resonance, 0.02, 0.06), shape("speed_rad_s", &H::resonance_speed, {4, 6})}},
         {"grip_falls_with_speed", true, "speed", {whole("coefficient_s_m", &H::grip_speed, 0.4, 1.2)}},
         {"grip_drift", true, "time", {whole("change", &H::grip_drift, 0.2, 0.45, true)}},
-        {"friction_step", true, "time", {whole("torque_Nm", &H::friction_step, 0.015, 0.05), shape("time_s", &H::friction_step_time, {40, 60, 80})}},
+        {"friction_step",
+         true,
+         "time",
+         {whole("torque_Nm", &H::friction_step, 0.015, 0.05), shape("time_s", &H::friction_step_time, {40, 60, 80})}},
         {"water_drag", true, "speed", {whole("coefficient_Ns2_m2", &H::water, 4, 16)}},
     };
 }
@@ -123,8 +144,10 @@ Setting parse_setting(std::string_view text) {
         if (equal == std::string_view::npos ||
             std::from_chars(item.data() + equal + 1, item.data() + item.size(), value).ptr != item.data() + item.size())
             throw std::invalid_argument("effect \"" + std::string(text) + "\": write NAME:param=value,param=value");
-        if (item.substr(0, equal) == "wheel") setting.wheel = static_cast<int>(value);
-        else setting.values.emplace_back(item.substr(0, equal), value);
+        if (item.substr(0, equal) == "wheel")
+            setting.wheel = static_cast<int>(value);
+        else
+            setting.values.emplace_back(item.substr(0, equal), value);
     }
     return setting;
 }

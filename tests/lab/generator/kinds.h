@@ -34,7 +34,7 @@ struct Hidden {
 
 struct KindParameter {
     std::string_view name;
-    double low = 0, high = 0;  // sizes drawn in a blind campaign, absolute value
+    double low = 0, high = 0; // sizes drawn in a blind campaign, absolute value
     bool either_sign = false;
     bool strength = true;
     PerWheel Hidden::*per_wheel = nullptr;

@@ -16,15 +16,27 @@ using namespace traction::generator;
 
 nlohmann::json seal_of(const BlindCase &blind) {
     nlohmann::json seal = {{"schema", "traction.seal/1"}, {"category", blind.category}, {"soil", name_of(blind.config.soil)},
-                           {"seed", blind.config.seed}, {"generator", "independent"}, {"effects", nlohmann::json::array()}};
+                           {"seed", blind.config.seed},   {"generator", "independent"}, {"effects", nlohmann::json::array()}};
     const Machine m = machine_of(blind.config);
-    seal["machine"] = {{"mass_kg", m.mass}, {"radius_m", m.radius}, {"torque_constant_Nm_A", m.KG}, {"resistance_ohm", m.Ra},
-                       {"inertia_kg_m2", m.J}, {"viscous_Nms", m.viscous}, {"coulomb_Nm", m.coulomb}, {"mu", m.mu}, {"shear_slip", m.sc},
-                       {"rolling_coefficient", m.rolling}, {"grip_noise", m.grip_noise}, {"grip_length_m", m.grip_length}};
+    seal["machine"] = {{"mass_kg", m.mass},
+                       {"radius_m", m.radius},
+                       {"torque_constant_Nm_A", m.KG},
+                       {"resistance_ohm", m.Ra},
+                       {"inertia_kg_m2", m.J},
+                       {"viscous_Nms", m.viscous},
+                       {"coulomb_Nm", m.coulomb},
+                       {"mu", m.mu},
+                       {"shear_slip", m.sc},
+                       {"rolling_coefficient", m.rolling},
+                       {"grip_noise", m.grip_noise},
+                       {"grip_length_m", m.grip_length}};
     for (const Setting &setting : blind.config.hidden) {
         const Kind *kind = find_kind(setting.name);
-        nlohmann::json effect = {{"name", setting.name}, {"wheel", setting.wheel}, {"outside", kind->outside},
-                                 {"variable", std::string(kind->variable)}, {"parameters", nlohmann::json::object()}};
+        nlohmann::json effect = {{"name", setting.name},
+                                 {"wheel", setting.wheel},
+                                 {"outside", kind->outside},
+                                 {"variable", std::string(kind->variable)},
+                                 {"parameters", nlohmann::json::object()}};
         for (const auto &[name, value] : setting.values) effect["parameters"][name] = value;
         seal["effects"].push_back(effect);
     }

@@ -11,7 +11,7 @@ namespace traction::generator {
 namespace {
 
 constexpr double h_s = 1e-3;
-constexpr double copper_1_K = 3.93e-3, magnet_1_K = 2e-3; // copper at 20 C; ferrite magnets, with the motor's constants
+constexpr double copper_1_K = 3.93e-3, magnet_1_K = 2e-3;         // copper at 20 C; ferrite magnets, with the motor's constants
 constexpr PerWheel along = {-1, -1, 1, 1}, side = {1, -1, 1, -1}; // rear, rear, front, front; left, right, left, right
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -23,9 +23,24 @@ Machine nominal(Soil soil) {
     Machine m;
     m.soil = soil;
     const double Fn = 7.0; // [N] the load for which SPEC states Fm
-    if (soil == Soil::sand) { m.mu = 5.1 / Fn; m.sc = 0.27; m.rolling = 0.05; m.grip_noise = 0.06; }     // table III
-    if (soil == Soil::gravel) { m.mu = 6.8 / Fn; m.sc = 0.088; m.rolling = 0.03; m.grip_noise = 0.06; }  // table III
-    if (soil == Soil::concrete) { m.mu = 0.8; m.sc = 0.05; m.rolling = 0.01; m.grip_noise = 0.02; }      // (21); sc assumed
+    if (soil == Soil::sand) {
+        m.mu = 5.1 / Fn;
+        m.sc = 0.27;
+        m.rolling = 0.05;
+        m.grip_noise = 0.06;
+    } // table III
+    if (soil == Soil::gravel) {
+        m.mu = 6.8 / Fn;
+        m.sc = 0.088;
+        m.rolling = 0.03;
+        m.grip_noise = 0.06;
+    } // table III
+    if (soil == Soil::concrete) {
+        m.mu = 0.8;
+        m.sc = 0.05;
+        m.rolling = 0.01;
+        m.grip_noise = 0.02;
+    }         // (21); sc assumed
     return m; // rolling resistance and ground noise: assumed
 }
 
@@ -68,8 +83,15 @@ World::World(const Machine &machine, const Hidden &hidden, Random &random)
     : m_(machine), h_(hidden), field_(machine.grip_noise, machine.grip_length, random), relaxed_(hidden.relaxation > 0),
       backlash_(std::any_of(hidden.play.begin(), hidden.play.end(), [](double p) { return p > 0; })) {
     int size = 2 + wheels;
-    if (relaxed_) { slip_at_ = size; size += wheels; }
-    if (backlash_) { gear_at_ = size; motor_at_ = size + wheels; size += 2 * wheels; }
+    if (relaxed_) {
+        slip_at_ = size;
+        size += wheels;
+    }
+    if (backlash_) {
+        gear_at_ = size;
+        motor_at_ = size + wheels;
+        size += 2 * wheels;
+    }
     state_ = Vector::Zero(size);
     battery = m_.battery_V;
     for (std::size_t i = 0; i < wheels; ++i) radius_[i] = m_.radius * (1 + h_.radius_change[i]);
@@ -118,8 +140,9 @@ void World::rate(const Vector &s, Vector &d) {
         const double Fm = m_.mu * state.load * state.grip * std::exp(-h_.sliding_loss * std::fabs(creep)) *
                           std::max(0.1, 1 - h_.grip_speed * std::fabs(vw));
         state.force = Fm * shear(slip) * (slip < 0 ? -1 : 1);
-        const double Q = (m_.rolling + h_.rolling[i] + h_.sinkage * std::min(1.0, std::fabs(slip)) +
-                          h_.speed_resistance * std::fabs(vw) + h_.turn_resistance * std::fabs(r)) * state.load;
+        const double Q = (m_.rolling + h_.rolling[i] + h_.sinkage * std::min(1.0, std::fabs(slip)) + h_.speed_resistance * std::fabs(vw) +
+                          h_.turn_resistance * std::fabs(r)) *
+                         state.load;
         const double net = state.force - Q * soft_sign(vw, 0.008);
         force += net;
         moment -= side[i] * m_.half_track * net;
@@ -237,7 +260,7 @@ void World::integrate_slow(double v_mid, double r_mid) {
         state.angle += h_s * w;
         state.motor_angle += h_s * wm;
         state.bristle += h_s * (wm - std::fabs(wm) * state.bristle) / h_.hysteresis_angle; // Dahl (1968), first order
-        if (h_.heating > 0) // thermal capacity = time constant / resistance
+        if (h_.heating > 0)                                                                // thermal capacity = time constant / resistance
             state.heat += h_s * (state.current * state.current * m_.Ra - state.heat / h_.heating) * h_.heating / h_.heating_time;
     }
 }

@@ -30,7 +30,7 @@ struct Machine {
     double motor_share = 0.9;                   // of J on the motor's side of the gear, assumed
     Soil soil = Soil::sand;
     double mu = 0, sc = 0, rolling = 0;
-    double grip_noise = 0, grip_length = 0.2;   // random field, relative rms and correlation length [m]
+    double grip_noise = 0, grip_length = 0.2; // random field, relative rms and correlation length [m]
 };
 
 Machine nominal(Soil soil);
@@ -42,7 +42,9 @@ class GroundField {
     GroundField(double rms, double length_m, Random &random);
     double at(double x_m, double y_m) const; // relative change
   private:
-    struct Wave { double kx, ky, phase; };
+    struct Wave {
+        double kx, ky, phase;
+    };
     std::vector<Wave> waves_;
     double amplitude_;
 };
@@ -65,7 +67,9 @@ class World {
 
   private:
     using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 18, 1>;
-    struct Forces { double F, Q, torque, I; };
+    struct Forces {
+        double F, Q, torque, I;
+    };
     void rate(const Vector &state, Vector &derivative);
     double friction(int i, double w) const;
     double current(int i, double w) const;

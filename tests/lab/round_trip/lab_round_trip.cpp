@@ -1,4 +1,5 @@
-// lab_round_trip [plant|independent] [FIRST LAST [SECONDS]] - the whole round trip, a table for docs/lab_benchmark.md. Run in the project's folder.
+// lab_round_trip [plant|independent] [FIRST LAST [SECONDS]] - the whole round trip, a table for docs/lab_benchmark.md. Run in the project's
+// folder.
 #include "round_trip.h"
 
 #include <cstdio>
@@ -18,7 +19,8 @@ int main(int count, char **arguments) {
     try {
         std::vector<Estimate> all;
         for (long seed = first; seed <= last; ++seed) {
-            const std::vector<Estimate> one = run(std::strcmp(arguments[1], "plant") == 0 ? Source::plant : Source::independent, static_cast<std::uint64_t>(seed), duration_s);
+            const std::vector<Estimate> one = run(std::strcmp(arguments[1], "plant") == 0 ? Source::plant : Source::independent,
+                                                  static_cast<std::uint64_t>(seed), duration_s);
             all.insert(all.end(), one.begin(), one.end());
             int inside = 0;
             for (const Estimate &e : one) inside += e.inside();

@@ -19,8 +19,8 @@ namespace {
 constexpr const char *soils[] = {"sand", "gravel", "concrete"};
 
 // Effects that the fit can hold apart in the identification drive, of every part of the machine.
-constexpr const char *effects[] = {"slip_sinkage", "viscous_friction", "coulomb_friction", "wiring_resistance", "mass_offset_x", "grade",
-                                   "multi_pass", "mesh_loss", "body_drag", "load_transfer"};
+constexpr const char *effects[] = {"slip_sinkage", "viscous_friction", "coulomb_friction", "wiring_resistance", "mass_offset_x",
+                                   "grade",        "multi_pass",       "mesh_loss",        "body_drag",         "load_transfer"};
 
 struct Hidden {
     std::string name, key;
@@ -52,8 +52,16 @@ using Truth = std::map<std::string, double>;
 
 // What the independent machine really is.
 Truth truth_of(const generator::Machine &m) {
-    return {{"motor.torque_constant_Nm_A", m.KG}, {"motor.resistance_ohm", m.Ra}, {"motor.inertia_kg_m2", m.J}, {"motor.viscous_Nms", m.viscous}, {"motor.coulomb_Nm", m.coulomb},
-            {"wheel.radius_m", m.radius}, {"soil.mu", m.mu}, {"soil.shear_slip", m.sc}, {"soil.rolling_coefficient", m.rolling}, {"rover.mass_kg", m.mass}};
+    return {{"motor.torque_constant_Nm_A", m.KG},
+            {"motor.resistance_ohm", m.Ra},
+            {"motor.inertia_kg_m2", m.J},
+            {"motor.viscous_Nms", m.viscous},
+            {"motor.coulomb_Nm", m.coulomb},
+            {"wheel.radius_m", m.radius},
+            {"soil.mu", m.mu},
+            {"soil.shear_slip", m.sc},
+            {"soil.rolling_coefficient", m.rolling},
+            {"rover.mass_kg", m.mass}};
 }
 
 // Moves what the plant can be given by its prior, and says where to.
@@ -68,7 +76,8 @@ Truth move_by_prior(lab::Model &model, generator::Random &random) {
     const auto motor = [](lab::WheelSpec &w) -> lab::Parameters & { return w.motor; };
     const auto soil = [](lab::WheelSpec &w) -> lab::Parameters & { return w.soil; };
     const auto wheel = [](lab::WheelSpec &w) -> lab::Parameters & { return w.geometry; };
-    for (const char *key : {"torque_constant_Nm_A", "resistance_ohm", "inertia_kg_m2", "viscous_Nms", "coulomb_Nm"}) move("motor", motor, key);
+    for (const char *key : {"torque_constant_Nm_A", "resistance_ohm", "inertia_kg_m2", "viscous_Nms", "coulomb_Nm"})
+        move("motor", motor, key);
     for (const char *key : {"mu", "shear_slip", "rolling_coefficient"}) move("soil", soil, key);
     move("wheel", wheel, "radius_m");
     return truth;
@@ -77,7 +86,10 @@ Truth move_by_prior(lab::Model &model, generator::Random &random) {
 const lab::Parameter &fitted(const lab::Model &model, const std::string &name) {
     const std::string table = name.substr(0, name.find('.')), key = name.substr(name.find('.') + 1);
     const lab::WheelSpec &w = model.wheel.front();
-    return table == "motor" ? w.motor.at(key) : table == "soil" ? w.soil.at(key) : table == "wheel" ? w.geometry.at(key) : model.rover.at(key);
+    return table == "motor"   ? w.motor.at(key)
+           : table == "soil"  ? w.soil.at(key)
+           : table == "wheel" ? w.geometry.at(key)
+                              : model.rover.at(key);
 }
 
 std::string drive_of(const std::string &file) {
@@ -94,7 +106,8 @@ std::vector<Estimate> run(Source source, std::uint64_t seed, double duration_s) 
     generator::Random random(seed, 77);
     const std::string soil = soils[(seed / std::size(effects)) % std::size(soils)];
     const Hidden hidden = draw_effect(seed, random);
-    lab::Model model = lab::read_model(source == Source::plant ? "models/rover_" + soil + ".toml" : "tests/lab/campaign/machine_" + soil + ".toml");
+    lab::Model model =
+        lab::read_model(source == Source::plant ? "models/rover_" + soil + ".toml" : "tests/lab/campaign/machine_" + soil + ".toml");
     Truth truth;
     log::Log log;
     if (source == Source::independent) {
@@ -112,7 +125,11 @@ std::vector<Estimate> run(Source source, std::uint64_t seed, double duration_s) 
         std::vector<std::string> notes;
         SimulateOptions options;
         options.seed = seed;
-        log = simulate(sim::parse_scenario(lab::scenario_of(machine, "round trip", drive_of("scenarios/identification.toml"), duration_s, notes), "round trip"), options).log;
+        log = simulate(
+                  sim::parse_scenario(lab::scenario_of(machine, "round trip", drive_of("scenarios/identification.toml"), duration_s, notes),
+                                      "round trip"),
+                  options)
+                  .log;
     }
     model.effects.push_back(use_of(hidden, 0.5 * hidden.size));
     fit_model(model, lab::make_dataset(model, log), "fitted");
@@ -143,7 +160,8 @@ std::string table(const std::map<std::string, Tally> &tallies) {
     std::string text = "| | inside 95 % | n | distance in standard errors: mean | rms |\n|---|---|---|---|---|\n";
     for (const auto &[key, t] : tallies) {
         char line[160];
-        std::snprintf(line, sizeof line, "| %s | %.2f | %d | %+.1f | %.1f |\n", key.c_str(), static_cast<double>(t.inside) / t.count, t.count, t.sum / t.count, std::sqrt(t.squares / t.count));
+        std::snprintf(line, sizeof line, "| %s | %.2f | %d | %+.1f | %.1f |\n", key.c_str(), static_cast<double>(t.inside) / t.count,
+                      t.count, t.sum / t.count, std::sqrt(t.squares / t.count));
         text += line;
     }
     return text;

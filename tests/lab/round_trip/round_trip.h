@@ -1,8 +1,8 @@
 // round_trip.h - simulate with known numbers, fit, and count how many of them lie inside the fit's 95 % intervals.
 //
 // Two sources of logs: the independent rover (tests/lab/generator, its machine drawn off its data sheet) and the ODE plant (the model's
-// own numbers moved by their priors). One effect of known size is hidden in each and its place in the model is given to the fit: what is judged
-// is the interval, not the search.
+// own numbers moved by their priors). One effect of known size is hidden in each and its place in the model is given to the fit: what is
+// judged is the interval, not the search.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace traction::round_trip {
 enum class Source { independent, plant };
 
 struct Estimate {
-    std::string key;  // "motor.resistance_ohm"; "effect: slip_sinkage" for the hidden effect's strength
+    std::string key; // "motor.resistance_ohm"; "effect: slip_sinkage" for the hidden effect's strength
     double truth = 0, value = 0, low = 0, high = 0;
     bool inside() const { return low <= truth && truth <= high; }
     double standard_errors() const { return (value - truth) / ((high - low) / (2 * 1.96)); }

@@ -32,14 +32,16 @@ TEST(RoundTrip, intervals_hold_the_truth_of_the_independent_rover_about_as_often
 
 TEST(RoundTrip, intervals_hold_the_truth_of_the_plant_about_as_often_as_published) {
     const auto tallies = sample(Source::plant, 201, 204);
-    EXPECT_GT(share(tallies.at("all parameters")), 0.36) << table(tallies); // published 0.67 of 900; 36 of them, design effect 2: 3 sigma is 0.33
+    EXPECT_GT(share(tallies.at("all parameters")), 0.36)
+        << table(tallies); // published 0.67 of 900; 36 of them, design effect 2: 3 sigma is 0.33
 }
 
 // Drives the identification plan as this machine and returns the log.
 log::Log driven_as(const lab::Model &model, std::uint64_t seed) {
     sim::Scenario scenario = sim::read_scenario("scenarios/identification.toml");
     std::vector<std::string> notes;
-    const sim::Scenario machine = sim::parse_scenario(lab::scenario_of(model, "as fitted", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), "as fitted");
+    const sim::Scenario machine =
+        sim::parse_scenario(lab::scenario_of(model, "as fitted", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), "as fitted");
     scenario.plant = machine.plant;
     scenario.effects = machine.effects;
     SimulateOptions options;
@@ -56,12 +58,14 @@ TEST(ImprovedModel, drives_a_rover_that_it_then_explains_as_well_as_a_model_with
     const lab::Added improved = lab::add_effect(baseline, lab::make_dataset(baseline, learnt_from), "slip_sinkage", -1, "");
     ASSERT_TRUE(improved.helps) << improved.text;
 
-    const auto error = [](const lab::Model &model, const log::Log &log) { return lab::compare(model, lab::make_dataset(model, log), true).adjusted; };
+    const auto error = [](const lab::Model &model, const log::Log &log) {
+        return lab::compare(model, lab::make_dataset(model, log), true).adjusted;
+    };
     const log::Log driven = driven_as(improved.model, 12);
     const double floor = error(baseline, driven_as(baseline, 12)); // what ground and formulation leave where nothing is missing
-    EXPECT_LT(error(improved.model, driven), 1.1 * floor); // the ground's grip is drawn alike; the drive is not quite the same
+    EXPECT_LT(error(improved.model, driven), 1.1 * floor);         // the ground's grip is drawn alike; the drive is not quite the same
     EXPECT_GT(error(improved.model, driven), 0.9 * floor);
-    EXPECT_GT(error(baseline, driven), 1.5 * floor);       // and the effect is what makes the difference
+    EXPECT_GT(error(baseline, driven), 1.5 * floor); // and the effect is what makes the difference
 }
 
 } // namespace
