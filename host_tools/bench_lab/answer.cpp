@@ -1,6 +1,6 @@
 #include "answer.h"
 
-#include "host_tools/lab/diagnose.h"
+#include "host_tools/lab/decision/diagnose.h"
 
 #include <chrono>
 #include <cmath>

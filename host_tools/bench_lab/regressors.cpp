@@ -1,6 +1,6 @@
 #include "regressors.h"
 
-#include "host_tools/lab/columns.h"
+#include "host_tools/lab/decision/columns.h"
 
 #include <nlohmann/json.hpp>
 

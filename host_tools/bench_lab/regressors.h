@@ -5,7 +5,7 @@
 // then the listed columns. All are on the lab's own scales: one is a standard deviation of the row, as the fitted model weighs it.
 #pragma once
 
-#include "host_tools/lab/dataset.h"
+#include "host_tools/lab/inputs/dataset.h"
 
 #include <string>
 

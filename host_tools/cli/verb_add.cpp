@@ -1,9 +1,9 @@
 // verb_add.cpp - traction add EFFECT: a new model file with that effect, fitted; the old file is untouched.
 #include "verbs.h"
 
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 

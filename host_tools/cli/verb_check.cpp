@@ -2,7 +2,7 @@
 #include "verbs.h"
 
 #include "host_tools/check/check.h"
-#include "host_tools/lab/model.h"
+#include "host_tools/lab/model/model.h"
 
 #include <cmath>
 #include <cstdio>

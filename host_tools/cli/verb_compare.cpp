@@ -1,8 +1,8 @@
 // verb_compare.cpp - traction compare: how far a model is from a log, balance by balance.
 #include "verbs.h"
 
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 

@@ -3,10 +3,10 @@
 #include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/next.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/next/next.h"
+#include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 

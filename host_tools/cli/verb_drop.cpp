@@ -1,7 +1,7 @@
 // verb_drop.cpp - traction drop EFFECT: the model without it, as a new file.
 #include "verbs.h"
 
-#include "host_tools/lab/model.h"
+#include "host_tools/lab/model/model.h"
 
 #include <cstdio>
 #include <limits>

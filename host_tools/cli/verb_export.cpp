@@ -2,8 +2,8 @@
 #include "verbs.h"
 
 #include "host_tools/bench_lab/regressors.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 

@@ -1,10 +1,10 @@
 // verb_fit.cpp - traction fit: a model's parameters from a log, with intervals, whiteness and held-out error.
 #include "verbs.h"
 
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/profile.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/fit/profile.h"
+#include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 #include "host_tools/report/svg.h"

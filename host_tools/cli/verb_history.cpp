@@ -1,7 +1,7 @@
 // verb_history.cpp - traction history: what a model has been through, and its ladder.
 #include "verbs.h"
 
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/result/result.h"
 
 #include <cstdio>
 #include <memory>

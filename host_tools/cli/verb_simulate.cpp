@@ -2,7 +2,7 @@
 #include "progress.h"
 #include "verbs.h"
 
-#include "host_tools/lab/manoeuvre.h"
+#include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
 #include "host_tools/simulate/batch.h"

@@ -1,8 +1,8 @@
 #include "game.h"
 
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 #include "host_tools/simulate/simulate.h"

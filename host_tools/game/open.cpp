@@ -1,7 +1,7 @@
 // open.cpp - the end of a game: the only place that reads its seal.
 #include "game.h"
 
-#include "host_tools/lab/diagnose.h"
+#include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 #include "sim/physics/effects/catalogue.h"

@@ -1,6 +1,6 @@
 #include "session.h"
 
-#include "diagnose.h"
+#include "host_tools/lab/decision/diagnose.h"
 
 #include <algorithm>
 #include <cstdio>

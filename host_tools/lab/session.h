@@ -1,8 +1,8 @@
 // session.h - what every verb of the lab does first: read the model, the log (through its map) and the repeat run.
 #pragma once
 
-#include "dataset.h"
-#include "model.h"
+#include "host_tools/lab/inputs/dataset.h"
+#include "host_tools/lab/model/model.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // What the catalogue does not hold: the lab says on what it depends, and asserts no effect that merely stood in for it.
-#include "host_tools/lab/diagnose.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/result/result.h"
 #include "tests/lab/generator/generator.h"
 
 #include <gtest/gtest.h>

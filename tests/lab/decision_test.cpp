@@ -1,8 +1,8 @@
 // The lab's decisions on logs of the independent generator (tests/lab/generator), where the answer is known.
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/diagnose.h"
-#include "host_tools/lab/result.h"
+#include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/result.h"
 #include "tests/lab/generator/generator.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // inputs_test.cpp - what a log becomes before the model is asked: wheels that jump, samples that are means, a command that comes late.
-#include "host_tools/lab/dataset.h"
-#include "host_tools/lab/forward.h"
-#include "host_tools/lab/screen.h"
-#include "host_tools/lab/smooth.h"
+#include "host_tools/lab/fit/screen.h"
+#include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/inputs/dataset.h"
+#include "host_tools/lab/inputs/smooth.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>

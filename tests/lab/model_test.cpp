@@ -1,9 +1,9 @@
 // The model file: what is read, what is written back, and that every mistake is told with its place and its mend.
-#include "host_tools/lab/distribution.h"
-#include "host_tools/lab/model.h"
-#include "host_tools/lab/physics.h"
-#include "host_tools/lab/smooth.h"
-#include "host_tools/lab/wheel_step.h"
+#include "host_tools/lab/fit/distribution.h"
+#include "host_tools/lab/forward/physics.h"
+#include "host_tools/lab/forward/wheel_step.h"
+#include "host_tools/lab/inputs/smooth.h"
+#include "host_tools/lab/model/model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // The next experiment: physics says which drive separates two effects; the prediction must say the same, and the scenario must run.
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/information.h"
-#include "host_tools/lab/manoeuvre.h"
-#include "host_tools/lab/next.h"
+#include "host_tools/lab/next/information.h"
+#include "host_tools/lab/next/manoeuvre.h"
+#include "host_tools/lab/next/next.h"
+#include "host_tools/lab/result/addition.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // smooth_test.cpp - the smoothing of wheel angles is as wide as their scatter demands, and no wider.
-#include "host_tools/lab/smooth.h"
+#include "host_tools/lab/inputs/smooth.h"
 
 #include <gtest/gtest.h>
 

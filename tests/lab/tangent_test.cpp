@@ -1,9 +1,9 @@
 // Sensitivities by the linear recursion beside a known motion (tangent.cpp) against whole integrations.
-#include "host_tools/lab/candidate.h"
-#include "host_tools/lab/felt.h"
-#include "host_tools/lab/forward.h"
-#include "host_tools/lab/problem.h"
-#include "host_tools/lab/wheel_step.h"
+#include "host_tools/lab/decision/candidate.h"
+#include "host_tools/lab/fit/felt.h"
+#include "host_tools/lab/fit/problem.h"
+#include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/wheel_step.h"
 #include "tests/lab/generator/generator.h"
 
 #include <gtest/gtest.h>

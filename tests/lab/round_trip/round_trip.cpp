@@ -1,7 +1,7 @@
 #include "round_trip.h"
 
-#include "host_tools/lab/diagnose.h"
-#include "host_tools/lab/manoeuvre.h"
+#include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/physics/effects/catalogue.h"
 #include "tests/lab/generator/generator.h"

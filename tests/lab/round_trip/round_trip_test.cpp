@@ -1,9 +1,9 @@
 // A sample of the round trip (all 100 seeds: lab_round_trip), and a model that was improved used as a rover.
 #include "round_trip.h"
 
-#include "host_tools/lab/addition.h"
-#include "host_tools/lab/compare.h"
-#include "host_tools/lab/manoeuvre.h"
+#include "host_tools/lab/next/manoeuvre.h"
+#include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/compare.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,325 @@
+#include "candidate.h"
+
+#include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/inputs/dataset.h"
+#include "knots.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace traction::lab {
+
+namespace {
+
+std::vector<int> wheel_choices(const sim::Effect &effect, const Model &model) {
+    std::vector<int> wheels = {-1};
+    if (effect.per_wheel && model.wheel.size() > 1)
+        for (std::size_t i = 0; i < model.wheel.size(); ++i) wheels.push_back(static_cast<int>(i));
+    return wheels;
+}
+
+// Combinations of the shape parameters' variants.
+std::vector<std::vector<std::pair<std::string, double>>> shape_choices(const sim::Effect &effect) {
+    std::vector<std::vector<std::pair<std::string, double>>> list = {{}};
+    for (const sim::EffectParameter &p : effect.parameters) {
+        if (p.strength || p.variants.empty()) continue;
+        std::vector<std::vector<std::pair<std::string, double>>> next;
+        for (const auto &base : list)
+            for (const double value : p.variants) {
+                next.push_back(base);
+                next.back().emplace_back(std::string(p.name), value);
+            }
+        list = std::move(next);
+    }
+    return list;
+}
+
+// Windows along the path that the log covers: starts every half length.
+std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Motion &motion) {
+    std::vector<std::vector<std::pair<std::string, double>>> list;
+    if (motion.path_m.empty()) return {};
+    const auto [low, high] = std::minmax_element(motion.path_m.begin(), motion.path_m.end());
+    const double span = *high - *low;
+    if (!(span > 0.3)) return {};
+    for (const double length : {0.25, 0.5, 1.0, 1.5, 2.5}) {
+        if (length > 0.6 * span) continue;
+        const double step = std::max(length / 2, span / 24);
+        for (double start = *low; start + 0.5 * length < *high; start += step)
+            list.push_back({{"start_m", std::round(start * 100) / 100}, {"length_m", length}});
+    }
+    return list;
+}
+
+FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle &handle, const EffectHandle::Strength &place,
+                                 const sim::EffectParameter &spec, const Physics &physics) {
+    FreeParameter free;
+    free.owner = candidate.effect;
+    free.key = place.key;
+    free.unit = spec.unit;
+    free.wheel = candidate.wheel;
+    free.touched = handle.touched;
+    const double span = spec.maximum - spec.minimum;
+    free.minimum = spec.minimum < 0 ? spec.minimum - 0.5 * span : 0;
+    free.maximum = spec.maximum + 0.5 * span;
+    if (place.in_body != nullptr) {
+        Slot slot;
+        slot.in_body = place.in_body;
+        free.slots.push_back(slot);
+    } else {
+        for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
+            if (candidate.wheel >= 0 && static_cast<std::size_t>(candidate.wheel) != i) continue;
+            Slot slot;
+            slot.in_wheel = place.in_wheel;
+            slot.wheel = static_cast<int>(i);
+            free.slots.push_back(slot);
+        }
+    }
+    const bool play = candidate.effect == "backlash" || candidate.effect == "relaxation_length"; // whole integrations with a kink
+    free.step = play ? std::max(1e-3 * span, 0.2 * spec.of_interest) : 1e-7 * span;
+    return free;
+}
+
+struct ShapeKind {
+    TermTarget target;
+    Axis axis;
+    const char *name;
+    bool straight = false; // a straight line too: a free curve spends its certainty on its coefficients
+};
+// LAB.md section 2. Never measured current or PWM as an axis; "current" is the model's own.
+constexpr ShapeKind shape_kinds[] = {
+    {TermTarget::wheel_torque, Axis::wheel_speed, "torque(wheel speed)"},
+    {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},
+    {TermTarget::wheel_friction, Axis::load, "friction(wheel load)"},
+    {TermTarget::wheel_friction, Axis::time, "friction(time)", true},
+    {TermTarget::wheel_friction, Axis::direction, "friction(direction of travel)"},
+    {TermTarget::wheel_torque, Axis::accel, "torque(acceleration)"},
+    {TermTarget::rolling, Axis::speed, "resistance(ground speed)"},
+    {TermTarget::rolling, Axis::slip, "resistance(slip)"},
+    {TermTarget::rolling, Axis::time, "resistance(time)", true},
+    {TermTarget::rolling, Axis::path, "resistance(path)"},
+    {TermTarget::voltage, Axis::current, "voltage(motor current)"},
+    {TermTarget::voltage, Axis::wheel_speed, "voltage(wheel speed)"},
+    {TermTarget::voltage, Axis::time, "voltage(time)"},
+    {TermTarget::soil_strength, Axis::time, "soil strength(time)", true},
+    {TermTarget::soil_strength, Axis::path, "soil strength(path)"},
+    {TermTarget::soil_strength, Axis::abs_speed, "soil strength(speed)", true},
+    {TermTarget::soil_strength, Axis::slip, "soil strength(slip)"},
+    {TermTarget::motor_constant, Axis::time, "motor constant(time)", true},
+    {TermTarget::motor_constant, Axis::current, "motor constant(motor current)"},
+    {TermTarget::resistance, Axis::time, "winding resistance(time)"},
+    {TermTarget::accel, Axis::time, "accelerometer(time)"},
+    {TermTarget::accel, Axis::accel, "accelerometer(acceleration)"},
+    {TermTarget::radar, Axis::abs_speed, "radar(speed)"},
+    {TermTarget::rolling, Axis::yaw_rate, "resistance(yaw rate)"},
+    {TermTarget::wheel_friction, Axis::yaw_rate, "friction(yaw rate)"},
+    {TermTarget::wheel_torque, Axis::reversal, "torque(wheel angle since reversal)"},
+    {TermTarget::voltage, Axis::other_current, "voltage(current of the other motors)"},
+    {TermTarget::voltage, Axis::axle_current, "voltage(current of the motors of its axle)"},
+    {TermTarget::voltage, Axis::side_current, "voltage(current of the motors of its side)"},
+    {TermTarget::wheel_torque, Axis::current, "torque(motor current)"},
+    {TermTarget::wheel_friction, Axis::abs_wheel_speed, "friction(wheel speed)"},
+    {TermTarget::voltage, Axis::voltage, "voltage(motor voltage)"},
+};
+
+// Waves of the ground's strength along the path, at each wheel's place or the body's: half a cycle over the path apart.
+std::vector<Candidate> wave_candidates(const Motion &motion) {
+    std::vector<Candidate> list;
+    const auto [low, high] = std::minmax_element(motion.path_m.begin(), motion.path_m.end());
+    if (motion.path_m.empty() || !(*high - *low > 1)) return list;
+    const double step = std::max(0.65 / (*high - *low), 0.08); // [1/m]
+    for (double cycles = 0.8; cycles < 3.4; cycles += step)
+        for (const Axis axis : {Axis::path, Axis::place}) {
+            Candidate c;
+            char name[80];
+            std::snprintf(name, sizeof name, "soil strength(path), a wave of %.2f m", 1 / cycles);
+            c.effect = name;
+            c.free_shape = true;
+            c.axis = axis;
+            c.target = TermTarget::soil_strength;
+            c.touched = target_stages(c.target);
+            c.order = 2 * std::numbers::pi * cycles;
+            c.strengths.resize(2);
+            list.push_back(std::move(c));
+        }
+    return list;
+}
+
+} // namespace
+
+std::string Candidate::label() const { return wheel < 0 ? effect : effect + " on wheel " + std::to_string(wheel); }
+
+void Candidate::prepare(Physics &physics) const {
+    if (free_shape) {
+        ExtraTerm term;
+        term.name = effect;
+        term.target = target;
+        term.wheel = wheel;
+        term.term = order > 0 ? make_periodic(axis, order) : make_piecewise(axis, knots);
+        term.coefficients.assign(strengths.size(), 0);
+        physics.terms.push_back(std::move(term));
+        return;
+    }
+    const EffectHandle *handle = find_handle(effect);
+    if (handle == nullptr) return;
+    for (const auto &[key, value] : variant)
+        for (const auto &place : handle->shapes) {
+            if (place.key != key) continue;
+            if (place.in_body != nullptr)
+                physics.body.*place.in_body = value;
+            else
+                for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+                    if (wheel < 0 || static_cast<std::size_t>(wheel) == i) physics.wheel[i].*place.in_wheel = value;
+        }
+}
+
+std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &data, const Motion &motion) {
+    (void)data;
+    const Physics physics = make_physics(model);
+    std::vector<Candidate> list;
+    for (const EffectHandle &handle : effect_handles()) {
+        const sim::Effect *effect = sim::find_effect(handle.name);
+        if (effect == nullptr || model.find_effect(handle.name, -1) != nullptr) continue;
+        const bool patch = handle.name == "soil_patch";
+        auto shapes = patch ? patch_choices(motion) : shape_choices(*effect);
+        if (handle.name == "torque_ripple") { // cogging keeps its sign when the motion reverses, friction that varies does not
+            const std::size_t n = shapes.size();
+            for (std::size_t i = 0; i < n; ++i) shapes.push_back({{"order", -shapes[i][0].second}});
+        }
+        const auto wheels = wheel_choices(*effect, model);
+        for (const auto &shape : shapes)
+            for (const int wheel : wheels) {
+                if (model.find_effect(handle.name, wheel) != nullptr) continue;
+                // on one wheel already: another wheel may join, all wheels would be a second copy
+                const bool elsewhere =
+                    std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse &use) { return use.name == handle.name; });
+                if (wheel < 0 && elsewhere) continue;
+                Candidate c;
+                c.effect = handle.name;
+                c.wheel = wheel;
+                c.variant = shape;
+                c.variants = static_cast<int>(shapes.size() * wheels.size());
+                c.touched = handle.touched;
+                for (const auto &place : handle.strengths) {
+                    const auto spec = std::find_if(effect->parameters.begin(), effect->parameters.end(),
+                                                   [&](const sim::EffectParameter &p) { return p.name == place.key; });
+                    if (spec == effect->parameters.end()) continue;
+                    c.strengths.push_back(strength_parameter(c, handle, place, *spec, physics));
+                    c.of_interest.push_back(spec->of_interest);
+                    c.minimum.push_back(spec->minimum);
+                    c.maximum.push_back(spec->maximum);
+                    const bool play = c.effect == "backlash" || c.effect == "relaxation_length"; // nothing at zero tells of them
+                    c.step.push_back(play ? std::max(spec->of_interest, 0.05 * spec->maximum) : 1e-6 * spec->of_interest);
+                }
+                if (!c.strengths.empty()) list.push_back(std::move(c));
+            }
+    }
+    return list;
+}
+
+std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motion, const Physics &physics,
+                                        const std::vector<std::vector<double>> &current_A) {
+    std::vector<Candidate> list;
+    for (const ShapeKind &kind : shape_kinds) {
+        Candidate c;
+        c.effect = kind.name;
+        c.free_shape = true;
+        c.axis = kind.axis;
+        c.target = kind.target;
+        c.touched = target_stages(kind.target);
+        const AxisValues x = values_on(kind.axis, data, motion, physics, current_A);
+        if (x.values.empty()) continue;
+        c.parts_wheels = x.parts_wheels;
+        c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);
+        if (c.knots.size() < 3) continue;
+        for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();
+        list.push_back(c);
+        if (!kind.straight) continue;
+        c.effect += ", a straight line";
+        c.knots = {c.knots.front(), c.knots.back()};
+        c.strengths.resize(2);
+        list.push_back(std::move(c));
+    }
+    for (const int order : {5, 7, 9, 10, 12}) { // the others are torque_ripple
+        Candidate c;
+        c.effect = "torque(wheel angle), " + std::to_string(order) + " per turn";
+        c.free_shape = true;
+        c.axis = Axis::angle;
+        c.target = TermTarget::wheel_torque;
+        c.touched = stage_torque;
+        c.order = order;
+        c.strengths.resize(2);
+        list.push_back(std::move(c));
+    }
+    for (Candidate &c : wave_candidates(motion)) list.push_back(std::move(c));
+    for (Candidate &c : list)
+        for (std::size_t j = 0; j < c.strengths.size(); ++j) {
+            FreeParameter &free = c.strengths[j];
+            free.owner = c.effect;
+            free.key = "f" + std::to_string(j);
+            free.touched = c.touched;
+            Slot slot;
+            slot.term = -2; // the last term of the physics, resolved when the candidate is prepared
+            slot.coefficient = static_cast<int>(j);
+            free.slots = {slot};
+            free.minimum = -1e9;
+            free.maximum = 1e9;
+            const bool multiplier = c.target == TermTarget::soil_strength || c.target == TermTarget::motor_constant ||
+                                    c.target == TermTarget::resistance || c.target == TermTarget::radar;
+            free.step = multiplier || c.target == TermTarget::rolling ? 2e-6 : 5e-7;
+            c.step.push_back(free.step);
+        }
+    return list;
+}
+
+EffectUse effect_of(const Candidate &candidate, const std::vector<double> &strengths) {
+    EffectUse use;
+    use.name = candidate.effect;
+    use.wheel = candidate.wheel;
+    const sim::Effect *effect = sim::find_effect(candidate.effect);
+    for (std::size_t i = 0; i < candidate.strengths.size(); ++i) {
+        Parameter p;
+        p.value = strengths[i];
+        p.unit = candidate.strengths[i].unit;
+        p.minimum = candidate.strengths[i].minimum;
+        p.maximum = candidate.strengths[i].maximum;
+        p.given = true;
+        use.parameters[candidate.strengths[i].key] = p;
+    }
+    for (const auto &[key, value] : candidate.variant) {
+        Parameter p;
+        p.value = value;
+        p.fixed = true;
+        p.given = true;
+        if (effect != nullptr)
+            for (const sim::EffectParameter &spec : effect->parameters)
+                if (spec.name == key) p.unit = spec.unit;
+        use.parameters[key] = p;
+    }
+    return use;
+}
+
+std::string shape_expression(const Candidate &c, const std::vector<double> &y) {
+    static const char *names[] = {"t",      "w", "v", "s", "Fn", "theta", "x",  "a",      "I", "v/sqrt(v*v+1e-4)",
+                                  "abs(v)", "r", "X", "d", "Io", "Ia",    "Is", "abs(w)", "u"};
+    const std::string x = names[static_cast<int>(c.axis)];
+    char buffer[160];
+    if (c.order > 0) {
+        std::snprintf(buffer, sizeof buffer, "%.4g*cos(%g*%s) + %.4g*sin(%g*%s)", y[0], c.order, x.c_str(), y[1], c.order, x.c_str());
+        return buffer;
+    }
+    std::snprintf(buffer, sizeof buffer, "%.4g", y[0]);
+    std::string text = buffer;
+    for (std::size_t i = 1; i < c.knots.size(); ++i) { // a ramp per piece
+        const double width = c.knots[i] - c.knots[i - 1];
+        std::snprintf(buffer, sizeof buffer, " + (%.4g)*min(1, max(0, (%s - (%.4g))/%.4g))", y[i] - y[i - 1], x.c_str(), c.knots[i - 1],
+                      width);
+        text += buffer;
+    }
+    return text;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,37 @@
+// columns.h - sensitivities of all candidates at a baseline: a wheel's is computed once, "all wheels" is the sum.
+#pragma once
+
+#include "candidate.h"
+#include "host_tools/lab/fit/problem.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+class Columns {
+  public:
+    // Unscaled, by effect, wheel and shape: good for later rounds too, whose refits are exact anyway.
+    using Cache = std::map<std::string, Eigen::VectorXd>;
+
+    Columns(Problem &problem, Cache &cache) : problem_(problem), physics_(problem.physics()), cache_(cache) {}
+
+    // Scaled, one column per strength.
+    Eigen::MatrixXd of(const Candidate &candidate);
+
+  private:
+    Eigen::VectorXd column(const Candidate &candidate, std::size_t strength);
+    const Eigen::VectorXd &single(const Candidate &candidate, std::size_t strength, const FreeParameter &parameter);
+    Eigen::VectorXd patch(const Candidate &candidate, const FreeParameter &parameter);
+    void fill_cells(const Candidate &candidate, const FreeParameter &parameter, std::size_t first);
+
+    Problem &problem_;
+    Physics physics_;
+    Cache &cache_;
+    std::vector<Eigen::VectorXd> cells_; // of the path
+    UnitResponse ground_;                // to its strength
+    double cell_start_ = 0, cell_length_ = 1;
+};
+
+} // namespace traction::lab

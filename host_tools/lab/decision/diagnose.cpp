@@ -1,0 +1,405 @@
+#include "diagnose.h"
+
+#include "classes.h"
+#include "host_tools/lab/fit/screen.h"
+#include "host_tools/lab/session.h"
+#include "shapes.h"
+#include "trial.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace traction::lab {
+
+namespace {
+
+std::string one_decimal(double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.1f", value);
+    return buffer;
+}
+
+std::string figures(double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.3g", value);
+    return buffer;
+}
+
+// Forward selection, round by round, then each effect tried without.
+class Search {
+  public:
+    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), options_(options) { d_.model = model; }
+
+    Diagnosis run() {
+        Problem problem = fitted(d_.model);
+        const Problem first = problem;
+        for (int round = 0; round <= options_.most_effects; ++round) {
+            const Screen screen(problem);
+            d_.ladder.push_back({d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem),
+                                 overall_heldout(problem), 1});
+            refresh(problem, screen);
+            if (round == options_.most_effects) break;
+            std::optional<Problem> next = try_all(problem, screen, round == 0);
+            if (!next) break;
+            problem = std::move(*next);
+        }
+        drop_idle(problem);
+        if (options_.shapes) look_beyond(first, problem);
+        conclude();
+        return std::move(d_);
+    }
+
+  private:
+    void tick() {
+        if (options_.progress) options_.progress(++done_, 500);
+    }
+
+    Problem fitted(const Model &model, const Problem *warm = nullptr) const {
+        const Physics physics = make_physics(model);
+        Problem problem(data_, physics, free_parameters(model, physics));
+        if (warm != nullptr) problem.start_near(*warm);
+        for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
+            for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
+                const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];
+                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.base == b.base)
+                    problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
+            }
+        problem.fit({});
+        return problem;
+    }
+
+    // Values of what was accepted, by the joint fit.
+    void refresh(const Problem &problem, const Screen &screen) {
+        const std::vector<ParameterError> errors = screen.parameter_errors();
+        for (CandidateResult &a : d_.accepted)
+            for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+                for (std::size_t j = 0; j < a.candidate.strengths.size(); ++j) {
+                    const FreeParameter &p = problem.parameters[i];
+                    if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
+                    a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
+                    const double reach = errors[i].reach + std::fabs(a.value[j]) * smoothing_doubt(a.candidate);
+                    a.low[j] = a.value[j] - reach;
+                    a.high[j] = a.value[j] + reach;
+                }
+    }
+
+    // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses
+    // at the ripple's frequency is not known of its size.
+    double smoothing_doubt(const Candidate &c) const {
+        if (c.effect != "torque_ripple" || c.variant.empty()) return 0;
+        double squares = 0, n = 0;
+        for (const WheelInput &w : data_.wheel)
+            for (const double speed : w.speed_rad_s)
+                if (std::fabs(speed) > 0.5) squares += speed * speed, ++n;
+        return n > 0 ? data_.acceleration_loss(std::fabs(c.variant[0].second) * std::sqrt(squares / n)) : 0;
+    }
+
+    // Best shape of each effect and wheel, those that promise most first.
+    std::vector<Trial> screened(Problem &problem, const Screen &screen) {
+        Columns columns(problem, cache_);
+        std::map<std::string, Trial> best;
+        std::vector<std::string> order;
+        for (const Candidate &c : catalogue_candidates(d_.model, data_, problem.forward().motion())) {
+            Trial t = screen_candidate(c, screen, columns);
+            const auto found = best.find(c.label());
+            if (found == best.end()) {
+                order.push_back(c.label());
+                best.emplace(c.label(), std::move(t));
+            } else if (t.promise > found->second.promise) {
+                found->second = std::move(t);
+            }
+            tick();
+        }
+        std::vector<Trial> trials;
+        for (const std::string &key : order) trials.push_back(std::move(best.at(key)));
+        for (Trial &t : trials)
+            if (t.candidate.wheel < 0) scan(t, problem, screen);
+        std::stable_sort(trials.begin(), trials.end(), [](const Trial &a, const Trial &b) { return a.promise > b.promise; });
+        return trials;
+    }
+
+    // One round: the problem with the winner in, or nothing where no candidate passes.
+    std::optional<Problem> try_all(Problem &problem, const Screen &screen, bool is_first, bool may_rebase = true) {
+        std::vector<Trial> trials = screened(problem, screen);
+        const double base_error = screen.heldout_error();
+        for (Trial &t : trials) judge(t, base_error, options_);
+        refit_likely(trials, problem, screen);
+        if (may_rebase && rebase(trials, problem)) return try_all(problem, Screen(problem), is_first, false);
+        weigh_beyond(trials, base_error);
+        for (Trial &t : trials)
+            if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
+        std::stable_sort(trials.begin(), trials.end(),
+                         [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
+        std::optional<Problem> next;
+        std::size_t winner = trials.size();
+        for (std::size_t i = 0; i < trials.size() && !next; ++i) {
+            if (trials[i].verdict != "passes") continue;
+            next = with(trials[i], problem);
+            if (next)
+                winner = i;
+            else
+                trials[i].verdict = "not_significant";
+        }
+        if (is_first) note_unseen(trials);
+        record(trials, winner, base_error, screen, is_first);
+        return next;
+    }
+
+    // A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range.
+    void weigh_beyond(std::vector<Trial> &trials, double base_error) {
+        double most = 0;
+        Trial *best = nullptr;
+        for (Trial &t : trials) {
+            if (t.verdict == "passes" && t.refitted) most = std::max(most, t.gain);
+            if (t.verdict == "beyond_range" && (best == nullptr || t.gain > best->gain)) best = &t;
+        }
+        if (best == nullptr || !(best->gain > most)) return;
+        const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
+        if (much) best->at_least = true, best->verdict = "passes";
+        const std::string told = best->candidate.label() + " explains ";
+        if (std::any_of(d_.messages.begin(), d_.messages.end(), [&](const std::string &m) { return m.starts_with(told); }))
+            return; // in an earlier round
+        d_.messages.push_back(told + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
+                              best->candidate.strengths[0].key + " at " + figures(best->value[0]) +
+                              (much ? "): read its size as at least that" : "): not named"));
+    }
+
+    // Those most sure by their linear step, those that promise more than what passed, then those whose scan saw more than the step did.
+    void refit_likely(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
+        Columns columns(problem, cache_);
+        double best = 0; // of the held-out gains that passed: what explains less than half can be neither the winner nor of its class
+        std::vector<Trial *> order;
+        for (Trial &t : trials) order.push_back(&t);
+        const auto refit_some = [&](int most, auto &&likely, auto &&before) {
+            std::stable_sort(order.begin(), order.end(), [&](const Trial *a, const Trial *b) { return before(*a, *b); });
+            for (Trial *t : order) {
+                if (t->refitted || !likely(*t)) continue;
+                if (most-- <= 0) return;
+                refit(*t, problem, screen, d_.model, data_);
+                if (t->assessment.projected.size() == 0)
+                    t->assessment.projected = screen.projected(columns.of(t->candidate).col(0)); // the step was the fit
+                judge(*t, screen.heldout_error(), options_);
+                if (t->verdict == "passes") best = std::max(best, t->gain);
+                tick();
+            }
+        };
+        refit_some(
+            options_.refits, [&](const Trial &t) { return t.p_value < 0.2 && t.promise > least_promise && t.promise > 0.5 * best; },
+            [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
+        const auto most_promise = [](const Trial &a, const Trial &b) { return a.promise > b.promise; };
+        // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
+        refit_some(
+            3,
+            [&](const Trial &t) {
+                return t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best);
+            },
+            most_promise);
+        refit_some(
+            3, [&](const Trial &t) { return t.surprise > std::max(3 * least_promise, 0.3 * t.promise) && t.promise > 0.5 * best; },
+            most_promise);
+    }
+
+    // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
+    bool rebase(const std::vector<Trial> &trials, Problem &problem) const {
+        const Trial *best = nullptr;
+        for (const Trial &t : trials)
+            if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.promise > 3 * least_promise &&
+                (best == nullptr || t.promise > best->promise))
+                best = &t;
+        if (best == nullptr) return false;
+        Problem moved = problem;
+        const double before = moved.cost();
+        moved.theta = best->baseline;
+        moved.within_bounds();
+        moved.jacobian.resize(0, 0);
+        moved.polish(3);
+        if (moved.cost() > before - least_promise) return false;
+        moved.fit({});
+        problem = std::move(moved);
+        return true;
+    }
+
+    // Held-out error; where it lies below that of the fit, the linear step that left a block out went where a bound would have stopped it.
+    static double honest_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
+
+    // The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
+    // candidate must keep its size.
+    std::optional<Problem> with(const Trial &t, const Problem &before) const {
+        Model model = d_.model;
+        model.effects.push_back(effect_of(t.candidate, t.value));
+        Problem problem = fitted(model, &before);
+        std::vector<double> value;
+        for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
+            value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
+        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) ||
+            honest_error(problem) > 1.03 * honest_error(before))
+            return std::nullopt;
+        return problem;
+    }
+
+    // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
+    void note_unseen(const std::vector<Trial> &trials) {
+        for (const Trial &t : trials) {
+            const Candidate &c = t.candidate;
+            if (c.wheel >= 0 || c.of_interest.empty()) continue;
+            bool alone = false, beside = false;
+            for (std::size_t j = 0; j < t.error.size(); ++j) {
+                const double size = 3 * c.of_interest[j];
+                alone = alone || size * t.assessment.column_norm > 2;
+                beside = beside || size > 2 * t.error[j];
+            }
+            if (!alone)
+                d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
+                                                          one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) +
+                                                          " standard deviations");
+            else if (!beside && t.p_value > 0.05)
+                d_.not_excited.emplace_back(
+                    c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
+                                  one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
+        }
+    }
+
+    void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first) {
+        const bool found = winner < trials.size();
+        const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error, options_) : std::vector<std::size_t>();
+        for (std::size_t i = 0; i < trials.size(); ++i) {
+            CandidateResult r = result_of(trials[i], base_error, screen);
+            const bool member = std::find(members.begin(), members.end(), i) != members.end();
+            if (i == winner)
+                r.verdict = members.empty() ? "named" : "class";
+            else if (member)
+                r.verdict = "class";
+            else if (r.verdict == "passes")
+                r.verdict = "not_significant";
+            if ((i == winner || member) && !members.empty()) r.class_index = static_cast<int>(d_.classes.size());
+            for (const auto &[effect, why] : d_.not_excited)
+                if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
+            if (is_first) d_.ranking.push_back(r);
+            if (i == winner) d_.accepted.push_back(r);
+        }
+        if (!found) return;
+        const Trial &w = trials[winner];
+        if (!members.empty()) {
+            ConfoundedClass c;
+            c.members.push_back(w.candidate.label());
+            for (const std::size_t i : members) c.members.push_back(trials[i].candidate.label());
+            if (const sim::Effect *effect = sim::find_effect(w.candidate.effect)) c.separate_by = effect->reveals;
+            d_.classes.push_back(std::move(c));
+        }
+        d_.model.effects.push_back(effect_of(w.candidate, w.value));
+    }
+
+    // Drops what no longer matters beside the others. `last`: the problem of the model as it stands, replaced with it.
+    void drop_idle(Problem &last) {
+        for (std::size_t i = d_.accepted.size(); i-- > 0;) {
+            const CandidateResult one = d_.accepted[i];
+            bool sure = false; // larger than its own uncertainty
+            for (std::size_t j = 0; j < one.value.size(); ++j) sure = sure || one.low[j] * one.high[j] > 0;
+            const bool solid = sure && large_enough(one.candidate, one.value);
+            if (d_.accepted.size() == 1 && solid) return;
+            Model without = d_.model;
+            std::erase_if(without.effects,
+                          [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+            Problem problem = fitted(without, &last);
+            const Screen screen(problem);
+            Columns::Cache cache;
+            Columns columns(problem, cache);
+            Trial t = screen_candidate(one.candidate, screen, columns);
+            t.start = one.value;
+            refit(t, problem, screen, without, data_);
+            judge(t, screen.heldout_error(), options_);
+            if ((t.verdict == "passes" || t.verdict == "beyond_range") && solid) continue; // accepted as a least size, it stays one
+            d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");
+            remove(i, std::move(without), problem);
+            last = std::move(problem);
+        }
+    }
+
+    void remove(std::size_t i, Model without, const Problem &problem) {
+        const std::string label = d_.accepted[i].candidate.label();
+        std::erase_if(d_.ladder, [&](const Rung &r) { return r.label == "+ " + label; });
+        forget_class(d_, label);
+        if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = overall_heldout(problem);
+        d_.model = std::move(without);
+        d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+        refresh(problem, Screen(problem));
+    }
+
+    // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
+    // that is not needed beside a shape stood in for it. What goes is told as the nearest of the catalogue.
+    void look_beyond(const Problem &first, Problem &last) {
+        for (bool again = true; again;) {
+            again = false;
+            std::vector<Candidate> named;
+            for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
+            Beyond beyond = find_unknown(first, last, named, options_);
+            if (beyond.shape) d_.unknown = beyond.shape;
+            std::vector<std::size_t> &rest = beyond.replaced;
+            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * beyond.gain_squares);
+                 rest.pop_back()) {
+                demote(rest.back(), last);
+                again = true;
+            }
+            if (!again && beyond.stand_in) {
+                d_.unknown = beyond.cause;
+                demote(*beyond.stand_in, last);
+                again = true;
+            }
+            again = again && !d_.accepted.empty();
+        }
+    }
+
+    void demote(std::size_t i, Problem &last) {
+        const CandidateResult one = d_.accepted[i];
+        Model without = d_.model;
+        std::erase_if(without.effects,
+                      [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+        d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance +
+                              " alone explains as much: not named");
+        for (CandidateResult &r : d_.ranking)
+            if (r.candidate.label() == one.candidate.label() || (one.class_index && r.class_index == one.class_index))
+                r.verdict = "nearest";
+        d_.nearest.push_back(one.candidate.label());
+        last = fitted(without, &last);
+        remove(i, std::move(without), last);
+    }
+
+    void conclude() {
+        part_classes(d_);
+        for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
+        if (d_.accepted.empty())
+            d_.kind = d_.unknown ? "unknown" : "nothing";
+        else
+            d_.kind = d_.unknown ? "partial" : !d_.classes.empty() ? "class" : "named";
+        d_.text = verdict_text(d_);
+    }
+
+    static constexpr double least_promise = 9; // three standard deviations of white noise: below it no rule can pass
+    const Dataset &data_;
+    const DiagnoseOptions &options_;
+    Diagnosis d_;
+    Columns::Cache cache_;
+    int done_ = 0;
+};
+
+} // namespace
+
+Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOptions &options) {
+    if (!data.balance.empty() && data.count >= 3) {
+        Diagnosis d = Search(model, data, options).run();
+        d.messages.insert(d.messages.begin(), data.messages.begin(), data.messages.end());
+        return d;
+    }
+    Diagnosis d;
+    d.model = model;
+    d.messages = data.messages;
+    d.kind = "nothing";
+    d.text = "The log has nothing that this model predicts: nothing can be said.";
+    return d;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,51 @@
+// trial.h - one candidate tried against one baseline: screened by a linear step, scanned at a few sizes, refitted, judged.
+#pragma once
+
+#include "columns.h"
+#include "diagnose.h"
+#include "host_tools/lab/fit/screen.h"
+
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+struct Trial {
+    Candidate candidate;
+    Assessment assessment;
+    double promise = 0;  // fall of the error on all rows, by the linear step or by a scan of sizes, whichever is more
+    double surprise = 0; // the part of it that the linear step does not see
+    bool frees = false;  // its step brings parameters back that lie at their bounds without it: far from where the step is linear
+    double gain = 0;     // fall of the held-out error, squares
+    double gain_error = 0;
+    double p_value = 1;           // corrected for the number tried
+    double own_p_value = 1;       // of the coefficient alone
+    double best_balance_gain = 0; // largest relative fall in one balance
+    Eigen::VectorXd block_gain;
+    std::vector<double> value, error, reach; // reach: half of the 95 % interval
+    std::vector<double> start;               // of a refit: the best size of the scan; empty: the linear step's
+    Eigen::VectorXd start_change;            // of the baseline's parameters there
+    std::string verdict;
+    bool refitted = false;
+    bool at_least = false;    // its size lies where the fit may go no further, yet nothing else explains as much
+    Eigen::VectorXd baseline; // increments of the baseline's parameters, where refitted
+};
+
+// The linear step.
+Trial screen_candidate(const Candidate &candidate, const Screen &screen, Columns &columns);
+
+// The true error at a few sizes of a candidate that moves the body, the baseline's parameters following linearly: what the linear
+// step misses where the soil's curve bends, or where a missing effect has pushed the baseline far away.
+void scan(Trial &trial, Problem &base, const Screen &screen);
+
+// Fits baseline plus candidate in full.
+void refit(Trial &trial, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data);
+
+void judge(Trial &trial, double base_error, const DiagnoseOptions &options);
+bool large_enough(const Candidate &candidate, const std::vector<double> &value);
+bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
+bool strongly_nonlinear(const std::string &effect);                              // its slope at zero says little of its size
+
+CandidateResult result_of(const Trial &trial, double base_error, const Screen &screen);
+
+} // namespace traction::lab

@@ -1,0 +1,88 @@
+// problem.h - a model fitted to a data set: residuals, sensitivities, weights, and the fit itself (Ceres).
+//
+// Sensitivities are structured finite differences of the stages that a parameter touches only (forward.h); those of the motion come
+// from a linear recursion beside it (tangent.cpp).
+// Every balance is scaled by max(its noise, its own residual): what the model cannot explain in a channel must not drown the others.
+#pragma once
+
+#include "host_tools/lab/forward/forward.h"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace traction::lab {
+
+struct FitOptions {
+    int iterations = 2;    // linearisations (Ceres: iterations) after the last reweighting
+    bool reweight = true;  // set the scale of each balance from its residual and Huber weights, then fit again
+    bool thorough = false; // Ceres to its own convergence; else Gauss-Newton that keeps its sensitivities while they serve
+};
+
+class Problem {
+  public:
+    Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> parameters);
+
+    void fit(const FitOptions &options);
+    void linearise(); // prediction, residual and Jacobian at the present increments
+
+    const Dataset &data() const { return *data_; }
+    Forward &forward() { return forward_; }
+    Physics physics_at(const Eigen::VectorXd &increments) const;
+    Physics physics() const { return physics_at(theta); }
+
+    // Column of the Jacobian of `parameter` at the present state, scaled by the rows' weights. Needs linearise() before.
+    Eigen::VectorXd column(const Physics &at, const FreeParameter &parameter, double step);
+
+    std::vector<FreeParameter> parameters;
+    Eigen::VectorXd theta;     // increments
+    Eigen::VectorXd residual;  // measured - predicted, unscaled
+    Eigen::MatrixXd jacobian;  // scaled: d predicted / d theta * row_scale
+    Eigen::VectorXd row_scale; // sqrt(Huber weight) / sigma of the row
+    std::vector<double> sigma; // per balance: scale in use
+    Eigen::VectorXd prior_precision() const;
+
+    Eigen::VectorXd noise_rows() const; // measurement noise of each row
+    Eigen::VectorXd doubt_rows() const; // Balance::doubt of each row
+    double balance_rms(std::size_t balance, bool in_noise) const;
+
+    Eigen::VectorXd scaled_residual(const Physics &at,
+                                    unsigned touched); // of a physics that differs in these stages, on the present scales
+    bool at_bound(std::size_t parameter) const;
+    void within_bounds(); // moves increments that left their bounds back to them
+    double cost();        // squares of all rows and priors at the present increments, where `residual` is then
+
+    // Gauss-Newton on baseline plus a candidate that leaves the motion alone, where the baseline's sensitivities are kept from `base` (the
+    // first columns here, same scales): a candidate moves them little, and a pass for each is saved. Leaves the problem linearised.
+    void quick_fit(const Problem &base, int iterations);
+
+    // Gauss-Newton with the scales as they are: sensitivities are computed afresh at most `fresh` times, and serve for several steps
+    // each. Leaves the problem linearised at its optimum.
+    void polish(int fresh);
+
+    // Keeps the scales of another problem on the same data, so that their errors compare.
+    void keep_scales(const Problem &other);
+
+    // The first search for the body's motion starts from another problem's, on the same data.
+    void start_near(const Problem &other);
+
+  private:
+    friend class RowsCost;
+    void set_scales();                                  // the Jacobian, if there is one, is scaled anew
+    void settle();                                      // prediction and residual at the present increments; the Jacobian stays
+    double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
+    Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
+    void solve(int iterations);
+    void bounds(std::size_t i, double &low, double &high) const;
+    // Gauss-Newton step that keeps within the bounds: what would leave them is held there, the others solve without it.
+    Eigen::VectorXd bounded_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
+
+    const Dataset *data_;
+    Physics base_;
+    Forward forward_;
+    Eigen::VectorXd measured_;
+    bool settled_ = false; // the forward model has a base, at these increments:
+    Eigen::VectorXd settled_at_;
+};
+
+} // namespace traction::lab

@@ -1,0 +1,115 @@
+// physics.h - the numbers the forward model computes with, and the handles by which a fit moves them.
+//
+// Every catalogue effect has its slot, zero when absent: to try an effect is to move its slot. Built from a Model by
+// make_physics(); FreeParameter says which slots move together, with which prior, and which stages they touch.
+#pragma once
+
+#include "host_tools/lab/model/model.h"
+#include "host_tools/lab/model/terms.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+// What a parameter touches, hence what must be computed again.
+enum Stage : unsigned { stage_motion = 1, stage_torque = 2, stage_voltage = 4, stage_sensors = 8, stage_all = 15 };
+
+struct WheelPhysics {
+    // the machine
+    double x = 0, y = 0, heading = 0, radius = 0, load = 0; // load 0: from the geometry
+    double KG = 0, ke = 0, Ra = 0, J = 0, b = 0, t0 = 0;
+    double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0,
+           relaxation = 0; // grip: 1 where the soil holds sideways as it holds lengthways
+    double current_offset = 0;
+    // effects, in the catalogue's units
+    double coulomb = 0, viscous = 0, stribeck = 0, stribeck_speed = 1, mesh = 0, backlash = 0;
+    double ripple_cos = 0, ripple_sin = 0, ripple_order = 1, heating = 0, heating_time = 60, wiring = 0, dead_voltage = 0;
+    double constant_change = 0, rolling = 0, radius_change = 0, current_gain = 0, current_extra = 0, encoder_missed = 0;
+};
+
+// Motors that may share a lead.
+inline bool same_axle(const WheelPhysics &a, const WheelPhysics &b) { return std::fabs(a.x - b.x) < 0.01; } // 1 cm: assumed
+inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y * b.y > 0; }
+
+struct BodyPhysics {
+    double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;
+    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0,
+           camera_scale0 = 0, camera_delay0 = 0;
+    double slip_sinkage = 0, speed_resistance = 0, multi_pass = 0, load_height = 0, offset_x = 0, offset_y = 0;
+    double patch_change = 0, patch_start = 0, patch_length = 1, soil_gradient = 0, relaxation = 0, sliding_loss = 0;
+    double shear_change = 0, scrub = 0, grade = 0, grade_direction = 0, tether = 0, drag = 0;
+    double accel_bias = 0, accel_drift = 0, accel_scale = 0, accel_tilt = 0, radar_scale = 0, radar_pitch = 0;
+    double voltage_gain = 0, camera_delay = 0, camera_scale = 0, actuation_delay = 0;
+};
+
+struct ExtraTerm {
+    std::string name;
+    TermTarget target = TermTarget::wheel_torque;
+    int wheel = -1; // -1: all
+    std::vector<double> coefficients;
+    std::shared_ptr<Term> term;
+};
+
+struct Physics {
+    SoilLaw soil_law = SoilLaw::janosi;
+    BodyMotion motion = BodyMotion::longitudinal;
+    bool unsigned_current = false, halves = false;
+    std::vector<WheelPhysics> wheel;
+    std::vector<bool> driven, grips_sideways;
+    BodyPhysics body;
+    std::vector<ExtraTerm> terms;
+};
+
+// One number inside a Physics.
+struct Slot {
+    double WheelPhysics::*in_wheel = nullptr;
+    int wheel = -1;
+    double BodyPhysics::*in_body = nullptr;
+    int term = -1, coefficient = 0; // term -2: the last one
+    double &of(Physics &physics) const;
+    double of(const Physics &physics) const { return of(const_cast<Physics &>(physics)); }
+};
+
+// One degree of freedom of a fit: an increment added to all its slots.
+struct FreeParameter {
+    std::string owner; // "motor", "soil", "sensors", or the effect's name
+    std::string key;   // "resistance_ohm"
+    std::string unit;
+    int wheel = -1;
+    std::vector<Slot> slots;
+    double base = 0;                 // value in the model, before the increment (first slot)
+    double prior = 0;                // standard deviation of the increment; 0: free
+    double minimum = 0, maximum = 0; // of base + increment
+    double step = 0;                 // for differences
+    unsigned touched = stage_all;
+    void add(Physics &physics, double increment) const;
+};
+
+// An effect as the lab can try it: slots by parameter.
+struct EffectHandle {
+    std::string name;
+    struct Strength {
+        std::string key;
+        double WheelPhysics::*in_wheel = nullptr;
+        double BodyPhysics::*in_body = nullptr;
+    };
+    std::vector<Strength> strengths, shapes;
+    unsigned touched = stage_all;
+};
+const std::vector<EffectHandle> &effect_handles(); // in the catalogue's order
+const EffectHandle *find_handle(const std::string &name);
+
+// Throws ModelError when an effect of the model is neither in the catalogue nor a user's expression.
+Physics make_physics(const Model &model);
+
+// The parameters with a prior (nuisance), and the strengths of the effects already in the model (free).
+std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics);
+
+// Writes fitted values back: value of each key that a free parameter stands for.
+// `reach`: half of its 95 % interval.
+void store(Model &model, const FreeParameter &parameter, double increment, double reach);
+
+} // namespace traction::lab

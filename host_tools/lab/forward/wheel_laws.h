@@ -1,0 +1,73 @@
+// wheel_laws.h - what the ground does to a wheel at a given slip and speed, for one wheel (double) or four side by side (Lane).
+//
+//   s = (R w - v) / max(|R w|, |v|)                 slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest        (1)
+//   s = (s' + h (R w - v)) / (1 + h max(|R w|, |v|))  where it lags, h = step over relaxation length                       (2)
+//   sy = (sy' - h vy) / (1 + h max(|R w|, |v|)),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
+//   Ft / Fm = 1 - (1 - exp(-x)) / x, x = |s| / sc   (20) janosi;  1 - exp(-x)  (21) burckhardt                             (3)
+#pragma once
+
+#include "host_tools/lab/model/model.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::lab {
+
+using Lane = Eigen::Array<double, 4, 1>;
+
+inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
+                                               // would be too stiff for any step; assumed
+
+inline constexpr double most_side_slip = 4; // a lagging one stays within: beyond it the ground slides whatever it is
+
+namespace law {
+
+inline double magnitude(double x) { return std::fabs(x); }
+inline Lane magnitude(const Lane &x) { return x.abs(); }
+inline double larger(double a, double b) { return std::max(a, b); }
+inline Lane larger(const Lane &a, const Lane &b) { return a.max(b); }
+inline Lane larger(const Lane &a, double b) { return a.max(b); }
+inline double within(double x, double low, double high) { return std::clamp(x, low, high); }
+inline Lane within(const Lane &x, double low, double high) { return x.max(low).min(high); }
+inline double root(double x) { return std::sqrt(x); }
+inline Lane root(const Lane &x) { return x.sqrt(); }
+inline double falling(double x) { return std::exp(-x); }
+inline Lane falling(const Lane &x) { return (-x).exp(); }
+
+} // namespace law
+
+// x / sqrt(x^2 + e^2): sign without the jump.
+template <typename T> inline T soft_sign(const T &x, double e) { return x / law::root(T(x * x + e * e)); }
+
+// (1), rim = R w.
+template <typename T> inline T plain_slip(const T &rim, const T &v) {
+    return law::within(T((rim - v) / law::larger(law::larger(law::magnitude(rim), law::magnitude(v)), rest_speed_m_s)), -1, 1);
+}
+
+inline double slip_of(double rim, double v) { return plain_slip(rim, v); }
+inline Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v); }
+
+// (2); h_1_m: 0 where it does not lag.
+template <typename T> inline T lagging_slip(const T &slip_before, const T &h_1_m, const T &rim, const T &v) {
+    return law::within(T((slip_before + h_1_m * (rim - v)) / (1 + h_1_m * law::larger(law::magnitude(rim), law::magnitude(v)))), -1, 1);
+}
+
+// (4), of a wheel centre that moves sideways at vy, where it lags ...
+template <typename T> inline T side_slip(const T &side_before, const T &h_1_m, const T &rim, const T &v, const T &vy) {
+    const T faster = law::larger(law::magnitude(rim), law::magnitude(v));
+    return law::within(T((side_before - h_1_m * vy) / (1 + h_1_m * faster)), -most_side_slip, most_side_slip);
+}
+// ... and where it does not: against least_m_s at least.
+template <typename T> inline T side_slip(const T &rim, const T &v, const T &vy, double least_m_s) {
+    return -vy / law::larger(law::larger(law::magnitude(rim), law::magnitude(v)), least_m_s);
+}
+
+// (3) over x, for x > 0; constant below 1e-4, where the quotient would lose digits and the curve is straight.
+template <typename T> inline T traction_slope(SoilLaw soil, const T &size) {
+    const T x = law::larger(size, 1e-4), per_x = 1 / x, risen = 1 - law::falling(x);
+    return soil == SoilLaw::burckhardt ? T(risen * per_x) : T((1 - risen * per_x) * per_x);
+}
+
+} // namespace traction::lab

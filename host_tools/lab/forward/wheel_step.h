@@ -1,0 +1,101 @@
+// wheel_step.h - the wheels of one time step: loads, slip, traction, resistance of each, at a body velocity that is being sought.
+//
+// Slip (1), traction (20) janosi or (21) burckhardt, combined slip sideways; the catalogue's ground and wheel effects and the user's
+// terms act here. Loads: the least-norm solution of sum Fn = W, sum Fn x = W ox - M a h, sum Fn y = W oy - M ay h
+// (ay = v r, planar motion). Halves on a joint: each half's own pull F tips it, sum over the half Fn x = W ox / 2 - F h.
+#pragma once
+
+#include "host_tools/lab/inputs/dataset.h"
+#include "physics.h"
+#include "wheel_laws.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace traction::lab {
+
+inline constexpr std::size_t most_wheels = 32;
+
+class WheelStep {
+  public:
+    WheelStep(const Dataset &data, const Physics &physics);
+
+    // Prepares time index k from the state at the step before: wheels first to last - 1, the others are left as they are. away: of the
+    // way from the start, the part along the heading.
+    void prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first = 0,
+                 std::size_t last = most_wheels);
+
+    // What wheel i contributes to (Fx, Fy, Mz) at body velocity q = (vx, vy, yaw rate). Its state() is then that of q.
+    Eigen::Vector3d force(std::size_t i, const Eigen::Vector3d &q);
+    // All wheels at once: their sum, and in `each`, if given, what every one contributes.
+    Eigen::Vector3d forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each);
+    // Moves the state of wheel i by a small change of q, to first order; rolling and side are left. The caller knows the traction's change.
+    void nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N);
+    double body_force(double v) const;   // along the velocity: drag, tether, the user's
+    Eigen::Vector2d grade_accel() const; // of the slope: forward, left
+    void commit();                       // the step is found: slip and play become the next step's memory
+    void remember(std::size_t i, double slip, double side_slip) {
+        state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip;
+        state_[i].side_slip_before = four_[i / 4].side_slip_before[static_cast<Eigen::Index>(i % 4)] = side_slip;
+    }
+
+    // Where the chassis is two halves: what turns one against the other, half the difference of their pulls a step before.
+    void remember_twist(double twist_N) { twist_ = twist_N; }
+    double twist() const { return twist_; }
+
+    struct State {
+        double x = 0, y = 0; // place from the centre of mass (longitudinal motion: from the middle)
+        double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0, load_per_side = 0,
+               load_per_twist = 0;
+        double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1;
+        double slip_before = 0, side_slip_before = 0, play_before = 0;
+        double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
+    };
+    const State &state(std::size_t i) const { return state_[i]; }
+    std::size_t wheels() const { return n_; }
+    bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slips are carried from step to step: a relaxation length
+    bool has_play() const { return play_; }
+    bool feels_path() const { return feels_path_; } // some force depends on the path travelled
+
+  private:
+    // Four wheels side by side; where there are fewer, the last carry nothing.
+    struct Four {
+        Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(),
+             lateral = Lane::Zero();
+        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero(), side_slip_before = Lane::Zero();
+        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero(),
+             load_per_side = Lane::Zero(), load_per_twist = Lane::Zero();
+        Lane rim = Lane::Zero(), load = Lane::Zero(), Fm = Lane::Zero();
+        Lane v, slip, side_slip, traction, rolling, side;
+    };
+    void gather();
+    void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
+    void prepare_wheel(std::size_t i, std::size_t k, double v_before);
+    void prepare_four(std::size_t g, std::size_t k, double v_before);
+    double strength(std::size_t i, double v_before) const;
+    double pull(std::size_t i, double v, double body_v, double side_v);
+    double slip_at(const State &s, double v) const;
+    double side_slip_at(const State &s, double v, double side_v) const;
+    double contact(std::size_t i, double v);
+    void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
+    double load(std::size_t i) const; // without a measured load
+    void loads();
+    void followers();
+
+    const Dataset &data_;
+    const Physics &p_;
+    std::size_t n_;
+    std::array<State, most_wheels> state_{};
+    std::array<double, most_wheels> ahead_{}, behind_{};
+    double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, side_accel_ = 0, twist_ = 0, yaw_ = 0, yaw_rate_ = 0;
+    std::array<Four, most_wheels / 4> four_;
+    bool sideways_ = false; // the body moves sideways as the forces have it, on wheels that grip
+    bool plain_ = false;    // the wheels' forces need no more than `four_`
+    bool even_ = false;     // the ground is as strong everywhere
+    bool motion_terms_ = false, play_ = false, lags_ = false, feels_path_ = false;
+};
+
+} // namespace traction::lab

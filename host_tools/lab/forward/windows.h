@@ -1,0 +1,37 @@
+// windows.h - the mean of a grid series over each row's window, as weights of the series' samples: the same for every candidate.
+//
+//   mean = (S(x1) - S(x0)) / (x1 - x0),  S the integral of the series, which is linear between samples                     (1)
+// A window of no width takes the value there; windows end where the grid ends.
+#pragma once
+
+#include "host_tools/lab/inputs/dataset.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace traction::lab {
+
+class Windows {
+  public:
+    Windows(const Dataset &data, const Balance &balance) : data_(&data), balance_(&balance) {}
+
+    // out = (or, adding, +=) the mean over each row's window, all windows `delay_s` earlier. The weights of the last delay are kept.
+    void mean(const std::vector<double> &series, double delay_s, bool adding, Eigen::Ref<Eigen::VectorXd> out);
+
+  private:
+    struct Row {
+        std::size_t first = 0, weight = 0, count = 0; // samples from `first`, weights from `weight`
+    };
+    void build(double delay_s);
+    void add_row(double x0, double x1);
+
+    const Dataset *data_;
+    const Balance *balance_;
+    std::vector<Row> row_;
+    std::vector<double> weight_;
+    double delay_s_ = 0;
+    bool built_ = false;
+};
+
+} // namespace traction::lab

@@ -1,0 +1,85 @@
+// dataset.h - a log as the forward model wants it: inputs on one uniform grid, and the measured rows of every balance.
+//
+// Inputs (encoder angle, speed and acceleration by zero-phase local polynomials, motor voltage, yaw rate) are resampled.
+// Measurements keep their own times: a row is the mean of a balance over [t0, t1], its prediction the mean over the same window.
+// A signal that the log lacks removes its balance and leaves a message.
+#pragma once
+
+#include "host_tools/lab/model/model.h"
+
+#include "host_tools/log/log.h"
+
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+// What is compared. Per-wheel kinds come once per wheel.
+enum class BalanceKind {
+    current_torque,  // wheel current from the torque balance (17)
+    current_voltage, // wheel current from the voltage balance
+    accel,           // longitudinal specific force
+    radar,           // ground speed by radar, averaged over its window
+    camera_x,        // camera displacement per interval, along the body's x
+    camera_y,        // the same along body y (planar machines)
+    camera_yaw,      // camera heading change per interval (planar machines)
+    yaw_rate,        // by the gyro
+    force,           // drawbar pull of one wheel on a bench
+    torque,          // measured wheel torque on a bench
+};
+
+struct Balance {
+    BalanceKind kind;
+    int wheel = -1;
+    std::string name;  // "wheel0.current_A"
+    std::string title; // for people
+    std::string unit;
+    double noise = 0; // standard deviation of one row, measurement noise alone
+    std::string noise_source;
+    std::vector<double> t0_s, t1_s, measured; // one entry per row
+    std::vector<double> noise_factor;         // of a row's noise, relative to `noise`; empty: all 1
+    std::vector<double> doubt;                // what the smoothing may cost a row's prediction, with its sign; empty: nothing
+};
+
+struct WheelInput {
+    std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
+    std::vector<double> travel_rad;                           // since the wheel last reversed
+    std::vector<double> plain_speed_rad_s,
+        plain_accel_rad_s2;                               // by parabolas throughout: speed_rad_s differs where it jumps; empty: nowhere
+    std::vector<double> voltage_V;                        // at the motor; empty when unknown
+    std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
+    std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged
+};
+
+struct Dataset {
+    double start_s = 0, step_s = 0.01; // grid: time[k] = start_s + k * step_s
+    std::size_t count = 0;
+    bool independent_rows = false; // a table of steady states, not a time series
+    std::vector<WheelInput> wheel;
+    std::vector<double> yaw_rate_rad_s;       // empty when unknown
+    std::vector<double> yaw_rad;              // empty when unknown: integral of the rate, or the camera's
+    std::vector<double> body_speed_m_s;       // imposed speed; empty otherwise
+    std::vector<std::vector<double>> load_N;  // measured load per wheel; empty when not logged
+    std::vector<double> supply_t_s, supply_V; // battery, or one constant
+    bool yaw_free = false;                    // the log measures yaw, so the yaw rate follows from the model's forces
+    bool gyro = false;                        // the yaw rate is a gyro's
+    std::vector<char> gap;                    // 1 where a wheel's speed is not known
+    std::vector<Balance> balance;
+    std::vector<std::string> messages; // what is missing and what that removes
+    double smoothing_half_s = 0;       // half width of the encoder's parabolas
+    double accel_bias_prior_m_s2 = 0;  // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
+    std::string log_file, scenario, date;
+    double duration_s = 0;
+
+    // Share of a wheel's acceleration at omega [rad/s] that the smoothing and the grid lose.
+    double acceleration_loss(double omega_rad_s) const;
+    // Integral of a wheel's voltage at voltage_t_s + lag_s, where the command acts lag_s late on the supply of its own time.
+    std::vector<double> voltage_integral(const WheelInput &input, double lag_s) const;
+    double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
+};
+
+// Never throws for a poor log: what cannot be used is left out with a message. `repeat`: a second run of the same drive, whose
+// difference gives the noise; nullptr when there is none.
+Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat = nullptr);
+
+} // namespace traction::lab

@@ -1,0 +1,109 @@
+#include "addition.h"
+
+#include "host_tools/lab/fit/screen.h"
+#include "result.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace traction::lab {
+
+void append_lineage(Model &model, const Dataset &data, const std::vector<Rung> &ladder, const Rung &final_rung) {
+    for (std::size_t i = 0; i < ladder.size(); ++i) {
+        if (i == 0 && !model.lineage.empty()) continue; // the baseline is the last entry already
+        const bool last = i + 1 == ladder.size();
+        const Rung &r = last && std::isfinite(final_rung.train) ? final_rung : ladder[i];
+        model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor});
+    }
+}
+
+Added add_effect(const Model &model, const Dataset &data, const std::string &effect, int wheel, const std::string &file) {
+    Added added;
+    added.model = model;
+    if (wheel < -1 || wheel >= static_cast<int>(model.wheel.size()))
+        throw ModelError(model.file, 0, "--wheel", "is " + std::to_string(wheel),
+                         "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
+    if (model.find_effect(effect, wheel) != nullptr)
+        throw ModelError(model.file, 0, effect, "is in the model already", "use `traction fit` to fit it, `traction drop` to take it out");
+    if (!file.empty()) {
+        std::ifstream stream(file, std::ios::binary);
+        if (!stream.is_open())
+            throw std::ios_base::failure("cannot open " + file, std::make_error_code(std::errc::no_such_file_or_directory));
+        std::ostringstream text;
+        text << stream.rdbuf();
+        Model bare = model;
+        bare.effects.clear();
+        bare.lineage.clear();
+        const Model with = parse_model(model_text(bare) + "\n" + text.str(), file);
+        const auto found = std::find_if(with.effects.begin(), with.effects.end(), [&](const EffectUse &use) { return use.name == effect; });
+        if (found == with.effects.end())
+            throw ModelError(file, 0, "effect.name", "there is no effect \"" + effect + "\" in it",
+                             "give the name of one of its [[effect]] tables");
+        added.model.effects.push_back(*found);
+        added.model.effects.back().wheel = wheel >= 0 ? wheel : found->wheel;
+    } else {
+        const sim::Effect *known = sim::find_effect(effect);
+        if (known == nullptr)
+            throw ModelError(model.file, 0, effect, "is no effect of the catalogue",
+                             "`traction effects` lists them; for your own use --effect-file");
+        if (wheel >= 0 && !known->per_wheel) throw ModelError(model.file, 0, effect, "cannot be confined to a wheel", "leave --wheel out");
+        Problem problem(data, make_physics(model), free_parameters(model, make_physics(model)));
+        problem.fit({.iterations = 6, .reweight = true});
+        const Screen screen(problem);
+        double best = -1e300;
+        EffectUse use;
+        for (const Candidate &c : catalogue_candidates(model, data, problem.forward().motion())) {
+            if (c.effect != effect || c.wheel != wheel) continue;
+            Physics at = problem.physics();
+            c.prepare(at);
+            Eigen::MatrixXd columns(problem.row_scale.size(), static_cast<Eigen::Index>(c.strengths.size()));
+            for (std::size_t j = 0; j < c.strengths.size(); ++j)
+                columns.col(static_cast<Eigen::Index>(j)) = problem.column(at, c.strengths[j], c.step[j]);
+            const Assessment a = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
+            if (a.gain <= best) continue;
+            best = a.gain;
+            std::vector<double> start;
+            for (std::size_t j = 0; j < c.strengths.size(); ++j) {
+                double v = std::clamp(a.strength[static_cast<Eigen::Index>(j)], c.minimum[j], c.maximum[j]);
+                if (std::fabs(v) < 1e-3 * (c.maximum[j] - c.minimum[j])) v = c.of_interest[j];
+                start.push_back(v);
+            }
+            use = effect_of(c, start);
+        }
+        if (use.name.empty())
+            throw ModelError(model.file, 0, effect, "has no variant that this log can carry",
+                             "drive further, or give its parameters in the model file");
+        added.model.effects.push_back(use);
+    }
+    Model baseline = model;
+    added.ladder.push_back(fit_model(baseline, data, "baseline"));
+    const std::string label = "+ " + effect + (wheel >= 0 ? " on wheel " + std::to_string(wheel) : "");
+    added.ladder.push_back(fit_model(added.model, data, label));
+    added.helps = added.ladder[1].heldout < added.ladder[0].heldout;
+    char buffer[200];
+    std::snprintf(buffer, sizeof buffer, "held-out error %.3f -> %.3f x noise: %s", added.ladder[0].heldout, added.ladder[1].heldout,
+                  added.helps ? "it helps" : "it does not help");
+    added.text = buffer;
+    append_lineage(added.model, data, added.ladder, {label, std::nan(""), std::nan(""), 1});
+    added.model.name = model.name;
+    return added;
+}
+
+std::string added_text(const Added &added) {
+    std::string text;
+    const EffectUse &use = added.model.effects.back();
+    for (const auto &[key, p] : use.parameters) {
+        char buffer[200];
+        std::snprintf(buffer, sizeof buffer, "%s.%s = %.5g [%.5g, %.5g] %s%s\n", use.name.c_str(), key.c_str(), p.value, p.low, p.high,
+                      p.unit.c_str(), p.fixed ? " (shape)" : "");
+        text += buffer;
+    }
+    return text + ladder_text(added.ladder) + added.text + "\n";
+}
+
+} // namespace traction::lab

@@ -1,0 +1,89 @@
+// next_result.cpp - the next experiment as text and JSON.
+#include "host_tools/lab/next/next.h"
+
+#include "append.h"
+#include "host_tools/lab/next/manoeuvre.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+namespace traction::lab {
+
+namespace {
+
+std::string joined(const std::vector<std::string> &members) {
+    std::string text;
+    for (const std::string &m : members) text += (text.empty() ? "" : " or ") + m;
+    return members.size() == 1 ? text + ", is it there" : text;
+}
+
+const char *status_words(const Question &q) {
+    const std::string &status = q.status;
+    if (status == "told") return q.members.size() > 1 ? "the log tells already" : "this log should show it already";
+    if (status == "answered") return "answered by this drive";
+    if (status == "never") return "not by driving";
+    return "by another drive";
+}
+
+} // namespace
+
+nlohmann::json next_json(const NextExperiment &next) {
+    if (next.questions.empty()) return nullptr;
+    using nlohmann::json;
+    json questions = json::array(), tried = json::array();
+    std::set<std::string> separates;
+    for (const Question &q : next.questions) {
+        json one = {{"members", q.members}, {"kind", q.members.size() > 1 ? "which" : "whether"}, {"status", q.status}};
+        if (next.predicted) one["d_before"] = q.before, one["d_after"] = q.after, one["d_best_single"] = q.best;
+        if (!q.measure.empty()) one["measure"] = q.measure;
+        questions.push_back(one);
+        if (q.status == "answered" || !next.predicted) separates.insert(q.members.begin(), q.members.end());
+    }
+    for (const Tried &t : next.tried) {
+        json one = {{"title", t.title}};
+        if (next.predicted) one["duration_s"] = t.duration_s, one["d_least"] = t.least, one["answered"] = t.answered;
+        tried.push_back(one);
+    }
+    json out = {{"version", 2},           {"predicted", next.predicted}, {"title", next.title}, {"separates", separates},
+                {"questions", questions}, {"manoeuvres", tried},         {"notes", next.notes}};
+    out["scenario_toml"] = next.scenario_toml.empty() ? json(nullptr) : json(next.scenario_toml);
+    if (!next.why_not.empty()) out["why_not"] = next.why_not;
+    if (!next.scenario_toml.empty()) out["duration_s"] = next.duration_s;
+    return out;
+}
+
+std::string next_text(const NextExperiment &next) {
+    std::string text;
+    if (next.questions.empty()) return "nothing is left open: no manoeuvre is needed\n";
+    for (const std::string &n : next.notes) append(text, "note: %s\n", n.c_str());
+    if (!next.predicted) {
+        append(text, "no numbers: the simulated rover cannot stand in for this machine (%s).\n", next.why_not.c_str());
+        for (const Question &q : next.questions) append(text, "open: %s\n", joined(q.members).c_str());
+        append(text, next.tried.empty() ? "no manoeuvre of the library is known for these\n" : "manoeuvres known to help:\n");
+        for (const Tried &t : next.tried) append(text, "  %s\n", t.title.c_str());
+        return text;
+    }
+    std::vector<Tried> order = next.tried;
+    std::stable_sort(order.begin(), order.end(), [](const Tried &a, const Tried &b) {
+        return a.answered != b.answered ? a.answered > b.answered : a.least / a.duration_s > b.least / b.duration_s;
+    });
+    if (!order.empty()) append(text, "%-66s %7s %9s %9s\n", "manoeuvre alone", "s", "answers", "least d'");
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i)
+        append(text, "%-66s %7.0f %9d %9.2f\n", order[i].title.c_str(), order[i].duration_s, order[i].answered, order[i].least);
+    append(text, "%-58s %9s %9s\n", "question", "d' before", "d' after");
+    for (const Question &q : next.questions)
+        append(text, "%-58s %9.2f %9.2f  %s\n", joined(q.members).c_str(), q.before, q.after, status_words(q));
+    for (const Question &q : next.questions)
+        if (q.status == "never")
+            append(text, "%s: cannot be separated by driving (d' stays %.2f); %s\n", joined(q.members).c_str(), std::max(q.best, q.after),
+                   q.measure.c_str());
+    if (next.scenario_toml.empty())
+        append(text, "no drive is proposed\n");
+    else
+        append(text, "next: %s (%.0f s)\n", next.title.c_str(), next.duration_s);
+    return text;
+}
+
+} // namespace traction::lab
