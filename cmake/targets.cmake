@@ -1,9 +1,12 @@
-# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings as errors.
-set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Werror -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
+# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings (as errors with TRACTION_WERROR).
+set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
     -Wcast-qual -Wwrite-strings -Wpointer-arith -Wformat=2 -Wswitch-enum -Wvla)
+if(TRACTION_WERROR)
+  list(APPEND TRACTION_WARNINGS -Werror)
+endif()
 set(TRACTION_C_WARNINGS ${TRACTION_WARNINGS} -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition)
 set(TRACTION_CXX_WARNINGS ${TRACTION_WARNINGS} -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi
-    -Wno-restrict) # GCC 12 sees an overlap in "literal" + std::string where there is none (its bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>) # GCC 12 sees an overlap in "literal" + std::string where there is none (its bug 105651)
 
 # Applies warnings and the floating-point contract (-ffp-contract=off: no fused multiply-add, so x86 and ARM agree).
 function(traction_own target)
