@@ -232,7 +232,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.touched = target_stages(kind.target);
         const AxisValues x = values_on(kind.axis, data, motion, physics, current_A);
         if (x.values.empty()) continue;
-        c.parts_wheels = x.parts_wheels;
+        c.varies_between_wheels = x.varies_between_wheels;
         c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);
         if (c.knots.size() < 3) continue;
         for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();
