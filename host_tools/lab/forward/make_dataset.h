@@ -7,7 +7,8 @@
 namespace traction::lab {
 
 // Never throws for a poor log: what cannot be used is left out with a message. `repeat`: a second run of the same drive, whose
-// difference gives the noise; nullptr when there is none. Bounds on the smoothing's bias are taken with the noise that the log itself tells.
+// difference gives the noise; nullptr when there is none. Bounds on the smoothing's bias are taken with the noise that the log itself
+// tells.
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat = nullptr);
 
 } // namespace traction::lab
