@@ -89,7 +89,7 @@ struct ShapeKind {
     const char *name;
     bool straight = false; // a straight line too: a free curve spends its certainty on its coefficients
 };
-// LAB.md section 2. Never measured current or PWM as an axis; "current" is the model's own.
+// docs/evidence.md section 4. Never measured current or PWM as an axis; "current" is the model's own.
 constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::wheel_speed, "torque(wheel speed)"},
     {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},

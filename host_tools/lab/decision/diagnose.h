@@ -15,9 +15,9 @@ namespace traction::lab {
 
 // Decision thresholds (docs/lab_method.md says where each comes from).
 struct DiagnoseOptions {
-    double p_limit = 0.003;             // of the corrected p (Bonferroni): uneven ground mimics soil effects at 0.01, see docs/evidence.md
-    double least_gain = 0.01;           // fall of the held-out error, all balances
-    double least_gain_one = 0.03;       // the same in one balance
+    double p_limit = 0.003;       // of the corrected p (Bonferroni): uneven ground mimics soil effects at 0.01, docs/evidence.md section 5
+    double least_gain = 0.01;     // fall of the held-out error, all balances
+    double least_gain_one = 0.03; // the same in one balance
     double least_prior_reduction = 9.0; // fall of the priors' penalty, squared standard deviations
     int refits = 5;                     // classes that are fitted in full
     int most_effects = 4;

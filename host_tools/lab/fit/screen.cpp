@@ -9,7 +9,7 @@
 namespace traction::lab {
 
 namespace {
-constexpr double heldout_block_s = 5.0; // LAB.md section 2
+constexpr double heldout_block_s = 5.0; // docs/evidence.md section 4
 constexpr double test_block_s = 2.5;
 constexpr double fewest_blocks = 10; // shorter logs are cut finer
 constexpr double most_heldout = 4;   // a block's held-out error counts up to so many times its error in the fit: beyond, the linear

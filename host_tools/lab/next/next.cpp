@@ -16,7 +16,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double answered_at = 2; // d' from which 85 to 93 % are named right (LAB.md section 3)
+constexpr double answered_at = 2; // d' from which 85 to 93 % are named right (docs/evidence.md section 5)
 constexpr double sizes_of_interest = 3;
 constexpr double noticed_at = 4.588; // 2/sqrt(1 - 0.9^2): at this size |cos| = 0.9, the lab's limit of a class, means d' = 2
 constexpr int most_manoeuvres = 3;
