@@ -29,6 +29,22 @@ function(traction_library name)
   traction_own(${name})
 endfunction()
 
+# traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
+# the dev preset compiles without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+function(traction_headers name)
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>) # lets ccache see the header's contents
+  else()
+    target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
+  endif()
+endfunction()
+
+# traction_waits(NAME): this target waits for people, files and its libraries, so its code is compiled for a short build.
+function(traction_waits name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # traction_test(NAME LABEL label SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the emulator
 # when cross-compiling.
 function(traction_test name)
