@@ -154,13 +154,21 @@ void demo(const DemoRequest &request, Outcome &outcome) {
 
 } // namespace
 
-void add_demo(CLI::App &app, Outcome &outcome) {
-    auto request = std::make_shared<DemoRequest>();
-    CLI::App *verb = app.add_subcommand("demo", "the whole loop: hide an effect, simulate, compare, diagnose, add, open the seal");
-    verb->add_option("--seed", request->seed, "draws the hidden effect, the ground and the noise")->capture_default_str();
-    verb->add_option("--out", request->folder, "folder for the log, the seal, the model and the report")->capture_default_str();
-    add_json_option(verb, outcome);
-    verb->callback([request, &outcome] { demo(*request, outcome); });
+Verb verb_demo() {
+    const auto request = std::make_shared<DemoRequest>();
+    return {.name = "demo",
+            .summary = "the whole loop: hide an effect, simulate, compare, diagnose, add, open the seal",
+            .options = {{.name = "--seed",
+                         .into = &request->seed,
+                         .help = "draws the hidden effect, the ground and the noise",
+                         .shows_default = true},
+                        {.name = "--out",
+                         .into = &request->folder,
+                         .help = "folder for the log, the seal, the model and the report",
+                         .value = "FOLDER",
+                         .kind = Kind::folder,
+                         .shows_default = true}},
+            .run = [request](Outcome &outcome) { demo(*request, outcome); }};
 }
 
 } // namespace traction::cli
