@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace traction::lab {
 
@@ -51,7 +52,7 @@ constexpr Key keys[] = {
     {"sensors", "camera.delay_s", nullptr, &B::camera_delay0, stage_sensors},
 };
 
-const Parameters &table_of(const WheelSpec &wheel, const std::string &table) {
+const Parameters &table_of(const WheelSpec &wheel, std::string_view table) {
     return table == "wheel" ? wheel.geometry : table == "motor" ? wheel.motor : wheel.soil;
 }
 
