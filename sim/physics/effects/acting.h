@@ -24,7 +24,8 @@ template <typename T> struct WheelEffectsOf {
     // Every field, for whoever copies wheels into places side by side.
     static constexpr auto all() {
         using E = WheelEffectsOf;
-        return std::array{&E::coulomb_Nm,     &E::viscous_Nms,   &E::stribeck_Nm,      &E::stribeck_speed_rad_s, &E::mesh_fraction,
+        return std::array{// in any order
+                          &E::coulomb_Nm,     &E::viscous_Nms,   &E::stribeck_Nm,      &E::stribeck_speed_rad_s, &E::mesh_fraction,
                           &E::play_rad,       &E::ripple_cos_Nm, &E::ripple_sin_Nm,    &E::ripple_order,         &E::heating_K_W,
                           &E::heating_time_s, &E::wiring_ohm,    &E::dead_voltage_V,   &E::constant_change,      &E::rolling,
                           &E::radius_change,  &E::current_gain,  &E::current_offset_A, &E::encoder_missed};
