@@ -88,8 +88,8 @@ void run(const Arguments &arguments, Outcome &outcome) {
 
     std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
     const bool batch = !arguments.seeds.empty();
-    if (batch && !parse_range(arguments.seeds, first, last)) throw CLI::ValidationError("--seeds", "write FIRST..LAST, such as 0..99");
-    if (batch && !arguments.frames.empty()) throw CLI::ValidationError("--frames", "takes one run, not a batch");
+    if (batch && !parse_range(arguments.seeds, first, last)) throw UsageError("--seeds: write FIRST..LAST, such as 0..99");
+    if (batch && !arguments.frames.empty()) throw UsageError("--frames: takes one run, not a batch");
 
     const auto start = std::chrono::steady_clock::now();
     outcome.json = {{"schema", "traction.simulate/1"}, {"scenario", scenario.name}, {"runs", nlohmann::json::array()}};
@@ -112,29 +112,61 @@ void run(const Arguments &arguments, Outcome &outcome) {
 
 } // namespace
 
-void add_simulate(CLI::App &app, Outcome &outcome) {
-    auto arguments = std::make_shared<Arguments>();
-    CLI::App *verb = app.add_subcommand("simulate", "drive the simulated rover through a scenario and write the log");
-    verb->add_option("SCENARIO", arguments->scenario, "scenario file (scenarios/*.toml)")->required();
-    verb->add_option("--out", arguments->out, "the log, CSV")->type_name("LOG");
-    verb->add_option("--truth", arguments->truth, "what really happened, in a file of its own")->type_name("FILE");
-    verb->add_option("--seed", arguments->seed, "instead of the scenario's seed")->check(CLI::NonNegativeNumber);
-    verb->add_option("--effect", arguments->effects, "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)")
-        ->type_name("EFFECT");
-    verb->add_option("--model", arguments->model, "rover, ground and effects of a lab's model (TOML) instead of the scenario's")
-        ->type_name("FILE");
-    CLI::Option *hide =
-        verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
-    verb->add_option("--hide-count", arguments->hide_count, "how many effects to hide")->check(CLI::Range(1, 5))->needs(hide);
-    verb->add_option("--seal", arguments->seal, "write what was hidden to this file")->type_name("FILE");
-    verb->add_option("--frames", arguments->frames, "frames and commands as text that tests/replay reads")->type_name("FILE");
-    verb->add_option("--firmware", arguments->firmware, "firmware configuration instead of the scenario's")
-        ->check(CLI::IsMember({"default", "paper"}));
-    verb->add_flag("--realtime", arguments->realtime, "keep pace with the wall clock");
-    verb->add_option("--seeds", arguments->seeds, "run seeds FIRST..LAST; file names get the seed")->type_name("A..B");
-    verb->add_option("--jobs", arguments->jobs, "runs side by side")->check(CLI::Range(1, 256));
-    add_json_option(verb, outcome);
-    verb->callback([arguments, &outcome] { run(*arguments, outcome); });
+Verb verb_simulate() {
+    const auto arguments = std::make_shared<Arguments>();
+    return {.name = "simulate",
+            .summary = "drive the simulated rover through a scenario and write the log",
+            .options =
+                {{.argument = "SCENARIO",
+                  .into = &arguments->scenario,
+                  .help = "scenario file (scenarios/*.toml)",
+                  .kind = Kind::scenario,
+                  .required = true},
+                 {.name = "--out", .into = &arguments->out, .help = "the log, CSV", .value = "LOG", .kind = Kind::output},
+                 {.name = "--truth",
+                  .into = &arguments->truth,
+                  .help = "what really happened, in a file of its own",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--seed", .into = &arguments->seed, .help = "instead of the scenario's seed", .range = Range{.low = 0}},
+                 {.name = "--effect",
+                  .into = &arguments->effects,
+                  .help = "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)",
+                  .value = "EFFECT",
+                  .kind = Kind::effect},
+                 {.name = "--model",
+                  .into = &arguments->model,
+                  .help = "rover, ground and effects of a lab's model (TOML) instead of the scenario's",
+                  .value = "FILE",
+                  .kind = Kind::model},
+                 {.name = "--hide",
+                  .into = &arguments->hide,
+                  .help = "hide an effect drawn by this seed",
+                  .value = "SEED",
+                  .range = Range{.low = 0}},
+                 {.name = "--hide-count",
+                  .into = &arguments->hide_count,
+                  .help = "how many effects to hide",
+                  .range = Range{1, 5},
+                  .needs = {"--hide"}},
+                 {.name = "--seal",
+                  .into = &arguments->seal,
+                  .help = "write what was hidden to this file",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--frames",
+                  .into = &arguments->frames,
+                  .help = "frames and commands as text that tests/replay reads",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--firmware",
+                  .into = &arguments->firmware,
+                  .help = "firmware configuration instead of the scenario's",
+                  .one_of = {"default", "paper"}},
+                 {.name = "--realtime", .into = &arguments->realtime, .help = "keep pace with the wall clock"},
+                 {.name = "--seeds", .into = &arguments->seeds, .help = "run seeds FIRST..LAST; file names get the seed", .value = "A..B"},
+                 {.name = "--jobs", .into = &arguments->jobs, .help = "runs side by side", .range = Range{1, 256}}},
+            .run = [arguments](Outcome &outcome) { run(*arguments, outcome); }};
 }
 
 } // namespace traction::cli

@@ -1,4 +1,4 @@
-// encoder.h - incremental encoder on the motor shaft: 120 pulses per motor turn, gear 50:1 (SPEC section 3), cumulative count.
+// encoder.h - incremental encoder on the motor shaft: 120 pulses per motor turn, gear 50:1 (docs/sources.md section 3), cumulative count.
 //
 // Error: rounding to whole pulses (1.05 mrad of the wheel) and, when `missed` is set, that share of the pulses lost.
 #pragma once

@@ -17,15 +17,6 @@
 
 namespace traction::lab {
 
-// What a parameter touches, hence what must be computed again.
-enum Stage : unsigned {
-    stage_motion = sim::needs_motion,
-    stage_torque = sim::needs_torque,
-    stage_voltage = sim::needs_voltage,
-    stage_sensors = sim::needs_sensors,
-    stage_all = sim::needs_stages
-};
-
 // The machine, beside the effects that act on it (acting.h).
 struct WheelPhysics : sim::WheelEffects {
     double x = 0, y = 0, heading = 0, radius = 0, load = 0; // load 0: from the geometry
