@@ -146,8 +146,7 @@ hal::SimHalConfig world_of(const sim::Scenario &scenario, const std::vector<sim:
     world.plant.effects = effects;
     world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
     sim::apply_sensor_effects(effects, world.sensors);
-    for (const sim::ActiveEffect &active : effects)
-        if (active.effect->name == "actuation_delay") world.actuation_delay_s += active.value("delay_s");
+    world.actuation_delay_s = sim::law::actuation_delay_s(0, world.sensors.effects.body.actuation_delay_s);
     for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
     return world;
 }
