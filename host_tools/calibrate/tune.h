@@ -27,6 +27,7 @@ struct TuneLimits {
 struct TuneResult {
     std::array<double, WHEEL_COUNT> pole_1_s{}, gain_rad_s2{}; // p; acceleration per unit of duty
     double kp_s = 0, ki_1 = 0;                                 // of the wheel with the largest gain: the others have more margin
+    double dead_time_s = 0; // beyond the 2 T that every rover has: how late an order acts
     double battery_V = 0, largest_torque_Nm = 0, used_s = 0;
 };
 

@@ -37,7 +37,7 @@ void add_replay(CLI::App &app, Outcome &outcome) {
     auto request = std::make_shared<Request>();
     CLI::App *verb = app.add_subcommand("replay", "run this build's firmware on a log's frames: are the traces the same?");
     verb->add_option("LOG", request->log, "log with raw counts and commands (CSV)")->required();
-    verb->add_option("--frames", request->frames, "write the frames as text for the target's replay program")->type_name("FILE");
+    verb->add_option("--frames", request->frames, "write the frames as text that tractiond --hal replay runs")->type_name("FILE");
     add_json_option(verb, outcome);
     verb->callback([request, &outcome] { replay(request->log, request->frames, outcome); });
 }

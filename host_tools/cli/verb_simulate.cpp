@@ -127,7 +127,7 @@ void add_simulate(CLI::App &app, Outcome &outcome) {
         verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
     verb->add_option("--hide-count", arguments->hide_count, "how many effects to hide")->check(CLI::Range(1, 5))->needs(hide);
     verb->add_option("--seal", arguments->seal, "write what was hidden to this file")->type_name("FILE");
-    verb->add_option("--frames", arguments->frames, "frames and commands as text that tests/replay reads")->type_name("FILE");
+    verb->add_option("--frames", arguments->frames, "frames and commands as text that tractiond --hal replay runs")->type_name("FILE");
     verb->add_option("--firmware", arguments->firmware, "firmware configuration instead of the scenario's")
         ->check(CLI::IsMember({"default", "paper"}));
     verb->add_flag("--realtime", arguments->realtime, "keep pace with the wall clock");

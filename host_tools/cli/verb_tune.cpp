@@ -2,7 +2,7 @@
 #include "verbs.h"
 
 #include "firmware/core/rover_config.h"
-#include "hal/sim/sim_hal.h"
+#include "hal/sim/sim_rover.h"
 #include "host_tools/calibrate/calibrate.h"
 #include "host_tools/calibrate/tune.h"
 #include "sim/scenario/scenario.h"
@@ -34,15 +34,13 @@ void add_tune(CLI::App &app, Outcome &outcome) {
     verb->add_option("--parameters", options->parameters, "set the gains in this parameter file of the firmware")->type_name("FILE");
     add_json_option(verb, outcome);
     verb->callback([options, &outcome] {
-        const sim::Scenario scenario = sim::read_scenario(options->scenario);
-        hal::SimHalConfig world;
-        world.plant = scenario.plant;
-        world.sensors = scenario.sensors;
-        world.plant.effects = scenario.effects;
-        sim::apply_sensor_effects(scenario.effects, world.sensors);
-        world.seed = scenario.seed;
-        world.ticks = 60001; // beyond any time limit
-        hal::SimHal rover(world);
+        sim::Scenario scenario = sim::read_scenario(options->scenario);
+        scenario.duration_s = 601; // beyond any time limit
+        // what fails at its times on the drive plan is the plan's; the rover and its ground are tuned
+        scenario.sensor_faults.clear();
+        scenario.wheel_blocks.clear();
+        scenario.emergency_stops.clear();
+        hal::SimRover rover(scenario, scenario.effects, scenario.seed);
         const TuneResult r = tune(rover.hal(), rover_config_default(), options->limits);
         std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
         for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
