@@ -35,32 +35,35 @@ typedef struct {
 
 static void print_help(void)
 {
-    (void)puts("usage: tractiond --hal NAME [options] [ARGUMENT...]\n"
-               "Runs the rover's firmware on a HAL until it ends, or SIGINT or SIGTERM asks it to stop. The motors are stopped whatever ends it.\n"
-               "\n"
-               "  --hal NAME          the world to drive, below; the ARGUMENTs are the HAL's\n"
-               "  --parameters FILE   the rover's own numbers (traction export --firmware, calibrate, tune)\n"
-               "  --firmware NAME     default, or paper: the paper's own estimator and gains\n"
-               "  --trace FILE        every trace, one line a tick, floats as their bits; - is standard output\n"
-               "  --hash              print the FNV-1a hash over all trace lines at the end\n"
-               "  --realtime          a tick of 10 ms takes 10 ms\n"
-               "  --help              this\n"
-               "\nHALs:");
+    (void)puts(
+        "usage: tractiond --hal NAME [options] [ARGUMENT...]\n"
+        "Runs the rover's firmware on a HAL until it ends, or SIGINT or SIGTERM asks it to stop. The motors are stopped whatever ends it.\n"
+        "\n"
+        "  --hal NAME          the world to drive, below; the ARGUMENTs are the HAL's\n"
+        "  --parameters FILE   the rover's own numbers (traction export --firmware, calibrate, tune)\n"
+        "  --firmware NAME     default, or paper: the paper's own estimator and gains\n"
+        "  --trace FILE        every trace, one line a tick, floats as their bits; - is standard output\n"
+        "  --hash              print the FNV-1a hash over all trace lines at the end\n"
+        "  --realtime          a tick of 10 ms takes 10 ms\n"
+        "  --help              this\n"
+        "\nHALs:");
     size_t count = 0;
     const hal_entry_t *list = hal_list(&count);
     for (size_t i = 0; i < count; i++) {
         (void)printf("  %s %s\n      %s\n", list[i].name, list[i].arguments, list[i].about);
     }
-    (void)puts("\nExit codes: 0 ended or asked to stop, 1 a device was lost, 2 wrong command line, 3 bad input, 4 the trace could not be written.");
+    (void)puts("\nExit codes: 0 ended or asked to stop, 1 a device was lost, 2 wrong command line, 3 bad input, 4 the trace could not be "
+               "written.");
 }
 
 // Returns false after telling what is wrong.
 static bool parse(int argc, char **argv, options_t *options)
 {
     static const struct option known[] = {
-        {"hal", required_argument, NULL, 'H'},   {"parameters", required_argument, NULL, 'p'}, {"firmware", required_argument, NULL, 'f'},
-        {"trace", required_argument, NULL, 't'}, {"hash", no_argument, NULL, 'x'},             {"realtime", no_argument, NULL, 'r'},
-        {"help", no_argument, NULL, 'h'},        {NULL, 0, NULL, 0},
+        {"hal", required_argument, NULL, 'H'},      {"parameters", required_argument, NULL, 'p'},
+        {"firmware", required_argument, NULL, 'f'}, {"trace", required_argument, NULL, 't'},
+        {"hash", no_argument, NULL, 'x'},           {"realtime", no_argument, NULL, 'r'},
+        {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
     };
     for (int letter = 0; (letter = getopt_long(argc, argv, "h", known, NULL)) != -1;) {
         options->hal = letter == 'H' ? optarg : options->hal;

@@ -82,8 +82,9 @@ static int64_t field(reader_t *reader, const char *name, int base, int64_t low, 
     }
     char *end = NULL;
     errno = 0;
-    const bool begins = *reader->at == '-' ? base == 10 && reader->at[1] >= '0' && reader->at[1] <= '9'
-                                           : (*reader->at >= '0' && *reader->at <= '9') || (base == 16 && strchr("abcdef", *reader->at) != NULL);
+    const bool begins = *reader->at == '-'
+                            ? base == 10 && reader->at[1] >= '0' && reader->at[1] <= '9'
+                            : (*reader->at >= '0' && *reader->at <= '9') || (base == 16 && strchr("abcdef", *reader->at) != NULL);
     const long long value = begins ? strtoll(reader->at, &end, base) : 0;
     if (!begins || (*end != ' ' && *end != '\n' && *end != '\0')) {
         refuse(reader, name, base == 16 ? "not a hexadecimal number" : "not a whole number");
@@ -91,7 +92,8 @@ static int64_t field(reader_t *reader, const char *name, int base, int64_t low, 
     }
     if (errno != 0 || value < low || value > high) {
         char mend[80];
-        (void)snprintf(mend, sizeof mend, base == 16 ? "out of range; %" PRIx64 " to %" PRIx64 : "out of range; %" PRId64 " to %" PRId64, low, high);
+        (void)snprintf(mend, sizeof mend, base == 16 ? "out of range; %" PRIx64 " to %" PRIx64 : "out of range; %" PRId64 " to %" PRId64,
+                       low, high);
         refuse(reader, name, mend);
         return 0;
     }

@@ -29,11 +29,7 @@ Request request_of(std::span<const char *const> argument) {
     if (argument.empty()) throw BadArgument{"--hal sim: no scenario; give its file"};
     Request request{.scenario = sim::read_scenario(argument[0]), .effects = {}, .seed = 0};
     request.seed = request.scenario.seed;
-    request.effects = request.scenario.effects;
-    if (request.scenario.hidden) {
-        const auto hidden = sim::draw_effects(*request.scenario.hidden);
-        request.effects.insert(request.effects.end(), hidden.begin(), hidden.end());
-    }
+    request.effects = effects_of(request.scenario);
     for (const std::string_view text : argument.subspan(1)) {
         if (text.starts_with("seed=")) {
             const std::string_view number = text.substr(5);
@@ -43,7 +39,8 @@ Request request_of(std::span<const char *const> argument) {
         } else if (text.starts_with("effect=")) {
             request.effects.push_back(sim::parse_effect(std::string(text.substr(7))));
         } else {
-            throw BadArgument{"--hal sim: " + std::string(text) + ": unknown; after the scenario come seed=N and effect=NAME:PARAMETER=VALUE"};
+            throw BadArgument{"--hal sim: " + std::string(text) +
+                              ": unknown; after the scenario come seed=N and effect=NAME:PARAMETER=VALUE"};
         }
     }
     return request;
@@ -51,7 +48,8 @@ Request request_of(std::span<const char *const> argument) {
 
 // Everything the HAL owns. Exceptions end here: the loop is C.
 struct Opened {
-    explicit Opened(Request asked) : request(std::move(asked)), rover(request.scenario, request.effects, request.seed), plan(request.scenario) {}
+    explicit Opened(Request asked)
+        : request(std::move(asked)), rover(request.scenario, request.effects, request.seed), plan(request.scenario) {}
     Request request;
     SimRover rover;
     PlanOperator plan;
@@ -100,7 +98,8 @@ hal_result_t hal_open_sim(int count, const char *const *argument, hal_opened_t *
     message[0] = '\0';
     try {
         auto made = std::make_unique<hal::Opened>(hal::request_of({argument, static_cast<std::size_t>(count)}));
-        if (const sim::FirmwareChoice &firmware = made->request.scenario.firmware; firmware.config != "default" || firmware.doppler_scale > 0)
+        if (const sim::FirmwareChoice &firmware = made->request.scenario.firmware;
+            firmware.config != "default" || firmware.doppler_scale > 0)
             say(made->request.scenario.file + ": its [firmware] is not used: the daemon has its own (--firmware, --parameters)");
         opened->hal = hal::guarded(made.get());
         opened->command = [](void *context, const sensor_frame_t *frame, command_t *command) {

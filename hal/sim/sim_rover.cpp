@@ -6,6 +6,15 @@ namespace {
 constexpr std::int64_t tick_ms = TICK_US / 1000;
 } // namespace
 
+std::vector<sim::ActiveEffect> effects_of(const sim::Scenario &scenario) {
+    std::vector<sim::ActiveEffect> effects = scenario.effects;
+    if (scenario.hidden) {
+        const auto hidden = sim::draw_effects(*scenario.hidden);
+        effects.insert(effects.end(), hidden.begin(), hidden.end());
+    }
+    return effects;
+}
+
 std::int64_t actuation_delay_ms(std::span<const sim::ActiveEffect> effects) {
     double delay_s = 0;
     for (const sim::ActiveEffect &active : effects)

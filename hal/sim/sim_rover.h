@@ -11,8 +11,12 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace traction::hal {
+
+// The effects of a scenario, drawn and hidden ones after those it states.
+std::vector<sim::ActiveEffect> effects_of(const sim::Scenario &scenario);
 
 // The world of a scenario with `effects` (the scenario's own must be among them). Ends after the scenario's duration.
 SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed);

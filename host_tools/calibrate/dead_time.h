@@ -9,6 +9,7 @@
 #include "firmware/core/signals.h"
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 namespace traction {
@@ -22,7 +23,10 @@ struct Sample { // one tick
     std::array<Wheel, WHEEL_COUNT> wheel{};
 };
 
-// [s], 0 to 0.25. Samples without a step of duty tell nothing: 0.
+// Duty in force over tick k when orders act dead_time_s late; 0 before the first.
+double duty_in_force(std::span<const Sample> samples, std::size_t k, std::size_t wheel, double dead_time_s);
+
+// [s], 0 to 0.25 in steps of 1 ms. Samples without a step of duty tell nothing: 0.
 double dead_time_s(std::span<const Sample> samples);
 
 } // namespace traction

@@ -51,6 +51,7 @@ class Experiment : public Link {
     Experiment(const control_config_t &config, const TuneLimits &limits) : config_(config), limits_(limits) {
         pulse(probe_duty, 0.03); // the current of a wheel at rest tells its circuit
         pulse(0, 0.1);
+        probe_ticks_ = plan_.size();
         for (const double duty : {0.5, -0.5, 1.0, -1.0, 0.7, -0.7}) {
             pulse(duty * limits.duty, 0.7);
             pulse(0, 0.5);
@@ -80,17 +81,15 @@ class Experiment : public Link {
                 throw std::runtime_error("tune: wheel " + std::to_string(i) +
                                          " took more torque than allowed; check its current sensor, or raise --torque-Nm");
             sample.wheel[i] = {.speed_rad_s = w, .current_A = current_A, .ordered = last_duty_[i]};
-            learn_circuit(i, w, current_A);
-            // duty of the tick before last acts over the difference that the encoder shows now: half of each; only turning wheels obey (1)
-            const bool turning =
-                std::fabs(w) > 0.5 && std::fabs(last_w_[i]) > 0.5 && last_duty_[i] * w > 0 && last_duty_[i] == older_duty_[i];
-            if (turning) fit_[i].add({last_w_[i], last_duty_[i] * battery_V_, last_duty_[i] > 0 ? 1.0 : -1.0}, w);
-            older_duty_[i] = last_duty_[i];
-            last_duty_[i] = within_torque(i, plan_[samples_.size()], w);
-            last_w_[i] = w;
-            command.duty[i] = static_cast<float>(last_duty_[i]);
         }
         samples_.push_back(sample);
+        if (samples_.size() == probe_ticks_) seen_late_s_ = std::floor(dead_time_s(samples_) / tick_s + 1e-6) * tick_s;
+        for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+            const Sample::Wheel &wheel = sample.wheel[i];
+            learn_circuit(i, duty_in_force(samples_, samples_.size() - 1, i, seen_late_s_), wheel.speed_rad_s, wheel.current_A);
+            last_duty_[i] = within_torque(i, plan_[samples_.size() - 1], wheel.speed_rad_s);
+            command.duty[i] = static_cast<float>(last_duty_[i]);
+        }
         command.mode = MODE_OPEN_LOOP;
     }
 
@@ -106,9 +105,10 @@ class Experiment : public Link {
         r.dead_time_s = dead_time_s(samples_);
         double largest = 0;
         for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-            if (fit_[i].rows < 50)
+            const Fit fit = fit_of(i, r.dead_time_s);
+            if (fit.rows < 50)
                 throw std::runtime_error("tune: wheel " + std::to_string(i) + " hardly turned; raise --duty or --torque-Nm, or free it");
-            const auto [a, b, c] = fit_[i].solve();
+            const auto [a, b, c] = fit.solve();
             if (!(a > 0.2 && a < 0.9999 && b > 0))
                 throw std::runtime_error("tune: wheel " + std::to_string(i) + " does not answer like a motor; check its encoder's sign");
             r.pole_1_s[i] = -std::log(a) / tick_s;
@@ -127,9 +127,20 @@ class Experiment : public Link {
     void pulse(double duty, double seconds) {
         for (double t = 0; t < seconds; t += tick_s) plan_.push_back(duty);
     }
-    // (3) for the duty written last, whose current is read now: R from the probe at rest, ke from what turns.
-    void learn_circuit(std::size_t i, double w, double current_A) {
-        const double volt = last_duty_[i] * battery_V_;
+    // (1) over the ticks of a turning wheel whose duty held still: half of the encoder's difference is the tick's before.
+    Fit fit_of(std::size_t i, double late_s) const {
+        Fit fit;
+        for (std::size_t k = 1; k < samples_.size(); k++) {
+            const double w = samples_[k].wheel[i].speed_rad_s, last_w = samples_[k - 1].wheel[i].speed_rad_s;
+            const double duty = duty_in_force(samples_, k, i, late_s), last_duty = duty_in_force(samples_, k - 1, i, late_s);
+            const bool turning = std::fabs(w) > 0.5 && std::fabs(last_w) > 0.5 && duty * w > 0 && duty == last_duty;
+            if (turning) fit.add({last_w, duty * samples_[k].battery_V, duty > 0 ? 1.0 : -1.0}, w);
+        }
+        return fit;
+    }
+    // (3) for the duty in force, whose current is read now: R from the probe at rest, ke from what turns.
+    void learn_circuit(std::size_t i, double duty, double w, double current_A) {
+        const double volt = duty * battery_V_;
         if (std::fabs(w) < 0.3 && std::fabs(current_A) > 0.02 && volt * current_A > 0) { // 10 steps of the converter
             ohm_[i] = ohm_[i] > 0 ? std::min(ohm_[i], volt / current_A) : volt / current_A;
         } else if (std::fabs(w) > 1 && ohm_[i] > 0) {
@@ -152,8 +163,9 @@ class Experiment : public Link {
     std::vector<Sample> samples_;
     sense_state_t sense_{};
     std::array<double, WHEEL_COUNT> ohm_{}, emf_Vs_{};
-    std::array<Fit, WHEEL_COUNT> fit_{};
-    std::array<double, WHEEL_COUNT> last_w_{}, last_duty_{}, older_duty_{};
+    std::array<double, WHEEL_COUNT> last_duty_{};
+    std::size_t probe_ticks_ = 0; // after these the probe has told in which tick an order acts
+    double seen_late_s_ = 0;      // whole ticks of it
     double used_s_ = 0, battery_V_ = 0, largest_Nm_ = 0;
 };
 

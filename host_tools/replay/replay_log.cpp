@@ -133,10 +133,14 @@ class Compare : public Link {
     Compare(const log::Log &log, const replay_hal_t &replay) : log_(log), replay_(replay) {
         for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
             const std::string wheel = "wheel" + std::to_string(i) + '.';
-            watch(wheel + "duty", [](const trace_t &t, std::size_t w) { return t.wheel[w].duty; }, i);
-            watch(wheel + "slip", [](const trace_t &t, std::size_t w) { return t.wheel[w].slip; }, i);
-            watch(wheel + "traction_N", [](const trace_t &t, std::size_t w) { return t.wheel[w].traction_N; }, i);
-            watch(wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return t.wheel[w].set_speed_rad_s; }, i);
+            watch(
+                wheel + "duty", [](const trace_t &t, std::size_t w) { return t.wheel[w].duty; }, i);
+            watch(
+                wheel + "slip", [](const trace_t &t, std::size_t w) { return t.wheel[w].slip; }, i);
+            watch(
+                wheel + "traction_N", [](const trace_t &t, std::size_t w) { return t.wheel[w].traction_N; }, i);
+            watch(
+                wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return t.wheel[w].set_speed_rad_s; }, i);
         }
         watch("estimate.speed_m_s", [](const trace_t &t, std::size_t) { return t.speed_m_s; });
         watch("estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return t.speed_std_m_s; });
@@ -171,7 +175,9 @@ class Compare : public Link {
         Value value;
         std::size_t wheel;
     };
-    void watch(const std::string &name, Value value, std::size_t wheel = 0) { watched_.push_back({name, Column(log_, name), value, wheel}); }
+    void watch(const std::string &name, Value value, std::size_t wheel = 0) {
+        watched_.push_back({name, Column(log_, name), value, wheel});
+    }
 
     const log::Log &log_;
     const replay_hal_t &replay_;

@@ -141,8 +141,8 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     Session session(scenario, options, rover.world(), seed, config.ticks);
     pace_hal_t pace{};
     const hal_t world = rover.hal();
-    const daemon_result_t run = run_loop(options.realtime ? pace_hal(&pace, &world) : world,
-                                         firmware_config(scenario.firmware, options.firmware), session);
+    const daemon_result_t run =
+        run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_config(scenario.firmware, options.firmware), session);
     result.ended_by = run.ended_by;
     result.ticks = run.ticks;
     result.faults = run.faults;
