@@ -1,6 +1,6 @@
 #include "open.h"
 
-#include "replay/open_replay.h"
+#include "hal/replay/open_replay.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #define HAL_WITH_SIM 0
 #endif
 #if HAL_WITH_SIM
-#include "sim/open_sim.h"
+#include "hal/sim/open_sim.h"
 #endif
 
 static const hal_entry_t entries[] = {

@@ -82,9 +82,9 @@ static int64_t field(reader_t *reader, const char *name, int base, int64_t low, 
     }
     char *end = NULL;
     errno = 0;
-    const bool begins = *reader->at == '-'
-                            ? base == 10 && reader->at[1] >= '0' && reader->at[1] <= '9'
-                            : (*reader->at >= '0' && *reader->at <= '9') || (base == 16 && strchr("abcdef", *reader->at) != NULL);
+    const char *digit = *reader->at == '-' && base == 10 ? reader->at + 1 : reader->at; // strtoll takes blanks, + and 0x too
+    const bool begins =
+        (*digit >= '0' && *digit <= '9' && digit[1] != 'x' && digit[1] != 'X') || (base == 16 && *digit >= 'a' && *digit <= 'f');
     const long long value = begins ? strtoll(reader->at, &end, base) : 0;
     if (!begins || (*end != ' ' && *end != '\n' && *end != '\0')) {
         refuse(reader, name, base == 16 ? "not a hexadecimal number" : "not a whole number");
