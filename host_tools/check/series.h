@@ -62,7 +62,8 @@ struct UnitSlip {
     double factor;
     const char *written; // "rpm"
 };
-// The slip whose factor is within +-35 % of `factor`, nullptr when there is none. kind: 'w' angular speed, 'I', 'v' speed or length, 'a'.
+// The slip whose factor is within 1.35 times of `factor` either way, nullptr when there is none. kind: 'w' angular speed, 'I', 'v' speed or
+// length, 'a'.
 const UnitSlip *unit_slip(char kind, double factor);
 
 // printf into a string.

@@ -86,7 +86,7 @@ TEST(Inputs, rows_at_a_jump_have_a_smoothing_bias_and_calm_rows_have_none) {
         if (std::fabs(t - jump_s) < 0.05) jump = std::max(jump, torque.noise_factor[r]), ++rows_there;
     }
     EXPECT_LT(calm, 1.2);                            // the encoder's own noise
-    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: doubted, or left out
+    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: widened, or left out
 }
 
 TEST(Inputs, a_current_that_is_the_mean_of_its_tick_stands_for_the_middle_of_it) {
@@ -130,7 +130,7 @@ TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_noth
     const Dataset data = make_dataset(bench(), motor(0));
     Physics physics = make_physics(bench());
     for (const double dead_V : {0.0, 0.5, 1.3, 1.6}) {
-        physics.wheel[0].dead_voltage = dead_V;
+        physics.wheel[0].dead_voltage_V = dead_V;
         const Eigen::VectorXd predicted = Forward(data).predict(physics);
         Eigen::Index row = 0;
         for (const Balance &b : data.balance)
