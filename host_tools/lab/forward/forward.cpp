@@ -278,8 +278,8 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
                 const double a = motion.accel_m_s2[k];
                 lagged += share * (0.5 * (a + before) - lagged);
                 before = a;
-                const double felt = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
-                const double read = felt * sim::law::accel_scale(1, b.accel_scale) + b.accel_bias0;
+                const double tilted = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
+                const double read = tilted * sim::law::accel_scale(1, b.accel_scale) + b.accel_bias0;
                 x[k] = sim::law::accel_drift(sim::law::accel_bias(read, b.accel_bias_m_s2), b.accel_drift_m_s3, d.time(k)) +
                        factor(TermTarget::accel, k) - 1;
             }
