@@ -81,6 +81,10 @@ static float scaled(rover_parameter_t i, const rover_parameters_t *parameters, c
     switch ((int)i) { // SCALED keys alone
     case ROVER_back_emf_Vs_rad:
         return v[ROVER_torque_constant_Nm_A];
+    case ROVER_doppler_scale: {
+        const float per_deg = parameters->radar == ROVER_RADAR_MDU1130 ? 0.004f : 0.00635f;      // 0.00635 = tan 20 deg * pi/180
+        return r[i] + per_deg * (v[ROVER_radar_depression_deg] - r[ROVER_radar_depression_deg]); // (7)
+    }
     case ROVER_stall_current_A:
         return r[i] * current; // (4)
     case ROVER_current_continuous_A: {

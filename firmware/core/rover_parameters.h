@@ -11,9 +11,11 @@
 //   w0 = V/ke                                                                   no-load speed                                (3)
 //   stall ~ I_grip; continuous ~ the lesser of I_grip and sqrt(rise_max/(Ra R_th)); I^2 t ~ continuous^2                     (4)
 //   Kp ~ 1/k, Ki ~ Kp p, slew ~ k; slip: Kp_s ~ Kp/R, Ki_s ~ Ki/R; platform: Kv, Ki ~ 1/R                                    (5)
+//   the templates hold at 20 deg of depression; beside it the scale is 1 + g (deg - 20), g by the radar's beam             (7)
 //   wheel speeds ~ w0; speed ~ w_max R, at most 0.95 of what the radar hears; yaw ~ speed/b; disagreement ~ speed            (6)
 //
-// Derived here; why each: docs/rover_format.md.
+// Derived here; why each: docs/rover_format.md. g: 0.4 % per deg of the wide beam as measured (docs/firmware.md), tan 20 deg of a narrow
+// one.
 #ifndef TRACTION_FIRMWARE_CORE_ROVER_PARAMETERS_H
 #define TRACTION_FIRMWARE_CORE_ROVER_PARAMETERS_H
 
@@ -60,7 +62,7 @@ extern "C" {
     X(radar_offset_count, OWN, 512.0f, 0.0f, 1023.0f)                                                                                      \
     X(radar_max_count, OWN, 1023.0f, 255.0f, 1023.0f)                                                                                      \
     X(radar_quiet_count2, OWN, 2.0f, 0.0f, 1e5f)                                                                                           \
-    X(doppler_scale, OWN, 1.0f, 0.5f, 2.0f)                                                                                                \
+    X(doppler_scale, SCALED, 1.0f, 0.5f, 2.0f)                                                                                             \
     X(current_continuous_A, SCALED, 1.5f, 0.01f, 100.0f)                                                                                   \
     X(current_peak_A2s, SCALED, 8.0f, 1e-3f, 1e5f)                                                                                         \
     X(stall_current_A, SCALED, 1.4f, 0.01f, 100.0f)                                                                                        \

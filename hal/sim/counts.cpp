@@ -13,13 +13,17 @@ int round_count(double value, int low, int high) {
 
 void to_counts(const CountScale &scale, const sim::Measurements &measured, sensor_frame_t *frame) {
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-        frame->encoder_count[i] = measured.encoder_count[i];
-        const double current = measured.current_A[i] / scale.current_A + scale.current_offset;
-        frame->current_count[i] = static_cast<std::uint16_t>(round_count(current, 0, scale.converter_max));
+        frame->encoder_count[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(measured.encoder_count[i]) *
+                                                            static_cast<std::uint32_t>(scale.encoder_sign[i])); // wraps
+        const double current = measured.current_A[i] / scale.current_A + scale.current_offset[i];
+        frame->current_count[i] = static_cast<std::uint16_t>(round_count(current, 0, scale.current_max));
     }
-    frame->battery_count = static_cast<std::uint16_t>(round_count(measured.battery_V / scale.battery_V, 0, scale.converter_max));
-    frame->accel_x_count = static_cast<std::int16_t>(round_count(measured.accel_x_m_s2 / scale.accel_m_s2, INT16_MIN, INT16_MAX));
-    frame->gyro_z_count = static_cast<std::int16_t>(round_count(measured.gyro_z_rad_s / scale.gyro_rad_s, INT16_MIN, INT16_MAX));
+    frame->battery_count =
+        static_cast<std::uint16_t>(round_count(measured.battery_V / scale.battery_V + scale.battery_offset, 0, scale.battery_max));
+    frame->accel_x_count =
+        static_cast<std::int16_t>(round_count(measured.accel_x_m_s2 / scale.accel_m_s2 + scale.accel_offset, INT16_MIN, INT16_MAX));
+    frame->gyro_z_count =
+        static_cast<std::int16_t>(round_count(measured.gyro_z_rad_s / scale.gyro_rad_s + scale.gyro_offset, INT16_MIN, INT16_MAX));
     const std::size_t samples = std::min<std::size_t>(measured.radar_count.size(), RADAR_SAMPLES_PER_TICK_MAX);
     std::copy_n(measured.radar_count.begin(), samples, frame->radar_count);
     std::fill(frame->radar_count + samples, frame->radar_count + RADAR_SAMPLES_PER_TICK_MAX, std::uint16_t{0});

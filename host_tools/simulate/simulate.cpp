@@ -4,9 +4,9 @@
 #include "header.h"
 #include "recorder.h"
 
-#include "firmware/core/rover_config.h"
 #include "hal/sim/fault_hal.h"
 #include "hal/sim/sim_hal.h"
+#include "host_tools/rover/rover.h"
 
 #include <chrono>
 #include <cstring>
@@ -16,13 +16,6 @@
 namespace traction {
 
 namespace {
-
-control_config_t firmware_config(const sim::FirmwareChoice &choice, const std::optional<std::string> &instead) {
-    const bool paper = instead.value_or(choice.config) == "paper";
-    control_config_t config = paper ? rover_config_paper() : rover_config_default();
-    if (choice.doppler_scale > 0) config.doppler.scale = static_cast<float>(choice.doppler_scale);
-    return config;
-}
 
 command_t command_of(const sim::Demand &demand) {
     command_t command{};
@@ -138,12 +131,14 @@ std::uint64_t mix_trace(std::uint64_t hash, const trace_t &trace) {
 hal::SimHalConfig world_of(const sim::Scenario &scenario, const std::vector<sim::ActiveEffect> &effects, std::uint64_t seed) {
     hal::SimHalConfig world{.plant = scenario.plant,
                             .sensors = scenario.sensors,
-                            .scale = {},
+                            .scale = count_scale(scenario.rover),
                             .wheel_blocks = {},
                             .actuation_delay_s = 0,
                             .ticks = static_cast<std::uint32_t>(scenario.duration_s * 100 + 0.5),
                             .seed = seed};
     world.plant.effects = effects;
+    const std::vector<sim::ActiveEffect> wheels = sim::wheel_differences(scenario.rover);
+    world.plant.effects.insert(world.plant.effects.end(), wheels.begin(), wheels.end());
     world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
     sim::apply_sensor_effects(effects, world.sensors);
     for (const sim::ActiveEffect &active : effects)
@@ -172,7 +167,7 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     const bool wrapped = !scenario.sensor_faults.empty() || !scenario.emergency_stops.empty();
     const hal_t hal = wrapped ? faulty.hal() : world.hal();
 
-    const control_config_t firmware = firmware_config(scenario.firmware, options.firmware);
+    const control_config_t firmware = firmware_of(scenario, options.firmware.value_or(""));
     const auto state = std::make_unique<control_state_t>();
     control_reset(&firmware, state.get());
     Operator person(scenario);
@@ -211,7 +206,7 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     if (options.record) result.log = recorder.take();
     if (options.truth) result.truth = truth.take();
     if (frames) frames->keep();
-    write_header(scenario, config, seed, result.log);
+    write_header(scenario, seed, result.log);
     if (options.truth) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
     return result;
 }

@@ -28,6 +28,7 @@ struct SensorConfig {
     double accel_tilt_rad_s2_m = 0; // effect accel_tilt
     AnalogConfig gyro;
     CameraConfig camera;
+    double encoder_counts_per_turn = sim::encoder_counts_per_turn; // of a wheel
     std::array<double, wheel_count> encoder_missed{};
     double radar_scale = 0;       // effect radar_scale
     double radar_pitch_s2_m = 0;  // effect radar_pitch
@@ -68,6 +69,7 @@ class Sensors {
     AnalogSensor battery_, accel_, gyro_;
     Measurements pending_;
     Truth last_;
+    double tan_depression_;
     double radar_path_m_ = 0;
     std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
     double lean_rad_ = 0;            // accel_tilt, lagged
