@@ -22,7 +22,8 @@ struct Fit {
     std::size_t rows = 0;
     bool good = false; // enough rows, and x1 and x2 tell apart
 };
-constexpr double design_effect = 25; // [1] variance ratio, assumed: soil noise makes neighbouring rows alike (LAB.md: 20-100)
+constexpr double design_effect =
+    25; // [1] variance ratio, assumed: soil noise makes neighbouring rows alike (docs/evidence.md section 4: 20 to 100)
 Fit fit(const std::vector<double> &y, const std::vector<double> &x1, const std::vector<double> &x2 = {});
 
 double correlation(const std::vector<double> &a, const std::vector<double> &b);

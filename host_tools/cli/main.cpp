@@ -1,4 +1,5 @@
 // main.cpp - the command line: registers the verbs, runs one, turns what went wrong into one message and an exit code.
+#include "parse.h"
 #include "verbs.h"
 
 #include "host_tools/log/log.h"
@@ -16,32 +17,34 @@
 
 namespace traction::cli {
 
-#define X(name) void add_##name(CLI::App &app, Outcome &outcome);
+#define X(name) Verb verb_##name();
 #include "verb_list.inc"
 #undef X
 
-void add_json_option(CLI::App *verb, Outcome &outcome) {
-    verb->add_option("--json", outcome.json_file, "write the result as JSON to this file")->type_name("FILE");
+const std::vector<Verb> &all_verbs() {
+    static const std::vector<Verb> verbs = {
+#define X(name) verb_##name(),
+#include "verb_list.inc"
+#undef X
+    };
+    return verbs;
 }
 
-CLI::App *bench_group(CLI::App &app) {
-    const auto made = app.get_subcommands([](const CLI::App *verb) { return verb->get_name() == "bench"; });
-    if (!made.empty()) return made.front();
-    CLI::App *group = app.add_subcommand("bench", "measure this build beside its peers");
-    group->require_subcommand(1);
-    return group;
+const std::vector<Group> &all_groups() {
+    static const std::vector<Group> groups = {{"bench", "measure this build beside its peers"}};
+    return groups;
 }
 
 namespace {
 
-void write_json(const Outcome &outcome) {
-    const std::string temporary = outcome.json_file + ".part";
+void write_json(const Outcome &outcome, const std::string &path) {
+    const std::string temporary = path + ".part";
     std::ofstream file;
     file.exceptions(std::ios::failbit | std::ios::badbit);
     file.open(temporary);
     file << outcome.json.dump(1) << '\n';
     file.close();
-    std::filesystem::rename(temporary, outcome.json_file);
+    std::filesystem::rename(temporary, path);
 }
 
 int fail(ExitCode code, const char *message) {
@@ -51,24 +54,17 @@ int fail(ExitCode code, const char *message) {
 }
 
 int run(int argc, char **argv) {
-    CLI::App app{"Traction: ground speed, slip and traction of a small wheeled rover; its simulator; and the lab that finds\n"
-                 "the physics its model lacks."};
-    app.name("traction");
-    app.set_version_flag("--version", TRACTION_VERSION);
-    app.require_subcommand(1);
-    app.footer("Exit codes: 0 done, 1 the answer is negative, 2 wrong command line, 3 bad input, 4 file error, 70 a bug.\n"
-               "./traction also knows: test (build and run every test), build, prove, fuzz, mutate, help.");
+    const Parsed parsed = parse(argc, argv);
+    if (parsed.verb == nullptr) {
+        std::fputs(parsed.text.c_str(), parsed.exit_code == exit_done ? stdout : stderr);
+        return parsed.exit_code;
+    }
     Outcome outcome;
-#define X(name) add_##name(app, outcome);
-#include "verb_list.inc"
-#undef X
     try {
-        app.parse(argc, argv);
-        if (!outcome.json_file.empty()) write_json(outcome);
-    } catch (const CLI::ParseError &error) {
-        if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
-        app.exit(error);
-        return exit_usage;
+        parsed.verb->run(outcome);
+        if (!parsed.json_file.empty()) write_json(outcome, parsed.json_file);
+    } catch (const UsageError &error) {
+        return fail(exit_usage, (parsed.verb->name + ": " + error.what()).c_str());
     } catch (const log::FileError &error) {
         return fail(exit_io, error.what());
     } catch (const log::LogError &error) {

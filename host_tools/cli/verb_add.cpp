@@ -1,4 +1,5 @@
 // verb_add.cpp - traction add EFFECT: a new model file with that effect, fitted; the old file is untouched.
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/lab/result/addition.h"
@@ -39,22 +40,29 @@ void add_effect(const AddRequest &request, Outcome &outcome) {
 
 } // namespace
 
-void add_add(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = app.add_subcommand("add", "add an effect to a model, fit it, write a new model file");
-    auto request = std::make_shared<AddRequest>();
-    verb->add_option("effect", request->effect, "name from `traction effects`, or of an [[effect]] in --effect-file")->required();
-    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
-    verb->add_option("--log", request->input.log, "log (CSV)")->required()->type_name("FILE");
-    verb->add_option("--out", request->out, "the new model file")->required()->type_name("FILE");
-    verb->add_option("--wheel", request->wheel, "only this wheel");
-    verb->add_option("--effect-file", request->from_file, "TOML with an [[effect]] of your own")->type_name("FILE");
-    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
-    verb->add_option("--repeat", request->input.repeat, "a second run of the same drive")->type_name("FILE");
-    verb->add_option("--from", request->input.from_s, "use the log from this time [s]");
-    verb->add_option("--to", request->input.to_s, "use the log up to this time [s]");
-    verb->add_option("--report", request->report, "write a report page (HTML)")->type_name("FILE");
-    add_json_option(verb, outcome);
-    verb->callback([=, &outcome] { add_effect(*request, outcome); });
+Verb verb_add() {
+    const auto request = std::make_shared<AddRequest>();
+    return {.name = "add",
+            .summary = "add an effect to a model, fit it, write a new model file",
+            .options = rows({{.argument = "EFFECT",
+                              .into = &request->effect,
+                              .help = "name from `traction effects`, or of an [[effect]] in --effect-file",
+                              .kind = Kind::effect,
+                              .required = true}},
+                            rows(lab_rows(request->input), {{.name = "--out",
+                                                             .into = &request->out,
+                                                             .help = "the new model file",
+                                                             .value = "FILE",
+                                                             .kind = Kind::output,
+                                                             .required = true},
+                                                            {.name = "--wheel", .into = &request->wheel, .help = "only this wheel"},
+                                                            {.name = "--effect-file",
+                                                             .into = &request->from_file,
+                                                             .help = "TOML with an [[effect]] of your own",
+                                                             .value = "FILE",
+                                                             .kind = Kind::input},
+                                                            report_row(request->report)})),
+            .run = [request](Outcome &outcome) { add_effect(*request, outcome); }};
 }
 
 } // namespace traction::cli

@@ -69,23 +69,35 @@ void run(Request &request, Outcome &outcome) {
 
 } // namespace
 
-void add_bench_lab(CLI::App &app, Outcome &outcome) {
+Verb verb_bench_lab() {
     const auto request = std::make_shared<Request>();
-    CLI::App *verb =
-        bench_group(app)->add_subcommand("lab", "a blind campaign: sealed logs, the lab's answers, the seals opened, the table");
     bench_lab::CampaignOptions &options = request->campaign;
-    verb->add_option("--logs", options.logs, "how many")->check(CLI::Range(1, 100000))->capture_default_str();
-    verb->add_option("--jobs", options.jobs, "side by side")->check(CLI::Range(1, 256))->capture_default_str();
-    verb->add_option("--seed", options.seed, "of the first log")->capture_default_str();
-    verb->add_option("--duration", options.duration_s, "seconds each")->check(CLI::Range(20.0, 3600.0))->capture_default_str();
-    verb->add_option("--generator", options.generator, "whose rover: independent (shares no code with the lab) or plant (the ODE world)")
-        ->check(CLI::IsMember({"independent", "plant"}))
-        ->capture_default_str();
-    verb->add_option("--keep", options.folder, "keep logs, seals and answers in this folder")->type_name("FOLDER");
-    verb->add_flag("--time", request->time, "measure the time a log: one job");
-    verb->add_flag("--peers", request->peers, "PySINDy and SysIdentPy on the same logs (a .venv with pinned packages)");
-    add_json_option(verb, outcome);
-    verb->callback([request, &outcome] { run(*request, outcome); });
+    return {.name = "bench lab",
+            .summary = "a blind campaign: sealed logs, the lab's answers, the seals opened, the table",
+            .options = {{.name = "--logs", .into = &options.logs, .help = "how many", .shows_default = true, .range = Range{1, 100000}},
+                        {.name = "--jobs", .into = &options.jobs, .help = "side by side", .shows_default = true, .range = Range{1, 256}},
+                        {.name = "--seed", .into = &options.seed, .help = "of the first log", .shows_default = true},
+                        {.name = "--duration",
+                         .into = &options.duration_s,
+                         .help = "seconds each",
+                         .value = "S",
+                         .shows_default = true,
+                         .range = Range{20, 3600}},
+                        {.name = "--generator",
+                         .into = &options.generator,
+                         .help = "whose rover; independent shares no code with the lab, plant is the ODE world",
+                         .shows_default = true,
+                         .one_of = {"independent", "plant"}},
+                        {.name = "--keep",
+                         .into = &options.folder,
+                         .help = "keep logs, seals and answers in this folder",
+                         .value = "FOLDER",
+                         .kind = Kind::folder},
+                        {.name = "--time", .into = &request->time, .help = "measure the time a log: one job"},
+                        {.name = "--peers",
+                         .into = &request->peers,
+                         .help = "PySINDy and SysIdentPy on the same logs (a .venv with pinned packages)"}},
+            .run = [request](Outcome &outcome) { run(*request, outcome); }};
 }
 
 } // namespace traction::cli

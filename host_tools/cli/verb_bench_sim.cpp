@@ -41,20 +41,24 @@ int run_program(const std::string &program, int rounds, const std::string &json)
 
 } // namespace
 
-void add_bench_sim(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = bench_group(app)->add_subcommand("sim", "simulated seconds per CPU second, beside ODE contacts and MuJoCo");
+Verb verb_bench_sim() {
     const auto rounds = std::make_shared<int>(5);
-    verb->add_option("--rounds", *rounds, "interleaved rounds; the median is shown")->check(CLI::Range(1, 1000))->capture_default_str();
-    add_json_option(verb, outcome);
-    verb->callback([rounds, &outcome] {
-        const std::filesystem::path json =
-            std::filesystem::temp_directory_path() / ("traction_bench_sim_" + std::to_string(getpid()) + ".json");
-        outcome.exit_code = run_program(bench_program().string(), *rounds, json.string());
-        std::ifstream file(json);
-        if (file) outcome.json = nlohmann::json::parse(file);
-        file.close();
-        std::filesystem::remove(json);
-    });
+    return {.name = "bench sim",
+            .summary = "simulated seconds per CPU second, beside ODE contacts and MuJoCo",
+            .options = {{.name = "--rounds",
+                         .into = rounds.get(),
+                         .help = "interleaved rounds; the median is shown",
+                         .shows_default = true,
+                         .range = Range{1, 1000}}},
+            .run = [rounds](Outcome &outcome) {
+                const std::filesystem::path json =
+                    std::filesystem::temp_directory_path() / ("traction_bench_sim_" + std::to_string(getpid()) + ".json");
+                outcome.exit_code = run_program(bench_program().string(), *rounds, json.string());
+                std::ifstream file(json);
+                if (file) outcome.json = nlohmann::json::parse(file);
+                file.close();
+                std::filesystem::remove(json);
+            }};
 }
 
 } // namespace traction::cli

@@ -41,23 +41,24 @@ int run_program(const std::string &program, int seeds, const std::string &json) 
 
 } // namespace
 
-void add_bench_speed(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = bench_group(app)->add_subcommand(
-        "speed", "ground speed from the radar: the paper's method and ours, by profile; exit 1 when a goal is missed");
+Verb verb_bench_speed() {
     const auto seeds = std::make_shared<int>(12);
-    verb->add_option("--seeds", *seeds, "radar tracks of each profile; a third of them for the misfits")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    add_json_option(verb, outcome);
-    verb->callback([seeds, &outcome] {
-        const std::filesystem::path json =
-            std::filesystem::temp_directory_path() / ("traction_bench_speed_" + std::to_string(getpid()) + ".json");
-        outcome.exit_code = run_program(bench_program().string(), *seeds, json.string());
-        std::ifstream file(json);
-        if (file) outcome.json = nlohmann::json::parse(file);
-        file.close();
-        std::filesystem::remove(json);
-    });
+    return {.name = "bench speed",
+            .summary = "ground speed from the radar: the paper's method and ours, by profile; exit 1 when a goal is missed",
+            .options = {{.name = "--seeds",
+                         .into = seeds.get(),
+                         .help = "radar tracks of each profile; a third of them for the misfits",
+                         .shows_default = true,
+                         .range = Range{1, 1000}}},
+            .run = [seeds](Outcome &outcome) {
+                const std::filesystem::path json =
+                    std::filesystem::temp_directory_path() / ("traction_bench_speed_" + std::to_string(getpid()) + ".json");
+                outcome.exit_code = run_program(bench_program().string(), *seeds, json.string());
+                std::ifstream file(json);
+                if (file) outcome.json = nlohmann::json::parse(file);
+                file.close();
+                std::filesystem::remove(json);
+            }};
 }
 
 } // namespace traction::cli

@@ -1,4 +1,5 @@
 // traction check LOG: is this log fit to learn from? Data quality, signs and units, and what the drive did not excite.
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/check/check.h"
@@ -105,23 +106,28 @@ void print_report(const CheckOptions &options, const check::Report &report) {
                 report.passed() ? "fit to learn from" : "NOT fit to learn from until the errors are mended");
 }
 
+void run_check(const CheckOptions &options, Outcome &outcome) {
+    const check::Machine machine = options.model.empty() ? check::Machine{} : machine_of(lab::read_model(options.model));
+    const check::Report report = check::check_file(options.log, options.map, machine);
+    print_report(options, report);
+    outcome.json = report_json(options, report);
+    outcome.exit_code = report.passed() ? exit_done : exit_negative;
+}
+
 } // namespace
 
-void add_check(CLI::App &app, Outcome &outcome) {
+Verb verb_check() {
     const auto options = std::make_shared<CheckOptions>();
-    CLI::App *verb = app.add_subcommand("check", "judge a log before anything is learnt from it: samples, signs, units, excitation");
-    verb->add_option("log", options->log, "the log")->required()->type_name("LOG.csv");
-    verb->add_option("--map", options->map, "read a foreign CSV through this map (docs/log_format.md)")->type_name("MAP.toml");
-    verb->add_option("--model", options->model, "what is known of the machine: units are then told by their factor")
-        ->type_name("MODEL.toml");
-    add_json_option(verb, outcome);
-    verb->callback([options, &outcome] {
-        const check::Machine machine = options->model.empty() ? check::Machine{} : machine_of(lab::read_model(options->model));
-        const check::Report report = check::check_file(options->log, options->map, machine);
-        print_report(*options, report);
-        outcome.json = report_json(*options, report);
-        outcome.exit_code = report.passed() ? exit_done : exit_negative;
-    });
+    return {.name = "check",
+            .summary = "judge a log before anything is learnt from it: samples, signs, units, excitation",
+            .options = {log_row(options->log, "the log"),
+                        map_row(options->map),
+                        {.name = "--model",
+                         .into = &options->model,
+                         .help = "what is known of the machine: units are then told by their factor",
+                         .value = "FILE",
+                         .kind = Kind::model}},
+            .run = [options](Outcome &outcome) { run_check(*options, outcome); }};
 }
 
 } // namespace traction::cli

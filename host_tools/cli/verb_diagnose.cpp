@@ -1,11 +1,12 @@
 // verb_diagnose.cpp - traction diagnose: which physics the model lacks, how sure that is, and what this log cannot say.
 #include "progress.h"
+#include "rows.h"
 #include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/next/next.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
@@ -48,30 +49,30 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
         return;
     }
     lab::Model model = diagnosis.model;
-    const lab::Rung rung = lab::fit_model(model, session.data, "fitted");
-    lab::append_lineage(model, session.data, diagnosis.ladder, rung);
+    const lab::LadderStep step = lab::fit_model(model, session.data, "fitted");
+    lab::append_lineage(model, session.data, diagnosis.ladder, step);
     lab::write_model(model, request.out);
     std::printf("wrote %s\n", request.out.c_str());
 }
 
 } // namespace
 
-void add_diagnose(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = app.add_subcommand("diagnose", "which physics the model lacks, by held-out error");
-    auto request = std::make_shared<DiagnoseRequest>();
-    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
-    verb->add_option("--log", request->input.log, "log (CSV)")->required()->type_name("FILE");
-    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
-    verb->add_option("--repeat", request->input.repeat, "a second run of the same drive: its difference is the noise")->type_name("FILE");
-    verb->add_option("--from", request->input.from_s, "use the log from this time [s]");
-    verb->add_option("--to", request->input.to_s, "use the log up to this time [s]");
-    verb->add_option("--report", request->report, "write a report page (HTML)")->type_name("FILE");
-    CLI::Option *apply = verb->add_flag("--apply", request->apply, "add what was named, refit, and write the new model to --out");
-    CLI::Option *out = verb->add_option("--out", request->out, "the new model file")->type_name("FILE");
-    apply->needs(out);
-    out->needs(apply);
-    add_json_option(verb, outcome);
-    verb->callback([=, &outcome] { diagnose(*request, outcome); });
+Verb verb_diagnose() {
+    const auto request = std::make_shared<DiagnoseRequest>();
+    return {.name = "diagnose",
+            .summary = "which physics the model lacks, by held-out error",
+            .options = rows(lab_rows(request->input), {report_row(request->report),
+                                                       {.name = "--apply",
+                                                        .into = &request->apply,
+                                                        .help = "add what was named, refit, and write the new model to --out",
+                                                        .needs = {"--out"}},
+                                                       {.name = "--out",
+                                                        .into = &request->out,
+                                                        .help = "the new model file",
+                                                        .value = "FILE",
+                                                        .kind = Kind::output,
+                                                        .needs = {"--apply"}}}),
+            .run = [request](Outcome &outcome) { diagnose(*request, outcome); }};
 }
 
 } // namespace traction::cli

@@ -126,29 +126,30 @@ void explain(const sim::Effect &effect) {
         std::string(effect.name).c_str(), strength.c_str());
 }
 
+void effects(const std::string &name, Outcome &outcome) {
+    nlohmann::json list = nlohmann::json::array();
+    if (!name.empty()) {
+        const sim::Effect &effect = effect_or_mend(name);
+        explain(effect);
+        list.push_back(effect_json(effect));
+    } else {
+        for (const sim::Effect &effect : sim::catalogue()) {
+            std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), place_of(effect.acts_on), std::string(effect.title).c_str());
+            list.push_back(effect_json(effect));
+        }
+        std::printf("\n%zu effects. `traction effects NAME` explains one.\n", sim::catalogue().size());
+    }
+    outcome.json = {{"schema", "traction.effects/1"}, {"effects", list}};
+}
+
 } // namespace
 
-void add_effects(CLI::App &app, Outcome &outcome) {
+Verb verb_effects() {
     const auto name = std::make_shared<std::string>();
-    CLI::App *verb = app.add_subcommand("effects", "list the physical effects that can be simulated and found, or explain one");
-    verb->add_option("name", *name, "the effect to explain")->type_name("NAME");
-    add_json_option(verb, outcome);
-    verb->callback([name, &outcome] {
-        nlohmann::json effects = nlohmann::json::array();
-        if (!name->empty()) {
-            const sim::Effect &effect = effect_or_mend(*name);
-            explain(effect);
-            effects.push_back(effect_json(effect));
-        } else {
-            for (const sim::Effect &effect : sim::catalogue()) {
-                std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), place_of(effect.acts_on),
-                            std::string(effect.title).c_str());
-                effects.push_back(effect_json(effect));
-            }
-            std::printf("\n%zu effects. `traction effects NAME` explains one.\n", sim::catalogue().size());
-        }
-        outcome.json = {{"schema", "traction.effects/1"}, {"effects", effects}};
-    });
+    return {.name = "effects",
+            .summary = "list the physical effects that can be simulated and found, or explain one",
+            .options = {{.argument = "NAME", .into = name.get(), .help = "the effect to explain", .kind = Kind::effect}},
+            .run = [name](Outcome &outcome) { effects(*name, outcome); }};
 }
 
 } // namespace traction::cli

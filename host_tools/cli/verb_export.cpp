@@ -1,4 +1,5 @@
 // verb_export.cpp - traction export: every residual as CSV, the firmware's parameters, or the regressors of every candidate.
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/bench_lab/regressors.h"
@@ -56,7 +57,7 @@ void export_all(const ExportRequest &request, Outcome &outcome) {
         outcome.json["firmware"] = text;
     }
     if (request.residuals.empty() && request.regressors.empty()) return;
-    if (request.input.log.empty()) throw CLI::ValidationError("export", "--residuals and --regressors need --log LOG");
+    if (request.input.log.empty()) throw UsageError("--residuals and --regressors need --log LOG");
     const lab::Session session = lab::open_session(request.input);
     if (!request.regressors.empty()) {
         bench_lab::write_regressors(session.model, session.data, request.regressors);
@@ -82,23 +83,33 @@ void export_all(const ExportRequest &request, Outcome &outcome) {
 
 } // namespace
 
-void add_export(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = app.add_subcommand("export", "residuals as CSV or JSON, a model's numbers for the firmware");
-    auto request = std::make_shared<ExportRequest>();
-    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
-    verb->add_option("--log", request->input.log, "log (CSV)")->type_name("FILE");
-    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
-    verb->add_option("--residuals", request->residuals, "write every residual to this CSV")->type_name("FILE");
-    verb->add_option("--firmware", request->firmware, "write the firmware's parameters to this file")->type_name("FILE");
-    verb->add_option("--regressors", request->regressors,
-                     "fit, then write what every candidate effect would change (host_tools/bench_lab/regressors.h)")
-        ->type_name("FILE");
-    add_json_option(verb, outcome);
-    verb->callback([=, &outcome] {
-        if (request->residuals.empty() && request->firmware.empty() && request->regressors.empty())
-            throw CLI::ValidationError("export", "give --residuals FILE, --firmware FILE or --regressors FILE");
-        export_all(*request, outcome);
-    });
+Verb verb_export() {
+    const auto request = std::make_shared<ExportRequest>();
+    return {.name = "export",
+            .summary = "residuals as CSV or JSON, a model's numbers for the firmware",
+            .options = {log_row(request->input.log, "log (CSV), for residuals and regressors", false),
+                        model_row(request->input.model),
+                        map_row(request->input.map),
+                        {.name = "--residuals",
+                         .into = &request->residuals,
+                         .help = "write every residual to this CSV",
+                         .value = "FILE",
+                         .kind = Kind::output},
+                        {.name = "--firmware",
+                         .into = &request->firmware,
+                         .help = "write the firmware's parameters to this file",
+                         .value = "FILE",
+                         .kind = Kind::output},
+                        {.name = "--regressors",
+                         .into = &request->regressors,
+                         .help = "fit, then write what every candidate effect would change (host_tools/bench_lab/regressors.h)",
+                         .value = "FILE",
+                         .kind = Kind::output}},
+            .run = [request](Outcome &outcome) {
+                if (request->residuals.empty() && request->firmware.empty() && request->regressors.empty())
+                    throw UsageError("give --residuals FILE, --firmware FILE or --regressors FILE");
+                export_all(*request, outcome);
+            }};
 }
 
 } // namespace traction::cli

@@ -1,4 +1,5 @@
 // verb_fit.cpp - traction fit: a model's parameters from a log, with intervals, whiteness and held-out error.
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/lab/fit/profile.h"
@@ -60,7 +61,7 @@ void fit(const FitRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     lab::Model model = session.model;
     for (const std::string &message : session.data.messages) std::printf("note: %s\n", message.c_str());
-    const lab::Rung rung = lab::fit_model(model, session.data, "fitted");
+    const lab::LadderStep step = lab::fit_model(model, session.data, "fitted");
     print_table("rover", model.rover);
     print_table("wheel", model.wheel.front().geometry);
     print_table("motor", model.wheel.front().motor);
@@ -75,10 +76,10 @@ void fit(const FitRequest &request, Outcome &outcome) {
         for (std::size_t i = 1; i < b.acf.value.size(); ++i) outside += std::fabs(b.acf.value[i]) > b.acf.band;
         std::printf("whiteness  %-28s %d of %zu lags outside the 99 %% band\n", b.name.c_str(), outside, b.acf.value.size() - 1);
     }
-    std::printf("error on training %.3f, held out %.3f (in units of noise)\n", rung.train, rung.heldout);
+    std::printf("error on training %.3f, held out %.3f (in units of noise)\n", step.train, step.heldout);
     outcome.json = lab::head_json("fit", model, session.data);
     lab::put_comparison(outcome.json, comparison);
-    outcome.json["ladder"] = lab::ladder_json({rung});
+    outcome.json["ladder"] = lab::ladder_json({step});
     nlohmann::json fitted = nlohmann::json::object();
     const auto put = [&](const std::string &name, const lab::Parameters &table) {
         for (const auto &[key, p] : table)
@@ -90,36 +91,35 @@ void fit(const FitRequest &request, Outcome &outcome) {
     if (request.profiled) print_profiles(request, session, outcome);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (request.out.empty()) return;
-    lab::append_lineage(model, session.data, {{"fitted", rung.train, rung.heldout, rung.floor}}, rung);
+    lab::append_lineage(model, session.data, {{"fitted", step.train, step.heldout, step.floor}}, step);
     lab::write_model(model, request.out);
     std::printf("wrote %s\n", request.out.c_str());
 }
 
 } // namespace
 
-void add_fit(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = app.add_subcommand("fit", "fit a model's parameters to a log, with intervals");
-    auto request = std::make_shared<FitRequest>();
-    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
-    verb->add_option("--log", request->input.log, "log (CSV)")->required()->type_name("FILE");
-    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE");
-    verb->add_option("--repeat", request->input.repeat, "a second run of the same drive")->type_name("FILE");
-    verb->add_option("--from", request->input.from_s, "use the log from this time [s]");
-    verb->add_option("--to", request->input.to_s, "use the log up to this time [s]");
-    verb->add_option("--out", request->out, "write the fitted model to this file")->type_name("FILE");
-    verb->add_option("--report", request->report, "write a report page (HTML)")->type_name("FILE");
-    CLI::Option *profile =
-        verb->add_option("--profile", request->profile,
-                         "profile likelihood of these, such as motor.resistance_ohm; of every effect's strength when none is named")
-            ->expected(0, 100)
-            ->type_name("PARAM...");
-    verb->add_option("--profile-figure", request->figure, "draw the profiles (SVG)")->type_name("FILE")->needs(profile);
-    add_json_option(verb, outcome);
-    verb->callback([=, &outcome] {
-        request->profiled = profile->count() > 0;
-        std::erase(request->profile, ""); // --profile alone: every effect's strength
-        fit(*request, outcome);
-    });
+Verb verb_fit() {
+    const auto request = std::make_shared<FitRequest>();
+    return {
+        .name = "fit",
+        .summary = "fit a model's parameters to a log, with intervals",
+        .options = rows(
+            lab_rows(request->input),
+            {{.name = "--out", .into = &request->out, .help = "write the fitted model to this file", .value = "FILE", .kind = Kind::output},
+             report_row(request->report),
+             {.name = "--profile",
+              .into = &request->profile,
+              .help = "profile likelihood of these, such as motor.resistance_ohm; of every effect's strength when none is named",
+              .value = "PARAM...",
+              .at_most = 100,
+              .given = &request->profiled},
+             {.name = "--profile-figure",
+              .into = &request->figure,
+              .help = "draw the profiles (SVG)",
+              .value = "FILE",
+              .kind = Kind::output,
+              .needs = {"--profile"}}}),
+        .run = [request](Outcome &outcome) { fit(*request, outcome); }};
 }
 
 } // namespace traction::cli

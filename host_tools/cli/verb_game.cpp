@@ -35,30 +35,52 @@ game::Turn play(const GameRequest &request) {
 
 } // namespace
 
-void add_game(CLI::App &app, Outcome &outcome) {
-    auto request = std::make_shared<GameRequest>();
-    CLI::App *verb = app.add_subcommand("game", "a sealed log to learn on: look, guess an effect, add it, watch the ladder, open the seal");
-    CLI::Option *fresh = verb->add_option("--new", request->fresh.seed, "start a game; the seed hides the effect")->type_name("SEED");
-    CLI::Option *guess =
-        verb->add_option("--guess", request->guess, "fit the model with this effect, without keeping it")->type_name("EFFECT");
-    CLI::Option *add = verb->add_option("--add", request->add, "the same, and keep it")->type_name("EFFECT");
-    CLI::Option *open = verb->add_flag("--open", request->open, "open the seal and be scored: the end");
-    const std::vector<CLI::Option *> actions = {fresh, guess, add, open};
-    for (std::size_t i = 0; i < actions.size(); ++i)
-        for (std::size_t j = i + 1; j < actions.size(); ++j) actions[i]->excludes(actions[j]);
-    verb->add_option("--folder", request->folder, "the game: its log, model, state and seal")->capture_default_str();
-    verb->add_option("--wheel", request->wheel, "only this wheel (with --guess or --add)")->check(CLI::Range(0, 3));
-    verb->add_option("--soil", request->fresh.soil, "sand, gravel or concrete")->capture_default_str()->needs(fresh);
-    verb->add_flag("--hard", request->fresh.hard, "hide any effect of the catalogue")->needs(fresh);
-    verb->add_flag("--replace", request->fresh.replace, "give up the game that is in the folder")->needs(fresh);
-    add_json_option(verb, outcome);
-    verb->callback([=, &outcome] {
-        request->starts = fresh->count() > 0;
-        const game::Turn turn = play(*request);
-        std::fputs(turn.text.c_str(), stdout);
-        outcome.json = turn.json;
-        if (turn.json.contains("helps") && !turn.json["helps"].get<bool>()) outcome.exit_code = exit_negative;
-    });
+Verb verb_game() {
+    const auto request = std::make_shared<GameRequest>();
+    return {
+        .name = "game",
+        .summary = "a sealed log to learn on: look, guess an effect, add it, watch the ladder, open the seal",
+        .options =
+            {{.name = "--new",
+              .into = &request->fresh.seed,
+              .help = "start a game; the seed hides the effect",
+              .value = "SEED",
+              .excludes = {"--guess", "--add", "--open"},
+              .given = &request->starts},
+             {.name = "--guess",
+              .into = &request->guess,
+              .help = "fit the model with this effect, without keeping it",
+              .value = "EFFECT",
+              .kind = Kind::effect,
+              .excludes = {"--add", "--open"}},
+             {.name = "--add",
+              .into = &request->add,
+              .help = "the same, and keep it",
+              .value = "EFFECT",
+              .kind = Kind::effect,
+              .excludes = {"--open"}},
+             {.name = "--open", .into = &request->open, .help = "open the seal and be scored: the end"},
+             {.name = "--folder",
+              .into = &request->folder,
+              .help = "the game: its log, model, state and seal",
+              .value = "FOLDER",
+              .kind = Kind::folder,
+              .shows_default = true},
+             {.name = "--wheel", .into = &request->wheel, .help = "only this wheel (with --guess or --add)", .range = Range{0, 3}},
+             {.name = "--soil",
+              .into = &request->fresh.soil,
+              .help = "the ground",
+              .shows_default = true,
+              .one_of = {"sand", "gravel", "concrete"},
+              .needs = {"--new"}},
+             {.name = "--hard", .into = &request->fresh.hard, .help = "hide any effect of the catalogue", .needs = {"--new"}},
+             {.name = "--replace", .into = &request->fresh.replace, .help = "give up the game that is in the folder", .needs = {"--new"}}},
+        .run = [request](Outcome &outcome) {
+            const game::Turn turn = play(*request);
+            std::fputs(turn.text.c_str(), stdout);
+            outcome.json = turn.json;
+            if (turn.json.contains("helps") && !turn.json["helps"].get<bool>()) outcome.exit_code = exit_negative;
+        }};
 }
 
 } // namespace traction::cli

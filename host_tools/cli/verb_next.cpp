@@ -1,8 +1,9 @@
 // verb_next.cpp - traction next: the drive that answers what a log left open, with the predicted d' of every question.
+#include "rows.h"
 #include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/next/next.h"
+#include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
@@ -23,8 +24,7 @@ struct NextRequest {
 };
 
 void next(const NextRequest &request, Outcome &outcome) {
-    if (request.input.log.empty() && request.effects.empty())
-        throw CLI::ValidationError("next", "give --log LOG, or --effects NAME..., or both");
+    if (request.input.log.empty() && request.effects.empty()) throw UsageError("give --log LOG, or --effects NAME..., or both");
     std::optional<lab::Session> session;
     if (!request.input.log.empty()) session = lab::open_session(request.input);
     lab::NextExperiment answer;
@@ -56,21 +56,32 @@ void next(const NextRequest &request, Outcome &outcome) {
 
 } // namespace
 
-void add_next(CLI::App &app, Outcome &outcome) {
-    CLI::App *verb = app.add_subcommand("next", "the drive that answers what a log left open, by predicted difference");
-    auto request = std::make_shared<NextRequest>();
-    verb->add_option("--model", request->input.model, "model file (TOML)")->required()->type_name("FILE");
-    CLI::Option *log = verb->add_option("--log", request->input.log, "log (CSV) that was not enough")->type_name("FILE");
-    verb->add_option("--map", request->input.map, "map for a foreign CSV (TOML)")->type_name("FILE")->needs(log);
-    CLI::Option *effects =
-        verb->add_option("--effects", request->effects,
-                         "tell these apart (or, one alone: show it), instead of what a diagnosis leaves open; NAME or NAME:WHEEL");
-    verb->add_flag("--all", request->all, "also ask for every effect that the log could not have shown, beside classes")
-        ->excludes(effects)
-        ->needs(log);
-    verb->add_option("--out", request->out, "write the scenario to this file")->type_name("FILE");
-    add_json_option(verb, outcome);
-    verb->callback([=, &outcome] { next(*request, outcome); });
+Verb verb_next() {
+    const auto request = std::make_shared<NextRequest>();
+    return {
+        .name = "next",
+        .summary = "the drive that answers what a log left open, by predicted difference",
+        .options =
+            {log_row(request->input.log, "log (CSV) that was not enough", false),
+             model_row(request->input.model),
+             {.name = "--map",
+              .into = &request->input.map,
+              .help = "map for a foreign CSV (TOML)",
+              .value = "FILE",
+              .kind = Kind::input,
+              .needs = {"--log"}},
+             {.name = "--effects",
+              .into = &request->effects,
+              .help = "tell these apart (or, one alone: show it), instead of what a diagnosis leaves open; NAME or NAME:WHEEL",
+              .value = "NAME...",
+              .kind = Kind::effect},
+             {.name = "--all",
+              .into = &request->all,
+              .help = "also ask for every effect that the log could not have shown, beside classes",
+              .needs = {"--log"},
+              .excludes = {"--effects"}},
+             {.name = "--out", .into = &request->out, .help = "write the scenario to this file", .value = "FILE", .kind = Kind::output}},
+        .run = [request](Outcome &outcome) { next(*request, outcome); }};
 }
 
 } // namespace traction::cli

@@ -1,4 +1,5 @@
 // traction plot LOG --out FILE.svg|png: draws signals of any log without a display.
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/log/log.h"
@@ -45,23 +46,29 @@ std::string check_ending(const std::string &path) {
 
 } // namespace
 
-void add_plot(CLI::App &app, Outcome &outcome) {
+Verb verb_plot() {
     const auto options = std::make_shared<PlotOptions>();
-    CLI::App *verb = app.add_subcommand("plot", "draw signals of any log as SVG or PNG, one panel per unit");
-    verb->add_option("log", options->log, "the log")->required()->type_name("LOG");
-    verb->add_option("--signals", options->figure.signals, "names with commas between; * stands for any text; all when left out")
-        ->delimiter(',')
-        ->type_name("A,B,...");
-    verb->add_option("--map", options->map, "how to read a foreign CSV")->type_name("MAP.toml");
-    verb->add_option("--from", options->figure.from_s, "first time shown")->type_name("S");
-    verb->add_option("--to", options->figure.to_s, "last time shown")->type_name("S");
-    verb->add_option("--width", options->width_px, "width of the figure")->check(CLI::Range(200.0, 8000.0))->type_name("PX");
-    verb->add_option("--out", options->out, "the figure")
-        ->required()
-        ->type_name("FILE.svg|png")
-        ->check(CLI::Validator(check_ending, "", "ending"));
-    add_json_option(verb, outcome);
-    verb->callback([options, &outcome] { plot(*options, outcome); });
+    return {.name = "plot",
+            .summary = "draw signals of any log as SVG or PNG, one panel per unit",
+            .options =
+                {log_row(options->log, "the log"),
+                 {.name = "--signals",
+                  .into = &options->figure.signals,
+                  .help = "names with commas between; * stands for any text; all when left out",
+                  .value = "A,B,...",
+                  .delimiter = ','},
+                 map_row(options->map),
+                 {.name = "--from", .into = &options->figure.from_s, .help = "first time shown", .value = "S"},
+                 {.name = "--to", .into = &options->figure.to_s, .help = "last time shown", .value = "S"},
+                 {.name = "--width", .into = &options->width_px, .help = "width of the figure", .value = "PX", .range = Range{200, 8000}},
+                 {.name = "--out",
+                  .into = &options->out,
+                  .help = "the figure",
+                  .value = "FILE.svg|png",
+                  .kind = Kind::output,
+                  .required = true,
+                  .check = check_ending}},
+            .run = [options](Outcome &outcome) { plot(*options, outcome); }};
 }
 
 } // namespace traction::cli

@@ -1,4 +1,5 @@
 // verb_replay.cpp - traction replay LOG: runs this build's control_step on a log's frames and compares the traces.
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/replay/replay_log.h"
@@ -28,18 +29,23 @@ void replay(const std::string &path, const std::string &frames, Outcome &outcome
     outcome.exit_code = exit_negative;
 }
 
+struct ReplayRequest {
+    std::string log, frames;
+};
+
 } // namespace
 
-void add_replay(CLI::App &app, Outcome &outcome) {
-    struct Request {
-        std::string log, frames;
-    };
-    auto request = std::make_shared<Request>();
-    CLI::App *verb = app.add_subcommand("replay", "run this build's firmware on a log's frames: are the traces the same?");
-    verb->add_option("LOG", request->log, "log with raw counts and commands (CSV)")->required();
-    verb->add_option("--frames", request->frames, "write the frames as text for the target's replay program")->type_name("FILE");
-    add_json_option(verb, outcome);
-    verb->callback([request, &outcome] { replay(request->log, request->frames, outcome); });
+Verb verb_replay() {
+    const auto request = std::make_shared<ReplayRequest>();
+    return {.name = "replay",
+            .summary = "run this build's firmware on a log's frames: are the traces the same?",
+            .options = {log_row(request->log, "log with raw counts and commands (CSV)"),
+                        {.name = "--frames",
+                         .into = &request->frames,
+                         .help = "write the frames as text for the target's replay program",
+                         .value = "FILE",
+                         .kind = Kind::output}},
+            .run = [request](Outcome &outcome) { replay(request->log, request->frames, outcome); }};
 }
 
 } // namespace traction::cli

@@ -30,26 +30,32 @@ nlohmann::json read_result(const std::string &path) {
     }
 }
 
+void show(const ReportOptions &options, Outcome &outcome) {
+    const nlohmann::json result = read_result(options.result);
+    try {
+        report::write_html(result, options.out);
+    } catch (const report::ReportError &error) {
+        throw report::ReportError(options.result + ": " + error.what());
+    }
+    std::printf("page: %s\n", options.out.c_str());
+    outcome.json = {{"schema", "traction.report/1"}, {"page", options.out}, {"shows", result.at("schema")}};
+}
+
 } // namespace
 
-void add_report(CLI::App &app, Outcome &outcome) {
+Verb verb_report() {
     const auto options = std::make_shared<ReportOptions>();
-    CLI::App *verb = app.add_subcommand("report", "show a result written by --json as one HTML page that opens without a network");
-    verb->add_option("result", options->result, "result of compare, diagnose, add, fit, check or reproduce")
-        ->required()
-        ->type_name("RESULT.json");
-    verb->add_option("--out", options->out, "the page")->required()->type_name("FILE.html");
-    add_json_option(verb, outcome);
-    verb->callback([options, &outcome] {
-        const nlohmann::json result = read_result(options->result);
-        try {
-            report::write_html(result, options->out);
-        } catch (const report::ReportError &error) {
-            throw report::ReportError(options->result + ": " + error.what());
-        }
-        std::printf("page: %s\n", options->out.c_str());
-        outcome.json = {{"schema", "traction.report/1"}, {"page", options->out}, {"shows", result.at("schema")}};
-    });
+    return {
+        .name = "report",
+        .summary = "show a result written by --json as one HTML page that opens without a network",
+        .options =
+            {{.argument = "RESULT",
+              .into = &options->result,
+              .help = "JSON result of compare, diagnose, add, fit, check or reproduce",
+              .kind = Kind::input,
+              .required = true},
+             {.name = "--out", .into = &options->out, .help = "the page", .value = "FILE.html", .kind = Kind::output, .required = true}},
+        .run = [options](Outcome &outcome) { show(*options, outcome); }};
 }
 
 } // namespace traction::cli

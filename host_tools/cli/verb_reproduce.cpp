@@ -43,18 +43,26 @@ void run(Arguments arguments, Outcome &outcome) {
 
 } // namespace
 
-void add_reproduce(CLI::App &app, Outcome &outcome) {
-    auto arguments = std::make_shared<Arguments>();
-    CLI::App *verb = app.add_subcommand("reproduce", "make the paper's experiments again, figure by figure, with its numbers beside ours");
-    verb->add_option("--out", arguments->out, "report with every figure, HTML")->type_name("FILE");
-    verb->add_option("--scenarios", arguments->settings.scenarios, "folder of the scenario gallery")->check(CLI::ExistingDirectory);
-    arguments->data = "../shared/data";
-    verb->add_option("--data", arguments->data, "folder with measured data; where it is absent, its experiment is left out")
-        ->type_name("DIR");
-    verb->add_option("--seeds", arguments->settings.seeds, "runs per ground for table III")->check(CLI::Range(2, 1000));
-    verb->add_option("--jobs", arguments->settings.jobs, "runs side by side")->check(CLI::Range(1, 256));
-    add_json_option(verb, outcome);
-    verb->callback([arguments, &outcome] { run(*arguments, outcome); });
+Verb verb_reproduce() {
+    const auto arguments = std::make_shared<Arguments>();
+    return {
+        .name = "reproduce",
+        .summary = "make the paper's experiments again, figure by figure, with its numbers beside ours",
+        .options =
+            {{.name = "--out", .into = &arguments->out, .help = "report with every figure, HTML", .value = "FILE", .kind = Kind::output},
+             {.name = "--scenarios",
+              .into = &arguments->settings.scenarios,
+              .help = "folder of the scenario gallery",
+              .value = "FOLDER",
+              .kind = Kind::folder},
+             {.name = "--data",
+              .into = &arguments->data,
+              .help = "folder with measured data; where it is absent, its experiment is left out",
+              .value = "FOLDER",
+              .kind = Kind::folder},
+             {.name = "--seeds", .into = &arguments->settings.seeds, .help = "runs per ground for table III", .range = Range{2, 1000}},
+             {.name = "--jobs", .into = &arguments->settings.jobs, .help = "runs side by side", .range = Range{1, 256}}},
+        .run = [arguments](Outcome &outcome) { run(*arguments, outcome); }};
 }
 
 } // namespace traction::cli

@@ -20,7 +20,7 @@ namespace traction::cli {
 namespace {
 
 struct Arguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware, model;
+    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     std::vector<std::string> effects;
@@ -67,7 +67,10 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     std::vector<std::string> notes;
     const sim::Scenario machine =
         sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
-    scenario.plant.rover = machine.plant.rover;
+    for (std::size_t i = 0; i < scenario.rover.values.size(); i++) // what a model knows of a rover, over the scenario's
+        if (machine.rover.values[i].given) scenario.rover.values[i] = machine.rover.values[i];
+    sim::put_in_plant(scenario.rover, scenario.plant.rover);
+    scenario.plant.rover.battery_voltage_V = machine.plant.rover.battery_voltage_V;
     scenario.plant.ground.soil = machine.plant.ground.soil;
     scenario.plant.ground.grip_noise = machine.plant.ground.grip_noise;
     scenario.effects = machine.effects;
@@ -76,7 +79,9 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
 
 void run(const Arguments &arguments, Outcome &outcome) {
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
+    if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
     if (!arguments.model.empty()) drive_as(arguments.model, scenario);
+    if (!arguments.believes.empty()) scenario.firmware.believes = sim::read_rover_file(arguments.believes);
     SimulateOptions options;
     options.truth = !arguments.truth.empty();
     options.realtime = arguments.realtime;
@@ -88,8 +93,8 @@ void run(const Arguments &arguments, Outcome &outcome) {
 
     std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
     const bool batch = !arguments.seeds.empty();
-    if (batch && !parse_range(arguments.seeds, first, last)) throw CLI::ValidationError("--seeds", "write FIRST..LAST, such as 0..99");
-    if (batch && !arguments.frames.empty()) throw CLI::ValidationError("--frames", "takes one run, not a batch");
+    if (batch && !parse_range(arguments.seeds, first, last)) throw UsageError("--seeds: write FIRST..LAST, such as 0..99");
+    if (batch && !arguments.frames.empty()) throw UsageError("--frames: takes one run, not a batch");
 
     const auto start = std::chrono::steady_clock::now();
     outcome.json = {{"schema", "traction.simulate/1"}, {"scenario", scenario.name}, {"runs", nlohmann::json::array()}};
@@ -112,29 +117,71 @@ void run(const Arguments &arguments, Outcome &outcome) {
 
 } // namespace
 
-void add_simulate(CLI::App &app, Outcome &outcome) {
-    auto arguments = std::make_shared<Arguments>();
-    CLI::App *verb = app.add_subcommand("simulate", "drive the simulated rover through a scenario and write the log");
-    verb->add_option("SCENARIO", arguments->scenario, "scenario file (scenarios/*.toml)")->required();
-    verb->add_option("--out", arguments->out, "the log, CSV")->type_name("LOG");
-    verb->add_option("--truth", arguments->truth, "what really happened, in a file of its own")->type_name("FILE");
-    verb->add_option("--seed", arguments->seed, "instead of the scenario's seed")->check(CLI::NonNegativeNumber);
-    verb->add_option("--effect", arguments->effects, "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)")
-        ->type_name("EFFECT");
-    verb->add_option("--model", arguments->model, "rover, ground and effects of a lab's model (TOML) instead of the scenario's")
-        ->type_name("FILE");
-    CLI::Option *hide =
-        verb->add_option("--hide", arguments->hide, "hide an effect drawn by this seed")->check(CLI::NonNegativeNumber)->type_name("SEED");
-    verb->add_option("--hide-count", arguments->hide_count, "how many effects to hide")->check(CLI::Range(1, 5))->needs(hide);
-    verb->add_option("--seal", arguments->seal, "write what was hidden to this file")->type_name("FILE");
-    verb->add_option("--frames", arguments->frames, "frames and commands as text that tests/replay reads")->type_name("FILE");
-    verb->add_option("--firmware", arguments->firmware, "firmware configuration instead of the scenario's")
-        ->check(CLI::IsMember({"default", "paper"}));
-    verb->add_flag("--realtime", arguments->realtime, "keep pace with the wall clock");
-    verb->add_option("--seeds", arguments->seeds, "run seeds FIRST..LAST; file names get the seed")->type_name("A..B");
-    verb->add_option("--jobs", arguments->jobs, "runs side by side")->check(CLI::Range(1, 256));
-    add_json_option(verb, outcome);
-    verb->callback([arguments, &outcome] { run(*arguments, outcome); });
+Verb verb_simulate() {
+    const auto arguments = std::make_shared<Arguments>();
+    return {.name = "simulate",
+            .summary = "drive the simulated rover through a scenario and write the log",
+            .options =
+                {{.argument = "SCENARIO",
+                  .into = &arguments->scenario,
+                  .help = "scenario file (scenarios/*.toml)",
+                  .kind = Kind::scenario,
+                  .required = true},
+                 {.name = "--out", .into = &arguments->out, .help = "the log, CSV", .value = "LOG", .kind = Kind::output},
+                 {.name = "--truth",
+                  .into = &arguments->truth,
+                  .help = "what really happened, in a file of its own",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--seed", .into = &arguments->seed, .help = "instead of the scenario's seed", .range = Range{.low = 0}},
+                 {.name = "--effect",
+                  .into = &arguments->effects,
+                  .help = "add an effect: 'name:parameter=value,wheel=2' (traction effects lists them)",
+                  .value = "EFFECT",
+                  .kind = Kind::effect},
+                 {.name = "--model",
+                  .into = &arguments->model,
+                  .help = "rover, ground and effects of a lab's model (TOML) instead of the scenario's",
+                  .value = "FILE",
+                  .kind = Kind::model},
+                 {.name = "--rover",
+                  .into = &arguments->rover,
+                  .help = "the rover that drives (rovers/*.toml) instead of the scenario's",
+                  .value = "FILE",
+                  .kind = Kind::input},
+                 {.name = "--believes",
+                  .into = &arguments->believes,
+                  .help = "the rover that the firmware takes itself for: another one is a firmware that is wrong about its rover",
+                  .value = "FILE",
+                  .kind = Kind::input},
+                 {.name = "--hide",
+                  .into = &arguments->hide,
+                  .help = "hide an effect drawn by this seed",
+                  .value = "SEED",
+                  .range = Range{.low = 0}},
+                 {.name = "--hide-count",
+                  .into = &arguments->hide_count,
+                  .help = "how many effects to hide",
+                  .range = Range{1, 5},
+                  .needs = {"--hide"}},
+                 {.name = "--seal",
+                  .into = &arguments->seal,
+                  .help = "write what was hidden to this file",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--frames",
+                  .into = &arguments->frames,
+                  .help = "frames and commands as text that tests/replay reads",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--firmware",
+                  .into = &arguments->firmware,
+                  .help = "firmware configuration instead of the scenario's",
+                  .one_of = {"default", "paper"}},
+                 {.name = "--realtime", .into = &arguments->realtime, .help = "keep pace with the wall clock"},
+                 {.name = "--seeds", .into = &arguments->seeds, .help = "run seeds FIRST..LAST; file names get the seed", .value = "A..B"},
+                 {.name = "--jobs", .into = &arguments->jobs, .help = "runs side by side", .range = Range{1, 256}}},
+            .run = [arguments](Outcome &outcome) { run(*arguments, outcome); }};
 }
 
 } // namespace traction::cli

@@ -1,10 +1,10 @@
 // verb_tune.cpp - traction tune: gains of the wheel-speed loop from an experiment with torque and time limits, on the simulated rover.
 #include "verbs.h"
 
-#include "firmware/core/rover_config.h"
 #include "hal/sim/sim_hal.h"
 #include "host_tools/calibrate/calibrate.h"
 #include "host_tools/calibrate/tune.h"
+#include "host_tools/rover/rover.h"
 #include "sim/scenario/scenario.h"
 
 #include <cstdio>
@@ -12,55 +12,81 @@
 
 namespace traction::cli {
 
-void add_tune(CLI::App &app, Outcome &outcome) {
-    struct Options {
-        std::string scenario, parameters;
-        TuneLimits limits;
-    };
-    CLI::App *verb =
-        app.add_subcommand("tune", "wheel-speed gains for the motors of a scenario's rover; the motors are stopped at the end");
-    const auto options = std::make_shared<Options>();
-    verb->add_option("scenario", options->scenario, "scenario (TOML) whose rover is tuned; its drive plan is not used")
-        ->required()
-        ->type_name("FILE");
-    verb->add_option("--torque-Nm", options->limits.torque_Nm, "largest torque at a wheel")
-        ->check(CLI::Range(0.01, 20.0))
-        ->capture_default_str();
-    verb->add_option("--duty", options->limits.duty, "largest duty")->check(CLI::Range(0.05, 1.0))->capture_default_str();
-    verb->add_option("--time-s", options->limits.time_s, "the experiment takes at most so long")
-        ->check(CLI::Range(1.0, 600.0))
-        ->capture_default_str();
-    verb->add_option("--margin-deg", options->limits.margin_deg, "phase margin")->check(CLI::Range(30.0, 80.0))->capture_default_str();
-    verb->add_option("--parameters", options->parameters, "set the gains in this parameter file of the firmware")->type_name("FILE");
-    add_json_option(verb, outcome);
-    verb->callback([options, &outcome] {
-        const sim::Scenario scenario = sim::read_scenario(options->scenario);
-        hal::SimHalConfig world;
-        world.plant = scenario.plant;
-        world.sensors = scenario.sensors;
-        world.plant.effects = scenario.effects;
-        sim::apply_sensor_effects(scenario.effects, world.sensors);
-        world.seed = scenario.seed;
-        world.ticks = 60001; // beyond any time limit
-        hal::SimHal rover(world);
-        const TuneResult r = tune(rover.hal(), rover_config_default(), options->limits);
-        std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
-        for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
-            std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);
-        std::printf("wheel_kp_s %.4f, wheel_ki_1 %.4f for a phase margin of %.0f deg\n", r.kp_s, r.ki_1, options->limits.margin_deg);
-        if (!options->parameters.empty()) {
-            put_parameter(options->parameters, "wheel_kp_s", r.kp_s, "duty per rad/s, traction tune");
-            put_parameter(options->parameters, "wheel_ki_1", r.ki_1, "duty per rad, traction tune");
-            std::printf("wrote %s\n", options->parameters.c_str());
-        }
-        outcome.json = {{"schema", "traction.tune/1"},
-                        {"kp_s", r.kp_s},
-                        {"ki_1", r.ki_1},
-                        {"pole_1_s", r.pole_1_s},
-                        {"gain_rad_s2", r.gain_rad_s2},
-                        {"largest_torque_Nm", r.largest_torque_Nm},
-                        {"used_s", r.used_s}};
-    });
+namespace {
+
+struct TuneOptions {
+    std::string scenario, parameters;
+    TuneLimits limits;
+};
+
+void run_tune(const TuneOptions &options, Outcome &outcome) {
+    const sim::Scenario scenario = sim::read_scenario(options.scenario);
+    hal::SimHalConfig world;
+    world.plant = scenario.plant;
+    world.sensors = scenario.sensors;
+    world.scale = count_scale(scenario.rover);
+    world.plant.effects = scenario.effects;
+    for (const sim::ActiveEffect &wheel : sim::wheel_differences(scenario.rover)) world.plant.effects.push_back(wheel);
+    sim::apply_sensor_effects(scenario.effects, world.sensors);
+    world.seed = scenario.seed;
+    world.ticks = 60001; // beyond any time limit
+    hal::SimHal rover(world);
+    const TuneResult r = tune(rover.hal(), firmware_of(scenario), options.limits);
+    std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
+    for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
+        std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);
+    std::printf("wheel_kp_s %.4f, wheel_ki_1 %.4f for a phase margin of %.0f deg\n", r.kp_s, r.ki_1, options.limits.margin_deg);
+    if (!options.parameters.empty()) {
+        put_parameter(options.parameters, "wheel_kp_s", r.kp_s, "duty per rad/s, traction tune");
+        put_parameter(options.parameters, "wheel_ki_1", r.ki_1, "duty per rad, traction tune");
+        std::printf("wrote %s\n", options.parameters.c_str());
+    }
+    outcome.json = {{"schema", "traction.tune/1"},
+                    {"kp_s", r.kp_s},
+                    {"ki_1", r.ki_1},
+                    {"pole_1_s", r.pole_1_s},
+                    {"gain_rad_s2", r.gain_rad_s2},
+                    {"largest_torque_Nm", r.largest_torque_Nm},
+                    {"used_s", r.used_s}};
+}
+
+} // namespace
+
+Verb verb_tune() {
+    const auto options = std::make_shared<TuneOptions>();
+    return {.name = "tune",
+            .summary = "wheel-speed gains for the motors of a scenario's rover; the motors are stopped at the end",
+            .options =
+                {{.argument = "SCENARIO",
+                  .into = &options->scenario,
+                  .help = "scenario (TOML) whose rover is tuned; its drive plan is not used",
+                  .kind = Kind::scenario,
+                  .required = true},
+                 {.name = "--torque-Nm",
+                  .into = &options->limits.torque_Nm,
+                  .help = "largest torque at a wheel",
+                  .value = "NM",
+                  .shows_default = true,
+                  .range = Range{0.01, 20}},
+                 {.name = "--duty", .into = &options->limits.duty, .help = "largest duty", .shows_default = true, .range = Range{0.05, 1}},
+                 {.name = "--time-s",
+                  .into = &options->limits.time_s,
+                  .help = "the experiment takes at most so long",
+                  .value = "S",
+                  .shows_default = true,
+                  .range = Range{1, 600}},
+                 {.name = "--margin-deg",
+                  .into = &options->limits.margin_deg,
+                  .help = "phase margin",
+                  .value = "DEG",
+                  .shows_default = true,
+                  .range = Range{30, 80}},
+                 {.name = "--parameters",
+                  .into = &options->parameters,
+                  .help = "set the gains in this parameter file of the firmware",
+                  .value = "FILE",
+                  .kind = Kind::output}},
+            .run = [options](Outcome &outcome) { run_tune(*options, outcome); }};
 }
 
 } // namespace traction::cli

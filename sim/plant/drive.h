@@ -1,6 +1,6 @@
 // drive.h - one wheel's drive train: bridge, winding, gear, friction, wheel spin.
 //
-//   I = (u - ke*w_m)/Ra, u = duty*V - (losses of the bridge and the wires)                                 (1) SPEC section 3
+//   I = (u - ke*w_m)/Ra, u = duty*V - (losses of the bridge and the wires)                                 (1) docs/sources.md section 3
 //   J*dw/dt = KG*I - Gr(w) - R*Ft                                                        (17) Lhomme-Desages
 //   Gr(w) = (b*|w| + t0)*sgn(w), Coulomb part implicit: at rest it takes up to t0                          (18)
 // With backlash the rotor's share of J and the wheel's are two masses with a dead zone between them.

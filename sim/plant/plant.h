@@ -17,7 +17,7 @@
 
 namespace traction::sim {
 
-// SPEC section 3 (table I Lhomme-Desages) unless said otherwise.
+// docs/sources.md section 3 (table I Lhomme-Desages) unless said otherwise.
 struct RoverParameters {
     double mass_kg = 2.88, length_m = 0.30, width_m = 0.27, height_m = 0.185;
     double half_wheelbase_m = 0.083, half_track_m = 0.12;

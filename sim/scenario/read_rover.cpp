@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 namespace traction::sim {
 
@@ -194,6 +195,11 @@ void read_rover(const toml::node &node, const std::string &file, Scenario &scena
         scenario.sensors = sensors_of(scenario.rover);
         return;
     }
+    set_rover(scenario, scenario.rover);
+}
+
+void set_rover(Scenario &scenario, RoverDescription rover) {
+    scenario.rover = std::move(rover);
     put_in_plant(scenario.rover, scenario.plant.rover);
     scenario.sensors = sensors_of(scenario.rover);
 }

@@ -52,6 +52,10 @@ struct Scenario {
     std::optional<HiddenDraw> hidden;
 };
 
+// Another rover drives: plant and sensors are made of it again. What [rover], [sensors] and [radar] say of the old one is gone; where it
+// starts stays.
+void set_rover(Scenario &scenario, RoverDescription rover);
+
 // Throws ScenarioError; std::filesystem::filesystem_error when the file cannot be read.
 Scenario read_scenario(const std::string &path);
 

@@ -132,7 +132,7 @@ TEST(Counts, stay_inside_the_converters_for_any_quantity) {
 TEST(Encoder, counts_pulses_of_the_motor_side_and_wraps) {
     const sim::Encoder encoder;
     EXPECT_EQ(encoder.count(0), 0);
-    EXPECT_EQ(encoder.count(2 * 3.14159265358979323846 + 1e-9), 6000); // 120 pulses x gear 50, SPEC section 3
+    EXPECT_EQ(encoder.count(2 * 3.14159265358979323846 + 1e-9), 6000); // 120 pulses x gear 50, docs/sources.md section 3
     EXPECT_EQ(encoder.count(-1e-9), -1);
     EXPECT_EQ(encoder.count((2147483648.0 + 0.5) * sim::encoder_rad_per_count), INT32_MIN);
     // one pulse in ten lost: 5400 of 6000

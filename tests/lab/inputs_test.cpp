@@ -1,6 +1,7 @@
 // inputs_test.cpp - what a log becomes before the model is asked: wheels that jump, samples that are means, a command that comes late.
 #include "host_tools/lab/fit/screen.h"
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/inputs/smooth.h"
 #include "host_tools/simulate/simulate.h"
@@ -74,7 +75,7 @@ TEST(Inputs, where_a_wheel_jumps_its_speed_is_followed_closer_and_elsewhere_stay
     EXPECT_LT(followed, 0.6 * plain); // of the parabolas' squared loss at a kink, cubics of the same width leave less than half
 }
 
-TEST(Inputs, rows_at_a_jump_are_doubted_and_calm_rows_are_not) {
+TEST(Inputs, rows_at_a_jump_have_a_smoothing_bias_and_calm_rows_have_none) {
     const Dataset data = make_dataset(bench(), motor(accel_rad_s2));
     const Balance &torque = balance(data, BalanceKind::current_torque);
     double calm = 0, jump = 0;
@@ -207,7 +208,7 @@ TEST(Inputs, a_parameter_that_the_smoothing_could_fake_has_the_wider_error) {
         throw std::logic_error("the inertia is missing");
     };
     const double with = inertia_error();
-    for (Balance &b : data.balance) b.doubt.clear();
+    for (Balance &b : data.balance) b.smoothing_bias.clear();
     EXPECT_GT(with, inertia_error());
 }
 

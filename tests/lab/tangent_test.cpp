@@ -1,8 +1,9 @@
 // Sensitivities by the linear recursion beside a known motion (tangent.cpp) against whole integrations.
 #include "host_tools/lab/decision/candidate.h"
-#include "host_tools/lab/fit/felt.h"
 #include "host_tools/lab/fit/problem.h"
+#include "host_tools/lab/fit/sparse_jacobian.h"
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/wheel_step.h"
 #include "tests/lab/generator/generator.h"
 
@@ -111,9 +112,9 @@ TEST(Tangent, products_that_skip_the_zeros_of_a_jacobian_are_those_of_all_its_en
     problem.linearise();
     const Eigen::MatrixXd &J = problem.jacobian, gram = J.transpose() * J;
     const Eigen::VectorXd moment = J.transpose() * problem.residual;
-    const Felt felt(data, J);
-    EXPECT_LT((felt.gram() - gram).norm(), 1e-12 * gram.norm()); // rounding
-    EXPECT_LT((felt.moment(problem.residual) - moment).norm(), 1e-12 * moment.norm());
+    const SparseJacobian sparse(data, J);
+    EXPECT_LT((sparse.gram() - gram).norm(), 1e-12 * gram.norm()); // rounding
+    EXPECT_LT((sparse.moment(problem.residual) - moment).norm(), 1e-12 * moment.norm());
 }
 
 TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {

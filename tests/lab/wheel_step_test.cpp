@@ -1,5 +1,6 @@
 // The wheels of one step against closed forms: slip that lags, loads of a chassis in two halves, a body that slides sideways.
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/simulate/simulate.h"
 

@@ -35,7 +35,7 @@ TEST(Calibrate, finds_the_scale_within_its_own_uncertainty_from_camera_and_from_
     const log::Log right = drive(""), scaled = drive("", "radar_scale:change=0.06");
     for (const CalibrationTruth truth : {CalibrationTruth::camera, CalibrationTruth::wheels}) {
         const Calibration a = calibrate(right, truth, 0.057), b = calibrate(scaled, truth, 0.057);
-        // 450 windows of 2.5 % (DSP.md), four of which share samples: 0.25 %
+        // 450 windows of 2.5 % (docs/evidence.md section 3), four of which share samples: 0.25 %
         EXPECT_LT(a.scale_std, 0.006);
         EXPECT_GT(a.scale_std, 0.0005);
         // three sigma; 0.3 % between the radar's geometry and the template's; wheels: plus 0.5 % of slip where the rover pulls itself

@@ -88,7 +88,7 @@ mode = "platform_speed"
 speed_m_s = -0.4
 )",
                                16));
-    // the loop rests on the fused speed: 4.5 % relative error of a window at 0.4 m/s (DSP.md), averaged over 5 s and
+    // the loop rests on the fused speed: 4.5 % relative error of a window at 0.4 m/s (docs/evidence.md section 3), averaged over 5 s and
     // 10 windows to 1.5 %; the lower bound on the deviation: a loop that rides on a noisy estimate cannot be perfect
     EXPECT_NEAR(mean_between(result.truth, "truth.speed_m_s", 3, 8), 0.4, 0.4 * 0.045);
     EXPECT_NEAR(mean_between(result.truth, "truth.speed_m_s", 11, 16), -0.4, 0.4 * 0.045);
@@ -133,7 +133,8 @@ wheel_speed_rad_s = [6.0, 6.0, 6.0, 2.0]
 
 TEST_P(EachSoil, slip_is_held_at_its_set_point) {
     const auto result = run_file(std::string("fig17_slip_servo_") + GetParam(), 3);
-    // estimated slip s = 1 - v/(R w): dv/v = 5 % (DSP.md, at 0.3 m/s) is (1 - s) * 5 % = 0.03; mean of 8 s and 16 windows
+    // estimated slip s = 1 - v/(R w): dv/v = 5 % (docs/evidence.md section 3, at 0.3 m/s) is (1 - s) * 5 % = 0.03; mean of 8 s and 16
+    // windows
     EXPECT_NEAR(mean_between(result.log, "wheel1.slip", 6, 15), 0.4, 0.02);
     EXPECT_NEAR(mean_between(result.truth, "truth.wheel1.slip", 6, 15), 0.4, 0.03);
     const double wobble = rms_between(result.truth, "truth.wheel1.slip", 0.4, 6, 15);
@@ -154,7 +155,7 @@ TEST_P(EachSoil, the_sweep_takes_slip_from_minus_one_through_zero_to_traction) {
     const double zero_s = crossing_s(truth, "truth.wheel2.slip", 0, start_s + 3) - start_s;
     EXPECT_GT(zero_s, 9.5);
     EXPECT_LT(zero_s, 12.5);
-    // (1) at the end: 1 - 0.3/(0.057 * 10.5) = 0.5 where the duty lasts, about 0.4 where the motors saturate (SPEC section 6)
+    // (1) at the end: 1 - 0.3/(0.057 * 10.5) = 0.5 where the duty lasts, about 0.4 where the motors saturate (docs/sources.md section 6)
     const double last = mean_between(truth, "truth.wheel2.slip", start_s + 18.5, start_s + 20);
     EXPECT_GT(last, 0.35);
     EXPECT_LT(last, 0.55);
@@ -217,8 +218,8 @@ TEST(Loop, the_fused_speed_tracks_the_truth) {
             count++;
         }
     }
-    // DSP.md goal over all profiles: 1.8 cm/s; the identification drive is harder (reverse, hard braking, slip of one wheel):
-    // twice that. Below 0.5 cm/s would beat the posterior bound, hence be wrong.
+    // goal (docs/evidence.md section 3) over all profiles: 1.8 cm/s; the identification drive is harder (reverse, hard braking, slip of one
+    // wheel): twice that. Below 0.5 cm/s would beat the posterior bound, hence be wrong.
     EXPECT_LT(std::sqrt(square / count), 0.036);
     EXPECT_GT(std::sqrt(square / count), 0.005);
     EXPECT_LT(std::fabs(error_sum / count), 0.01);

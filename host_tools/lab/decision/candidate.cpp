@@ -89,7 +89,7 @@ struct ShapeKind {
     const char *name;
     bool straight = false; // a straight line too: a free curve spends its certainty on its coefficients
 };
-// LAB.md section 2. Never measured current or PWM as an axis; "current" is the model's own.
+// docs/evidence.md section 4. Never measured current or PWM as an axis; "current" is the model's own.
 constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::wheel_speed, "torque(wheel speed)"},
     {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},
@@ -232,7 +232,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.touched = target_stages(kind.target);
         const AxisValues x = values_on(kind.axis, data, motion, physics, current_A);
         if (x.values.empty()) continue;
-        c.parts_wheels = x.parts_wheels;
+        c.varies_between_wheels = x.varies_between_wheels;
         c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);
         if (c.knots.size() < 3) continue;
         for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();

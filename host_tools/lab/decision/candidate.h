@@ -26,8 +26,8 @@ struct Candidate {
     Axis axis = Axis::time;
     TermTarget target = TermTarget::wheel_torque;
     std::vector<double> knots;
-    double order = 0;          // periodic in the wheel angle
-    bool parts_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
+    double order = 0;                   // periodic in the wheel angle
+    bool varies_between_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
 
     std::string label() const; // "slip_sinkage", "wiring_resistance on wheel 2"
     // Puts the shape parameters (and for structure-free ones the term) into a physics so that the strengths can move.

@@ -262,7 +262,7 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const std::vector<ParameterError> errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();
-    for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's whisper
+    for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's ridge
     const Eigen::VectorXd white =
         normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0).cwiseSqrt();
     const double best_cost = best.cost();

@@ -14,9 +14,6 @@
 
 namespace traction::lab {
 
-// What a parameter touches, hence what must be computed again.
-enum Stage : unsigned { stage_motion = 1, stage_torque = 2, stage_voltage = 4, stage_sensors = 8, stage_all = 15 };
-
 struct WheelPhysics {
     // the machine
     double x = 0, y = 0, heading = 0, radius = 0, load = 0; // load 0: from the geometry

@@ -38,7 +38,7 @@ struct Balance {
     std::string noise_source;
     std::vector<double> t0_s, t1_s, measured; // one entry per row
     std::vector<double> noise_factor;         // of a row's noise, relative to `noise`; empty: all 1
-    std::vector<double> doubt;                // what the smoothing may cost a row's prediction, with its sign; empty: nothing
+    std::vector<double> smoothing_bias;       // what the smoothing may cost a row's prediction, with its sign [unit]; empty: nothing
 };
 
 struct WheelInput {
@@ -78,8 +78,12 @@ struct Dataset {
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
 
-// Never throws for a poor log: what cannot be used is left out with a message. `repeat`: a second run of the same drive, whose
-// difference gives the noise; nullptr when there is none.
-Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat = nullptr);
+// Inputs and balances of a log, without what its smoothing may cost where speeds jump (forward/make_dataset.h adds that). Never throws
+// for a poor log: what cannot be used is left out with a message.
+Dataset measured_data(const Model &model, const log::Log &log);
+
+// Two runs of one drive: where at least 20 rows of a balance lie within 20 ms of the other run's, the standard deviation of their
+// difference over sqrt(2) becomes the balance's noise.
+void noise_from_repeat(Dataset &data, const Dataset &other);
 
 } // namespace traction::lab

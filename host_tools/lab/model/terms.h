@@ -14,6 +14,9 @@
 
 namespace traction::lab {
 
+// What a parameter or term touches of the prediction, hence what must be computed again when it moves.
+enum Stage : unsigned { stage_motion = 1, stage_torque = 2, stage_voltage = 4, stage_sensors = 8, stage_all = 15 };
+
 // Where a term acts. Multipliers act as times (1 + f).
 enum class TermTarget {
     wheel_torque,   // adds to Gr [N m], opposing the motor; the term carries its own sign
@@ -35,7 +38,7 @@ enum class TermTarget {
 
 std::string_view target_name(TermTarget target);
 bool parse_target(std::string_view name, TermTarget &target);
-unsigned target_stages(TermTarget target); // Stage bits of physics.h
+unsigned target_stages(TermTarget target); // Stage bits
 
 struct Signals {
     double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0, X = 0, d = 0, Io = 0, Ia = 0,

@@ -50,7 +50,7 @@ class Drive {
     Manoeuvre made_;
 };
 
-// Sizes are those of a rover of a few kilograms; LAB.md section 3 says what each separates.
+// Sizes are those of a rover of a few kilograms; docs/evidence.md section 5 says what separates the closest pairs.
 std::vector<Manoeuvre> make_manoeuvres() {
     return {
         Drive("there and back over the same ground", {"grade", "multi_pass", "mass_offset_x", "soil_patch", "soil_gradient", "tether_drag",

@@ -1,0 +1,45 @@
+#include "rows.h"
+
+#include "host_tools/lab/session.h"
+
+namespace traction::cli {
+
+Option log_row(std::string &log, const char *help, bool required) {
+    return {.name = "--log", .argument = "LOG", .into = &log, .help = help, .kind = Kind::log, .required = required};
+}
+
+Option map_row(std::string &map) {
+    return {.name = "--map",
+            .into = &map,
+            .help = "read a foreign CSV through this map (TOML, docs/log_format.md)",
+            .value = "FILE",
+            .kind = Kind::input};
+}
+
+Option model_row(std::string &model) {
+    return {.name = "--model", .into = &model, .help = "model file (TOML)", .value = "FILE", .kind = Kind::model, .required = true};
+}
+
+Option report_row(std::string &report) {
+    return {.name = "--report", .into = &report, .help = "write a report page (HTML)", .value = "FILE", .kind = Kind::output};
+}
+
+std::vector<Option> lab_rows(lab::Request &request) {
+    return {log_row(request.log),
+            model_row(request.model),
+            map_row(request.map),
+            {.name = "--repeat",
+             .into = &request.repeat,
+             .help = "a second run of the same drive: its difference is the noise",
+             .value = "FILE",
+             .kind = Kind::log},
+            {.name = "--from", .into = &request.from_s, .help = "use the log from this time [s]", .value = "S"},
+            {.name = "--to", .into = &request.to_s, .help = "use the log up to this time [s]", .value = "S"}};
+}
+
+std::vector<Option> rows(std::vector<Option> first, std::vector<Option> then) {
+    for (Option &option : then) first.push_back(std::move(option));
+    return first;
+}
+
+} // namespace traction::cli

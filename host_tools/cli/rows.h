@@ -1,0 +1,23 @@
+// rows.h - rows of the verbs' tables that several verbs share.
+#pragma once
+
+#include "verbs.h"
+
+namespace traction::lab {
+struct Request;
+}
+
+namespace traction::cli {
+
+Option log_row(std::string &log, const char *help = "log (CSV)", bool required = true); // as an argument and as --log
+Option map_row(std::string &map);
+Option model_row(std::string &model);
+Option report_row(std::string &report);
+
+// LOG, --model, --map, --repeat, --from, --to: what the lab's verbs read.
+std::vector<Option> lab_rows(lab::Request &request);
+
+// The rows of `first`, then those of `then`.
+std::vector<Option> rows(std::vector<Option> first, std::vector<Option> then);
+
+} // namespace traction::cli

@@ -1,0 +1,16 @@
+// suggest.h - what was most likely meant by a mistyped word.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace traction::cli {
+
+// Least number of inserted, deleted, changed or swapped neighbouring letters that make `b` of `a` (optimal string alignment).
+std::size_t distance(std::string_view a, std::string_view b);
+
+// "; did you mean 'simulate'?", or empty when no known word is near (within 2 letters, or a third of the word).
+std::string did_you_mean(std::string_view word, const std::vector<std::string> &known);
+
+} // namespace traction::cli
