@@ -67,9 +67,10 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     std::vector<std::string> notes;
     const sim::Scenario machine =
         sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
-    for (std::size_t i = 0; i < scenario.rover.values.size(); i++) // what a model knows of a rover, over the scenario's
-        if (machine.rover.values[i].given) scenario.rover.values[i] = machine.rover.values[i];
-    sim::put_in_plant(scenario.rover, scenario.plant.rover);
+    sim::RoverDescription really = scenario.rover; // the firmware goes on believing the scenario's rover
+    for (std::size_t i = 0; i < really.values.size(); i++)
+        if (machine.rover.values[i].given) really.values[i] = machine.rover.values[i];
+    sim::put_in_plant(really, scenario.plant.rover);
     scenario.plant.rover.battery_voltage_V = machine.plant.rover.battery_voltage_V;
     scenario.plant.ground.soil = machine.plant.ground.soil;
     scenario.plant.ground.grip_noise = machine.plant.ground.grip_noise;
