@@ -64,6 +64,8 @@ static float wheel_pole_1_s(const float *v)
 // Square of the current that heats the winding to its limit in the end.
 static float heat_room_A2(const float *v) { return v[ROVER_winding_rise_max_K] / (v[ROVER_resistance_ohm] * v[ROVER_winding_K_W]); }
 
+static float stalled_A(const float *v) { return v[ROVER_battery_voltage_V] / v[ROVER_resistance_ohm]; }
+
 static float free_speed_rad_s(const float *v) { return v[ROVER_battery_voltage_V] / v[ROVER_back_emf_Vs_rad]; } // (3)
 
 static float pulse_rad(const float *v) { return 1.0f / v[ROVER_encoder_counts_per_turn]; } // up to 2 pi, which every ratio loses
@@ -85,8 +87,10 @@ static float scaled(rover_parameter_t i, const rover_parameters_t *parameters, c
         const float per_deg = parameters->radar == ROVER_RADAR_MDU1130 ? 0.004f : 0.00635f;      // 0.00635 = tan 20 deg * pi/180
         return r[i] + per_deg * (v[ROVER_radar_depression_deg] - r[ROVER_radar_depression_deg]); // (7)
     }
-    case ROVER_stall_current_A:
-        return r[i] * current; // (4)
+    case ROVER_stall_current_A: {
+        const float stalled = ratio(stalled_A, v, r);
+        return r[i] * (stalled < current ? stalled : current); // (4)
+    }
     case ROVER_current_continuous_A: {
         const float borne = sqrtf(ratio(heat_room_A2, v, r));
         return r[i] * (borne < current ? borne : current); // (4)

@@ -9,10 +9,10 @@
 //   I_grip = (mu M g/4 R + t0)/KG, mu = 0.8                                    current of a wheel held by full traction     (1)
 //   k = V KG/(Ra J), p = KG ke/(Ra J) + b/J                                     gain and pole of a free wheel                (2)
 //   w0 = V/ke                                                                   no-load speed                                (3)
-//   stall ~ I_grip; continuous ~ the lesser of I_grip and sqrt(rise_max/(Ra R_th)); I^2 t ~ continuous^2                     (4)
-//   Kp ~ 1/k, Ki ~ Kp p, slew ~ k; slip: Kp_s ~ Kp/R, Ki_s ~ Ki/R; platform: Kv, Ki ~ 1/R                                    (5)
-//   the templates hold at 20 deg of depression; beside it the scale is 1 + g (deg - 20), g by the radar's beam             (7)
-//   wheel speeds ~ w0; speed ~ w_max R, at most 0.95 of what the radar hears; yaw ~ speed/b; disagreement ~ speed            (6)
+//   stall ~ the lesser of I_grip and V/Ra; continuous ~ the lesser of I_grip and sqrt(rise_max/(Ra R_th)); I^2 t ~ continuous^2 (4) Kp ~
+//   1/k, Ki ~ Kp p, slew ~ k; slip: Kp_s ~ Kp/R, Ki_s ~ Ki/R; platform: Kv, Ki ~ 1/R                                    (5) the templates
+//   hold at 20 deg of depression; beside it the scale is 1 + g (deg - 20), g by the radar's beam             (7) wheel speeds ~ w0; speed ~
+//   w_max R, at most 0.95 of what the radar hears; yaw ~ speed/b; disagreement ~ speed            (6)
 //
 // Derived here; why each: docs/rover_format.md. g: 0.4 % per deg of the wide beam as measured (docs/firmware.md), tan 20 deg of a narrow
 // one.

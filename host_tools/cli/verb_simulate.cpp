@@ -5,6 +5,7 @@
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
+#include "host_tools/rover/rover.h"
 #include "host_tools/simulate/batch.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
@@ -83,6 +84,9 @@ void run(const Arguments &arguments, Outcome &outcome) {
     if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
     if (!arguments.model.empty()) drive_as(arguments.model, scenario);
     if (!arguments.believes.empty()) scenario.firmware.believes = sim::read_rover_file(arguments.believes);
+    if (!arguments.frames.empty() && !parameter_lines(firmware_parameters(believed(scenario))).empty())
+        throw UsageError(
+            "--frames: replays the reference rover's firmware; for another rover keep the log (--out), which `traction replay` reads");
     SimulateOptions options;
     options.truth = !arguments.truth.empty();
     options.realtime = arguments.realtime;

@@ -182,9 +182,8 @@ std::vector<ActiveEffect> wheel_differences(const RoverDescription &rover) {
         const double change = rover.radius_m(static_cast<std::size_t>(i)) / rover.at("wheels", "radius_m") - 1;
         if (change == 0) continue;
         ActiveEffect active{.effect = effect, .wheel = i, .values = {}};
-        active.values = {};
-        for (std::size_t k = 0; k < effect->parameters.size(); k++)
-            if (effect->parameters[k].name == "change") active.values[k] = change;
+        for (const EffectParameter &parameter : effect->parameters)
+            active.values.push_back(parameter.name == "change" ? change : parameter.typical);
         out.push_back(active);
     }
     return out;

@@ -209,9 +209,12 @@ TEST(Parameters, what_is_written_reads_back_bit_for_bit) {
 TEST(Parameters, a_rover_that_cannot_work_is_refused_with_the_line_of_its_key) {
     EXPECT_EQ(refused(format + "mass_kg = 3\nstall_current_A = 5 # too much\n"),
               "rover.txt:3: stall_current_A = 5: a stalled wheel takes V/Ra, which is less: a stall would never be seen; lower it");
-    const std::string weak = refused(format + "resistance_ohm = 20\n"); // 0.36 A: the stall current was made for the mass
-    EXPECT_NE(weak.find("rover.txt: stall_current_A = 1.4 (not given: from the rover's own numbers): a stalled wheel"), std::string::npos)
+    const std::string weak = refused(format + "current_A_per_count = 0.0005\n"); // +-1 A
+    EXPECT_NE(weak.find("rover.txt: current_offset_count_0 = 2048 (not given: the reference rover's): the converter's rail"),
+              std::string::npos)
         << weak;
+    const std::string made = refused(format + "wheel_max_rad_s = 3\nencoder_absurd_rad_s = 200\nencoder_counts_per_turn = 400000\n");
+    EXPECT_NE(made.find("rover.txt:4: encoder_counts_per_turn = 400000: more than 65535 pulses"), std::string::npos) << made;
     EXPECT_NE(refused(format + "radar = \"X\"\n").find("rover.txt:2: radar = \"X\": no template is linked; use \"MDU1130\""),
               std::string::npos);
     EXPECT_NE(refused(format + "radar = \"DRS1000\"\nradar = \"DRS1000\"\n").find("given twice"), std::string::npos);
