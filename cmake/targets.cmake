@@ -1,9 +1,12 @@
-# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings as errors.
-set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Werror -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
+# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings (as errors with TRACTION_WERROR).
+set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
     -Wcast-qual -Wwrite-strings -Wpointer-arith -Wformat=2 -Wswitch-enum -Wvla)
+if(TRACTION_WERROR)
+  list(APPEND TRACTION_WARNINGS -Werror)
+endif()
 set(TRACTION_C_WARNINGS ${TRACTION_WARNINGS} -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition)
 set(TRACTION_CXX_WARNINGS ${TRACTION_WARNINGS} -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi
-    -Wno-restrict) # GCC 12 sees an overlap in "literal" + std::string where there is none (its bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>) # GCC 12 sees an overlap in "literal" + std::string where there is none (its bug 105651)
 
 # Applies warnings and the floating-point contract (-ffp-contract=off: no fused multiply-add, so x86 and ARM agree).
 function(traction_own target)
@@ -24,6 +27,22 @@ endfunction()
 function(traction_library name)
   add_library(${name} STATIC ${ARGN})
   traction_own(${name})
+endfunction()
+
+# traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
+# the dev preset compiles without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+function(traction_headers name)
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>) # lets ccache see the header's contents
+  else()
+    target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
+  endif()
+endfunction()
+
+# traction_waits(NAME): this target waits for people, files and its libraries, so its code is compiled for a short build.
+function(traction_waits name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # traction_test(NAME LABEL label SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the emulator

@@ -5,6 +5,28 @@
 
 namespace traction::hal {
 
+namespace {
+int whole(double value) { return static_cast<int>(std::floor(value + 0.5)); }
+} // namespace
+
+CountScale count_scale(const sim::RoverDescription &rover) {
+    CountScale scale;
+    scale.current_A = rover.at("current", "A_per_count");
+    scale.battery_V = rover.at("battery", "V_per_count");
+    scale.accel_m_s2 = rover.at("accel", "m_s2_per_count");
+    scale.gyro_rad_s = rover.at("gyro", "rad_s_per_count");
+    scale.battery_offset = whole(rover.at("battery", "offset_count"));
+    scale.accel_offset = whole(rover.at("accel", "offset_count"));
+    scale.gyro_offset = whole(rover.at("gyro", "offset_count"));
+    scale.current_max = whole(rover.at("current", "max_count"));
+    scale.battery_max = whole(rover.at("battery", "max_count"));
+    for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+        scale.current_offset[i] = whole(rover.current_offset_count(i));
+        scale.encoder_sign[i] = rover.wheel[i].encoder_sign < 0 ? -1 : 1;
+    }
+    return scale;
+}
+
 int round_count(double value, int low, int high) {
     if (!(value > low)) return low; // NaN too
     if (value > high) return high;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "firmware/core/signals.h"
+#include "sim/scenario/rover.h"
 #include "sim/sensors/sensors.h"
 
 #include <array>
@@ -21,6 +22,9 @@ struct CountScale {
     int current_max = 4095, battery_max = 4095;            // 12 bit
     std::array<int, WHEEL_COUNT> encoder_sign{1, 1, 1, 1}; // -1: the count falls as the wheel drives forward
 };
+
+// The converters of a rover.
+CountScale count_scale(const sim::RoverDescription &rover);
 
 // Fills every field of the frame but tick and emergency_stop; all of it present. Radar samples beyond the frame's 8 are lost
 // (512 Hz makes 5 or 6 a tick).

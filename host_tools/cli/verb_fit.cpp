@@ -2,9 +2,9 @@
 #include "rows.h"
 #include "verbs.h"
 
-#include "host_tools/lab/fit/profile.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/profile_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"

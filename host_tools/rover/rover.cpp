@@ -10,12 +10,6 @@ namespace traction {
 
 namespace {
 
-int whole(double value) { return static_cast<int>(std::floor(value + 0.5)); }
-
-double current_offset(const sim::RoverDescription &rover, std::size_t wheel) {
-    return rover.wheel[wheel].current_offset_count.value_or(rover.at("current", "offset_count"));
-}
-
 void set(parameters_t &out, std::string_view key, double value, bool given) {
     const std::int32_t i = parameters_find(std::string(key).c_str());
     if (i < 0) throw std::logic_error("the firmware has no parameter " + std::string(key));
@@ -40,24 +34,6 @@ const sim::RoverKey *source_of(const std::string &parameter) {
 
 } // namespace
 
-hal::CountScale count_scale(const sim::RoverDescription &rover) {
-    hal::CountScale scale;
-    scale.current_A = rover.at("current", "A_per_count");
-    scale.battery_V = rover.at("battery", "V_per_count");
-    scale.accel_m_s2 = rover.at("accel", "m_s2_per_count");
-    scale.gyro_rad_s = rover.at("gyro", "rad_s_per_count");
-    scale.battery_offset = whole(rover.at("battery", "offset_count"));
-    scale.accel_offset = whole(rover.at("accel", "offset_count"));
-    scale.gyro_offset = whole(rover.at("gyro", "offset_count"));
-    scale.current_max = whole(rover.at("current", "max_count"));
-    scale.battery_max = whole(rover.at("battery", "max_count"));
-    for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-        scale.current_offset[i] = whole(current_offset(rover, i));
-        scale.encoder_sign[i] = rover.wheel[i].encoder_sign < 0 ? -1 : 1;
-    }
-    return scale;
-}
-
 parameters_t firmware_parameters(const sim::RoverDescription &rover) {
     parameters_t out{};
     rover_parameters_reference(&out.rover);
@@ -73,7 +49,7 @@ parameters_t firmware_parameters(const sim::RoverDescription &rover) {
     set(out, "encoder_counts_per_turn", rover.encoder_counts_per_turn(), true);
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
         set(out, "encoder_sign_" + std::to_string(i), rover.wheel[i].encoder_sign, true);
-        set(out, "current_offset_count_" + std::to_string(i), current_offset(rover, i), true);
+        set(out, "current_offset_count_" + std::to_string(i), rover.current_offset_count(i), true);
     }
     rover_parameters_scale(&out.rover, out.given);
     return out;

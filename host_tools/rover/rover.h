@@ -1,9 +1,8 @@
-// rover.h - what follows from a rover's description (sim/scenario/rover.h) on the other side of the seam: the converters of hal/sim,
-// the firmware's parameters and configuration, and a model for the lab.
+// rover.h - what follows from a rover's description (sim/scenario/rover.h) on the other side of the seam: the firmware's
+// parameters and configuration, and a model for the lab.
 #pragma once
 
 #include "firmware/app/parameters.h"
-#include "hal/sim/counts.h"
 #include "sim/scenario/rover.h"
 #include "sim/scenario/scenario.h"
 
@@ -11,8 +10,6 @@
 #include <string>
 
 namespace traction {
-
-hal::CountScale count_scale(const sim::RoverDescription &rover);
 
 // The primary numbers for the firmware: what the description gives is given, the rest follows (rover_parameters_scale).
 // Throws sim::ScenarioError when no template of its radar is linked.

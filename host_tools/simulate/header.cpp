@@ -1,5 +1,6 @@
 #include "header.h"
 
+#include "hal/sim/counts.h"
 #include "host_tools/rover/rover.h"
 
 #include <cstdio>
@@ -30,7 +31,7 @@ std::string text_hash(const std::string &text) {
 void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &log) {
     const sim::SensorConfig &sensors = scenario.sensors;
     const sim::RoverDescription &rover = believed(scenario); // what its user takes it for
-    const hal::CountScale scale = count_scale(rover);
+    const hal::CountScale scale = hal::count_scale(rover);
     const double rad_per_count = 6.283185307179586 / rover.encoder_counts_per_turn();
     log.header["scenario"] = scenario.name;
     log.header["seed"] = std::to_string(seed);

@@ -126,6 +126,10 @@ double RoverDescription::mean_radius_m() const {
     return shared + more / wheel_count;
 }
 
+double RoverDescription::current_offset_count(std::size_t i) const {
+    return wheel[i].current_offset_count.value_or(at("current", "offset_count"));
+}
+
 double RoverDescription::encoder_counts_per_turn() const { return at("encoder", "counts_per_motor_turn") * at("gear", "ratio"); }
 
 void put_in_plant(const RoverDescription &rover, RoverParameters &plant) {

@@ -55,6 +55,7 @@ struct RoverDescription {
     double radius_m(std::size_t wheel) const;
     double mean_radius_m() const;
     double encoder_counts_per_turn() const; // of a wheel
+    double current_offset_count(std::size_t wheel) const;
 };
 
 // Throws ScenarioError with file, line, key, value and mend; std::filesystem::filesystem_error when the file cannot be read. Every key but

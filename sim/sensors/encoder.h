@@ -3,6 +3,8 @@
 // Error: rounding to whole pulses (1.05 mrad of the wheel with the reference) and, when `missed` is set, that share of the pulses lost.
 #pragma once
 
+#include "sim/physics/effects/laws.h"
+
 #include <cmath>
 #include <cstdint>
 
@@ -14,7 +16,7 @@ inline constexpr double encoder_rad_per_count = 6.283185307179586 / encoder_coun
 class Encoder {
   public:
     explicit Encoder(double missed = 0, double counts_per_turn = encoder_counts_per_turn)
-        : keep_(1 - missed), rad_per_count_(6.283185307179586 / counts_per_turn) {}
+        : keep_(law::encoder_missed(missed)), rad_per_count_(6.283185307179586 / counts_per_turn) {}
 
     // motor_angle_rad: motor side, divided by the gear ratio.
     std::int32_t count(double motor_angle_rad) const {

@@ -130,7 +130,7 @@ TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_noth
     const Dataset data = make_dataset(bench(), motor(0));
     Physics physics = make_physics(bench());
     for (const double dead_V : {0.0, 0.5, 1.3, 1.6}) {
-        physics.wheel[0].dead_voltage = dead_V;
+        physics.wheel[0].dead_voltage_V = dead_V;
         const Eigen::VectorXd predicted = Forward(data).predict(physics);
         Eigen::Index row = 0;
         for (const Balance &b : data.balance)

@@ -272,6 +272,13 @@ TEST(Scenario, of_a_model_carries_its_numbers_and_effects) {
     EXPECT_EQ(scenario.effects[0].value("coefficient"), 0.17);
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].find("grease"), std::string::npos);
+    EffectUse ripple;
+    ripple.name = "torque_ripple";
+    ripple.parameters["cos_Nm"].value = 0.01, ripple.parameters["order"].value = -2; // a friction that varies over the turn
+    model.effects = {ripple};
+    notes.clear();
+    EXPECT_EQ(sim::parse_scenario(scenario_of(model, {&manoeuvres().front()}, notes), "x").effects[0].value("order"), -2);
+    EXPECT_TRUE(notes.empty());
     for (const Manoeuvre &m : manoeuvres()) EXPECT_NO_THROW(sim::parse_scenario(scenario_of(model, {&m}, notes), m.title)) << m.title;
 }
 

@@ -2,6 +2,7 @@
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/model/model.h"
+#include "host_tools/lab/result/compare.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
 
@@ -55,6 +56,10 @@ TEST(SecondRover, a_clean_drive_is_explained) {
     const Model model = heavy_on_sand();
     const Diagnosis d = diagnose(model, make_dataset(model, driven(heavy(), "")), {});
     EXPECT_TRUE(d.effects.empty()) << d.text;
+    // as well as the reference rover by its own model: a wheel whose encoder counts the other way would leave hundreds of times the noise
+    const Model reference = read_model("models/rover_sand.toml");
+    const double usual = compare(reference, make_dataset(reference, driven(sim::RoverDescription(), "")), true).adjusted;
+    EXPECT_LT(compare(model, make_dataset(model, driven(heavy(), "")), true).adjusted, 3 * usual);
 }
 
 TEST(SecondRover, a_hidden_effect_is_named) {

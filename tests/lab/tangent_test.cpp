@@ -127,8 +127,8 @@ TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
         model.motion = motion;
         const Dataset data = make_dataset(model, generator::generate(config));
         Physics physics = make_physics(model);
-        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1,
-        physics.body.load_height = 0.1, physics.body.offset_x = 0.01;
+        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss_s_m = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1,
+        physics.body.raised_m = 0.1, physics.body.offset_x_m = 0.01;
         for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.grip = 0.8;
         WheelStep four(data, physics), one(data, physics);
         std::array<Eigen::Vector3d, most_wheels> each{};

@@ -116,7 +116,7 @@ TEST(RoverDescription, the_reference_makes_the_plant_and_the_sensors_that_were_t
     EXPECT_EQ(sensors.encoder_counts_per_turn, 6000);
     EXPECT_EQ(sensors.radar.model, were.radar.model);
     EXPECT_EQ(sensors.radar.noise_count, were.radar.noise_count);
-    EXPECT_EQ(count_scale(sim::RoverDescription()).current_offset, hal::CountScale{}.current_offset);
+    EXPECT_EQ(hal::count_scale(sim::RoverDescription()).current_offset, hal::CountScale{}.current_offset);
     EXPECT_TRUE(sim::wheel_differences(sim::RoverDescription()).empty());
 }
 

@@ -34,7 +34,7 @@ struct Candidate {
     void prepare(Physics &physics) const;
 };
 
-// Every catalogue effect that is not in the model yet. Patches come from path cells, see patch_cells().
+// Every catalogue effect that is not in the model yet. Soil patches begin on cells of the path that `motion` drove.
 std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &data, const Motion &motion);
 
 // Structure-free shapes that this log can carry: axis x target, knots at quantiles of the axis.

@@ -19,14 +19,14 @@ struct DiagnoseOptions {
     double least_gain = 0.01;     // fall of the held-out error, all balances
     double least_gain_one = 0.03; // the same in one balance
     double least_prior_reduction = 9.0; // fall of the priors' penalty, squared standard deviations
-    int refits = 5;                     // classes that are fitted in full
+    int refits = 5;                     // candidates of least p that are fitted in full; a few more by other rules
     int most_effects = 4;
     double same_cosine = 0.9;       // above it two candidates are one class
-    double shape_p_limit = 0.02;    // of the corrected p of a structure-free shape, which must also gain 2.5 standard errors
+    double shape_p_limit = 0.02;    // of the corrected p of a structure-free shape, whose gain must also repeat over blocks
     double least_shape_gain = 0.02; // a structure-free shape has many freedoms
     double shape_margin = 1.10;     // a shape must beat the winner by this factor
     bool shapes = true;
-    std::function<void(int, int)> progress; // done, total
+    std::function<void(int, int)> progress; // candidates done; 500, a guess of how many there will be
 };
 
 struct CandidateResult {

@@ -284,7 +284,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();
     const bool whole = keep || !p.terms.empty() ||
                        std::any_of(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::force; });
-    const bool far = keep || p.body.tether != 0; // who else asks how far away it is?
+    const bool far = keep || p.body.tether_N_m != 0; // who else asks how far away it is?
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
@@ -347,8 +347,9 @@ void integrate_imposed(const Dataset &data, const Physics &p, Motion &m) {
 
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep) {
     const bool free = physics.motion == BodyMotion::longitudinal || physics.motion == BodyMotion::planar;
-    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(),
-                                  [&](const WheelPhysics &w) { return w.relaxation + physics.body.relaxation > 0; });
+    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(), [&](const WheelPhysics &w) {
+        return sim::law::relaxation_length_m(w.relaxation, physics.body.relaxation_m) > 0;
+    });
     detail::resize(motion, data.count, physics.wheel.size(), keep && free, lags);
     if (physics.wheel.size() > most_wheels) return;
     if (free)

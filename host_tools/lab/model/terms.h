@@ -6,6 +6,8 @@
 // Ia of those on the same axle, Is of those on the same side (the model's).
 #pragma once
 
+#include "sim/physics/effects/catalogue.h"
+
 #include <array>
 #include <memory>
 #include <string>
@@ -14,8 +16,14 @@
 
 namespace traction::lab {
 
-// What a parameter or term touches of the prediction, hence what must be computed again when it moves.
-enum Stage : unsigned { stage_motion = 1, stage_torque = 2, stage_voltage = 4, stage_sensors = 8, stage_all = 15 };
+// What a parameter, term or effect touches of the prediction, hence what must be computed again when it moves.
+enum Stage : unsigned {
+    stage_motion = sim::needs_motion,
+    stage_torque = sim::needs_torque,
+    stage_voltage = sim::needs_voltage,
+    stage_sensors = sim::needs_sensors,
+    stage_all = sim::needs_stages
+};
 
 // Where a term acts. Multipliers act as times (1 + f).
 enum class TermTarget {

@@ -115,9 +115,12 @@ SchurComplement schur_complement(const Eigen::MatrixXd &gram, const Eigen::Vecto
     R = unit.asDiagonal() * R * unit.asDiagonal();
     R.diagonal().array() += 1e-9; // a parameter that nothing sees stays where it is
     const Eigen::LDLT<Eigen::MatrixXd> factor(R);
-    const Eigen::VectorXd cross = unit.cwiseProduct(gram(rest, Eigen::seqN(at, k)) * g), projection = factor.solve(cross);
+    Eigen::VectorXd cross = Eigen::VectorXd::Zero(R.rows()); // gram(rest, seqN(at, k)) * g, in which gcc 14 sees a bound that is not there
+    for (Eigen::Index j = 0; j < k; ++j) cross += g[j] * gram.col(at + j)(rest);
+    cross = unit.cwiseProduct(cross).eval();
+    const Eigen::VectorXd projection = factor.solve(cross);
     SchurComplement out{std::max(0.0, g.dot(gram.block(at, at, k, k) * g) - cross.dot(projection)), 0};
-    if (column >= 0) out.with = g.dot(gram.block(at, column, k, 1).col(0)) - projection.dot(unit.cwiseProduct(gram(rest, column)));
+    if (column >= 0) out.with = g.dot(gram.block(at, column, k, 1).col(0)) - projection.dot(unit.cwiseProduct(gram.col(column)(rest)));
     return out;
 }
 

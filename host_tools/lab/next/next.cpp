@@ -90,16 +90,16 @@ const CandidateResult *find_result(const Diagnosis &d, const std::string &label)
 }
 
 // d' of one role, less where the forward model's own error on these drives looks like the effect: it must not be taken for it.
-double trusted(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, int truth, int rival) {
+double discounted(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, int truth, int rival) {
     return detectability(gram, precision, plan.candidates, truth, rival) /
            std::max(1.0, score_statistic(gram, precision, plan.candidates, truth, rival));
 }
 
 // The least of "A is true, B is its proxy" and the other way round; whether A shows at all when it is alone.
 double distance(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const Asked &asked) {
-    if (asked.members.size() == 1) return trusted(plan, gram, precision, asked.members[0], -1);
-    return std::min(trusted(plan, gram, precision, asked.members[0], asked.members[1]),
-                    trusted(plan, gram, precision, asked.members[1], asked.members[0]));
+    if (asked.members.size() == 1) return discounted(plan, gram, precision, asked.members[0], -1);
+    return std::min(discounted(plan, gram, precision, asked.members[0], asked.members[1]),
+                    discounted(plan, gram, precision, asked.members[1], asked.members[0]));
 }
 
 bool answers(const Plan &plan, double before, double after) {
@@ -107,8 +107,8 @@ bool answers(const Plan &plan, double before, double after) {
     return plan.undecided && after * after - before * before >= answered_at * answered_at;
 }
 
-// Gram of what a drive of this scenario would tell.
-Eigen::MatrixXd told_by(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
+// Fisher information of a drive of this scenario.
+Eigen::MatrixXd information_of(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
     Dataset trial = make_dataset(plan.base, drive(scenario));
     if (plan.data != nullptr) { // sensors that this rover's log lacks will be lacking again, and be as noisy
         std::erase_if(trial.balance, [&](const Balance &b) {
@@ -144,7 +144,7 @@ void name_kinds(const Plan &plan, NextExperiment &next) {
 }
 
 // Fills base, its fit to the log and the rows' scales from the model that explains the log best.
-void learn_from_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen::VectorXd &precision) {
+void condition_on_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen::VectorXd &precision) {
     const auto count = [&] {
         Eigen::Index n = 0;
         for (const SizedCandidate &s : plan.candidates) n += static_cast<Eigen::Index>(s.size.size());
@@ -278,10 +278,10 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
         return next;
     }
     Table table{plan, {}, {}, {}, {}, {}};
-    learn_from_log(plan, best, table.log, table.precision);
+    condition_on_log(plan, best, table.log, table.precision);
     for (const Manoeuvre &m : manoeuvres()) {
         next.notes.clear(); // the same for each
-        table.grams.push_back(told_by(plan, scenario_of(plan.base, {&m}, next.notes), drive));
+        table.grams.push_back(information_of(plan, scenario_of(plan.base, {&m}, next.notes), drive));
     }
     Eigen::MatrixXd everything = table.log;
     for (const Eigen::MatrixXd &gram : table.grams) everything += gram;
@@ -295,7 +295,7 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
         next.notes.clear();
         next.scenario_toml = scenario_of(plan.base, list, next.notes);
         for (const Manoeuvre *m : list) next.title += (next.title.empty() ? "" : ", then ") + m->title, next.duration_s += m->duration_s;
-        after += list.size() > 1 ? told_by(plan, next.scenario_toml, drive)
+        after += list.size() > 1 ? information_of(plan, next.scenario_toml, drive)
                                  : table.grams[choice.manoeuvres[0]]; // in one go, as it will be driven
     }
     conclude(table, after, next);
