@@ -5,6 +5,7 @@
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
+#include "host_tools/rover/rover.h"
 #include "host_tools/simulate/batch.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
@@ -20,7 +21,7 @@ namespace traction::cli {
 namespace {
 
 struct Arguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware, model;
+    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     std::vector<std::string> effects;
@@ -67,7 +68,11 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     std::vector<std::string> notes;
     const sim::Scenario machine =
         sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
-    scenario.plant.rover = machine.plant.rover;
+    sim::RoverDescription really = scenario.rover; // the firmware goes on believing the scenario's rover
+    for (std::size_t i = 0; i < really.values.size(); i++)
+        if (machine.rover.values[i].given) really.values[i] = machine.rover.values[i];
+    sim::put_in_plant(really, scenario.plant.rover);
+    scenario.plant.rover.battery_voltage_V = machine.plant.rover.battery_voltage_V;
     scenario.plant.ground.soil = machine.plant.ground.soil;
     scenario.plant.ground.grip_noise = machine.plant.ground.grip_noise;
     scenario.effects = machine.effects;
@@ -76,7 +81,12 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
 
 void run(const Arguments &arguments, Outcome &outcome) {
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
+    if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
     if (!arguments.model.empty()) drive_as(arguments.model, scenario);
+    if (!arguments.believes.empty()) scenario.firmware.believes = sim::read_rover_file(arguments.believes);
+    if (!arguments.frames.empty() && !parameter_lines(firmware_parameters(believed(scenario))).empty())
+        throw UsageError(
+            "--frames: replays the reference rover's firmware; for another rover keep the log (--out), which `traction replay` reads");
     SimulateOptions options;
     options.truth = !arguments.truth.empty();
     options.realtime = arguments.realtime;
@@ -139,6 +149,16 @@ Verb verb_simulate() {
                   .help = "rover, ground and effects of a lab's model (TOML) instead of the scenario's",
                   .value = "FILE",
                   .kind = Kind::model},
+                 {.name = "--rover",
+                  .into = &arguments->rover,
+                  .help = "the rover that drives (rovers/*.toml) instead of the scenario's",
+                  .value = "FILE",
+                  .kind = Kind::input},
+                 {.name = "--believes",
+                  .into = &arguments->believes,
+                  .help = "the rover that the firmware takes itself for: another one is a firmware that is wrong about its rover",
+                  .value = "FILE",
+                  .kind = Kind::input},
                  {.name = "--hide",
                   .into = &arguments->hide,
                   .help = "hide an effect drawn by this seed",
