@@ -1,41 +1,16 @@
 #include "frames.h"
 
-#include "host_tools/log/log.h"
-
 #include <bit>
-#include <cerrno>
 #include <cinttypes>
-#include <cstring>
+#include <cstdio>
 
 namespace traction {
 
-namespace {
-[[noreturn]] void fail(const std::string &path) {
-    throw log::FileError(path, 0, 0, std::string("cannot be written: ") + std::strerror(errno),
-                         "check that the folder exists and has room");
-}
-} // namespace
-
-FrameWriter::FrameWriter(const std::string &path, const std::string &config)
-    : path_(path), file_(std::fopen((path + ".part").c_str(), "wb")) {
-    if (file_ == nullptr) fail(path);
-    std::fprintf(file_, "# frames of traction simulate, firmware configuration %s; tests/replay/replay.c reads them\n", config.c_str());
+FrameWriter::FrameWriter(const std::string &path, const std::string &config) : file_(path) {
+    file_.write("# frames of traction simulate, firmware configuration " + config + "; tests/replay/replay.c reads them\n");
 }
 
-FrameWriter::~FrameWriter() {
-    if (file_ == nullptr) return;
-    std::fclose(file_);
-    std::remove((path_ + ".part").c_str());
-}
-
-void FrameWriter::keep() {
-    const bool good = std::ferror(file_) == 0;
-    if (std::fclose(file_) != 0 || !good || std::rename((path_ + ".part").c_str(), path_.c_str()) != 0) {
-        file_ = nullptr;
-        fail(path_);
-    }
-    file_ = nullptr;
-}
+void FrameWriter::keep() { file_.keep(); }
 
 void FrameWriter::integer(long value) { line_.append(line_.empty() ? "" : " ").append(std::to_string(value)); }
 
@@ -68,7 +43,7 @@ void FrameWriter::add(const sensor_frame_t &frame, const command_t &command) {
     integer(command.slip_wheels);
     integer(command.age_ticks);
     line_ += '\n';
-    std::fputs(line_.c_str(), file_);
+    file_.write(line_);
 }
 
 } // namespace traction

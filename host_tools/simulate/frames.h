@@ -6,9 +6,9 @@
 #pragma once
 
 #include "firmware/core/signals.h"
+#include "host_tools/log/write_file.h"
 
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 namespace traction {
@@ -17,9 +17,6 @@ class FrameWriter {
   public:
     // config: "default" or "paper", the firmware configuration of the run. Throws log::FileError.
     FrameWriter(const std::string &path, const std::string &config);
-    ~FrameWriter(); // unless kept, leaves nothing
-    FrameWriter(const FrameWriter &) = delete;
-    FrameWriter &operator=(const FrameWriter &) = delete;
 
     void add(const sensor_frame_t &frame, const command_t &command);
     void keep(); // gives the file its name
@@ -28,8 +25,8 @@ class FrameWriter {
     void integer(long value);
     void hexadecimal(std::uint32_t value, int digits);
     void real(float value);
-    std::string path_, line_;
-    std::FILE *file_;
+    std::string line_;
+    log::WholeFile file_; // unless kept, leaves nothing
 };
 
 } // namespace traction
