@@ -99,11 +99,18 @@ std::vector<log::Claim> claim_outputs(const Parsed &parsed) {
     return claims;
 }
 
-bool writes_standard_output(const Parsed &parsed) {
-    if (!parsed.json_file.empty() && log::is_standard_output(parsed.json_file)) return true;
+// Whether a result goes to standard output. Every name of it ("/dev/stdout") becomes "-", because the words move away from there.
+bool takes_standard_output(Parsed &parsed) {
+    bool taken = false;
+    const auto take = [&](std::string &path) {
+        if (!log::is_standard_output(path)) return;
+        path = "-";
+        taken = true;
+    };
+    take(parsed.json_file);
     for (const Option &option : parsed.verb->options)
-        if (option.kind == Kind::output && log::is_standard_output(*std::get<std::string *>(option.into))) return true;
-    return false;
+        if (option.kind == Kind::output) take(*std::get<std::string *>(option.into));
+    return taken;
 }
 
 // Scenarios and models are found from any folder.
@@ -115,14 +122,14 @@ void find_data(const Verb &verb) {
     }
 }
 
-int run(const Parsed &parsed) {
+int run(Parsed parsed) {
     const Verb &verb = *parsed.verb;
     Outcome outcome;
     if (parsed.quiet) Progress::silence();
     try {
         find_data(verb);
         const std::vector<log::Claim> claims = claim_outputs(parsed);
-        place_words(parsed.quiet, writes_standard_output(parsed));
+        place_words(parsed.quiet, takes_standard_output(parsed));
         verb.run(outcome);
         if (!parsed.json_file.empty()) log::write_file(outcome.json.dump(1) + '\n', parsed.json_file);
     } catch (const UsageError &error) {

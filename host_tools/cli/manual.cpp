@@ -46,7 +46,7 @@ const char *exit_codes = ".SH EXIT STATUS\n0 done, 1 the answer is negative, 2 w
 std::string manual() {
     std::string text = head("traction", "ground speed, slip and traction of a small wheeled rover, its simulator and its lab") +
                        ".SH SYNOPSIS\n.B traction\n.I VERB\n[options]\n.SH VERBS\n";
-    for (const Verb &verb : all_verbs()) text += item(verb.name, verb.summary + " See traction-" + dashed(verb.name) + "(1).");
+    for (const Verb &verb : all_verbs()) text += item(verb.name, verb.summary + ". See traction-" + dashed(verb.name) + "(1).");
     return text + exit_codes + ".SH ENVIRONMENT\n" +
            item("TRACTION_ROOT", "the folder that holds scenarios/ and models/; without it they are looked for in the source "
                                  "tree of the build, then in share/traction of the prefix");

@@ -63,14 +63,24 @@ bool same_file(const struct stat &a, int fd) {
     return ::fstat(fd, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
+} // namespace
+
+bool is_standard_output(const std::string &path) {
+    struct stat info {};
+    if (path == "-" || path == "/dev/stdout") return true;
+    return ::stat(path.c_str(), &info) == 0 && !S_ISCHR(info.st_mode) && same_file(info, standard_output);
+}
+
+namespace {
+
 // What is to be replaced when `path` is written; empty when it is written to in place.
 std::string target_of(const std::string &path) {
     namespace fs = std::filesystem;
-    if (path == "-") return "";
+    if (is_standard_output(path)) return "";
     struct stat info {};
     if (::stat(path.c_str(), &info) == 0) {
         if (S_ISDIR(info.st_mode)) refuse(path, EISDIR);
-        if (!S_ISREG(info.st_mode) || same_file(info, standard_output)) return "";
+        if (!S_ISREG(info.st_mode) || is_standard_output(path)) return "";
         std::array<char, PATH_MAX> real{};
         if (::realpath(path.c_str(), real.data()) == nullptr) refuse(path, errno);
         return real.data();
@@ -228,11 +238,6 @@ void write_file(std::string_view text, const std::string &path) {
     WholeFile file(path);
     file.write(text);
     file.keep();
-}
-
-bool is_standard_output(const std::string &path) {
-    struct stat info {};
-    return path == "-" || (::stat(path.c_str(), &info) == 0 && same_file(info, standard_output));
 }
 
 void set_standard_output(int fd) { standard_output = fd; }

@@ -124,6 +124,23 @@ wait $run 2>/dev/null
 [ $? -eq 0 ] && bad "a killed run exits 0"
 ls -A | grep -q "ended.csv" && bad "a killed run leaves $(ls -A | grep ended.csv)"
 
+# a full disk: a small file system of its own, where the system lets us make one
+mkdir tiny
+if [ "$(id -u)" -eq 0 ] && unshare -m true 2>/dev/null; then
+    unshare -m sh -c 'mount -t tmpfs -o size=200k none tiny || exit 77
+        echo old >tiny/run.csv
+        "$1" simulate cruise --out tiny/run.csv >/dev/null 2>stderr.txt
+        code=$?
+        [ "$(ls -A tiny)" = run.csv ] && [ "$(cat tiny/run.csv)" = old ] || exit 5
+        exit $code' sh "$cli"
+    code=$?
+    case $code in
+        77) ;; # no mounts here
+        4) grep -q "tiny/run.csv: cannot be written: No space left on device" stderr.txt || bad "a full disk is told as $(cat stderr.txt)" ;;
+        *) bad "a full disk ends with $code" ;;
+    esac
+fi
+
 # answers
 "$cli" simulate "$root/scenarios/fig16_blocked_wheels.toml" --quiet --json fault.json
 code=$?
