@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-enum { HAL_MESSAGE = 400 }; // [byte] room for one line
+enum { HAL_MESSAGE = 1500 }; // [byte] room for one line, the list of all effects in it
 
 // An opened HAL. All functions take hal.context.
 typedef struct {
