@@ -47,7 +47,7 @@ endfunction()
 
 # What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of each other library those that go through its
 # code within seconds. The rest runs in the host build.
-set(TRACTION_SANITIZED_LABELS unit hal)
+set(TRACTION_SANITIZED_LABELS unit hal replay)
 set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
     lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score lab_generator_physics svg_test)
 
