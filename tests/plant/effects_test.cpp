@@ -63,10 +63,10 @@ TEST(Catalogue, a_shape_stays_within_its_range) {
 
 TEST(Catalogue, a_parameter_carries_its_unit_in_its_name) {
     const std::map<std::string_view, std::string_view> suffix{
-        {"N m", "_Nm"},    {"N m s", "_Nms"}, {"rad/s", "_rad_s"}, {"rad", "_rad"},    {"K/W", "_K_W"},    {"s", "_s"},
-        {"ohm", "_ohm"},   {"V", "_V"},       {"A", "_A"},         {"N", "_N"},        {"N/m", "_N_m"},    {"m", "_m"},
-        {"1/m", "_per_m"}, {"s/m", "_s_m"},   {"m/s^2", "_m_s2"},  {"m/s^3", "_m_s3"}, {"s^2/m", "_s2_m"}, {"rad s^2/m", "_rad_s2_m"},
-        {"1", ""},         {"1/turn", ""}};
+        {"N m", "_Nm"},    {"N m s", "_Nms"}, {"rad/s", "_rad_s"},  {"rad", "_rad"},    {"K/W", "_K_W"},    {"s", "_s"},
+        {"ohm", "_ohm"},   {"V", "_V"},       {"A", "_A"},          {"N", "_N"},        {"N/m", "_N_m"},    {"m", "_m"},
+        {"1/m", "_per_m"}, {"s/m", "_s_m"},   {"m/s^2", "_m_s2"},   {"m/s^3", "_m_s3"}, {"s^2/m", "_s2_m"}, {"rad s^2/m", "_rad_s2_m"},
+        {"1", ""},         {"1/turn", ""},    {"s^2/m^2", "_s2_m2"}};
     for (const Effect &effect : catalogue())
         for (const EffectParameter &p : effect.parameters) {
             const auto known = suffix.find(p.unit);
