@@ -63,7 +63,7 @@ struct RoverDescription {
 RoverDescription read_rover_file(const std::string &path);
 RoverDescription parse_rover(const std::string &text, const std::string &file); // `file` for messages
 
-// `path` as it is, or else beside the folder of `from` ("rovers/x.toml" of scenarios/y.toml), or else in it.
+// `path` as it is, or else beside the folder of `from` ("rovers/x.toml" of a scenario), or else in it.
 std::string find_rover_file(const std::string &path, const std::string &from);
 
 void put_in_plant(const RoverDescription &rover, RoverParameters &plant);
