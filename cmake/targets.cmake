@@ -45,11 +45,21 @@ function(traction_waits name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
+# What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of each other library those that go through its
+# code within seconds. The rest runs in the host build.
+set(TRACTION_SANITIZED_LABELS unit hal replay)
+set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
+    lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score lab_generator_physics svg_test)
+
 # traction_test(NAME LABEL label SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the emulator
 # when cross-compiling.
 function(traction_test name)
   cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  if(TRACTION_SANITIZE AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
+    return()
+  endif()
   add_executable(${name} ${T_SOURCES})
+  set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL OFF) # also where its folder is
   traction_own(${name})
   target_link_libraries(${name} PRIVATE ${T_LIBS} GTest::gtest GTest::gtest_main)
   # gtest's macros convert and shadow in ways that are theirs, not ours

@@ -5,7 +5,7 @@
 // (1) and (2) for one wheel.
 static void measure_wheel(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, int wheel, sense_output_t *out)
 {
-    const uint32_t bit = FRAME_ENCODER_0 << (uint32_t)wheel;
+    const uint32_t bit = (uint32_t)FRAME_ENCODER_0 << (uint32_t)wheel;
     int32_t *ring = state->count[wheel];
     const int32_t last = ring[(state->head + SENSE_HISTORY - 1) % SENSE_HISTORY];
     const int32_t middle = ring[(state->head + SENSE_HISTORY - 4) % SENSE_HISTORY];
@@ -48,7 +48,7 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
 
 static void measure_current(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, int wheel, sense_output_t *out)
 {
-    const uint32_t bit = FRAME_CURRENT_0 << (uint32_t)wheel;
+    const uint32_t bit = (uint32_t)FRAME_CURRENT_0 << (uint32_t)wheel;
     if ((frame->present & bit) != 0u) {
         const int32_t count = frame->current_count[wheel];
         if (count <= 0 || count >= config->current_max_count) {

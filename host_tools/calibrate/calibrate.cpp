@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <optional>
@@ -183,6 +184,8 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
 void put_parameter(const std::string &path, const std::string &key, double value, const std::string &comment) {
     std::string text, line;
     std::ifstream file(path);
+    if (!file.is_open() && std::filesystem::exists(path)) // what stands in it would be lost
+        throw log::FileError(path, 0, 0, "cannot be read, so nothing is put into it", "check its permissions");
     bool format = false;
     while (std::getline(file, line)) {
         const std::string name = line.substr(0, line.find_first_of(" \t="));

@@ -1,6 +1,6 @@
 #include "tune.h"
 
-#include "dead_time.h"
+#include "order_delay.h"
 
 #include "host_tools/loop/loop.h"
 
@@ -84,7 +84,7 @@ class Experiment : public Link {
             sample.wheel[i] = {.speed_rad_s = w, .current_A = current_A, .ordered = last_duty_[i]};
         }
         samples_.push_back(sample);
-        if (samples_.size() == probe_ticks_) seen_late_s_ = std::floor(dead_time_s(samples_) / tick_s + 1e-6) * tick_s;
+        if (samples_.size() == probe_ticks_) seen_late_s_ = std::floor(order_delay_s(samples_) / tick_s + 1e-6) * tick_s;
         for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
             const Sample::Wheel &wheel = sample.wheel[i];
             learn_circuit(i, duty_in_force(samples_, samples_.size() - 1, i, seen_late_s_), wheel.speed_rad_s, wheel.current_A);
@@ -103,10 +103,10 @@ class Experiment : public Link {
 
     TuneResult result() const {
         TuneResult r{.battery_V = battery_V_, .largest_torque_Nm = largest_Nm_, .used_s = used_s_};
-        r.dead_time_s = dead_time_s(samples_);
+        r.order_delay_s = order_delay_s(samples_);
         double largest = 0;
         for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-            const Fit fit = fit_of(i, r.dead_time_s);
+            const Fit fit = fit_of(i, r.order_delay_s);
             if (fit.rows < 50)
                 throw std::runtime_error("tune: wheel " + std::to_string(i) + " hardly turned; raise --duty or --torque-Nm, or free it");
             const auto [a, b, c] = fit.solve();
@@ -116,7 +116,7 @@ class Experiment : public Link {
             r.gain_rad_s2[i] = b * battery_V_ / tick_s;
             if (r.gain_rad_s2[i] > largest) {
                 largest = r.gain_rad_s2[i];
-                const double crossover = (90 - limits_.margin_deg) * std::numbers::pi / 180 / (2 * tick_s + r.dead_time_s);
+                const double crossover = (90 - limits_.margin_deg) * std::numbers::pi / 180 / (2 * tick_s + r.order_delay_s);
                 r.kp_s = crossover / largest;
                 r.ki_1 = r.kp_s * r.pole_1_s[i]; // (2)
             }

@@ -34,7 +34,7 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
     check_quality(log, repairs, grid, report.findings, report.rates);
     if (grid.count >= 100) { // 5 s
         check_drives(grid, machine, report.findings);
-        check_motion(log, grid, machine, report.findings);
+        check_motion(grid, machine, report.findings);
         report.excitation = measure_excitation(grid);
         judge_excitation(report.excitation, grid, report.findings);
     }

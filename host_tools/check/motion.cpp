@@ -12,8 +12,7 @@ constexpr double pi = 3.141592653589793;
 
 class Motion {
   public:
-    Motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings)
-        : log_(log), grid_(grid), machine_(machine), findings_(findings) {}
+    Motion(const Grid &grid, const Machine &machine, Findings &findings) : grid_(grid), machine_(machine), findings_(findings) {}
     void run() {
         encoders();
         heading();
@@ -46,7 +45,6 @@ class Motion {
         findings_.push_back({id, severity, signal, std::move(text), std::move(mend), value});
     }
 
-    const log::Log &log_;
     const Grid &grid_;
     const Machine &machine_;
     Findings &findings_;
@@ -366,8 +364,6 @@ void Motion::accel() {
 
 } // namespace
 
-void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) {
-    Motion(log, grid, machine, findings).run();
-}
+void check_motion(const Grid &grid, const Machine &machine, Findings &findings) { Motion(grid, machine, findings).run(); }
 
 } // namespace traction::check

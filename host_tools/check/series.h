@@ -74,7 +74,7 @@ void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs,
                    std::vector<Rate> &rates);
 void check_clipping(const log::Signal &signal, const Grid &grid, Findings &findings); // the end of a sensor's range
 void check_drives(const Grid &grid, const Machine &machine, Findings &findings);      // duty, speed, current: units, signs, swaps
-void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // encoder, camera, radar, imu
+void check_motion(const Grid &grid, const Machine &machine, Findings &findings);      // encoder, camera, radar, imu
 Excitation measure_excitation(const Grid &grid);
 void judge_excitation(const Excitation &excitation, const Grid &grid, Findings &findings);
 

@@ -1,5 +1,6 @@
 // verb_simulate.cpp - traction simulate SCENARIO: drives the rover through a scenario and writes the log.
 #include "progress.h"
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/lab/next/manoeuvre.h"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 namespace traction::cli {
@@ -50,6 +52,18 @@ void keep(const Arguments &arguments, const sim::Scenario &scenario, const Simul
     if (!arguments.seal.empty()) report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed), name(arguments.seal));
 }
 
+// "stall, low battery": fault_t, firmware/core/signals.h.
+std::string fault_names(std::uint32_t faults) {
+    static const char *const name[] = {"emergency stop", "command timeout", "encoder lost",     "current lost", "accelerometer lost",
+                                       "radar lost",     "battery lost",    "low battery",      "over-current", "stall",
+                                       "missed ticks",   "speeds disagree", "over-temperature", "gyro lost",    "absurd sensor"};
+    std::string text;
+    for (std::size_t bit = 0; bit < 32; ++bit)
+        if ((faults >> bit & 1U) != 0)
+            text += (text.empty() ? "" : ", ") + (bit < std::size(name) ? std::string(name[bit]) : "fault " + std::to_string(bit));
+    return text;
+}
+
 nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
     char hash[20];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(result.trace_hash));
@@ -57,6 +71,7 @@ nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
             {"ticks", result.ticks},
             {"simulated_s", static_cast<double>(result.ticks) / 100},
             {"faults", result.faults},
+            {"fault_names", fault_names(result.faults)},
             {"trace_hash", hash}};
 }
 
@@ -79,7 +94,18 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     for (const std::string &note : notes) std::printf("note: %s\n", note.c_str());
 }
 
+// A run that ended with a latched fault is told, and is a negative answer: the rover stood still at its end.
+void tell_faults(Outcome &outcome) {
+    for (const nlohmann::json &run : outcome.json["runs"]) {
+        const std::string names = fault_names(run["faults"].get<std::uint32_t>());
+        if (names.empty()) continue;
+        std::printf("seed %s ended with a latched fault: %s (docs/firmware.md, faults)\n", run["seed"].dump().c_str(), names.c_str());
+        outcome.exit_code = exit_negative;
+    }
+}
+
 void run(const Arguments &arguments, Outcome &outcome) {
+    for (const std::string &text : arguments.effects) need_effect("--effect", text, ":");
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
     if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
     if (!arguments.model.empty()) drive_as(arguments.model, scenario);
@@ -118,6 +144,9 @@ void run(const Arguments &arguments, Outcome &outcome) {
     std::printf("%s: %ld run%s, %.1f s simulated in %.2f s (%.0f x real time)%s%s\n", scenario.name.c_str(), count, count == 1 ? "" : "s",
                 simulated_s, spent_s, simulated_s / spent_s, arguments.out.empty() ? "" : ", log in ", arguments.out.c_str());
     outcome.json["spent_s"] = spent_s;
+    if (arguments.out.empty() && arguments.truth.empty() && arguments.frames.empty())
+        std::printf("the log was not kept; --out LOG keeps it\n");
+    tell_faults(outcome);
 }
 
 } // namespace

@@ -31,7 +31,7 @@ void run_tune(const TuneOptions &options, Outcome &outcome) {
     std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
     for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
         std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);
-    if (r.dead_time_s > 0) std::printf("orders act %.0f ms late: the loop is slower for it\n", r.dead_time_s * 1000);
+    if (r.order_delay_s > 0) std::printf("order delay %.0f ms: the loop is slower for it\n", r.order_delay_s * 1000);
     std::printf("wheel_kp_s %.4f, wheel_ki_1 %.4f for a phase margin of %.0f deg\n", r.kp_s, r.ki_1, options.limits.margin_deg);
     if (!options.parameters.empty()) {
         put_parameter(options.parameters, "wheel_kp_s", r.kp_s, "duty per rad/s, traction tune");
@@ -43,7 +43,7 @@ void run_tune(const TuneOptions &options, Outcome &outcome) {
                     {"ki_1", r.ki_1},
                     {"pole_1_s", r.pole_1_s},
                     {"gain_rad_s2", r.gain_rad_s2},
-                    {"dead_time_s", r.dead_time_s},
+                    {"order_delay_s", r.order_delay_s},
                     {"largest_torque_Nm", r.largest_torque_Nm},
                     {"used_s", r.used_s}};
 }

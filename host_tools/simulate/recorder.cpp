@@ -88,11 +88,11 @@ double Recorder::exact(float value) {
 
 void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace) {
     const Wheel &at = wheel_[wheel];
-    if ((frame.present & (FRAME_ENCODER_0 << static_cast<unsigned>(wheel))) != 0u) {
+    if ((frame.present & (unsigned{FRAME_ENCODER_0} << static_cast<unsigned>(wheel))) != 0u) {
         put(at.speed, t_s, tidy(trace.speed_rad_s));
         put(at.encoder, t_s, frame.encoder_count[wheel]);
     }
-    if ((frame.present & (FRAME_CURRENT_0 << static_cast<unsigned>(wheel))) != 0u) {
+    if ((frame.present & (unsigned{FRAME_CURRENT_0} << static_cast<unsigned>(wheel))) != 0u) {
         put(at.current, t_s, tidy(trace.current_A));
         put(at.current_count, t_s, frame.current_count[wheel]);
     }

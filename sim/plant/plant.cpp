@@ -23,7 +23,7 @@ void start_ode() {
         if (dCheckConfiguration("ODE_double_precision") == 0)
             throw std::runtime_error("this ODE library is not the double-precision build; install libode-dev for amd64");
     });
-    thread_local const bool ready = dAllocateODEDataForThread(dAllocateMaskAll) != 0;
+    thread_local const bool ready = dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)) != 0;
     if (!ready) throw std::runtime_error("ODE could not allocate its data for this thread");
 }
 

@@ -7,7 +7,7 @@
 namespace traction::sim {
 
 namespace {
-constexpr double gravity_m_s2 = 9.80665;
+constexpr double gravity_m_s2 = 9.81;      // the plant's (RoverParameters), or what tilts would weigh other than what stands
 constexpr double accel_smoothing_s = 0.01; // [s] assumed: what the beam and the springs of the body follow
 } // namespace
 

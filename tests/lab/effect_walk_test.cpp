@@ -1,6 +1,7 @@
 // A walk over the catalogue: each effect acts in the simulated rover or its sensors and in the lab, not at all at zero, and the lab's
 // sensitivity to it is that of whole predictions. An effect that nobody reads is seen here.
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/physics/effects/catalogue.h"
 

@@ -86,7 +86,7 @@ TEST(Inputs, rows_at_a_jump_have_a_smoothing_bias_and_calm_rows_have_none) {
         if (std::fabs(t - jump_s) < 0.05) jump = std::max(jump, torque.noise_factor[r]), ++rows_there;
     }
     EXPECT_LT(calm, 1.2);                            // the encoder's own noise
-    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: doubted, or left out
+    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: widened, or left out
 }
 
 TEST(Inputs, a_current_that_is_the_mean_of_its_tick_stands_for_the_middle_of_it) {

@@ -198,10 +198,10 @@ TEST(Tune, sees_how_late_an_order_acts_and_keeps_the_margin) {
         return tune(rover.hal(), rover_config_default(), {});
     };
     const TuneResult now = tuned("");
-    EXPECT_EQ(now.dead_time_s, 0);
+    EXPECT_EQ(now.order_delay_s, 0);
     for (const auto &[text, late_s] : {std::pair{"0.013", 0.013}, {"0.05", 0.05}, {"0.12", 0.12}}) {
         const TuneResult r = tuned(text);
-        EXPECT_NEAR(r.dead_time_s, late_s, 0.0015) << text; // the grid's step, and its half
+        EXPECT_NEAR(r.order_delay_s, late_s, 0.0015) << text; // the grid's step, and its half
         // the motor is the same one: 4 %, the spread of the largest of four gains over seeds (80 to 83.5 rad/s^2)
         EXPECT_NEAR(r.kp_s * (0.02 + late_s), now.kp_s * 0.02, 0.04 * now.kp_s * 0.02) << text;
         EXPECT_LE(r.largest_torque_Nm, 0.3 * 1.2) << text;

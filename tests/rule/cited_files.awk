@@ -48,7 +48,11 @@ FNR == 1 {
         if (at == 0) next
         text = substr(text, at + RLENGTH)
     }
-    if (match(text, /(^|[^A-Za-z])[A-Z][A-Z]+ (sections?|table) [0-9I]/)) offence("\"" substr(text, RSTART, RLENGTH) "\"")
+    if (match(text, /(^|[^A-Za-z])[A-Z][A-Z]+ (sections?|table) [0-9I]/)) {
+        name = substr(text, RSTART, RLENGTH)
+        sub(/^[^A-Z]/, "", name)
+        offence("\"" name "\"")
+    }
     while (match(text, /[A-Za-z0-9_.\/{},*<>-]*[A-Za-z0-9_*}>]\.(md|h|cpp|c|cmake|sh|py|ts|awk|toml)([^A-Za-z0-9_]|$)/)) {
         name = substr(text, RSTART, RLENGTH)
         text = substr(text, RSTART + RLENGTH)

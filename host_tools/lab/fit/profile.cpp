@@ -163,13 +163,14 @@ double crossing(const std::function<double(double, Eigen::VectorXd &, bool)> &ri
 }
 
 // Walks from the best value outwards until the rise passes the limit, a bound stops it, or it has gone as far as is sensible.
-Side walk(Held &held, double best_cost, const FreeParameter &p, double increment, double error, double reach, int sign, Profile &out) {
+Side walk(Held &held, double best_cost, const FreeParameter &p, double increment, double error, double search_range, int sign,
+          Profile &out) {
     const auto rise_at = [&](double x, Eigen::VectorXd &theta, bool fresh) {
         return std::max(0.0, (held.cost(x, theta, fresh) - best_cost) / out.dispersion);
     };
     const double bound = sign > 0 ? p.maximum - p.base : p.minimum - p.base;
     const bool bounded = std::isfinite(bound);
-    const double far = bounded ? bound : increment + sign * reach;
+    const double far = bounded ? bound : increment + sign * search_range;
     if (sign * (far - increment) <= 1e-12 * std::fabs(far)) return {p.base + far, false, bounded}; // stands at its bound
     double step = std::min(0.5 * error, std::fabs(far - increment) / 8), x = increment, rise = 0;
     Eigen::VectorXd theta = held.start();
@@ -206,10 +207,10 @@ Profile profile_one(Problem &best, const Model &model, Eigen::Index i, double er
     const double ratio = error / white_error;
     out.dispersion = std::isfinite(ratio) && ratio > 0 ? std::clamp(ratio * ratio, 0.25, 1e4) : 1;
     const double held_error = 1 / std::max(1e-12, best.jacobian.col(i).norm()); // were all the others known
-    const double reach = std::max({10 * std::fabs(out.value), 40 * held_error, 5 * std::min(error, 1e4 * held_error)});
+    const double search_range = std::max({10 * std::fabs(out.value), 40 * held_error, 5 * std::min(error, 1e4 * held_error)});
     Held held(best, model, i);
-    const Side low = walk(held, best_cost, p, best.theta[i], error, reach, -1, out),
-               high = walk(held, best_cost, p, best.theta[i], error, reach, 1, out);
+    const Side low = walk(held, best_cost, p, best.theta[i], error, search_range, -1, out),
+               high = walk(held, best_cost, p, best.theta[i], error, search_range, 1, out);
     out.low = low.end, out.low_open = low.open, out.low_at_bound = low.at_bound;
     out.high = high.end, out.high_open = high.open, out.high_at_bound = high.at_bound;
     out.x.push_back(out.value), out.rise.push_back(0);

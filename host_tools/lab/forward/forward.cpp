@@ -127,13 +127,14 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     const WheelPhysics &p = physics.wheel[wheel];
     const double radius = rolling_radius(p), KG = sim::motor_constant(p.KG, p, 0), factor = sim::law::current_gain(1, p.current_gain);
     if (!(KG > 0)) return;
-    const double per_N = factor * radius / KG;
+    const double per_N = factor * radius / KG, by_load = sim::load_friction_Nm(p, 1); // in proportion: its slope
     const std::vector<double> &now = motion.wheel[wheel].traction_N, &before = base_motion_.wheel[wheel].traction_N;
     series_.resize(data_->count);
     for (std::size_t k = 0; k < data_->count; ++k) {
         series_[k] = per_N * (now[k] - before[k]);
-        if (const double more = sim::load_friction_Nm(p, radius * now[k]) - sim::load_friction_Nm(p, radius * before[k]); more != 0)
-            series_[k] += factor / KG * more * soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
+        if (by_load != 0)
+            series_[k] += per_N * by_load * (std::fabs(now[k]) - std::fabs(before[k])) *
+                          soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
         if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
     }
     rows_of(balance, series_, physics.body.current_delay, true, out);
@@ -277,8 +278,8 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
                 const double a = motion.accel_m_s2[k];
                 lagged += share * (0.5 * (a + before) - lagged);
                 before = a;
-                const double felt = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
-                const double read = felt * sim::law::accel_scale(1, b.accel_scale) + b.accel_bias0;
+                const double tilted = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
+                const double read = tilted * sim::law::accel_scale(1, b.accel_scale) + b.accel_bias0;
                 x[k] = sim::law::accel_drift(sim::law::accel_bias(read, b.accel_bias_m_s2), b.accel_drift_m_s3, d.time(k)) +
                        factor(TermTarget::accel, k) - 1;
             }

@@ -169,9 +169,9 @@ Physics make_physics(const Model &model) {
         if (key.in_body != nullptr)
             physics.body.*key.in_body = value_of(std::string(key.table) == "rover" ? model.rover : model.sensors, key.key);
     if (!(physics.body.yaw_inertia > 0)) { // a plate under the wheels
-        double reach = 0;
-        for (const WheelPhysics &w : physics.wheel) reach = std::max(reach, w.x * w.x + w.y * w.y);
-        physics.body.yaw_inertia = std::max(1e-6, physics.body.mass * reach * 2 / 3);
+        double largest_arm2 = 0;
+        for (const WheelPhysics &w : physics.wheel) largest_arm2 = std::max(largest_arm2, w.x * w.x + w.y * w.y);
+        physics.body.yaw_inertia = std::max(1e-6, physics.body.mass * largest_arm2 * 2 / 3);
     }
     physics.body.gravity = value_of(model.rover, "gravity_m_s2");
     physics.body.battery_V = value_of(model.rover, "battery_voltage_V");
@@ -309,12 +309,12 @@ std::vector<FreeParameter> free_parameters(const Model &model, const Physics &ph
     return list;
 }
 
-void store(Model &model, const FreeParameter &parameter, double increment, double reach) {
+void store(Model &model, const FreeParameter &parameter, double increment, double half_width) {
     const auto put = [&](Parameter &p) {
         p.value += increment;
-        if (reach > 0) {
-            p.low = p.value - reach;
-            p.high = p.value + reach;
+        if (half_width > 0) {
+            p.low = p.value - half_width;
+            p.high = p.value + half_width;
         }
     };
     for (EffectUse &use : model.effects)

@@ -108,7 +108,7 @@ Physics make_physics(const Model &model);
 std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics);
 
 // Writes fitted values back: value of each key that a free parameter stands for.
-// `reach`: half of its 95 % interval.
-void store(Model &model, const FreeParameter &parameter, double increment, double reach);
+// `half_width`: of its 95 % interval.
+void store(Model &model, const FreeParameter &parameter, double increment, double half_width);
 
 } // namespace traction::lab

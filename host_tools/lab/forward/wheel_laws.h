@@ -89,8 +89,8 @@ template <typename T> inline T traction_slope(SoilLaw soil, const T &size) {
 template <typename T> struct Grip { T traction, side; };
 template <typename T>
 inline Grip<T> grip_of(SoilLaw soil, const T &Fm, const T &sc, const T &slip, const T &side_slip, const T &share, bool followed) {
-    const T across = share * side_slip, felt = followed ? side_slip : across;
-    const T grip = T(law::by(Fm, sc)) * traction_slope(soil, T(law::by(T(law::root(T(slip * slip + felt * felt))), sc)));
+    const T across = share * side_slip, side = followed ? side_slip : across;
+    const T grip = T(law::by(Fm, sc)) * traction_slope(soil, T(law::by(T(law::root(T(slip * slip + side * side))), sc)));
     return {T(grip * slip), T(grip * across)};
 }
 

@@ -312,9 +312,9 @@ void WheelStep::loads() {
         state_[i].load_0 = X.dot(share * static_loads);
         const double M_h = b.mass * height;
         if (p_.halves) {
-            double reach = 0; // of this half
-            for (const WheelPhysics &w : p_.wheel) reach += same_side(w, p_.wheel[i]) ? w.x * w.x : 0;
-            state_[i].load_per_twist = reach > 0 ? -height * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / reach : 0;
+            double sum_x2 = 0; // of this half
+            for (const WheelPhysics &w : p_.wheel) sum_x2 += same_side(w, p_.wheel[i]) ? w.x * w.x : 0;
+            state_[i].load_per_twist = sum_x2 > 0 ? -height * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / sum_x2 : 0;
         }
         state_[i].load_per_side = X.dot(share * Eigen::Vector3d(0, 0, -M_h));
         state_[i].load_per_accel = X.dot(share * Eigen::Vector3d(0, -M_h, 0));

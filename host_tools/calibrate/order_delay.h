@@ -1,4 +1,4 @@
-// dead_time.h - how late an order acts, from currents: the delay with which the ordered duty explains them best.
+// order_delay.h - how late an order acts, from currents: the delay with which the ordered duty explains them best.
 //
 //   I[k] = g V[k] d[k - D/T] + h w[k]                                               (1)  one g and h a wheel, least squares
 //
@@ -23,10 +23,10 @@ struct Sample { // one tick
     std::array<Wheel, WHEEL_COUNT> wheel{};
 };
 
-// Duty in force over tick k when orders act dead_time_s late; 0 before the first.
-double duty_in_force(std::span<const Sample> samples, std::size_t k, std::size_t wheel, double dead_time_s);
+// Duty in force over tick k when orders act order_delay_s late; 0 before the first.
+double duty_in_force(std::span<const Sample> samples, std::size_t k, std::size_t wheel, double order_delay_s);
 
 // [s], 0 to 0.25 in steps of 1 ms. Samples without a step of duty tell nothing: 0.
-double dead_time_s(std::span<const Sample> samples);
+double order_delay_s(std::span<const Sample> samples);
 
 } // namespace traction

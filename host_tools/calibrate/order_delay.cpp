@@ -1,4 +1,4 @@
-#include "dead_time.h"
+#include "order_delay.h"
 
 #include <cmath>
 
@@ -29,14 +29,14 @@ double left_over(std::span<const Sample> samples, std::size_t wheel, int late_ms
 
 } // namespace
 
-double duty_in_force(std::span<const Sample> samples, std::size_t k, std::size_t wheel, double dead_time_s) {
-    const int late_ms = static_cast<int>(std::lround(dead_time_s * 1000));
+double duty_in_force(std::span<const Sample> samples, std::size_t k, std::size_t wheel, double order_delay_s) {
+    const int late_ms = static_cast<int>(std::lround(order_delay_s * 1000));
     const auto ticks = static_cast<std::size_t>(late_ms / tick_ms);
     const double part = static_cast<double>(late_ms % tick_ms) / tick_ms;
     return (1 - part) * ordered(samples, k, wheel, ticks) + part * ordered(samples, k, wheel, ticks + 1);
 }
 
-double dead_time_s(std::span<const Sample> samples) {
+double order_delay_s(std::span<const Sample> samples) {
     int best_ms = 0;
     double least = INFINITY;
     for (int late_ms = 0; late_ms <= longest_ms; late_ms++) {
