@@ -56,10 +56,12 @@ TEST(SecondRover, a_clean_drive_is_explained) {
     const Model model = heavy_on_sand();
     const Diagnosis d = diagnose(model, make_dataset(model, driven(heavy(), "")), {});
     EXPECT_TRUE(d.effects.empty()) << d.text;
-    // as well as the reference rover by its own model: a wheel whose encoder counts the other way would leave hundreds of times the noise
-    const Model reference = read_model("models/rover_sand.toml");
-    const double usual = compare(reference, make_dataset(reference, driven(sim::RoverDescription(), "")), true).adjusted;
-    EXPECT_LT(compare(model, make_dataset(model, driven(heavy(), "")), true).adjusted, 3 * usual);
+    // the header's signs are used: without them two wheels seem to turn against the drive
+    log::Log log = driven(heavy(), "");
+    const double error = compare(model, make_dataset(model, log), true).adjusted;
+    log.header.erase("firmware.encoder_sign_1");
+    log.header.erase("firmware.encoder_sign_3");
+    EXPECT_GT(compare(model, make_dataset(model, log), true).adjusted, 10 * error);
 }
 
 TEST(SecondRover, a_hidden_effect_is_named) {
