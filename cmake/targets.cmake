@@ -1,9 +1,12 @@
-# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings as errors.
-set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Werror -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
+# traction_c_library / traction_cxx_library / traction_test: our targets, with our warnings (as errors with TRACTION_WERROR).
+set(TRACTION_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -Wdouble-promotion -Wcast-align
     -Wcast-qual -Wwrite-strings -Wpointer-arith -Wformat=2 -Wswitch-enum -Wvla)
+if(TRACTION_WERROR)
+  list(APPEND TRACTION_WARNINGS -Werror)
+endif()
 set(TRACTION_C_WARNINGS ${TRACTION_WARNINGS} -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition)
 set(TRACTION_CXX_WARNINGS ${TRACTION_WARNINGS} -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi
-    -Wno-restrict) # GCC 12 sees an overlap in "literal" + std::string where there is none (its bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>) # GCC 12 sees an overlap in "literal" + std::string where there is none (its bug 105651)
 
 # Applies warnings and the floating-point contract (-ffp-contract=off: no fused multiply-add, so x86 and ARM agree).
 function(traction_own target)
@@ -26,11 +29,37 @@ function(traction_library name)
   traction_own(${name})
 endfunction()
 
+# traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
+# the dev preset compiles without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+function(traction_headers name)
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>) # lets ccache see the header's contents
+  else()
+    target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
+  endif()
+endfunction()
+
+# traction_waits(NAME): this target waits for people, files and its libraries, so its code is compiled for a short build.
+function(traction_waits name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of each other library those that go through its
+# code within seconds. The rest runs in the host build.
+set(TRACTION_SANITIZED_LABELS unit hal)
+set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
+    lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score lab_generator_physics svg_test)
+
 # traction_test(NAME LABEL label SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the emulator
 # when cross-compiling.
 function(traction_test name)
   cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  if(TRACTION_SANITIZE AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
+    return()
+  endif()
   add_executable(${name} ${T_SOURCES})
+  set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL OFF) # also where its folder is
   traction_own(${name})
   target_link_libraries(${name} PRIVATE ${T_LIBS} GTest::gtest GTest::gtest_main)
   # gtest's macros convert and shadow in ways that are theirs, not ours

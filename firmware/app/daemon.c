@@ -20,7 +20,7 @@ daemon_result_t daemon_run(const hal_t *hal, const control_config_t *config, con
             break;
         }
         command_t command = {.mode = MODE_STOP};
-        link->command(link->context, frame.tick, &command);
+        link->command(link->context, &frame, &command);
         const trace_t trace = control_step(config, &state, &command, &frame);
         const hal_result_t written = hal->write(hal->context, &trace.actuator);
         if (written < 0) { // the bridges may still do what the last tick asked for

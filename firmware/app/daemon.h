@@ -1,7 +1,8 @@
 // daemon.h - the rover's main loop: open; while wait_tick: read, control_step, write, log; safe_stop.
 //
-// The world is a hal_t, the operator and the log are two function pointers, so the loop is the same on the rover, in the simulator
-// and in a test. It ends with the motors stopped, whatever ended it. It never waits but in wait_tick.
+// The world is a hal_t, the operator and the log are two function pointers, so the loop is the same on the rover (tractiond), in
+// simulate, tune and replay (through host_tools/loop) and in a test. It ends with the motors stopped, whatever ended it. It never
+// waits but in wait_tick.
 #ifndef TRACTION_FIRMWARE_APP_DAEMON_H
 #define TRACTION_FIRMWARE_APP_DAEMON_H
 
@@ -14,8 +15,9 @@ extern "C" {
 
 typedef struct {
     void *context;
-    // What is asked for in this tick; fills age_ticks, which ends the drive when it grows (FAULT_COMMAND_TIMEOUT). Must not block.
-    void (*command)(void *context, uint32_t tick, command_t *command);
+    // What is asked for in the tick that `frame` was read in; *command comes as MODE_STOP. Fills age_ticks, which ends the drive when
+    // it grows (FAULT_COMMAND_TIMEOUT). Must not block.
+    void (*command)(void *context, const sensor_frame_t *frame, command_t *command);
     // One tick as it was. May be null. Must not block.
     void (*log)(void *context, const sensor_frame_t *frame, const command_t *command, const trace_t *trace);
 } daemon_link_t;

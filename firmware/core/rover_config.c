@@ -2,7 +2,7 @@
 
 #include "doppler_template.h"
 
-// --- SPEC table I and text
+// --- table I and text (docs/sources.md section 3)
 static const float wheel_radius_m = 0.057f;                       // [m] under load, table I
 static const float half_wheelbase_m = 0.083f;                     // [m] table I
 static const float half_track_m = 0.12f;                          // [m] table I

@@ -50,6 +50,8 @@ void copy_field(std::uint32_t bit, const sensor_frame_t &from, sensor_frame_t *t
     to->present = (to->present & ~bit) | (from.present & bit);
 }
 
+bool silent(sim::FaultKind kind) { return kind == sim::FaultKind::dropped || kind == sim::FaultKind::timeout; }
+
 hal_result_t wait_inner(hal_t *inner) { return inner->wait_tick(inner->context); }
 
 } // namespace
@@ -77,7 +79,7 @@ void FaultHal::add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame
 
 void FaultHal::apply_radar(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame) {
     sensor_frame_t &held = held_[index];
-    if (fault.kind == sim::FaultKind::dropped) {
+    if (silent(fault.kind)) {
         frame->present &= ~static_cast<std::uint32_t>(FRAME_RADAR);
         frame->radar_samples = 0;
     } else if (fault.kind == sim::FaultKind::stuck) {
@@ -113,7 +115,7 @@ void FaultHal::apply(std::size_t index, const sim::SensorFault &fault, sensor_fr
     const auto late = static_cast<std::size_t>(fault.amount / tick_s + 0.5);
     for (std::uint32_t bit = 1; bit <= bits; bit <<= 1u) {
         if ((bits & bit) == 0u) continue;
-        if (fault.kind == sim::FaultKind::dropped) frame->present &= ~bit;
+        if (silent(fault.kind)) frame->present &= ~bit;
         if (fault.kind == sim::FaultKind::stuck) copy_field(bit, held_[index], frame);
         if (fault.kind == sim::FaultKind::noisy) add_noise(bit, fault.amount, frame);
         if (fault.kind == sim::FaultKind::delayed) copy_field(bit, past_[past_.size() > late ? past_.size() - 1 - late : 0], frame);
@@ -126,8 +128,9 @@ hal_t FaultHal::hal() {
     wrapped.wait_tick = [](void *context) { return wait_inner(&static_cast<FaultHal *>(context)->inner_); };
     wrapped.read = [](void *context, sensor_frame_t *frame) {
         auto *self = static_cast<FaultHal *>(context);
-        const hal_result_t result = self->inner_.read(self->inner_.context, frame);
-        if (result < 0) return result;
+        hal_result_t result = self->inner_.read(self->inner_.context, frame);
+        if (result < 0 && result != HAL_ERR_TIMEOUT) return result;
+        if (self->script_.sensors.empty() && self->script_.emergency_stop_s.empty()) return result;
         self->past_.push_back(*frame);
         if (self->past_.size() > memory_ticks) self->past_.pop_front();
         for (int i = 0; i < frame->radar_samples; i++) self->past_radar_.push_back(frame->radar_count[i]);
@@ -135,7 +138,9 @@ hal_t FaultHal::hal() {
         const double t_s = (frame->tick + 1.0) * tick_s;
         for (std::size_t i = 0; i < self->script_.sensors.size(); i++) {
             const sim::SensorFault &fault = self->script_.sensors[i];
-            if (t_s >= fault.from_s && t_s < fault.to_s) self->apply(i, fault, frame);
+            if (t_s < fault.from_s || t_s >= fault.to_s) continue;
+            self->apply(i, fault, frame);
+            if (fault.kind == sim::FaultKind::timeout && bits_of(fault) != 0) result = HAL_ERR_TIMEOUT;
         }
         for (const auto &[from_s, to_s] : self->script_.emergency_stop_s)
             if (t_s >= from_s && t_s < to_s) frame->emergency_stop = true;

@@ -49,9 +49,7 @@ hal_t SimHal::hal() {
     };
     hal.write = [](void *context, const actuator_frame_t *actuator) {
         auto *self = static_cast<SimHal *>(context);
-        Order order{.due_ms = self->now_ms_ + static_cast<std::int64_t>(self->config_.actuation_delay_s * 1000 + 0.5),
-                    .duty = {},
-                    .enable = actuator->motor_enable};
+        Order order{.due_ms = self->now_ms_ + self->config_.bus_latency_ms, .duty = {}, .enable = actuator->motor_enable};
         for (std::size_t i = 0; i < sim::wheel_count; i++) order.duty[i] = actuator->duty_q15[i] / 32767.0;
         self->orders_.push_back(order);
         return HAL_OK;

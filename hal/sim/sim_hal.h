@@ -29,8 +29,8 @@ struct SimHalConfig {
     sim::SensorConfig sensors;
     CountScale scale;
     std::vector<WheelBlock> wheel_blocks;
-    double actuation_delay_s = 0; // effect actuation_delay
-    std::uint32_t ticks = 0;      // HAL_END after so many
+    int bus_latency_ms = 0;  // 0..9: an order acts so long after it is written; whole ticks are delay_hal.h's
+    std::uint32_t ticks = 0; // HAL_END after so many
     std::uint64_t seed = 1;
 };
 

@@ -1,6 +1,7 @@
 #include "answer.h"
 
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
 
 #include <chrono>
 #include <cmath>
@@ -53,9 +54,9 @@ json ask_lab(const std::string &log_file, const std::string &model_file) {
     for (const lab::CandidateResult &one : found.accepted) answer["accepted"].push_back(candidate_json(one));
     for (const lab::ConfoundedClass &one : found.classes)
         answer["classes"].push_back({{"members", one.members}, {"separate_by", one.separate_by}});
-    for (const lab::Rung &rung : found.ladder)
+    for (const lab::LadderStep &step : found.ladder)
         answer["ladder"].push_back(
-            {{"label", rung.label}, {"train", finite(rung.train)}, {"heldout", finite(rung.heldout)}, {"floor", finite(rung.floor)}});
+            {{"label", step.label}, {"train", finite(step.train)}, {"heldout", finite(step.heldout)}, {"floor", finite(step.floor)}});
     if (found.unknown)
         answer["unknown"] = {{"variable", found.unknown->variable},
                              {"balance", found.unknown->balance},

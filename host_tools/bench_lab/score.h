@@ -1,4 +1,5 @@
-// score.h - judges a blind campaign: what was hidden (the opened seals) against what the lab said, in LAB.md section 5's figures.
+// score.h - judges a blind campaign: what was hidden (the opened seals) against what the lab said, in the figures of docs/evidence.md
+// section 5.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,13 @@
 #include "tune.h"
 
+#include "order_delay.h"
+
+#include "host_tools/loop/loop.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -12,18 +18,6 @@ namespace {
 
 constexpr double tick_s = 0.01;
 constexpr double probe_duty = 0.1;
-
-// Stops the motors when it goes out of scope, however that happens.
-class Stopper {
-  public:
-    explicit Stopper(const hal_t &hal) : hal_(hal) {}
-    ~Stopper() { hal_.safe_stop(hal_.context); }
-    Stopper(const Stopper &) = delete;
-    Stopper &operator=(const Stopper &) = delete;
-
-  private:
-    const hal_t &hal_;
-};
 
 // Normal equations of (1) for one wheel.
 struct Fit {
@@ -52,63 +46,77 @@ struct Fit {
     }
 };
 
-class Experiment {
+// Drives the pulses as the loop's operator: MODE_OPEN_LOOP, so that the firmware's safety watches over the experiment too.
+class Experiment : public Link {
   public:
-    Experiment(const hal_t &hal, const control_config_t &config, const TuneLimits &limits) : hal_(hal), config_(config), limits_(limits) {}
-
-    // Drives all wheels with `duty` for `seconds`, less where (3) would pass the torque limit. Without (3), the probe: as it is.
-    void pulse(double duty, double seconds) {
-        for (double t = 0; t < seconds; t += tick_s) {
-            if (used_s_ >= limits_.time_s)
-                throw std::runtime_error("tune: the time limit is over before the experiment is; give more --time-s");
-            if (hal_.wait_tick(hal_.context) != HAL_OK) throw std::runtime_error("tune: the rover's loop ended before the experiment did");
-            sensor_frame_t frame{};
-            if (hal_.read(hal_.context, &frame) < 0) throw std::runtime_error("tune: a device was lost");
-            if (frame.emergency_stop) throw std::runtime_error("tune: emergency stop");
-            const sense_output_t sense = sense_measure(&config_.sense, &sense_, &frame);
-            if ((sense.usable & 0x1ffu) != 0x1ffu)
-                throw std::runtime_error("tune: an encoder, a current or the battery is silent or absurd");
-            used_s_ += tick_s;
-            battery_V_ = static_cast<double>(sense.battery_V);
-            actuator_frame_t out{};
-            for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-                const double w = static_cast<double>(sense.speed_rad_s[i]);
-                const double torque =
-                    static_cast<double>(config_.motor.torque_constant_Nm_A) * std::fabs(static_cast<double>(sense.current_A[i]));
-                largest_Nm_ = std::max(largest_Nm_, torque);
-                if (torque > limits_.torque_Nm * largest_excess)
-                    throw std::runtime_error("tune: wheel " + std::to_string(i) +
-                                             " took more torque than allowed; check its current sensor, or raise --torque-Nm");
-                learn_circuit(i, w, static_cast<double>(sense.current_A[i]));
-                // duty of the tick before last acts over the difference that the encoder shows now: half of each; only turning wheels obey
-                // (1)
-                const bool turning =
-                    std::fabs(w) > 0.5 && std::fabs(last_w_[i]) > 0.5 && last_duty_[i] * w > 0 && last_duty_[i] == older_duty_[i];
-                if (turning) fit_[i].add({last_w_[i], last_duty_[i] * battery_V_, last_duty_[i] > 0 ? 1.0 : -1.0}, w);
-                older_duty_[i] = last_duty_[i];
-                last_duty_[i] = within_torque(i, duty, w);
-                last_w_[i] = w;
-                out.duty_q15[i] = static_cast<std::int16_t>(std::lround(last_duty_[i] * 32767));
-            }
-            out.motor_enable = true;
-            if (hal_.write(hal_.context, &out) < 0) throw std::runtime_error("tune: the bridges do not answer");
+    Experiment(const control_config_t &config, const TuneLimits &limits) : config_(config), limits_(limits) {
+        pulse(probe_duty, 0.03); // the current of a wheel at rest tells its circuit
+        pulse(0, 0.1);
+        probe_ticks_ = plan_.size();
+        for (const double duty : {0.5, -0.5, 1.0, -1.0, 0.7, -0.7}) {
+            pulse(duty * limits.duty, 0.7);
+            pulse(0, 0.5);
         }
+    }
+
+    bool over() override {
+        if (samples_.size() == plan_.size()) return true;
+        if (used_s_ >= limits_.time_s)
+            throw std::runtime_error("tune: the time limit is over before the experiment is; give more --time-s");
+        return false;
+    }
+
+    // The plan's duty, less where (3) would pass the torque limit. Without (3), the probe: as it is.
+    void command(const sensor_frame_t &frame, command_t &command) override {
+        if (frame.emergency_stop) throw std::runtime_error("tune: emergency stop");
+        const sense_output_t sense = sense_measure(&config_.sense, &sense_, &frame);
+        if ((sense.usable & 0x1ffu) != 0x1ffu) throw std::runtime_error("tune: an encoder, a current or the battery is silent or absurd");
+        used_s_ += tick_s;
+        battery_V_ = static_cast<double>(sense.battery_V);
+        Sample sample{.battery_V = battery_V_};
+        for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+            const double w = static_cast<double>(sense.speed_rad_s[i]), current_A = static_cast<double>(sense.current_A[i]);
+            const double torque = static_cast<double>(config_.motor.torque_constant_Nm_A) * std::fabs(current_A);
+            largest_Nm_ = std::max(largest_Nm_, torque);
+            if (torque > limits_.torque_Nm * largest_excess)
+                throw std::runtime_error("tune: wheel " + std::to_string(i) +
+                                         " took more torque than allowed; check its current sensor, or raise --torque-Nm");
+            sample.wheel[i] = {.speed_rad_s = w, .current_A = current_A, .ordered = last_duty_[i]};
+        }
+        samples_.push_back(sample);
+        if (samples_.size() == probe_ticks_) seen_late_s_ = std::floor(order_delay_s(samples_) / tick_s + 1e-6) * tick_s;
+        for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+            const Sample::Wheel &wheel = sample.wheel[i];
+            learn_circuit(i, duty_in_force(samples_, samples_.size() - 1, i, seen_late_s_), wheel.speed_rad_s, wheel.current_A);
+            last_duty_[i] = within_torque(i, plan_[samples_.size() - 1], wheel.speed_rad_s);
+            command.duty[i] = static_cast<float>(last_duty_[i]);
+        }
+        command.mode = MODE_OPEN_LOOP;
+    }
+
+    void log(const sensor_frame_t &, const command_t &, const trace_t &trace) override {
+        if (trace.mode == MODE_OPEN_LOOP) return;
+        char text[16];
+        std::snprintf(text, sizeof text, "%08x", static_cast<unsigned>(trace.faults));
+        throw std::runtime_error(std::string("tune: the firmware stopped the motors, faults ") + text + " (docs/firmware.md)");
     }
 
     TuneResult result() const {
         TuneResult r{.battery_V = battery_V_, .largest_torque_Nm = largest_Nm_, .used_s = used_s_};
+        r.order_delay_s = order_delay_s(samples_);
         double largest = 0;
         for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-            if (fit_[i].rows < 50)
+            const Fit fit = fit_of(i, r.order_delay_s);
+            if (fit.rows < 50)
                 throw std::runtime_error("tune: wheel " + std::to_string(i) + " hardly turned; raise --duty or --torque-Nm, or free it");
-            const auto [a, b, c] = fit_[i].solve();
+            const auto [a, b, c] = fit.solve();
             if (!(a > 0.2 && a < 0.9999 && b > 0))
                 throw std::runtime_error("tune: wheel " + std::to_string(i) + " does not answer like a motor; check its encoder's sign");
             r.pole_1_s[i] = -std::log(a) / tick_s;
             r.gain_rad_s2[i] = b * battery_V_ / tick_s;
             if (r.gain_rad_s2[i] > largest) {
                 largest = r.gain_rad_s2[i];
-                const double crossover = (90 - limits_.margin_deg) * std::numbers::pi / 180 / (2 * tick_s);
+                const double crossover = (90 - limits_.margin_deg) * std::numbers::pi / 180 / (2 * tick_s + r.order_delay_s);
                 r.kp_s = crossover / largest;
                 r.ki_1 = r.kp_s * r.pole_1_s[i]; // (2)
             }
@@ -117,9 +125,23 @@ class Experiment {
     }
 
   private:
-    // (3) for the duty written last, whose current is read now: R from the probe at rest, ke from what turns.
-    void learn_circuit(std::size_t i, double w, double current_A) {
-        const double volt = last_duty_[i] * battery_V_;
+    void pulse(double duty, double seconds) {
+        for (double t = 0; t < seconds; t += tick_s) plan_.push_back(duty);
+    }
+    // (1) over the ticks of a turning wheel whose duty held still: half of the encoder's difference is the tick's before.
+    Fit fit_of(std::size_t i, double late_s) const {
+        Fit fit;
+        for (std::size_t k = 1; k < samples_.size(); k++) {
+            const double w = samples_[k].wheel[i].speed_rad_s, last_w = samples_[k - 1].wheel[i].speed_rad_s;
+            const double duty = duty_in_force(samples_, k, i, late_s), last_duty = duty_in_force(samples_, k - 1, i, late_s);
+            const bool turning = std::fabs(w) > 0.5 && std::fabs(last_w) > 0.5 && duty * w > 0 && duty == last_duty;
+            if (turning) fit.add({last_w, duty * samples_[k].battery_V, duty > 0 ? 1.0 : -1.0}, w);
+        }
+        return fit;
+    }
+    // (3) for the duty in force, whose current is read now: R from the probe at rest, ke from what turns.
+    void learn_circuit(std::size_t i, double duty, double w, double current_A) {
+        const double volt = duty * battery_V_;
         if (std::fabs(w) < 0.3 && std::fabs(current_A) > 0.02 && volt * current_A > 0) { // 10 steps of the converter
             ohm_[i] = ohm_[i] > 0 ? std::min(ohm_[i], volt / current_A) : volt / current_A;
         } else if (std::fabs(w) > 1 && ohm_[i] > 0) {
@@ -136,27 +158,25 @@ class Experiment {
     static constexpr double margin = 0.9;         // what the wheel's speed changes in a tick, and the error of ke
     static constexpr double largest_excess = 1.2; // beyond, (3) does not hold
 
-    const hal_t &hal_;
     const control_config_t &config_;
     const TuneLimits &limits_;
+    std::vector<double> plan_; // duty asked for, tick by tick
+    std::vector<Sample> samples_;
     sense_state_t sense_{};
     std::array<double, WHEEL_COUNT> ohm_{}, emf_Vs_{};
-    std::array<Fit, WHEEL_COUNT> fit_{};
-    std::array<double, WHEEL_COUNT> last_w_{}, last_duty_{}, older_duty_{};
+    std::array<double, WHEEL_COUNT> last_duty_{};
+    std::size_t probe_ticks_ = 0; // after these the probe has told in which tick an order acts
+    double seen_late_s_ = 0;      // whole ticks of it
     double used_s_ = 0, battery_V_ = 0, largest_Nm_ = 0;
 };
 
 } // namespace
 
 TuneResult tune(const hal_t &hal, const control_config_t &config, const TuneLimits &limits) {
-    const Stopper stopper(hal);
-    Experiment experiment(hal, config, limits);
-    experiment.pulse(probe_duty, 0.03); // the current of a wheel at rest tells its circuit
-    experiment.pulse(0, 0.1);
-    for (const double duty : {0.5, -0.5, 1.0, -1.0, 0.7, -0.7}) {
-        experiment.pulse(duty * limits.duty, 0.7);
-        experiment.pulse(0, 0.5);
-    }
+    Experiment experiment(config, limits);
+    const daemon_result_t run = run_loop(hal, config, experiment);
+    if (run.ended_by < 0) throw std::runtime_error("tune: a device was lost");
+    if (!experiment.over()) throw std::runtime_error("tune: the rover's loop ended before the experiment did");
     return experiment.result();
 }
 

@@ -5,8 +5,10 @@
 //   |duty V - ke w| <= Ra Gamma_max/KG                                            (3)  the torque limit, before a duty is written
 //
 // With the zero on the pole the open loop is an integrator with a delay of 2 T (half a tick of hold, half of the encoder's
-// difference, one of computation): crossover x = (90 deg - margin)/(2 T) in radians (derived here).
-// The motors are stopped at the end, whatever ended it: exceptions too.
+// difference, one of computation) and of D, how late an order acts on this rover: crossover x = (90 deg - margin)/(2 T + D) in
+// radians (derived here). D comes out of the experiment's own currents (order_delay.h), and (1) is fitted to the duty in force.
+// The experiment is the operator of the rover's own loop, MODE_OPEN_LOOP: the firmware's safety watches over it. The motors are
+// stopped at the end, whatever ended it: exceptions too.
 #pragma once
 
 #include "firmware/core/control.h"
@@ -27,6 +29,7 @@ struct TuneLimits {
 struct TuneResult {
     std::array<double, WHEEL_COUNT> pole_1_s{}, gain_rad_s2{}; // p; acceleration per unit of duty
     double kp_s = 0, ki_1 = 0;                                 // of the wheel with the largest gain: the others have more margin
+    double order_delay_s = 0;                                  // beyond the 2 T that every rover has: how late an order acts
     double battery_V = 0, largest_torque_Nm = 0, used_s = 0;
 };
 

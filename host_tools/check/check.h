@@ -1,6 +1,7 @@
 // check.h - is a log fit to learn from? Data quality, signs and units that contradict each other, and what the drive did not excite.
 //
-// Nothing is fitted here but straight lines; truth.* columns are not looked at. Findings and thresholds: docs/log_format.md.
+// Nothing is fitted here but straight lines; truth.* columns are not looked at. Findings: docs/log_format.md; thresholds stand beside their
+// reasons in the .cpp files.
 #pragma once
 
 #include "host_tools/log/read.h"

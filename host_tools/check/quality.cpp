@@ -1,4 +1,4 @@
-// The samples themselves: rates, gaps, clock, clipping, dead and stuck sensors, outliers, resolution.
+// The samples themselves: rates, gaps, clock, dead and stuck sensors, outliers, resolution.
 #include "series.h"
 
 #include "host_tools/log/vocabulary.h"
@@ -31,7 +31,6 @@ class Quality {
     void rate(const log::Signal &signal);
     void gaps();
     bool frozen_over(const Gap &gap, std::string &evidence) const;
-    void clipped(const log::Signal &signal);
     void dead_or_stuck(const log::Signal &signal, const log::Quantity &entry);
     log::Signal whole_pose(const log::Signal &camera_x) const;
     void outliers(const log::Signal &signal);
@@ -171,30 +170,6 @@ void Quality::gaps() {
     for (const auto &[signal, gap] : own) {
         add("gap", Severity::warning, signal, say("'%s' has %d gap(s), the longest %.3g s", signal.c_str(), gap.first, gap.second),
             "look for an overloaded logger or a bad link", gap.second);
-    }
-}
-
-void Quality::clipped(const log::Signal &signal) {
-    const std::vector<double> &v = signal.value;
-    std::vector<double> sorted = v;
-    std::sort(sorted.begin(), sorted.end());
-    const double low = sorted.front(), high = sorted.back(), range = high - low;
-    if (!(range > 0)) return;
-    const std::size_t distinct = static_cast<std::size_t>(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
-    if (distinct < 20) return;
-    for (const double edge : {low, high}) {
-        if (edge == 0) continue; // the lower end of a magnitude
-        std::size_t at = 0, near = 0;
-        for (const double value : v) {
-            at += value == edge;
-            near += value != edge && std::fabs(value - edge) < 0.03 * range;
-        }
-        const double share = static_cast<double>(at) / static_cast<double>(v.size());
-        if (at < 10 || share < 0.003 || at < 3 * near) continue;
-        add("clipped", Severity::error, signal.name,
-            say("'%s' stands at its %s value %.5g in %.1f %% of the samples: the sensor's range ends there", signal.name.c_str(),
-                edge == low ? "smallest" : "largest", edge, 100 * share),
-            "use a wider range of the sensor, or a gentler drive", share);
     }
 }
 
@@ -347,7 +322,8 @@ void Quality::run() {
         if (trials) continue;
         rate(signal);
         fastest = std::min(fastest, rates_.back().median_s);
-        if (one_of(entry->quantity, {"current", "accel_x", "gyro_z", "adc", "drawbar_pull", "torque"})) clipped(signal);
+        if (one_of(entry->quantity, {"current", "accel_x", "gyro_z", "adc", "drawbar_pull", "torque"}))
+            check_clipping(signal, grid_, findings_);
         const bool is_clipped = !findings_.empty() && findings_.back().id == "clipped" && findings_.back().signal == signal.name;
         if (!is_clipped && entry->kind == log::Kind::measured &&
             (one_of(entry->quantity, {"current", "accel_x", "gyro_z"}) || (entry->quantity == "speed" && entry->object != "carriage"))) {

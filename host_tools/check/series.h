@@ -22,7 +22,8 @@ struct Fit {
     std::size_t rows = 0;
     bool good = false; // enough rows, and x1 and x2 tell apart
 };
-constexpr double design_effect = 25; // [1] variance ratio, assumed: soil noise makes neighbouring rows alike (LAB.md: 20-100)
+constexpr double design_effect =
+    25; // [1] variance ratio, assumed: soil noise makes neighbouring rows alike (docs/evidence.md section 4: 20 to 100)
 Fit fit(const std::vector<double> &y, const std::vector<double> &x1, const std::vector<double> &x2 = {});
 
 double correlation(const std::vector<double> &a, const std::vector<double> &b);
@@ -61,7 +62,8 @@ struct UnitSlip {
     double factor;
     const char *written; // "rpm"
 };
-// The slip whose factor is within +-35 % of `factor`, nullptr when there is none. kind: 'w' angular speed, 'I', 'v' speed or length, 'a'.
+// The slip whose factor is within 1.35 times of `factor` either way, nullptr when there is none. kind: 'w' angular speed, 'I', 'v' speed or
+// length, 'a'.
 const UnitSlip *unit_slip(char kind, double factor);
 
 // printf into a string.
@@ -70,7 +72,8 @@ std::string say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 using Findings = std::vector<Finding>;
 void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings,
                    std::vector<Rate> &rates);
-void check_drives(const Grid &grid, const Machine &machine, Findings &findings); // duty, speed, current: units, signs, swaps
+void check_clipping(const log::Signal &signal, const Grid &grid, Findings &findings); // the end of a sensor's range
+void check_drives(const Grid &grid, const Machine &machine, Findings &findings);      // duty, speed, current: units, signs, swaps
 void check_motion(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // encoder, camera, radar, imu
 Excitation measure_excitation(const Grid &grid);
 void judge_excitation(const Excitation &excitation, const Grid &grid, Findings &findings);

@@ -5,9 +5,9 @@
 #include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/next/next.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/log/log.h"
@@ -128,8 +128,8 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     std::printf("4. Add what was named, refit, and watch the error.\n%s", lab::ladder_text(diagnosis.ladder).c_str());
     if (!diagnosis.accepted.empty()) {
         lab::Model better = diagnosis.model;
-        const lab::Rung rung = lab::fit_model(better, session.data, "fitted");
-        lab::append_lineage(better, session.data, diagnosis.ladder, rung);
+        const lab::LadderStep step = lab::fit_model(better, session.data, "fitted");
+        lab::append_lineage(better, session.data, diagnosis.ladder, step);
         lab::write_model(better, better_file);
         std::printf("   the better model: %s\n", better_file.c_str());
     }
@@ -138,7 +138,7 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     bool right = false;
     const std::string words = judged(truth, diagnosis, right);
     std::printf("\n5. The seal: %s.\n   %s\n", described(truth.at("effects").at(0)).c_str(), words.c_str());
-    const lab::Rung &first = diagnosis.ladder.front(), &last = diagnosis.ladder.back();
+    const lab::LadderStep &first = diagnosis.ladder.front(), &last = diagnosis.ladder.back();
     outcome.json["demo"] = {
         {"seed", request.seed}, {"hidden", truth.at("effects").at(0)}, {"named", diagnosis.effects},  {"right", right},
         {"judgement", words},   {"error_before", first.heldout},       {"error_after", last.heldout}, {"floor", last.floor}};

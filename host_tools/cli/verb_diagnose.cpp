@@ -4,9 +4,9 @@
 #include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/next/next.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
@@ -50,8 +50,8 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
         return;
     }
     lab::Model model = diagnosis.model;
-    const lab::Rung rung = lab::fit_model(model, session.data, "fitted");
-    lab::append_lineage(model, session.data, diagnosis.ladder, rung);
+    const lab::LadderStep step = lab::fit_model(model, session.data, "fitted");
+    lab::append_lineage(model, session.data, diagnosis.ladder, step);
     lab::write_model(model, request.out);
     std::printf("wrote %s\n", request.out.c_str());
 }

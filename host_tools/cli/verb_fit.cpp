@@ -2,9 +2,9 @@
 #include "rows.h"
 #include "verbs.h"
 
-#include "host_tools/lab/fit/profile.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/profile_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
@@ -61,7 +61,7 @@ void fit(const FitRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     lab::Model model = session.model;
     for (const std::string &message : session.data.messages) std::printf("note: %s\n", message.c_str());
-    const lab::Rung rung = lab::fit_model(model, session.data, "fitted");
+    const lab::LadderStep step = lab::fit_model(model, session.data, "fitted");
     print_table("rover", model.rover);
     print_table("wheel", model.wheel.front().geometry);
     print_table("motor", model.wheel.front().motor);
@@ -76,10 +76,10 @@ void fit(const FitRequest &request, Outcome &outcome) {
         for (std::size_t i = 1; i < b.acf.value.size(); ++i) outside += std::fabs(b.acf.value[i]) > b.acf.band;
         std::printf("whiteness  %-28s %d of %zu lags outside the 99 %% band\n", b.name.c_str(), outside, b.acf.value.size() - 1);
     }
-    std::printf("error on training %.3f, held out %.3f (in units of noise)\n", rung.train, rung.heldout);
+    std::printf("error on training %.3f, held out %.3f (in units of noise)\n", step.train, step.heldout);
     outcome.json = lab::head_json("fit", model, session.data);
     lab::put_comparison(outcome.json, comparison);
-    outcome.json["ladder"] = lab::ladder_json({rung});
+    outcome.json["ladder"] = lab::ladder_json({step});
     nlohmann::json fitted = nlohmann::json::object();
     const auto put = [&](const std::string &name, const lab::Parameters &table) {
         for (const auto &[key, p] : table)
@@ -91,7 +91,7 @@ void fit(const FitRequest &request, Outcome &outcome) {
     if (request.profiled) print_profiles(request, session, outcome);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (request.out.empty()) return;
-    lab::append_lineage(model, session.data, {{"fitted", rung.train, rung.heldout, rung.floor}}, rung);
+    lab::append_lineage(model, session.data, {{"fitted", step.train, step.heldout, step.floor}}, step);
     lab::write_model(model, request.out);
     std::printf("wrote %s\n", request.out.c_str());
 }

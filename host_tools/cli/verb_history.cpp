@@ -19,7 +19,7 @@ void history(const std::string &path, Outcome &outcome) {
         for (const auto &[key, p] : use.parameters) std::printf(" %s = %.5g %s", key.c_str(), p.value, p.unit.c_str());
         std::printf("\n");
     }
-    std::vector<lab::Rung> ladder;
+    std::vector<lab::LadderStep> ladder;
     for (const lab::LineageEntry &entry : model.lineage) {
         std::printf("%-36s log %-30s %s\n", entry.label.c_str(), entry.log.c_str(), entry.date.c_str());
         ladder.push_back({entry.label, entry.train, entry.heldout, entry.floor});

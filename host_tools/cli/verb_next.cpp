@@ -3,7 +3,7 @@
 #include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/next/next.h"
+#include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"

@@ -42,7 +42,7 @@ Verb verb_replay() {
             .options = {log_row(request->log, "log with raw counts and commands (CSV)"),
                         {.name = "--frames",
                          .into = &request->frames,
-                         .help = "write the frames as text for the target's replay program",
+                         .help = "write the frames as text that tractiond --hal replay runs",
                          .value = "FILE",
                          .kind = Kind::output}},
             .run = [request](Outcome &outcome) { replay(request->log, request->frames, outcome); }};

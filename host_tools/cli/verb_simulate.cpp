@@ -185,7 +185,7 @@ Verb verb_simulate() {
                   .kind = Kind::output},
                  {.name = "--frames",
                   .into = &arguments->frames,
-                  .help = "frames and commands as text that tests/replay reads",
+                  .help = "frames and commands as text that tractiond --hal replay runs",
                   .value = "FILE",
                   .kind = Kind::output},
                  {.name = "--firmware",

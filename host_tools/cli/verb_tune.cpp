@@ -2,7 +2,7 @@
 #include "verbs.h"
 
 #include "firmware/core/rover_config.h"
-#include "hal/sim/sim_hal.h"
+#include "hal/sim/sim_rover.h"
 #include "host_tools/calibrate/calibrate.h"
 #include "host_tools/calibrate/tune.h"
 #include "sim/scenario/scenario.h"
@@ -20,19 +20,18 @@ struct TuneOptions {
 };
 
 void run_tune(const TuneOptions &options, Outcome &outcome) {
-    const sim::Scenario scenario = sim::read_scenario(options.scenario);
-    hal::SimHalConfig world;
-    world.plant = scenario.plant;
-    world.sensors = scenario.sensors;
-    world.plant.effects = scenario.effects;
-    sim::apply_sensor_effects(scenario.effects, world.sensors);
-    world.seed = scenario.seed;
-    world.ticks = 60001; // beyond any time limit
-    hal::SimHal rover(world);
+    sim::Scenario scenario = sim::read_scenario(options.scenario);
+    scenario.duration_s = 601; // beyond any time limit
+    // what fails at its times on the drive plan is the plan's; the rover and its ground are tuned
+    scenario.sensor_faults.clear();
+    scenario.wheel_blocks.clear();
+    scenario.emergency_stops.clear();
+    hal::SimRover rover(scenario, hal::effects_of(scenario), scenario.seed);
     const TuneResult r = tune(rover.hal(), rover_config_default(), options.limits);
     std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
     for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
         std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);
+    if (r.order_delay_s > 0) std::printf("order delay %.0f ms: the loop is slower for it\n", r.order_delay_s * 1000);
     std::printf("wheel_kp_s %.4f, wheel_ki_1 %.4f for a phase margin of %.0f deg\n", r.kp_s, r.ki_1, options.limits.margin_deg);
     if (!options.parameters.empty()) {
         put_parameter(options.parameters, "wheel_kp_s", r.kp_s, "duty per rad/s, traction tune");
@@ -44,6 +43,7 @@ void run_tune(const TuneOptions &options, Outcome &outcome) {
                     {"ki_1", r.ki_1},
                     {"pole_1_s", r.pole_1_s},
                     {"gain_rad_s2", r.gain_rad_s2},
+                    {"order_delay_s", r.order_delay_s},
                     {"largest_torque_Nm", r.largest_torque_Nm},
                     {"used_s", r.used_s}};
 }

@@ -1,5 +1,6 @@
 #include "game.h"
 
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/result.h"
@@ -64,13 +65,13 @@ lab::Session session_of(const std::string &folder) {
 
 std::string label_of(const std::string &effect, int wheel) { return wheel < 0 ? effect : effect + " on wheel " + std::to_string(wheel); }
 
-json rung_json(const lab::Rung &rung) { return {{"label", rung.label}, {"train", rung.train}, {"heldout", rung.heldout}}; }
+json step_json(const lab::LadderStep &step) { return {{"label", step.label}, {"train", step.train}, {"heldout", step.heldout}}; }
 
 std::string ladder_text(const json &state) {
     std::string text = "ladder (held-out error, x noise):\n";
-    for (const json &rung : state["ladder"]) {
+    for (const json &step : state["ladder"]) {
         char line[160];
-        std::snprintf(line, sizeof line, "  %-36s %8.3f\n", rung.value("label", "").c_str(), rung.value("heldout", 0.0));
+        std::snprintf(line, sizeof line, "  %-36s %8.3f\n", step.value("label", "").c_str(), step.value("heldout", 0.0));
         text += line;
     }
     return text;
@@ -112,7 +113,7 @@ Turn start(const NewGame &request) {
     options.hide = sim::HiddenDraw{.seed = request.seed, .count = 1, .among = request.hard ? std::vector<std::string>{} : plain_effects};
     const SimulationResult run = simulate(scenario, options);
     lab::Model fitted = model;
-    const lab::Rung baseline = lab::fit_model(fitted, lab::make_dataset(model, run.log), "baseline");
+    const lab::LadderStep baseline = lab::fit_model(fitted, lab::make_dataset(model, run.log), "baseline");
     fs::create_directories(request.folder);
     fs::remove(path_in(request.folder, "game.json")); // no game until everything stands
     log::write_csv(run.log, path_in(request.folder, "run.csv"));
@@ -124,7 +125,7 @@ Turn start(const NewGame &request) {
                         {"soil", request.soil},
                         {"level", request.hard ? "hard" : "plain"},
                         {"guesses", json::array()},
-                        {"ladder", json::array({rung_json(baseline)})},
+                        {"ladder", json::array({step_json(baseline)})},
                         {"opened", false}};
     write_state(request.folder, state);
     Turn turn{"A rover drove for " + std::to_string(static_cast<int>(scenario.duration_s)) + " s on " + request.soil +
@@ -160,7 +161,7 @@ Turn guess(const std::string &folder, const std::string &effect, int wheel, bool
             throw GameError(std::string("it cannot be tried: ") + error.what());
         }
     }();
-    const lab::Rung &before = added.ladder.front(), &after = added.ladder.back();
+    const lab::LadderStep &before = added.ladder.front(), &after = added.ladder.back();
     const std::string label = label_of(effect, wheel);
     const auto same = [&](const json &g) { return g["label"] == label; };
     auto place = std::find_if(state["guesses"].begin(), state["guesses"].end(), same);
@@ -170,7 +171,7 @@ Turn guess(const std::string &folder, const std::string &effect, int wheel, bool
     }
     (*place)["before"] = before.heldout, (*place)["after"] = after.heldout, (*place)["added"] = keep;
     if (keep) {
-        state["ladder"].push_back(rung_json(after));
+        state["ladder"].push_back(step_json(after));
         lab::write_model(added.model, path_in(folder, "model.toml"));
     }
     write_state(folder, state);

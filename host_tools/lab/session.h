@@ -21,8 +21,4 @@ struct Session {
 // Throws ModelError, log::LogError.
 Session open_session(const Request &request);
 
-// The sentence that ends a diagnosis.
-struct Diagnosis;
-std::string verdict_text(const Diagnosis &diagnosis);
-
 } // namespace traction::lab

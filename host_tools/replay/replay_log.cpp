@@ -1,11 +1,11 @@
 #include "replay_log.h"
 
 #include "firmware/core/rover_config.h"
+#include "hal/replay/frames.h"
+#include "hal/replay/replay_hal.h"
+#include "host_tools/loop/loop.h"
 
-#include <bit>
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 
 namespace traction::replay {
 
@@ -82,18 +82,20 @@ LoggedTick read_tick(Columns &columns, double t_s) {
     return tick;
 }
 
-void append(std::string &text, long value) {
-    text += ' ';
-    text += std::to_string(value);
-}
+// The ticks as the source of the HAL that replays them.
+struct Source {
+    const std::vector<LoggedTick> &ticks;
+    std::size_t next = 0;
+};
 
-void append_hex(std::string &text, std::uint32_t value, int digits) {
-    char number[16];
-    std::snprintf(number, sizeof number, " %0*" PRIx32, digits, value);
-    text += number;
+hal_result_t next_tick(void *context, sensor_frame_t *frame, command_t *command) {
+    auto &source = *static_cast<Source *>(context);
+    if (source.next >= source.ticks.size()) return HAL_END;
+    *frame = source.ticks[source.next].frame;
+    *command = source.ticks[source.next].command;
+    source.next++;
+    return HAL_OK;
 }
-
-void append_bits(std::string &text, float value) { append_hex(text, std::bit_cast<std::uint32_t>(value), 8); }
 
 } // namespace
 
@@ -113,26 +115,8 @@ std::vector<LoggedTick> logged_ticks(const log::Log &log) {
 std::string frames_text(const std::vector<LoggedTick> &ticks) {
     std::string text;
     text.reserve(ticks.size() * 220);
-    for (const auto &[frame, command] : ticks) {
-        text += std::to_string(frame.tick);
-        append_hex(text, frame.present, 1);
-        for (const auto count : frame.encoder_count) append(text, count);
-        for (const auto count : frame.current_count) append(text, count);
-        for (const long value :
-             {static_cast<long>(frame.battery_count), static_cast<long>(frame.accel_x_count), static_cast<long>(frame.gyro_z_count),
-              frame.emergency_stop ? 1L : 0L, static_cast<long>(frame.radar_samples)})
-            append(text, value);
-        for (int i = 0; i < frame.radar_samples; ++i) append(text, frame.radar_count[i]);
-        append(text, command.mode);
-        append_bits(text, command.platform_speed_m_s);
-        append_bits(text, command.yaw_rate_rad_s);
-        for (const float value : command.wheel_speed_rad_s) append_bits(text, value);
-        for (const float value : command.duty) append_bits(text, value);
-        append_bits(text, command.slip_ref);
-        append(text, command.slip_wheels);
-        append(text, static_cast<long>(command.age_ticks));
-        text += '\n';
-    }
+    char line[FRAMES_LINE];
+    for (const auto &[frame, command] : ticks) text.append(line, frames_print(&frame, &command, line));
     return text;
 }
 
@@ -141,47 +125,34 @@ control_config_t logged_config(const log::Log &log) {
     return firmware != log.header.end() && firmware->second == "paper" ? rover_config_paper() : rover_config_default();
 }
 
-Comparison replay_log(const log::Log &log, const std::vector<LoggedTick> &ticks) {
-    struct Watched {
-        std::string name;
-        Column column;
-        double (*value)(const trace_t &, std::size_t);
-        std::size_t wheel;
-    };
-    std::vector<Watched> watched;
-    const auto watch = [&](const std::string &name, double (*value)(const trace_t &, std::size_t), std::size_t wheel) {
-        watched.push_back({name, Column(log, name), value, wheel});
-    };
-    for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
-        const std::string wheel = "wheel" + std::to_string(i) + '.';
-        watch(
-            wheel + "duty", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].duty); }, i);
-        watch(
-            wheel + "slip", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].slip); }, i);
-        watch(
-            wheel + "traction_N", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].traction_N); }, i);
-        watch(
-            wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return static_cast<double>(t.wheel[w].set_speed_rad_s); }, i);
-    }
-    watch(
-        "estimate.speed_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_m_s); }, 0);
-    watch(
-        "estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return static_cast<double>(t.speed_std_m_s); }, 0);
-    watch(
-        "estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return static_cast<double>(t.accel_bias_m_s2); }, 0);
-    watch(
-        "control.faults", [](const trace_t &t, std::size_t) { return static_cast<double>(t.faults); }, 0);
+namespace {
 
-    const control_config_t config = logged_config(log);
-    control_state_t state;
-    control_reset(&config, &state);
-    Comparison result;
-    for (const LoggedTick &tick : ticks) {
-        const trace_t trace = control_step(&config, &state, &tick.command, &tick.frame);
-        const double t_s = (tick.frame.tick + 1.0) / 100;
+// Compares every trace with what the log recorded of it.
+class Compare : public Link {
+  public:
+    Compare(const log::Log &log, const replay_hal_t &replay) : log_(log), replay_(replay) {
+        for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
+            const std::string wheel = "wheel" + std::to_string(i) + '.';
+            watch(
+                wheel + "duty", [](const trace_t &t, std::size_t w) { return t.wheel[w].duty; }, i);
+            watch(
+                wheel + "slip", [](const trace_t &t, std::size_t w) { return t.wheel[w].slip; }, i);
+            watch(
+                wheel + "traction_N", [](const trace_t &t, std::size_t w) { return t.wheel[w].traction_N; }, i);
+            watch(
+                wheel + "set_speed_rad_s", [](const trace_t &t, std::size_t w) { return t.wheel[w].set_speed_rad_s; }, i);
+        }
+        watch("estimate.speed_m_s", [](const trace_t &t, std::size_t) { return t.speed_m_s; });
+        watch("estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return t.speed_std_m_s; });
+        watch("estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return t.accel_bias_m_s2; });
+        watch("control.faults", [](const trace_t &t, std::size_t) { return static_cast<float>(t.faults); }); // 15 bits: exact
+    }
+    void command(const sensor_frame_t &, command_t &command) override { command = replay_.command; }
+    void log(const sensor_frame_t &frame, const command_t &, const trace_t &trace) override {
+        const double t_s = (frame.tick + 1.0) / 100;
         bool differs = false;
-        for (Watched &w : watched) {
-            const double now = w.value(trace, w.wheel), logged = w.column.at(t_s, now);
+        for (Watched &w : watched_) {
+            const double now = static_cast<double>(w.value(trace, w.wheel)), logged = w.column.at(t_s, now);
             if (std::fabs(now - logged) <= 5.1e-7) continue; // six decimals are kept: half of the last, and its own rounding
             if (result.differing == 0 && !differs) {
                 result.first_s = t_s;
@@ -194,7 +165,35 @@ Comparison replay_log(const log::Log &log, const std::vector<LoggedTick> &ticks)
         ++result.ticks;
         if (differs) ++result.differing;
     }
-    return result;
+    Comparison result;
+
+  private:
+    using Value = float (*)(const trace_t &, std::size_t);
+    struct Watched {
+        std::string name;
+        Column column;
+        Value value;
+        std::size_t wheel;
+    };
+    void watch(const std::string &name, Value value, std::size_t wheel = 0) {
+        watched_.push_back({name, Column(log_, name), value, wheel});
+    }
+
+    const log::Log &log_;
+    const replay_hal_t &replay_;
+    std::vector<Watched> watched_;
+};
+
+} // namespace
+
+Comparison replay_log(const log::Log &log, const std::vector<LoggedTick> &ticks) {
+    Source source{.ticks = ticks};
+    replay_hal_t replay{};
+    replay.source = &source;
+    replay.next = next_tick;
+    Compare compare(log, replay);
+    run_loop(replay_hal(&replay), logged_config(log), compare);
+    return compare.result;
 }
 
 } // namespace traction::replay

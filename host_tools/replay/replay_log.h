@@ -21,7 +21,7 @@ struct LoggedTick {
 // Every tick of the log, in order. Throws log::LogError when the log lacks the raw columns.
 std::vector<LoggedTick> logged_ticks(const log::Log &log);
 
-// The ticks as text for tests/replay/replay.c, which runs on host and target alike; the format stands at its head.
+// The ticks as text (hal/replay/frames.h), for `tractiond --hal replay` on host and target alike.
 std::string frames_text(const std::vector<LoggedTick> &ticks);
 
 // The configuration that made the log: rover_config_default() or, where the header says `firmware: paper`, rover_config_paper().
@@ -34,7 +34,7 @@ struct Comparison {
     double logged = 0, replayed = 0;
 };
 
-// Runs control_step over the ticks and compares what it makes of them with what the log recorded: speeds, slips, torques,
+// Runs the rover's loop (daemon_run) over the ticks and compares what it makes of them with what the log recorded: speeds, slips, torques,
 // tractions, duties, estimates. A log keeps six decimals: a difference is more than half of the last.
 Comparison replay_log(const log::Log &log, const std::vector<LoggedTick> &ticks);
 

@@ -110,7 +110,7 @@ Experiment radar_spectrum(const ReproduceSettings &) {
     e.ours = "peak of one spectrum " + with_spread(peak, 1) + " Hz, median " + number(peaks[blocks / 2], 0) + " Hz; mean spectrum " +
              number(100 * width, 0) + " % of its peak wide at half power";
     e.checks = {{"median peak", "11 Hz", "Hz", peaks[blocks / 2], 9, 13,
-                 "(11) gives 11.2 Hz; bins are 2 Hz, the mode of clutter lies 7 % low (DSP.md)"},
+                 "(11) gives 11.2 Hz; bins are 2 Hz, the mode of clutter lies 7 % low (docs/evidence.md section 2)"},
                 {"width of the mean spectrum over its peak", "wide", "1", width, 0.2, 0.5,
                  "0.24 of the clutter and 2 bins of the Hann window at 5.5 bins: sqrt(0.24^2 + 0.36^2) = 0.43 at most"}};
     const std::vector<double> one = power_spectrum(&signal[256 * 3]);
@@ -152,9 +152,10 @@ Experiment fused_speed(const ReproduceSettings &settings) {
                                 "the paper's +-10 %: an accelerometer zeroed to 0.005 m/s^2 over a time constant of 2 s lifts 0.17 m/s by "
                                 "6 %, the calibration adds 3 %"});
         else
-            e.checks.push_back({who + ": mean over camera", "mean right", "1", fused.mean / camera, 0.95, 1.05,
-                                "72 windows of 8 % (DSP.md table 3, maximum likelihood near 0.17 m/s), 18 of them independent: 2 %; the "
-                                "rest for the beam's template"});
+            e.checks.push_back(
+                {who + ": mean over camera", "mean right", "1", fused.mean / camera, 0.95, 1.05,
+                 "72 windows of 8 % (docs/evidence.md section 3, maximum likelihood near 0.17 m/s), 18 of them independent: 2 %; the "
+                 "rest for the beam's template"});
         e.checks.push_back({who + ": relative spread", "0.1", "1", fused.deviation / camera, 0.005, 0.10,
                             "the paper's +-10 %; less than 0.5 % would beat the Cramer-Rao bound"});
         figure.panels.push_back({.title = who,

@@ -1,4 +1,4 @@
-// reproduce.h - the experiments of the paper, figure by figure, made by our firmware on our simulator (SPEC section 7).
+// reproduce.h - the experiments of the paper, figure by figure, made by our firmware on our simulator (docs/sources.md section 7).
 //
 // Each experiment says the paper's number, ours, the bound it is held to and where the bound comes from, and draws its figure.
 #pragma once

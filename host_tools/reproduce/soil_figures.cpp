@@ -18,7 +18,7 @@ namespace traction {
 
 namespace {
 
-// (5) of dry sand of the literature: Fm = l ww c + Fn tan(phi), sc = K/l. SPEC section 2.
+// (5) of dry sand of the literature: Fm = l ww c + Fn tan(phi), sc = K/l. docs/sources.md section 2.
 constexpr double contact_m = 0.04, width_m = 0.042, cohesion_Pa = 1040, load_N = 7, shear_m = 0.02;
 const double tan_phi = std::tan(28.0 * 3.14159265358979323846 / 180);
 double literature_fm_N(double normal_N) { return contact_m * width_m * cohesion_Pa + normal_N * tan_phi; }
@@ -198,7 +198,7 @@ std::vector<BenchRow> read_bench(const std::string &path) {
     std::ifstream file(path);
     std::string text;
     std::vector<BenchRow> rows;
-    std::getline(file, text); // names: data/README.md
+    std::getline(file, text); // the row of names
     while (std::getline(file, text)) {
         std::vector<std::string> cell;
         std::istringstream cells(text);

@@ -5,13 +5,13 @@
 #include "recorder.h"
 
 #include "firmware/core/rover_config.h"
-#include "hal/sim/fault_hal.h"
-#include "hal/sim/sim_hal.h"
+#include "hal/pace/pace_hal.h"
+#include "hal/sim/plan_operator.h"
+#include "hal/sim/sim_rover.h"
+#include "host_tools/loop/loop.h"
 
-#include <chrono>
 #include <cstring>
 #include <memory>
-#include <thread>
 
 namespace traction {
 
@@ -23,59 +23,6 @@ control_config_t firmware_config(const sim::FirmwareChoice &choice, const std::o
     if (choice.doppler_scale > 0) config.doppler.scale = static_cast<float>(choice.doppler_scale);
     return config;
 }
-
-command_t command_of(const sim::Demand &demand) {
-    command_t command{};
-    switch (demand.mode) {
-    case sim::DriveMode::stop:
-        command.mode = MODE_STOP;
-        break;
-    case sim::DriveMode::open_loop:
-        command.mode = MODE_OPEN_LOOP;
-        break;
-    case sim::DriveMode::wheel_speed:
-        command.mode = MODE_WHEEL_SPEED;
-        break;
-    case sim::DriveMode::platform_speed:
-        command.mode = MODE_PLATFORM_SPEED;
-        break;
-    case sim::DriveMode::slip:
-        command.mode = MODE_SLIP;
-        break;
-    case sim::DriveMode::soil_sweep:
-        command.mode = MODE_SOIL_SWEEP;
-        break;
-    }
-    command.platform_speed_m_s = static_cast<float>(demand.speed_m_s);
-    command.yaw_rate_rad_s = static_cast<float>(demand.yaw_rate_rad_s);
-    command.slip_ref = static_cast<float>(demand.slip);
-    for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-        command.wheel_speed_rad_s[i] = static_cast<float>(demand.wheel_speed_rad_s[i]);
-        command.duty[i] = static_cast<float>(demand.duty[i]);
-        if (demand.slip_wheel[i]) command.slip_wheels = static_cast<std::uint8_t>(command.slip_wheels | 1u << i);
-    }
-    return command;
-}
-
-// The operator: the drive plan, and what the link loses of it.
-class Operator {
-  public:
-    explicit Operator(const sim::Scenario &scenario) : scenario_(scenario) {}
-    const command_t &command_at(double t_s) {
-        bool lost = false;
-        for (const auto &[from_s, to_s] : scenario_.command_losses) lost = lost || (t_s >= from_s && t_s < to_s);
-        if (lost) {
-            last_.age_ticks++;
-        } else {
-            last_ = command_of(sim::demand_at(scenario_.drive, t_s));
-        }
-        return last_;
-    }
-
-  private:
-    const sim::Scenario &scenario_;
-    command_t last_{};
-};
 
 // Camera faults: the camera is no device of the rover, so no HAL carries it.
 class CameraFaults {
@@ -135,22 +82,46 @@ std::uint64_t mix_trace(std::uint64_t hash, const trace_t &trace) {
     return hash;
 }
 
-hal::SimHalConfig world_of(const sim::Scenario &scenario, const std::vector<sim::ActiveEffect> &effects, std::uint64_t seed) {
-    hal::SimHalConfig world{.plant = scenario.plant,
-                            .sensors = scenario.sensors,
-                            .scale = {},
-                            .wheel_blocks = {},
-                            .actuation_delay_s = 0,
-                            .ticks = static_cast<std::uint32_t>(scenario.duration_s * 100 + 0.5),
-                            .seed = seed};
-    world.plant.effects = effects;
-    world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
-    sim::apply_sensor_effects(effects, world.sensors);
-    for (const sim::ActiveEffect &active : effects)
-        if (active.effect->name == "actuation_delay") world.actuation_delay_s += active.value("delay_s");
-    for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
-    return world;
-}
+// What a run leaves behind: the drive plan asks, every tick is recorded.
+class Session : public Link {
+  public:
+    Session(const sim::Scenario &scenario, const SimulateOptions &options, const hal::SimHal &world, std::uint64_t seed,
+            std::uint64_t expected_ticks)
+        : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
+          recorder_(options.record ? expected_ticks : 0) {
+        if (!options.frames_path.empty())
+            frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
+    }
+    void command(const sensor_frame_t &frame, command_t &command) override { command = person_.command_at(frame.tick); }
+    void log(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) override {
+        hash_ = mix_trace(hash_, trace);
+        if (options_.record) {
+            camera_faults_.apply(world_.camera(), poses_);
+            recorder_.add(frame, command, trace);
+            recorder_.add_camera(poses_);
+        }
+        if (options_.truth) truth_.add(world_.truth());
+        if (frames_) frames_->add(frame, command);
+        if (++ticks_ % 100 == 0 && options_.after_second) options_.after_second();
+    }
+    void take(SimulationResult &result) {
+        result.trace_hash = hash_;
+        if (options_.record) result.log = recorder_.take();
+        if (options_.truth) result.truth = truth_.take();
+        if (frames_) frames_->keep();
+    }
+
+  private:
+    const SimulateOptions &options_;
+    const hal::SimHal &world_;
+    hal::PlanOperator person_;
+    CameraFaults camera_faults_;
+    std::vector<sim::Pose> poses_;
+    Recorder recorder_;
+    TruthRecorder truth_;
+    std::unique_ptr<FrameWriter> frames_;
+    std::uint64_t hash_ = 0xcbf29ce484222325u, ticks_ = 0;
+};
 
 } // namespace
 
@@ -165,52 +136,18 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
         effects.insert(effects.end(), result.hidden.begin(), result.hidden.end());
     }
 
-    const hal::SimHalConfig config = world_of(scenario, effects, seed);
-    hal::SimHal world(config);
-    hal::FaultHal faulty(world.hal(), {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops}, config.scale,
-                         seed);
-    const bool wrapped = !scenario.sensor_faults.empty() || !scenario.emergency_stops.empty();
-    const hal_t hal = wrapped ? faulty.hal() : world.hal();
+    const hal::SimHalConfig config = hal::world_of(scenario, effects, seed);
+    hal::SimRover rover(scenario, effects, config);
+    Session session(scenario, options, rover.world(), seed, config.ticks);
+    pace_hal_t pace{};
+    const hal_t world = rover.hal();
+    const daemon_result_t run =
+        run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_config(scenario.firmware, options.firmware), session);
+    result.ended_by = run.ended_by;
+    result.ticks = run.ticks;
+    result.faults = run.faults;
+    session.take(result);
 
-    const control_config_t firmware = firmware_config(scenario.firmware, options.firmware);
-    const auto state = std::make_unique<control_state_t>();
-    control_reset(&firmware, state.get());
-    Operator person(scenario);
-    CameraFaults camera_faults(scenario, seed);
-    std::vector<sim::Pose> poses;
-    Recorder recorder(options.record ? config.ticks : 0);
-    TruthRecorder truth;
-    std::unique_ptr<FrameWriter> frames;
-    if (!options.frames_path.empty())
-        frames = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
-
-    const auto start = std::chrono::steady_clock::now();
-    result.trace_hash = 0xcbf29ce484222325u;
-    while (hal.wait_tick(hal.context) == HAL_OK) {
-        sensor_frame_t frame{};
-        if (hal.read(hal.context, &frame) < 0) break;
-        const command_t &command = person.command_at(frame.tick / 100.0);
-        const trace_t trace = control_step(&firmware, state.get(), &command, &frame);
-        if (hal.write(hal.context, &trace.actuator) < 0) break;
-        result.ticks++;
-        result.faults |= trace.faults;
-        result.trace_hash = mix_trace(result.trace_hash, trace);
-        if (options.record) {
-            camera_faults.apply(world.camera(), poses);
-            recorder.add(frame, command, trace);
-            recorder.add_camera(poses);
-        }
-        if (options.truth) truth.add(world.truth());
-        if (frames) frames->add(frame, command);
-        if (options.after_second && result.ticks % 100 == 0) options.after_second();
-        if (options.realtime)
-            std::this_thread::sleep_until(start + std::chrono::milliseconds(10) * static_cast<std::int64_t>(result.ticks));
-    }
-    hal.safe_stop(hal.context);
-
-    if (options.record) result.log = recorder.take();
-    if (options.truth) result.truth = truth.take();
-    if (frames) frames->keep();
     write_header(scenario, config, seed, result.log);
     if (options.truth) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
     return result;

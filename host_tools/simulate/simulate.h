@@ -1,8 +1,10 @@
-// simulate.h - runs a scenario: firmware in process, plant and sensors in lockstep, everything recorded.
+// simulate.h - runs a scenario: the rover's own loop (daemon_run) on the simulated rover in lockstep, everything recorded.
 //
+// A device that times out is left to safety, as on the rover: the run goes on.
 // The same scenario, seed and effects give the same log, byte for byte.
 #pragma once
 
+#include "hal/hal.h"
 #include "host_tools/log/log.h"
 #include "sim/scenario/scenario.h"
 
@@ -31,6 +33,7 @@ struct SimulationResult {
     log::Log truth;                        // empty unless asked for
     std::vector<sim::ActiveEffect> hidden; // what was drawn; goes to the seal and nowhere else
     std::uint64_t hide_seed = 0;
+    hal_result_t ended_by = HAL_END; // HAL_END: the scenario's duration; negative: a device was lost
     std::uint64_t ticks = 0;
     std::uint32_t faults = 0;     // fault_t bits that the firmware has latched
     std::uint64_t trace_hash = 0; // FNV-1a over every trace, for comparing runs

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double degree = math::pi / 180;
 
-// Adhesion and friction of (5) for the rover's wheel: l = 4 cm (SPEC), ww = 42 mm (table I); sc = K/l.
+// Adhesion and friction of (5) for the rover's wheel: l = 4 cm (docs/sources.md section 2), ww = 42 mm (table I); sc = K/l.
 Soil from_bekker(std::string name, const Bekker &bekker, double rolling, std::string source) {
     constexpr double contact_length_m = 0.04, wheel_width_m = 0.042;
     Soil soil;
@@ -76,9 +76,10 @@ Soil dry_sand() {
     Bekker b;
     b.kc = 990, b.kphi = 1528430, b.n = 1.1, b.c_Pa = 1040, b.phi_rad = 28 * degree, b.K_m = 0.02;
     b.weight_N_m3 = 15000, b.reload_N_m4 = 5.03e8, b.slip_sinkage = 0.1;
-    return from_bekker("dry_sand_literature", b, 0.05,
-                       "c, phi, K: SPEC section 2 (Bekker/Wong); kc, kphi, n: dry sand, Land Locomotion Laboratory, in Wong, Theory of "
-                       "Ground Vehicles; weight, reload, slip_sinkage, rolling: assumed");
+    return from_bekker(
+        "dry_sand_literature", b, 0.05,
+        "c, phi, K: docs/sources.md section 2 (Bekker/Wong); kc, kphi, n: dry sand, Land Locomotion Laboratory, in Wong, Theory of "
+        "Ground Vehicles; weight, reload, slip_sinkage, rolling: assumed");
 }
 
 Soil loam() {

@@ -1,7 +1,5 @@
 #include "drive.h"
 
-#include "sim/physics/effects/laws.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,24 +7,13 @@ namespace traction::sim {
 
 namespace {
 
-double torque_constant(const DriveParameters &p, const DriveEffects &e, const DriveState &s) {
-    return law::hot_torque_constant(law::torque_constant(p.torque_constant_Nm_A, e.constant_change), s.heat_K);
+double torque_constant(const DriveParameters &p, const WheelEffects &e, const DriveState &s) {
+    return motor_constant(p.torque_constant_Nm_A, e, s.heat_K);
 }
 
-double resistance(const DriveParameters &p, const DriveEffects &e, const DriveState &s) {
-    return law::hot_resistance_ohm(p.resistance_ohm, s.heat_K) + e.wiring_ohm;
-}
-
-// Coulomb-like part of Gr at this speed, >= 0: what friction takes at the most.
-double dry_friction(const DriveParameters &p, const DriveEffects &e, double speed_rad_s, double load_Nm) {
-    double torque = p.coulomb_Nm + law::coulomb_friction_Nm(e.coulomb_Nm) + law::mesh_loss_Nm(e.mesh_fraction, load_Nm);
-    if (e.stribeck_Nm != 0) torque += law::stribeck_friction_Nm(e.stribeck_Nm, e.stribeck_speed_rad_s, speed_rad_s);
-    return std::max(torque, 0.0);
-}
-
-double ripple(const DriveEffects &e, double angle_rad) {
-    if (e.ripple_cos_Nm == 0 && e.ripple_sin_Nm == 0) return 0;
-    return law::torque_ripple_Nm(e.ripple_cos_Nm, e.ripple_sin_Nm, e.ripple_order, angle_rad);
+// What friction takes at the most, the Coulomb-like part of Gr >= 0.
+double dry_friction(const DriveParameters &p, const WheelEffects &e, double speed_rad_s, double angle_rad, double load_Nm) {
+    return std::max(dry_friction_Nm(p.coulomb_Nm, e, speed_rad_s, load_Nm) + periodic_Nm(e, angle_rad, true), 0.0);
 }
 
 // One mass under a torque, viscous friction and Coulomb friction, both implicit. Returns the energy friction took.
@@ -42,11 +29,10 @@ double advance(double &speed_rad_s, double inertia, double torque_Nm, double vis
 
 } // namespace
 
-double drive_current(const DriveParameters &p, const DriveEffects &e, const DriveState &s, double duty, double supply_V, double dt_s) {
+double drive_current(const DriveParameters &p, const WheelEffects &e, const DriveState &s, double duty, double supply_V, double dt_s) {
     const double drop = duty * supply_V - torque_constant(p, e, s) * s.motor_speed_rad_s;
-    // dead time of the bridge: no current until it is overcome
-    const double left = std::copysign(std::max(std::fabs(drop) - e.dead_voltage_V, 0.0), drop);
-    const double ohm = resistance(p, e, s);
+    const double left = std::copysign(std::fabs(drop - law::bridge_dead_time_V(e.dead_voltage_V, drop)), drop);
+    const double ohm = circuit_ohm(law::hot_resistance_ohm(p.resistance_ohm, s.heat_K), e);
     double current = left / ohm;
     if (p.inductance_H > 0) { // L dI/dt = u - ke w - R I
         const double h = dt_s / p.inductance_H;
@@ -55,15 +41,15 @@ double drive_current(const DriveParameters &p, const DriveEffects &e, const Driv
     return std::clamp(current, -p.current_limit_A, p.current_limit_A);
 }
 
-DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState &s, double traction_torque_Nm, double dt_s) {
+DriveWork drive_step(const DriveParameters &p, const WheelEffects &e, DriveState &s, double traction_torque_Nm, double dt_s) {
     const double motor_torque = torque_constant(p, e, s) * s.current_A;
-    const double viscous = p.viscous_Nms + e.viscous_Nms;
+    const double viscous = viscous_friction_Nm(p.viscous_Nms, e, 1); // it is linear: its slope, for the implicit step
     DriveWork work;
     if (e.play_rad <= 0) {
         const double before = s.wheel_speed_rad_s;
-        const double torque = motor_torque - traction_torque_Nm - ripple(e, s.wheel_angle_rad);
-        work.friction =
-            advance(s.wheel_speed_rad_s, p.inertia_kg_m2, torque, viscous, dry_friction(p, e, before, traction_torque_Nm), dt_s);
+        const double torque = motor_torque - traction_torque_Nm - periodic_Nm(e, s.wheel_angle_rad, false);
+        work.friction = advance(s.wheel_speed_rad_s, p.inertia_kg_m2, torque, viscous,
+                                dry_friction(p, e, before, s.wheel_angle_rad, traction_torque_Nm), dt_s);
         const double mean = 0.5 * (before + s.wheel_speed_rad_s);
         work.motor = motor_torque * mean * dt_s;
         s.wheel_angle_rad += dt_s * s.wheel_speed_rad_s;
@@ -77,16 +63,16 @@ DriveWork drive_step(const DriveParameters &p, const DriveEffects &e, DriveState
             const double mesh = law::backlash_Nm(e.play_rad, p.gear_stiffness_Nm_rad, p.gear_damping_Nms_rad,
                                                  s.motor_angle_rad - s.wheel_angle_rad, s.motor_speed_rad_s - s.wheel_speed_rad_s);
             const double before = s.motor_speed_rad_s;
-            work.friction += advance(s.motor_speed_rad_s, rotor_inertia, motor_torque - mesh - ripple(e, s.motor_angle_rad), viscous,
-                                     dry_friction(p, e, before, mesh), h);
+            work.friction += advance(s.motor_speed_rad_s, rotor_inertia, motor_torque - mesh - periodic_Nm(e, s.motor_angle_rad, false),
+                                     viscous, dry_friction(p, e, before, s.motor_angle_rad, mesh), h);
             work.motor += motor_torque * 0.5 * (before + s.motor_speed_rad_s) * h;
             s.wheel_speed_rad_s += h * (mesh - traction_torque_Nm) / p.wheel_inertia_kg_m2;
             s.motor_angle_rad += h * s.motor_speed_rad_s;
             s.wheel_angle_rad += h * s.wheel_speed_rad_s;
         }
     }
-    if (e.heating_K_W > 0) // with the cold resistance, as the catalogue states it
-        s.heat_K += dt_s * law::winding_heating_K_s(e.heating_K_W, e.heating_time_s, s.current_A, p.resistance_ohm, s.heat_K);
+    // with the cold resistance, as the catalogue states it
+    s.heat_K += dt_s * (heating_gap_K(e, s.current_A, p.resistance_ohm, s.heat_K) / e.heating_time_s);
     return work;
 }
 

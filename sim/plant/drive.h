@@ -1,10 +1,12 @@
 // drive.h - one wheel's drive train: bridge, winding, gear, friction, wheel spin.
 //
-//   I = (u - ke*w_m)/Ra, u = duty*V - (losses of the bridge and the wires)                                 (1) SPEC section 3
+//   I = (u - ke*w_m)/Ra, u = duty*V - (losses of the bridge and the wires)                                 (1) docs/sources.md section 3
 //   J*dw/dt = KG*I - Gr(w) - R*Ft                                                        (17) Lhomme-Desages
 //   Gr(w) = (b*|w| + t0)*sgn(w), Coulomb part implicit: at rest it takes up to t0                          (18)
 // With backlash the rotor's share of J and the wheel's are two masses with a dead zone between them.
 #pragma once
+
+#include "sim/physics/effects/acting.h"
 
 #include <limits>
 
@@ -23,14 +25,6 @@ struct DriveParameters {
     double gear_damping_Nms_rad = 0.05;                               // the same, assumed
 };
 
-// Effects on one drive train, all zero when absent (catalogue names).
-struct DriveEffects {
-    double coulomb_Nm = 0, viscous_Nms = 0, stribeck_Nm = 0, stribeck_speed_rad_s = 1, mesh_fraction = 0, play_rad = 0;
-    double ripple_cos_Nm = 0, ripple_sin_Nm = 0, ripple_order = 0;
-    double heating_K_W = 0, heating_time_s = 60;
-    double wiring_ohm = 0, dead_voltage_V = 0, constant_change = 0;
-};
-
 struct DriveState {
     double motor_angle_rad = 0, motor_speed_rad_s = 0; // behind the gear, at the wheel's scale
     double wheel_angle_rad = 0, wheel_speed_rad_s = 0;
@@ -44,11 +38,11 @@ struct DriveWork {
 };
 
 // Current of (1) for a duty and a supply voltage, within the bridge's limit; with inductance the one after dt, implicit in I.
-double drive_current(const DriveParameters &parameters, const DriveEffects &effects, const DriveState &state, double duty, double supply_V,
+double drive_current(const DriveParameters &parameters, const WheelEffects &effects, const DriveState &state, double duty, double supply_V,
                      double dt_s);
 
 // Advances by dt under the current in `state` and the traction torque R*Ft [N m] that brakes the wheel.
-DriveWork drive_step(const DriveParameters &parameters, const DriveEffects &effects, DriveState &state, double traction_torque_Nm,
+DriveWork drive_step(const DriveParameters &parameters, const WheelEffects &effects, DriveState &state, double traction_torque_Nm,
                      double dt_s);
 
 } // namespace traction::sim

@@ -27,16 +27,17 @@ void start_ode() {
     if (!ready) throw std::runtime_error("ODE could not allocate its data for this thread");
 }
 
+// A slope of its own kind each, in world axes: the body that heads along x is turned by -direction from the rise.
 Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g) {
-    const double a = g * math::sin(ground.slope_rad), b = g * math::sin(effects.slope_rad);
-    const double x = a * math::cos(ground.slope_direction_rad) + b * math::cos(effects.slope_direction_rad);
-    const double y = a * math::sin(ground.slope_direction_rad) + b * math::sin(effects.slope_direction_rad);
-    return {-x, -y, -std::sqrt(std::max(g * g - x * x - y * y, 0.0))};
+    const law::Slope known = law::grade_m_s2(g, ground.slope_rad, -ground.slope_direction_rad),
+                     unnoticed = law::grade_m_s2(g, effects.slope_rad, -effects.slope_direction_rad);
+    const double x = known.along_m_s2 + unnoticed.along_m_s2, y = known.across_m_s2 + unnoticed.across_m_s2;
+    return {x, y, -std::sqrt(std::max(g * g - x * x - y * y, 0.0))};
 }
 
 } // namespace
 
-Plant::World::World(const PlantConfig &c) : config(c), effects(collect_effects(c.effects)) {
+Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)) {
     start_ode();
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2);
     world = dWorldCreate();
@@ -54,7 +55,7 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(collect_effects(c
     build_bodies();
     for (int i = 0; i < wheel_count; ++i) {
         const auto n = static_cast<std::size_t>(i);
-        const double radius = config.rover.wheel_radius_m * (1 + effects.wheel[n].radius_change);
+        const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[n].radius_change);
         drive[n].wheel_speed_rad_s = drive[n].motor_speed_rad_s = config.speed_m_s / radius;
     }
     truth.battery_voltage_V = config.rover.battery_voltage_V;
@@ -73,7 +74,7 @@ Plant::World::~World() {
 
 void Plant::World::build_bodies() {
     const RoverParameters &r = config.rover;
-    const double height = r.centre_height_m + effects.body.centre_height_m;
+    const double height = law::load_transfer_m(r.centre_height_m, effects.body.raised_m);
     const double load = r.mass_kg * std::fabs(gravity[2]) / 4;
     double sunk = load / r.contact_stiffness_N_m;
     if (config.ground.contact != ContactLaw::aggregated && config.ground.soil.bekker)
@@ -94,9 +95,9 @@ void Plant::World::build_bodies() {
         dBodySetLinearVel(body, config.speed_m_s * cos_yaw, config.speed_m_s * sin_yaw, 0);
         for (int i = 0; i < wheel_count; ++i)
             if (is_left(i) == (h == 0))
-                contact_at[static_cast<std::size_t>(i)] = {(is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m) -
-                                                               effects.body.offset_x_m,
-                                                           side * r.half_track_m - aside - effects.body.offset_y_m, -height};
+                contact_at[static_cast<std::size_t>(i)] = {
+                    law::mass_offset_m(is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m, effects.body.offset_x_m),
+                    law::mass_offset_m(side * r.half_track_m - aside, effects.body.offset_y_m), -height};
     }
     const dJointID joint = dJointCreateHinge(world, nullptr);
     dJointAttach(joint, half[0], half[1]);
@@ -140,7 +141,7 @@ double Plant::World::kinetic() const {
     }
     for (std::size_t i = 0; i < wheel_count; ++i) {
         const DriveParameters &p = config.rover.drive;
-        const bool two_masses = effects.wheel[i].drive.play_rad > 0;
+        const bool two_masses = effects.wheel[i].play_rad > 0;
         const double wheel = two_masses ? p.wheel_inertia_kg_m2 : p.inertia_kg_m2;
         sum += 0.5 * wheel * drive[i].wheel_speed_rad_s * drive[i].wheel_speed_rad_s;
         if (two_masses) sum += 0.5 * (p.inertia_kg_m2 - wheel) * drive[i].motor_speed_rad_s * drive[i].motor_speed_rad_s;
@@ -162,10 +163,10 @@ void Plant::World::push_body() {
     const Vec3 ahead = axis(0);
     push_velocity = mean_velocity();
     push = {};
-    const double drag = b.drag_N * soft_sign(dot(push_velocity, ahead), 0.005);
-    for (std::size_t k = 0; k < 2; ++k) push[k] = -drag * ahead[k];
-    push[0] -= b.tether_N_m * (truth.position_m[0] - config.x_m);
-    push[1] -= b.tether_N_m * (truth.position_m[1] - config.y_m);
+    const double drag = law::body_drag_N(b.drag_N, soft_sign(dot(push_velocity, ahead), 0.005));
+    for (std::size_t k = 0; k < 2; ++k) push[k] = drag * ahead[k];
+    push[0] += law::tether_drag_N(b.tether_N_m, truth.position_m[0] - config.x_m);
+    push[1] += law::tether_drag_N(b.tether_N_m, truth.position_m[1] - config.y_m);
     for (const dBodyID body : half) dBodyAddForce(body, 0.5 * push[0], 0.5 * push[1], 0);
 }
 

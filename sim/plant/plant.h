@@ -17,7 +17,7 @@
 
 namespace traction::sim {
 
-// SPEC section 3 (table I Lhomme-Desages) unless said otherwise.
+// docs/sources.md section 3 (table I Lhomme-Desages) unless said otherwise.
 struct RoverParameters {
     double mass_kg = 2.88, length_m = 0.30, width_m = 0.27, height_m = 0.185;
     double half_wheelbase_m = 0.083, half_track_m = 0.12;
@@ -26,7 +26,7 @@ struct RoverParameters {
     double centre_height_m = 0;          // of the centre of mass over the ground; 0 as in the paper, which keeps Fn constant:
                                          // the effect load_transfer raises it
     double contact_stiffness_N_m = 6000; // vertical, per wheel: 1.2 mm under 7 N, assumed for a foam-filled tyre
-    double contact_damping_Ns_m = 60;    // vertical, per wheel, assumed: a third of critical
+    double contact_damping_Ns_m = 60;    // vertical, per wheel, assumed: half of critical (2 sqrt(6000 N/m 0.72 kg) = 131)
     double relaxation_length_m = 0.005;  // of the slip state, assumed: an eighth of the contact length
     DriveParameters drive;
     double battery_voltage_V = 7.2;       // open circuit, assumed

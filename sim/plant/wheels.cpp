@@ -1,20 +1,13 @@
 #include "world.h"
 
-#include "sim/physics/effects/laws.h"
-
 #include <cmath>
 
 namespace traction::sim {
 
 double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) const {
-    const BodyEffects &b = effects.body;
-    double factor = 1 + config.ground.grip_change(x_m, y_m);
-    factor *= law::soil_patch(b.patch_change, b.patch_start_m, b.patch_length_m,
-                              truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m));
-    factor *= law::soil_gradient(b.gradient_1_m, truth.path_m);
-    factor *= law::multi_pass(b.multi_pass, trails(i) ? 1 : 0);
-    if (b.sliding_loss_s_m != 0) factor *= law::sliding_speed_loss(b.sliding_loss_s_m, sliding_m_s);
-    return factor;
+    const double place = truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m);
+    const double here = strength_here(1 + config.ground.grip_change(x_m, y_m), effects.body, place, truth.path_m, trails(i) ? 1 : 0);
+    return strength_sliding(here, effects.body, sliding_m_s);
 }
 
 const SoilConstants &Plant::World::constants_of(const Soil &soil) const {
@@ -32,7 +25,7 @@ Plant::World::Meeting Plant::World::meet_aggregated(int i, ContactInput in, cons
     in.shear_slip = law::shear_stiffness(soil.shear_slip, effects.body.shear_change);
     in.side_ratio = in.grip_N > 0 ? soil.lateral_coefficient * load_N * factor / in.grip_N : 1;
     out.force = contact_step(in, contact[n], config.dt_s);
-    out.rolling_N = law::rolling_resistance_N(soil.rolling_coefficient, load_N);
+    out.rolling_N = soil.rolling_coefficient * load_N;
     return out;
 }
 
@@ -45,7 +38,7 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Soil
     const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m, config.dt_s * in.along_m_s);
     const SlipChange change = slip_step(in, contact[n], config.dt_s);
     const double total = total_slip(contact[n]);
-    const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, 1 + effects.body.shear_change};
+    const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, law::shear_stiffness(1, effects.body.shear_change)};
     const auto law = config.ground.contact == ContactLaw::arc ? arc_force : bekker_force;
     // the law counts slip along the motion: a wheel that rolls backwards sees the mirrored one; near rest, the mean of both
     const double slip = std::copysign(std::min(total, 1.0), in.along_m_s < 0 ? -contact[n].slip : contact[n].slip);
@@ -110,9 +103,8 @@ void Plant::World::step_wheel(int i, double supply_V) {
                                std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]));
     const double load = met.load_N;
     const double slip_size = std::min(1.0, std::fabs(contact[n].slip));
-    const double rolling = met.rolling_N + law::rolling_resistance_N(mine.rolling, load) +
-                           law::slip_sinkage_N(b.slip_sinkage, slip_size, load) +
-                           law::speed_resistance_N(b.speed_resistance_s_m, along, load);
+    double rolling = met.rolling_N;
+    each_resistance(mine, b, slip_size, along, [&](double per_load) { rolling += per_load * load; });
     const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
     // reversing resistance: never more than would stop a quarter of the rover within the step
     const double width = std::max(reversal_m_s, 4 * (rolling + met.free_N) * config.dt_s / r.mass_kg);
@@ -126,17 +118,17 @@ void Plant::World::step_wheel(int i, double supply_V) {
     DriveState &d = drive[n];
     const double speed_before = d.wheel_speed_rad_s;
     if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
-    d.current_A = enabled ? drive_current(r.drive, mine.drive, d, duty[n], supply_V, config.dt_s) : 0;
+    d.current_A = enabled ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s) : 0;
     if (!blocked[n]) {
         out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
-        const DriveWork work = drive_step(r.drive, mine.drive, d, out.torque_Nm, config.dt_s);
+        const DriveWork work = drive_step(r.drive, mine, d, out.torque_Nm, config.dt_s);
         energy.motor += work.motor;
         energy.friction += work.friction;
     }
     out.spin_mean_rad_s = blocked[n] ? 0 : 0.5 * (speed_before + d.wheel_speed_rad_s);
     // the wheel's own spin-up turns the chassis the other way about y
     const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
-    if (r.centre_height_m + b.centre_height_m > 0) dBodyAddRelTorque(body, 0, -spin, 0);
+    if (law::load_transfer_m(r.centre_height_m, b.raised_m) > 0) dBodyAddRelTorque(body, 0, -spin, 0);
 
     WheelTruth &w = truth.wheel[n];
     w.traction_N = pull;

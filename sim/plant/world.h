@@ -3,9 +3,9 @@
 
 #include "contact.h"
 #include "plant.h"
-#include "plant_effects.h"
 #include "rut.h"
 
+#include "sim/physics/effects/acting.h"
 #include "sim/physics/terramechanics.h"
 
 #include <ode/ode.h>
@@ -56,7 +56,7 @@ struct Plant::World {
     dBodyID half_of(int wheel) const { return half[is_left(wheel) ? 0 : 1]; }
 
     PlantConfig config;
-    PlantEffects effects;
+    RoverEffects effects;
     Vec3 gravity{};
     dWorldID world = nullptr;
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe

@@ -40,8 +40,11 @@ ActiveEffect read_effect(const toml::table &table, const std::string &file, cons
     }
     for (std::size_t i = 0; i < effect->parameters.size(); i++) {
         const EffectParameter &parameter = effect->parameters[i];
-        if (const toml::node *node = keys.node(parameter.name))
-            active.values[i] = keys.number_of(value_of(*node), parameter.name, {parameter.minimum, parameter.maximum});
+        const toml::node *node = keys.node(parameter.name);
+        if (node == nullptr) continue;
+        const double low = parameter.both_signs ? -parameter.maximum : parameter.minimum;
+        active.values[i] = keys.number_of(value_of(*node), parameter.name, {low, parameter.maximum});
+        if (!parameter.takes(active.values[i])) keys.fail_at(*node, parameter.name, "out of range", "give " + parameter.range());
     }
     keys.finish();
     return active;
@@ -76,8 +79,7 @@ ActiveEffect parse_effect(const std::string &text) {
         const auto found =
             std::find_if(effect->parameters.begin(), effect->parameters.end(), [&](const EffectParameter &p) { return p.name == key; });
         if (found == effect->parameters.end()) fail("no parameter " + key, "traction effects " + std::string(effect->name) + " lists them");
-        if (!(value >= found->minimum && value <= found->maximum))
-            fail(key + " out of range", "give a number from " + std::to_string(found->minimum) + " to " + std::to_string(found->maximum));
+        if (!found->takes(value)) fail(key + " out of range", "give " + found->range());
         active.values[static_cast<std::size_t>(found - effect->parameters.begin())] = value;
     }
     return active;

@@ -9,7 +9,7 @@ namespace traction::sim {
 namespace {
 
 constexpr std::array<std::string_view, 7> sensor_names{"encoder", "current", "battery", "accel", "gyro", "radar", "camera"};
-constexpr std::array<std::string_view, 4> kind_names{"stuck", "noisy", "dropped", "delayed"};
+constexpr std::array<std::string_view, 5> kind_names{"stuck", "noisy", "dropped", "delayed", "timeout"};
 
 // [sensors.accel] and its like: offset, drift, gain, noise in the sensor's unit.
 void read_analog(Keys &parent, std::string_view key, const std::string &unit, const std::string &drift_unit, double largest,
@@ -76,6 +76,8 @@ SensorFault read_sensor_fault(Keys &keys) {
         fault.wheel = static_cast<int>(keys.integer("wheel", -1, 0, wheel_count - 1));
     if (fault.kind == FaultKind::noisy) fault.amount = keys.need_number("noise", {0, 10000});
     if (fault.kind == FaultKind::delayed) fault.amount = keys.need_number("delay_s", {0, 2});
+    if (fault.kind == FaultKind::timeout && fault.sensor == FaultySensor::camera)
+        keys.fail("how", "is for the rover's own devices; the camera is none of them", "write \"dropped\"");
     return fault;
 }
 

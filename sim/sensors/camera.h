@@ -1,4 +1,4 @@
-// camera.h - overhead camera that tracks a target on the rover: x, y to 1 mm and heading, 7 times a second (SPEC section 4).
+// camera.h - overhead camera that tracks a target on the rover: x, y to 1 mm and heading, 7 times a second (docs/sources.md section 4).
 //
 // Heading noise 4 mrad: two marks 0.25 m apart, each to 1 mm (assumed). A delayed camera shows where the rover was.
 #pragma once

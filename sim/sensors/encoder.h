@@ -1,7 +1,9 @@
-// encoder.h - incremental encoder on the motor shaft: 120 pulses per motor turn, gear 50:1 (SPEC section 3), cumulative count.
+// encoder.h - incremental encoder on the motor shaft: 120 pulses per motor turn, gear 50:1 (docs/sources.md section 3), cumulative count.
 //
 // Error: rounding to whole pulses (1.05 mrad of the wheel) and, when `missed` is set, that share of the pulses lost.
 #pragma once
+
+#include "sim/physics/effects/laws.h"
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +15,7 @@ inline constexpr double encoder_rad_per_count = 6.283185307179586 / encoder_coun
 
 class Encoder {
   public:
-    explicit Encoder(double missed = 0) : keep_(1 - missed) {}
+    explicit Encoder(double missed = 0) : keep_(law::encoder_missed(missed)) {}
 
     // motor_angle_rad: motor side, divided by the gear ratio.
     std::int32_t count(double motor_angle_rad) const {

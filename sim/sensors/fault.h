@@ -9,6 +9,7 @@ enum class FaultKind {
     noisy,   // adds noise of standard deviation `amount` (SI unit of the sensor; pulses for an encoder, counts for the radar)
     dropped, // says nothing
     delayed, // says what it measured `amount` seconds ago
+    timeout, // says nothing, and reading the devices ends with a time-out
 };
 
 struct SensorFault {

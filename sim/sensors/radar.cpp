@@ -29,7 +29,7 @@ RadarBeam beam_of(const RadarConfig &config) {
     return {.frequency_Hz = model.frequency_Hz,
             .vertical_deg = model.vertical_deg,
             .horizontal_deg = model.horizontal_deg,
-            .depression_deg = 20 + config.mounting_error_deg, // theta_d, SPEC section 4
+            .depression_deg = 20 + config.mounting_error_deg, // theta_d, docs/sources.md section 4
             .height_m = config.height_m,
             .ground_exponent = config.ground_exponent};
 }

@@ -17,7 +17,7 @@ namespace traction::sim {
 struct RadarConfig {
     std::string_view model = "MDU1130"; // of radar_models()
     double mounting_error_deg = 0;      // added to the depression angle
-    double height_m = 0.3;              // DSP.md section 2
+    double height_m = 0.3;              // docs/evidence.md section 2
     double ground_exponent = 1;         // n of sigma0 ~ sin^n
     double echo_count = 75;             // [ADC count] rms of the echo before the band-pass, assumed: 4 sigma inside 10 bits
     double noise_count = 1.0;           // [ADC count] rms white, assumed

@@ -4,7 +4,7 @@
 //   r = sqrt((x_j-p)^2 + y_j^2 + h^2)                                                            (1)
 //   z(p) = sum_j A_j G(theta, psi) r^-2 sin(theta)^(n/2) exp(-i 4 pi r/lambda)                   (2)
 // A_j complex normal (rough ground), theta depression, psi azimuth, n the ground's exponent (sigma0 ~ sin^n), G the antenna's
-// two-way amplitude: a Gaussian whose one-way power falls to half at half the beamwidth, applied twice.  DSP.md section 2
+// two-way amplitude: a Gaussian whose one-way power falls to half at half the beamwidth, applied twice.  docs/evidence.md section 2
 // Any speed profile, backward too, is a reading of z along p, so speckle repeats when the rover passes the same place again.
 // z is kept without its carrier exp(i 4 pi p cos(theta_d)/lambda) on nodes lambda/6 apart and read by cubic interpolation.
 #pragma once
@@ -22,7 +22,7 @@ struct RadarBeam {
     double vertical_deg = 36;    // one-way beamwidth
     double horizontal_deg = 72;  // one-way beamwidth
     double depression_deg = 20;  // theta_d plus the mounting error
-    double height_m = 0.3;       // DSP.md section 2
+    double height_m = 0.3;       // docs/evidence.md section 2
     double ground_exponent = 1;  // n, 0..2
 };
 

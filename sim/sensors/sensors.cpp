@@ -7,9 +7,8 @@
 namespace traction::sim {
 
 namespace {
-constexpr double gravity_m_s2 = 9.80665;
+constexpr double gravity_m_s2 = 9.81;      // the plant's (RoverParameters), or what tilts would weigh other than what stands
 constexpr double accel_smoothing_s = 0.01; // [s] assumed: what the beam and the springs of the body follow
-constexpr double lean_lag_s = 0.1;         // [s] of effect accel_tilt (catalogue)
 } // namespace
 
 SensorConfig default_sensors() {
@@ -22,24 +21,17 @@ SensorConfig default_sensors() {
 }
 
 void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &config) {
-    for (const ActiveEffect &active : effects) {
-        const std::string_view name = active.effect->name;
-        const std::size_t first = active.wheel < 0 ? 0 : static_cast<std::size_t>(active.wheel);
-        const std::size_t end = active.wheel < 0 ? wheel_count : first + 1;
-        if (name == "accel_bias") config.accel.offset += active.value("bias_m_s2");
-        if (name == "accel_drift") config.accel.drift_s += active.value("rate_m_s3");
-        if (name == "accel_scale") config.accel.gain *= 1 + active.value("change");
-        if (name == "accel_tilt") config.accel_tilt_rad_s2_m += active.value("compliance_rad_s2_m");
-        if (name == "radar_scale") config.radar_scale += active.value("change");
-        if (name == "radar_pitch") config.radar_pitch_s2_m += active.value("coefficient_s2_m");
-        if (name == "voltage_gain") config.battery.gain *= 1 + active.value("change");
-        if (name == "camera_delay") config.camera.delay_s += active.value("delay_s");
-        if (name == "camera_scale") config.camera.scale *= 1 + active.value("change");
-        for (std::size_t wheel = first; wheel < end; wheel++) {
-            if (name == "current_gain") config.current[wheel].gain *= 1 + active.value("change");
-            if (name == "current_offset") config.current[wheel].offset += active.value("offset_A");
-            if (name == "encoder_missed") config.encoder_missed[wheel] += active.value("fraction");
-        }
+    const RoverEffects all = config.effects = act_together(effects);
+    const BodyEffects &b = all.body;
+    config.accel.gain *= law::accel_scale(1, b.accel_scale);
+    config.accel.offset = law::accel_bias(config.accel.offset, b.accel_bias_m_s2);
+    config.accel.drift_s = law::accel_drift(config.accel.drift_s, b.accel_drift_m_s3, 1); // per second
+    config.battery.gain *= law::voltage_gain(1, b.voltage_gain);
+    config.camera.delay_s = law::camera_delay_s(config.camera.delay_s, b.camera_delay_s);
+    config.camera.scale *= law::camera_scale(1, b.camera_scale);
+    for (std::size_t i = 0; i < wheel_count; i++) {
+        config.current[i].gain *= law::current_gain(1, all.wheel[i].current_gain);
+        config.current[i].offset = law::current_offset(config.current[i].offset, all.wheel[i].current_offset_A);
     }
 }
 
@@ -56,7 +48,8 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &st
 // The path that the beam sees: the body's, stretched by scale errors and by the pitch that tips the beam.
 void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
     // nose down by p: cos(theta_d + p)/cos(theta_d) = cos p - tan(theta_d) sin p; up a rise the ground itself pitches the nose up
-    double stretch = (1 + config_.radar_scale) * (1 + config_.radar_pitch_s2_m * accel_m_s2);
+    const BodyEffects &b = config_.effects.body;
+    double stretch = law::radar_scale(1, b.radar_scale) * law::radar_pitch(b.radar_pitch_s2_m, accel_m_s2);
     if (config_.radar_mount_pitch != 0) {
         double ground_rad = 0;
         if (config_.ground_slope_rad != 0) ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
@@ -80,12 +73,12 @@ void Sensors::step(const Truth &truth) {
     if (step_s > 0) {
         const double rate = (truth.v_body_m_s[0] - last_.v_body_m_s[0]) / step_s;
         accel_m_s2_ += (rate - accel_m_s2_) * std::fmin(1.0, step_s / accel_smoothing_s);
-        lean_rad_ += (config_.accel_tilt_rad_s2_m * accel_m_s2_ - lean_rad_) * std::fmin(1.0, step_s / lean_lag_s);
+        lagged_m_s2_ += (accel_m_s2_ - lagged_m_s2_) * std::fmin(1.0, step_s / law::accel_tilt_lag_s);
     }
     step_radar(truth, accel_m_s2_);
     for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A);
     battery_.add(truth.battery_voltage_V);
-    accel_.add(truth.specific_force_m_s2[0] + gravity_m_s2 * lean_rad_);
+    accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_));
     gyro_.add(truth.rate_body_rad_s[2]);
     if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
         pending_.camera.push_back(*pose);
@@ -97,7 +90,7 @@ void Sensors::measure(Measurements &out) {
     pending_.radar_count.clear();
     pending_.camera.clear();
     for (std::size_t i = 0; i < wheel_count; i++) {
-        out.encoder_count[i] = Encoder(config_.encoder_missed[i]).count(last_.wheel[i].motor_angle_rad);
+        out.encoder_count[i] = Encoder(config_.effects.wheel[i].encoder_missed).count(last_.wheel[i].motor_angle_rad);
         out.current_A[i] = current_[i].measure(last_.t_s);
     }
     out.battery_V = battery_.measure(last_.t_s);

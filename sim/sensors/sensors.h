@@ -1,6 +1,7 @@
 // sensors.h - every sensor of the rover together: the truth of each plant step in, the measurements of a 10 ms tick out.
 //
-// SI units; raw counts are made in hal/sim. Effects of the catalogue that act on a sensor are configuration here.
+// SI units; raw counts are made in hal/sim. Effects of the catalogue that act on a sensor are configuration here; their laws are
+// sim/physics/effects/laws.h.
 #pragma once
 
 #include "analog.h"
@@ -8,7 +9,7 @@
 #include "encoder.h"
 #include "radar.h"
 
-#include "sim/physics/effects/catalogue.h"
+#include "sim/physics/effects/acting.h"
 #include "sim/plant/truth.h"
 
 #include <array>
@@ -25,12 +26,9 @@ struct SensorConfig {
     AnalogConfig battery;
     AnalogConfig accel;
     double accel_vibration_1_s = sim::accel_vibration_1_s;
-    double accel_tilt_rad_s2_m = 0; // effect accel_tilt
     AnalogConfig gyro;
     CameraConfig camera;
-    std::array<double, wheel_count> encoder_missed{};
-    double radar_scale = 0;       // effect radar_scale
-    double radar_pitch_s2_m = 0;  // effect radar_pitch
+    RoverEffects effects;         // those that act on every reading anew; the others are in gain, offset, drift, scale and delay
     double radar_mount_pitch = 1; // how much of the body's pitch turns the beam (1: rigid mount)
     double ground_slope_rad = 0;  // pitch is counted from the ground: rise along ground_direction_rad
     double ground_direction_rad = 0;
@@ -39,7 +37,8 @@ struct SensorConfig {
 // The sensors as built, with the stated noise of each.
 SensorConfig default_sensors();
 
-// Adds what the sensor effects among `effects` do; effects that act elsewhere are left to the plant.
+// Adds what the sensor effects among `effects` do, several of one kind together; effects that act elsewhere are left to the plant. To
+// be called once per configuration.
 void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &config);
 
 // All measurements of one tick.
@@ -70,8 +69,8 @@ class Sensors {
     Truth last_;
     double radar_path_m_ = 0;
     std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
-    double lean_rad_ = 0;            // accel_tilt, lagged
     double accel_m_s2_ = 0;          // along x, smoothed over 10 ms
+    double lagged_m_s2_ = 0;         // the same as the suspension follows it
 };
 
 } // namespace traction::sim

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs every ./traction command of a Markdown file's ```sh blocks, in order, in a folder of its own that sees scenarios/ and
 # models/; stops at the first that fails. `test` and `build` are left out: they are what runs this.
-# usage: run_commands.sh FILE.md CLI WORK_FOLDER PROJECT_ROOT
+# usage: run_commands.sh DOCUMENT CLI WORK_FOLDER PROJECT_ROOT
 set -eu
 file=$1 cli=$2 work=$3 root=$4
 rm -rf "$work"

@@ -1,7 +1,9 @@
 // The simulated HAL: counts inside the converters, scales that agree with the firmware's, faults that never stall the loop.
 #include "hal/sim/fault_hal.h"
 #include "hal/sim/sim_hal.h"
+#include "hal/sim/sim_rover.h"
 
+#include "firmware/app/daemon.h"
 #include "firmware/core/rover_config.h"
 
 #include <gtest/gtest.h>
@@ -132,7 +134,7 @@ TEST(Counts, stay_inside_the_converters_for_any_quantity) {
 TEST(Encoder, counts_pulses_of_the_motor_side_and_wraps) {
     const sim::Encoder encoder;
     EXPECT_EQ(encoder.count(0), 0);
-    EXPECT_EQ(encoder.count(2 * 3.14159265358979323846 + 1e-9), 6000); // 120 pulses x gear 50, SPEC section 3
+    EXPECT_EQ(encoder.count(2 * 3.14159265358979323846 + 1e-9), 6000); // 120 pulses x gear 50, docs/sources.md section 3
     EXPECT_EQ(encoder.count(-1e-9), -1);
     EXPECT_EQ(encoder.count((2147483648.0 + 0.5) * sim::encoder_rad_per_count), INT32_MIN);
     // one pulse in ten lost: 5400 of 6000
@@ -169,6 +171,23 @@ TEST(FaultHal, a_dropped_sensor_loses_its_bit_and_no_other) {
             const bool failing = i + 1 >= 10 && i + 1 < 20; // frame i ends at (i + 1) * 10 ms
             EXPECT_EQ(frames[i].present, failing ? 0xfffu & ~c.lost : 0xfffu) << i;
         }
+    }
+}
+
+TEST(FaultHal, a_device_that_times_out_is_told_and_the_others_are_still_read) {
+    CountingHal inner;
+    hal::FaultHal faulty(inner.hal(),
+                         {.sensors = {{.sensor = sim::FaultySensor::gyro, .kind = sim::FaultKind::timeout, .from_s = 0.02, .to_s = 0.04}},
+                          .emergency_stop_s = {}},
+                         {}, 1);
+    const hal_t hal = faulty.hal();
+    for (std::uint32_t tick = 0; tick < 5; tick++) {
+        hal.wait_tick(hal.context);
+        sensor_frame_t frame{};
+        const bool silent = tick == 1 || tick == 2; // a tick ends its 10 ms
+        EXPECT_EQ(hal.read(hal.context, &frame), silent ? HAL_ERR_TIMEOUT : HAL_OK) << tick;
+        EXPECT_EQ(frame.tick, tick); // hal.h: the tick and what the others said
+        EXPECT_EQ(frame.present, silent ? 0xfffu & ~static_cast<unsigned>(FRAME_GYRO) : 0xfffu) << tick;
     }
 }
 
@@ -285,26 +304,79 @@ TEST(SimHal, a_released_bridge_carries_no_current_and_safe_stop_releases) {
     for (const auto &wheel : world.truth().wheel) EXPECT_EQ(wheel.current_A, 0);
 }
 
-TEST(SimHal, a_delayed_duty_acts_late_by_the_delay) {
-    const auto first_motion_ms = [](double delay_s) {
-        hal::SimHalConfig config = sand();
-        config.actuation_delay_s = delay_s;
-        hal::SimHal world(config);
-        const hal_t hal = world.hal();
-        const actuator_frame_t push{.duty_q15 = {30000, 30000, 30000, 30000}, .motor_enable = true, .status_led = false};
-        for (int tick = 0; hal.wait_tick(hal.context) == HAL_OK; tick++) {
-            if (world.truth().wheel[0].current_A > 0.01) return tick * 10;
-            hal.write(hal.context, &push);
-        }
-        return -1;
+TEST(DelayHal, gives_each_order_late_by_its_ticks_and_none_before) {
+    struct Orders {
+        int tick = 0;
+        std::vector<std::pair<int, int>> seen; // tick, duty
+    } orders;
+    hal_t inner{};
+    inner.context = &orders;
+    inner.wait_tick = [](void *c) { return static_cast<Orders *>(c)->tick++, HAL_OK; };
+    inner.write = [](void *c, const actuator_frame_t *actuator) {
+        auto &o = *static_cast<Orders *>(c);
+        return o.seen.emplace_back(o.tick, actuator->duty_q15[0]), HAL_OK;
     };
-    EXPECT_EQ(first_motion_ms(0.10) - first_motion_ms(0), 100);
+    inner.safe_stop = [](void *c) { static_cast<Orders *>(c)->seen.emplace_back(-1, 0); };
+    hal::DelayHal late(inner, 3);
+    const hal_t hal = late.hal();
+    for (std::int16_t i = 0; i < 8; i++) {
+        hal.wait_tick(hal.context);
+        const actuator_frame_t actuator{.duty_q15 = {i, i, i, i}, .motor_enable = true, .status_led = false};
+        if (i != 2) hal.write(hal.context, &actuator); // a tick without an order moves no other
+    }
+    // order i is written after tick i + 1 has begun, and seen three ticks later; those of the last three are still under way
+    EXPECT_EQ(orders.seen, (std::vector<std::pair<int, int>>{{4, 0}, {5, 1}, {7, 3}}));
+    hal.safe_stop(hal.context);
+    hal.wait_tick(hal.context);
+    hal.wait_tick(hal.context);
+    EXPECT_EQ(orders.seen.back(), (std::pair{-1, 0})); // at once, and what was under way is forgotten
+}
+
+TEST(DelayHal, a_bridge_that_does_not_answer_ends_the_loop_though_the_order_was_late) {
+    hal_t inner{};
+    inner.wait_tick = [](void *) { return HAL_OK; };
+    inner.write = [](void *, const actuator_frame_t *) { return HAL_ERR_TIMEOUT; };
+    hal::DelayHal late(inner, 1);
+    const hal_t hal = late.hal();
+    const actuator_frame_t actuator{};
+    EXPECT_EQ(hal.wait_tick(hal.context), HAL_OK);
+    EXPECT_EQ(hal.write(hal.context, &actuator), HAL_OK);
+    EXPECT_EQ(hal.wait_tick(hal.context), HAL_OK);
+    EXPECT_EQ(hal.wait_tick(hal.context), HAL_ERR_IO); // not HAL_ERR_TIMEOUT, which the loop forgives
+}
+
+// The delay of an effect, split into whole ticks (DelayHal) and the bus's part of one, acts as one delay of 1 ms grain.
+TEST(SimRover, a_delayed_duty_acts_late_by_the_delay) {
+    const auto mean_current_A = [](const std::string &delay) {
+        const auto scenario = sim::parse_scenario("duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"stop\"\n" + delay, "x.toml");
+        hal::SimRover rover(scenario, scenario.effects, 3);
+        const hal_t hal = rover.hal();
+        const actuator_frame_t push{.duty_q15 = {30000, 30000, 30000, 30000}, .motor_enable = true, .status_led = false};
+        std::vector<double> current_A;
+        while (hal.wait_tick(hal.context) == HAL_OK) {
+            hal.write(hal.context, &push);
+            sensor_frame_t frame{};
+            hal.read(hal.context, &frame);
+            current_A.push_back((frame.current_count[0] - 2048) * 0.002);
+        }
+        return current_A;
+    };
+    const auto effect = [](const char *delay_s) {
+        return std::string("[[effect]]\nname = \"actuation_delay\"\ndelay_s = ") + delay_s + "\n";
+    };
+    const auto now = mean_current_A(""), late = mean_current_A(effect("0.10")), part = mean_current_A(effect("0.037"));
+    EXPECT_GT(now[1], 1.8); // 0.92 of 7.2 V over 3.24 ohm, less what the turning wheel takes
+    for (std::size_t k = 0; k <= 10; k++) EXPECT_NEAR(late[k], 0, 0.05) << k; // noise and offset of the sensor
+    EXPECT_NEAR(late[11], now[1], 0.1);
+    EXPECT_NEAR(part[3], 0, 0.05);
+    EXPECT_NEAR(part[4], 0.3 * 0.92 * 7.2 / 3.24, 0.15); // the last 3 of its 10 ms; at rest
 }
 
 TEST(SimHal, a_dead_sensor_never_stalls_the_loop) {
     using enum sim::FaultySensor;
     for (const sim::FaultySensor sensor : {encoder, current, battery, accel, gyro, radar}) {
-        for (const sim::FaultKind kind : {sim::FaultKind::dropped, sim::FaultKind::stuck, sim::FaultKind::noisy, sim::FaultKind::delayed}) {
+        for (const sim::FaultKind kind :
+             {sim::FaultKind::dropped, sim::FaultKind::stuck, sim::FaultKind::noisy, sim::FaultKind::delayed, sim::FaultKind::timeout}) {
             hal::SimHal world(sand());
             hal::FaultHal faulty(
                 world.hal(),
@@ -312,25 +384,16 @@ TEST(SimHal, a_dead_sensor_never_stalls_the_loop) {
                 3);
             const hal_t hal = faulty.hal();
             const control_config_t config = rover_config_default();
-            static control_state_t state;
-            control_reset(&config, &state);
-            const command_t command{.mode = MODE_PLATFORM_SPEED,
-                                    .platform_speed_m_s = 0.3f,
-                                    .yaw_rate_rad_s = 0,
-                                    .wheel_speed_rad_s = {},
-                                    .duty = {},
-                                    .slip_ref = 0,
-                                    .slip_wheels = 0,
-                                    .age_ticks = 0};
-            int ticks = 0;
-            while (hal.wait_tick(hal.context) == HAL_OK) {
-                sensor_frame_t frame{};
-                ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
-                const trace_t trace = control_step(&config, &state, &command, &frame);
-                ASSERT_EQ(hal.write(hal.context, &trace.actuator), HAL_OK);
-                ticks++;
-            }
-            EXPECT_EQ(ticks, 300);
+            const daemon_link_t person{.context = nullptr,
+                                       .command =
+                                           [](void *, const sensor_frame_t *, command_t *command) {
+                                               command->mode = MODE_PLATFORM_SPEED;
+                                               command->platform_speed_m_s = 0.3f;
+                                           },
+                                       .log = nullptr};
+            const daemon_result_t result = daemon_run(&hal, &config, &person);
+            EXPECT_EQ(result.ended_by, HAL_END);
+            EXPECT_EQ(result.ticks, 300u);
         }
     }
 }

@@ -1,4 +1,4 @@
-// The clutter signal against DSP.md section 2: four figures measured before this code was written, for the geometry of the paper.
+// The clutter signal against docs/evidence.md section 2: four figures measured before this code was written, for the geometry of the paper.
 #include "sim/sensors/radar.h"
 
 #include <gtest/gtest.h>
@@ -74,11 +74,12 @@ TEST(RadarClutter, mean_doppler_and_width_and_decorrelation_are_those_of_the_stu
     for (const double exponent : {0.0, 1.0, 2.0}) {
         const Echo echo = study(exponent, 11);
         SCOPED_TRACE(exponent);
-        // bounds of DSP.md section 2, each widened by the scatter of 600 m of track: 600 m/25 mm = 24000 speckles, 1/sqrt = 0.65 %
-        // of a width, 0.13 (spread of the spectrum) * 0.65 % = 0.001 of the mean; three of each
-        EXPECT_GE(echo.mean_ratio, 0.845 - 0.003); // n = 2 gives 0.845 by integration of (2), which DSP.md rounds to 0.85
+        // bounds of docs/evidence.md section 2, each widened by the scatter of 600 m of track: 600 m/25 mm = 24000 speckles, 1/sqrt = 0.65
+        // % of a width, 0.13 (spread of the spectrum) * 0.65 % = 0.001 of the mean; three of each
+        EXPECT_GE(echo.mean_ratio, 0.845 - 0.003); // n = 2 gives 0.845 by integration of (2), which that section rounds to 0.85
         EXPECT_LE(echo.mean_ratio, 0.89 + 0.003);
-        // half-power width over peak by integration of (2) on a 2 mm grid: 0.223, 0.243, 0.260; DSP.md's 0.17..0.24 holds for n <= 0.9
+        // half-power width over peak by integration of (2) on a 2 mm grid: 0.223, 0.243, 0.260; that section's 0.17 to 0.24 holds for n <=
+        // 0.9
         const double width = 0.223 + 0.020 * exponent - 0.0015 * exponent * (exponent - 1);
         EXPECT_NEAR(echo.width_ratio, width, 3 * 0.025 * width);
         EXPECT_GE(echo.decorrelation_m, 0.024 * (1 - 0.02));
@@ -137,7 +138,7 @@ TEST(RadarClutter, every_radar_of_table_II_sees_its_own_carrier) {
 }
 
 TEST(Radar, a_steady_drive_peaks_where_the_paper_says) {
-    // fig. 8: 0.18 m/s, peak near 11 Hz: (11) gives 11.2 Hz, the mode of clutter lies 7 % lower (DSP.md)
+    // fig. 8: 0.18 m/s, peak near 11 Hz: (11) gives 11.2 Hz, the mode of clutter lies 7 % lower (docs/evidence.md section 2)
     Radar radar({}, 21);
     constexpr int count = 512 * 60;
     std::vector<double> x;

@@ -1,5 +1,6 @@
-// What the catalogue does not hold: the lab says on what it depends, and asserts no effect that merely stood in for it.
+// What the catalogue does not hold: the lab says on what it depends, and asserts no effect that is merely its proxy.
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/result/result.h"
 #include "tests/lab/generator/generator.h"
 
@@ -31,7 +32,7 @@ bool is_nearest(const Diagnosis &d, const std::string &effect) {
     return std::find(d.nearest.begin(), d.nearest.end(), effect) != d.nearest.end();
 }
 
-TEST(Beyond, a_stand_in_is_the_nearest_and_not_the_cause) {
+TEST(Shapes, a_proxy_is_the_nearest_and_not_the_cause) {
     const Diagnosis d = ask(Soil::sand, "friction_squared:coefficient_Nms2=8e-4", 31);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
@@ -46,7 +47,7 @@ TEST(Beyond, a_stand_in_is_the_nearest_and_not_the_cause) {
     EXPECT_NE(d.text.find("not the cause"), std::string::npos);
 }
 
-TEST(Beyond, a_law_that_is_right_keeps_its_name_beside_freer_shapes) {
+TEST(Shapes, a_law_that_is_right_keeps_its_name_beside_freer_shapes) {
     const Diagnosis d = ask(Soil::sand, "viscous_friction:coefficient_Nms=0.005", 31);
     EXPECT_EQ(d.kind, "named") << d.text;
     ASSERT_EQ(d.effects.size(), 1U);
@@ -54,7 +55,7 @@ TEST(Beyond, a_law_that_is_right_keeps_its_name_beside_freer_shapes) {
     EXPECT_TRUE(d.nearest.empty());
 }
 
-TEST(Beyond, a_lead_shared_by_an_axle_is_no_wiring_of_one_motor) {
+TEST(Shapes, a_lead_shared_by_an_axle_is_no_wiring_of_one_motor) {
     const Diagnosis d = ask(Soil::concrete, "wheel_coupling:ohm=1", 32);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
@@ -62,7 +63,7 @@ TEST(Beyond, a_lead_shared_by_an_axle_is_no_wiring_of_one_motor) {
     EXPECT_TRUE(is_nearest(d, "wiring_resistance"));
 }
 
-TEST(Beyond, a_dead_band_of_the_bridge_shows_over_the_motors_voltage) {
+TEST(Shapes, a_dead_band_of_the_bridge_shows_over_the_motors_voltage) {
     const Diagnosis d = ask(Soil::sand, "duty_dead_band:duty=0.08", 33);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
@@ -70,21 +71,21 @@ TEST(Beyond, a_dead_band_of_the_bridge_shows_over_the_motors_voltage) {
     EXPECT_NE(d.unknown->variable.find("motor voltage"), std::string::npos);
 }
 
-TEST(Beyond, a_torque_that_saturates_shows_over_the_motors_current) {
+TEST(Shapes, a_torque_that_saturates_shows_over_the_motors_current) {
     const Diagnosis d = ask(Soil::concrete, "torque_limit:torque_Nm=0.22", 34);
     ASSERT_TRUE(d.unknown) << d.text;
     EXPECT_NE(d.unknown->variable.find("current"), std::string::npos) << d.text;
 }
 
 // A law that matters in few blocks: each gains, none much alike another.
-TEST(Beyond, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
+TEST(Shapes, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
     const Diagnosis d = ask(Soil::sand, "friction_resonance:torque_Nm=0.05,speed_rad_s=6", 36);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_NE(d.unknown->variable.find("wheel speed"), std::string::npos) << d.text;
 }
 
-TEST(Beyond, a_slow_drift_of_the_grip_shows_as_a_straight_line_over_time) {
+TEST(Shapes, a_slow_drift_of_the_grip_shows_as_a_straight_line_over_time) {
     const Diagnosis d = ask(Soil::gravel, "grip_drift:change=-0.4", 37);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
@@ -94,7 +95,7 @@ TEST(Beyond, a_slow_drift_of_the_grip_shows_as_a_straight_line_over_time) {
     EXPECT_LT(d.unknown->y[1], d.unknown->y[0]);
 }
 
-TEST(Beyond, a_shape_takes_no_name_that_is_about_something_else) {
+TEST(Shapes, a_shape_takes_no_name_that_is_about_something_else) {
     GeneratorConfig config;
     config.soil = Soil::gravel;
     config.seed = 35;
@@ -106,8 +107,8 @@ TEST(Beyond, a_shape_takes_no_name_that_is_about_something_else) {
         EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), effect), d.effects.end()) << effect << ": " << d.text;
 }
 
-// The fit of the baseline lies at bounds there: what its linear steps promise of the blocks left out is less than its own error.
-TEST(Beyond, a_held_out_error_below_that_of_the_fit_is_not_believed) {
+// The fit of the baseline lies at bounds there: what its linear steps predict for the blocks left out is less than its own error.
+TEST(Shapes, a_held_out_error_below_that_of_the_fit_is_not_believed) {
     const Diagnosis d = ask(generator::draw_case(30302, 120).config); // encoder_missed and accel_scale, on gravel
     for (const char *effect : {"encoder_missed", "accel_scale"})
         EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), effect), d.effects.end()) << effect << ": " << d.text;

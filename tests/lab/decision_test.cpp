@@ -1,5 +1,6 @@
 // The lab's decisions on logs of the independent generator (tests/lab/generator), where the answer is known.
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/result.h"

@@ -1,6 +1,7 @@
 // inputs_test.cpp - what a log becomes before the model is asked: wheels that jump, samples that are means, a command that comes late.
 #include "host_tools/lab/fit/screen.h"
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/inputs/smooth.h"
 #include "host_tools/simulate/simulate.h"
@@ -74,7 +75,7 @@ TEST(Inputs, where_a_wheel_jumps_its_speed_is_followed_closer_and_elsewhere_stay
     EXPECT_LT(followed, 0.6 * plain); // of the parabolas' squared loss at a kink, cubics of the same width leave less than half
 }
 
-TEST(Inputs, rows_at_a_jump_are_doubted_and_calm_rows_are_not) {
+TEST(Inputs, rows_at_a_jump_have_a_smoothing_bias_and_calm_rows_have_none) {
     const Dataset data = make_dataset(bench(), motor(accel_rad_s2));
     const Balance &torque = balance(data, BalanceKind::current_torque);
     double calm = 0, jump = 0;
@@ -85,7 +86,7 @@ TEST(Inputs, rows_at_a_jump_are_doubted_and_calm_rows_are_not) {
         if (std::fabs(t - jump_s) < 0.05) jump = std::max(jump, torque.noise_factor[r]), ++rows_there;
     }
     EXPECT_LT(calm, 1.2);                            // the encoder's own noise
-    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: doubted, or left out
+    EXPECT_TRUE(jump > 2 || rows_there < 2) << jump; // 30 rad/s^2 is 0.57 A, 127 times a row's noise: widened, or left out
 }
 
 TEST(Inputs, a_current_that_is_the_mean_of_its_tick_stands_for_the_middle_of_it) {
@@ -129,7 +130,7 @@ TEST(Inputs, a_bridge_with_dead_time_passes_what_is_left_of_the_voltage_and_noth
     const Dataset data = make_dataset(bench(), motor(0));
     Physics physics = make_physics(bench());
     for (const double dead_V : {0.0, 0.5, 1.3, 1.6}) {
-        physics.wheel[0].dead_voltage = dead_V;
+        physics.wheel[0].dead_voltage_V = dead_V;
         const Eigen::VectorXd predicted = Forward(data).predict(physics);
         Eigen::Index row = 0;
         for (const Balance &b : data.balance)
@@ -207,7 +208,7 @@ TEST(Inputs, a_parameter_that_the_smoothing_could_fake_has_the_wider_error) {
         throw std::logic_error("the inertia is missing");
     };
     const double with = inertia_error();
-    for (Balance &b : data.balance) b.doubt.clear();
+    for (Balance &b : data.balance) b.smoothing_bias.clear();
     EXPECT_GT(with, inertia_error());
 }
 

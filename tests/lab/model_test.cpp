@@ -75,7 +75,7 @@ TEST(Model, bekker_parameters_become_those_of_the_literature_sand) {
                     "cohesion_Pa = 1040\nfriction_angle_rad = 0.4886921906\nshear_length_m = 0.02\ncontact_length_m = 0.04\n",
                     "m");
     const WheelPhysics w = make_physics(model).wheel[0];
-    EXPECT_NEAR(w.adhesion + w.mu * 7, 5.47, 0.005); // SPEC section 7, fig 15: Fm = 5.47 N, rounded to 0.01
+    EXPECT_NEAR(w.adhesion + w.mu * 7, 5.47, 0.005); // docs/sources.md section 7, fig 15: Fm = 5.47 N, rounded to 0.01
     EXPECT_NEAR(w.sc, 0.5, 1e-12);                   // K/l = 2 cm / 4 cm
 }
 

@@ -1,8 +1,9 @@
 // The next experiment: physics says which drive separates two effects; the prediction must say the same, and the scenario must run.
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/next/information.h"
 #include "host_tools/lab/next/manoeuvre.h"
-#include "host_tools/lab/next/next.h"
 #include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/result/next_result.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
@@ -61,12 +62,12 @@ double alone(const Model &model, const Manoeuvre &manoeuvre, const std::string &
     const Physics physics = make_physics(model);
     Problem problem(data, physics, free_parameters(model, physics));
     problem.linearise();
-    std::vector<Sized> pair;
+    std::vector<SizedCandidate> pair;
     for (const std::string &name : {truth, rival})
         for (const Candidate &c : catalogue_candidates(model, data, problem.forward().motion()))
             if (c.effect == name && c.wheel < 0 && (pair.empty() || pair.back().candidate.effect != name))
                 pair.push_back({c, {3 * c.of_interest[0]}});
-    const Eigen::MatrixXd gram = information(problem, scale_over_noise(problem), pair);
+    const Eigen::MatrixXd gram = fisher_information(problem, scale_over_noise(problem), pair);
     return detectability(gram, problem.prior_precision(), pair, 0, 1);
 }
 
@@ -74,11 +75,11 @@ TEST(Detectability, is_the_distance_that_the_rival_and_the_parameters_leave) {
     // three rows: truth (1, 1, 1), rival (1, 0, 0), one parameter (0, 2, 0) with prior precision p: left is 1 + 1 - 4/(4 + p)
     Eigen::MatrixXd X(3, 3);
     X << 0, 1, 1, 2, 1, 0, 0, 1, 0;
-    const std::vector<Sized> pair = {{Candidate{}, {3.0}}, {Candidate{}, {1.0}}};
+    const std::vector<SizedCandidate> pair = {{Candidate{}, {3.0}}, {Candidate{}, {1.0}}};
     for (const double p : {0.0, 1.0, 100.0}) {
         const Eigen::VectorXd precision = Eigen::VectorXd::Constant(1, p);
         EXPECT_NEAR(detectability(X.transpose() * X, precision, pair, 0, 1), 3 * std::sqrt(2 - 4 / (4 + p)),
-                    1e-6); // a whisper of 1e-9 holds R
+                    1e-6); // a ridge of 1e-9 holds R
         EXPECT_NEAR(detectability(X.transpose() * X, precision, pair, 0, -1), 3 * std::sqrt(3 - 4 / (4 + p)), 1e-6);
     }
 }
@@ -87,7 +88,7 @@ TEST(Detectability, what_the_residual_shows_of_an_effect_is_counted_against_it) 
     // truth (1, 1, 0), no parameter, residual (4, 0, 5): 4/sqrt(2) of it looks like the truth
     Eigen::MatrixXd X(3, 2);
     X << 1, 4, 1, 0, 0, 5;
-    EXPECT_NEAR(imitation(X.transpose() * X, Eigen::VectorXd(0), {{Candidate{}, {3.0}}}, 0, -1), 4 / std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(score_statistic(X.transpose() * X, Eigen::VectorXd(0), {{Candidate{}, {3.0}}}, 0, -1), 4 / std::sqrt(2.0), 1e-9);
 }
 
 TEST(Detectability, rows_that_err_alike_count_less) {
@@ -271,6 +272,13 @@ TEST(Scenario, of_a_model_carries_its_numbers_and_effects) {
     EXPECT_EQ(scenario.effects[0].value("coefficient"), 0.17);
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].find("grease"), std::string::npos);
+    EffectUse ripple;
+    ripple.name = "torque_ripple";
+    ripple.parameters["cos_Nm"].value = 0.01, ripple.parameters["order"].value = -2; // a friction that varies over the turn
+    model.effects = {ripple};
+    notes.clear();
+    EXPECT_EQ(sim::parse_scenario(scenario_of(model, {&manoeuvres().front()}, notes), "x").effects[0].value("order"), -2);
+    EXPECT_TRUE(notes.empty());
     for (const Manoeuvre &m : manoeuvres()) EXPECT_NO_THROW(sim::parse_scenario(scenario_of(model, {&m}, notes), m.title)) << m.title;
 }
 

@@ -1,5 +1,6 @@
 // Profile likelihood where the answer is known: a parabola, a ridge, a bound, a changed coordinate.
-#include "host_tools/lab/fit/profile.h"
+#include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/result/profile_result.h"
 #include "tests/lab/generator/generator.h"
 
 #include <gtest/gtest.h>

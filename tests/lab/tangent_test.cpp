@@ -1,8 +1,9 @@
 // Sensitivities by the linear recursion beside a known motion (tangent.cpp) against whole integrations.
 #include "host_tools/lab/decision/candidate.h"
-#include "host_tools/lab/fit/felt.h"
 #include "host_tools/lab/fit/problem.h"
+#include "host_tools/lab/fit/sparse_jacobian.h"
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/wheel_step.h"
 #include "tests/lab/generator/generator.h"
 
@@ -111,9 +112,9 @@ TEST(Tangent, products_that_skip_the_zeros_of_a_jacobian_are_those_of_all_its_en
     problem.linearise();
     const Eigen::MatrixXd &J = problem.jacobian, gram = J.transpose() * J;
     const Eigen::VectorXd moment = J.transpose() * problem.residual;
-    const Felt felt(data, J);
-    EXPECT_LT((felt.gram() - gram).norm(), 1e-12 * gram.norm()); // rounding
-    EXPECT_LT((felt.moment(problem.residual) - moment).norm(), 1e-12 * moment.norm());
+    const SparseJacobian sparse(data, J);
+    EXPECT_LT((sparse.gram() - gram).norm(), 1e-12 * gram.norm()); // rounding
+    EXPECT_LT((sparse.moment(problem.residual) - moment).norm(), 1e-12 * moment.norm());
 }
 
 TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
@@ -126,8 +127,8 @@ TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
         model.motion = motion;
         const Dataset data = make_dataset(model, generator::generate(config));
         Physics physics = make_physics(model);
-        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1,
-        physics.body.load_height = 0.1, physics.body.offset_x = 0.01;
+        physics.body.slip_sinkage = 0.2, physics.body.sliding_loss_s_m = 0.5, physics.body.scrub = 0.1, physics.body.multi_pass = 0.1,
+        physics.body.raised_m = 0.1, physics.body.offset_x_m = 0.01;
         for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.grip = 0.8;
         WheelStep four(data, physics), one(data, physics);
         std::array<Eigen::Vector3d, most_wheels> each{};

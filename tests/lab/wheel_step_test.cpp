@@ -1,5 +1,6 @@
 // The wheels of one step against closed forms: slip that lags, loads of a chassis in two halves, a body that slides sideways.
 #include "host_tools/lab/forward/forward.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/simulate/simulate.h"
 
@@ -54,7 +55,7 @@ TEST(WheelStep, in_a_turn_the_outer_wheels_carry_what_the_height_of_the_mass_ask
     const double yaw_rad_s = 0.8;
     const Dataset data = rolling(yaw_rad_s, 3);
     Physics physics = make_physics(sliding("gravel"));
-    physics.body.load_height = 0.1;
+    physics.body.raised_m = 0.1;
     WheelStep step(data, physics);
     step.prepare(1, speed_m_s, 0, 0, 0);
     step.forces({speed_m_s, 0, yaw_rad_s}, nullptr); // to the left: the right wheels are outside
@@ -67,7 +68,7 @@ TEST(WheelStep, in_a_turn_the_outer_wheels_carry_what_the_height_of_the_mass_ask
 TEST(WheelStep, each_half_of_the_chassis_is_tipped_by_its_own_pull) {
     const Dataset data = rolling(0, 3);
     Physics physics = make_physics(sliding("gravel"));
-    physics.body.load_height = 0.1;
+    physics.body.raised_m = 0.1;
     for (const bool halves : {false, true}) {
         physics.halves = halves;
         WheelStep step(data, physics);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -260,6 +261,55 @@ TEST(Check, names_clipping_outliers_and_coarse_steps) {
     const check::Report report = check::check(log, {});
     ASSERT_NE(report.find("coarse", "wheel0.speed_rad_s"), nullptr);
     EXPECT_DOUBLE_EQ(report.find("coarse")->value, 1.0);
+}
+
+TEST(Check, names_no_clipping_where_a_value_was_held_or_the_current_is_coarse) {
+    log::Log log = good(); // the logger held one reading, larger than all others, for 0.6 s: one stay of 60 samples
+    log::Signal &held = at(log, "wheel0.current_A");
+    const double most = 1.05 * *std::max_element(held.value.begin(), held.value.end());
+    for (std::size_t i = 500; i < 560; ++i) held.value[i] = most;
+    EXPECT_EQ(check::check(log, {}).find("clipped"), nullptr) << listed(check::check(log, {}), Severity::note);
+
+    log = good(); // no voltage, a magnitude in coarse steps, held for 0.6 s (as in the Robotino's drives)
+    std::erase_if(log.signals, [](const log::Signal &s) { return s.name.find("duty") != std::string::npos; });
+    for (double &v : at(log, "wheel1.current_A").value) v = 0.02 * std::round(std::fabs(v) / 0.02);
+    log::Signal &coarse = at(log, "wheel1.current_A");
+    const double top = *std::max_element(coarse.value.begin(), coarse.value.end()) + 0.04;
+    for (std::size_t i = 500; i < 560; ++i) coarse.value[i] = top;
+    EXPECT_EQ(check::check(log, {}).find("clipped"), nullptr) << listed(check::check(log, {}), Severity::note);
+
+    log = good(); // steps so coarse that the steady drives all read the top one, again and again; the voltage asks for no more there
+    log::Signal &current = at(log, "wheel2.current_A");
+    const log::Signal &speed = at(log, "wheel2.speed_rad_s"), &battery = at(log, "battery.voltage_V");
+    log::Signal &duty = at(log, "wheel2.duty");
+    for (std::size_t i = 0; i < current.value.size(); ++i) {
+        const bool steady = i % 100 >= 30; // 0.7 s at 0.5 A, then a swing through every other step of 0.03 A
+        const double phase = static_cast<double>(i % 100) / 30 * 6.283185307179586;
+        current.value[i] = steady ? 0.51 : 0.03 * std::round((0.07 + 0.40 * std::cos(phase)) / 0.03);
+        duty.value[i] = (0.265 * speed.value[i] + 3.24 * current.value[i]) / battery.value[i];
+    }
+    EXPECT_EQ(check::check(log, {}).find("clipped"), nullptr) << listed(check::check(log, {}), Severity::note);
+}
+
+TEST(Check, names_clipping_by_one_stay_that_the_voltage_contradicts_and_by_many_stays_without_a_voltage) {
+    log::Log log = good(); // wheel 0 pulls hard once, for 2 s: the winding takes 4 A, the sensor ends at 3.1 A
+    log::Signal &current = at(log, "wheel0.current_A"), &duty = at(log, "wheel0.duty");
+    const log::Signal &speed = at(log, "wheel0.speed_rad_s"), &battery = at(log, "battery.voltage_V");
+    for (std::size_t i = 500; i < 700; ++i) {
+        duty.value[i] = (0.265 * speed.value[i] + 3.24 * 4.0) / battery.value[i];
+        current.value[i] = 3.1;
+    }
+    ASSERT_LT(*std::max_element(current.value.begin(), current.value.end()), 3.1001); // nothing lies beyond
+    EXPECT_NE(check::check(log, {}).find("clipped", "wheel0.current_A"), nullptr) << listed(check::check(log, {}), Severity::note);
+
+    log = good(); // a magnitude without a voltage, cut at its 70 % quantile
+    std::erase_if(log.signals, [](const log::Signal &s) { return s.name.find("duty") != std::string::npos; });
+    log::Signal &magnitude = at(log, "wheel1.current_A");
+    for (double &v : magnitude.value) v = std::fabs(v);
+    std::vector<double> sorted = magnitude.value;
+    std::sort(sorted.begin(), sorted.end());
+    for (double &v : magnitude.value) v = std::min(v, sorted[sorted.size() * 7 / 10]);
+    EXPECT_NE(check::check(log, {}).find("clipped", "wheel1.current_A"), nullptr) << listed(check::check(log, {}), Severity::note);
 }
 
 TEST(Check, passes_on_what_the_reader_mended) {

@@ -21,7 +21,7 @@ double Random::normal() {
 
 namespace {
 
-// SPEC section 3 and its assumed electrical side.
+// docs/sources.md section 3 and its assumed electrical side.
 constexpr double R = 0.057, J = 5e-3, KG = 0.265, ke = 0.265, Ra = 3.24, M = 2.88, half_track = 0.12, dt = 0.01, rolling_N = 0.25;
 
 struct Leg {

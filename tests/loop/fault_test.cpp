@@ -3,13 +3,12 @@
 #include "host_tools/simulate/simulate.h"
 
 #include "firmware/core/rover_config.h"
-#include "hal/sim/fault_hal.h"
 #include "hal/sim/sim_hal.h"
+#include "host_tools/loop/loop.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -216,7 +215,53 @@ TEST(Fault, a_winding_beyond_its_temperature_turns_the_motors_off) {
     EXPECT_EQ(ticks_until_latched(result.log, FAULT_OVER_TEMPERATURE, 0), off);
 }
 
-// The loop written out, so that ticks can be lost: the firmware is called in every tick but those of `missed`.
+namespace {
+
+// A HAL whose daemon sleeps through `gap` ticks from tick 200 on: the world goes on, nobody reads or writes.
+struct Sleeper {
+    hal_t world;
+    std::uint32_t gap, tick = 0;
+
+    hal_t hal() {
+        return {.context = this,
+                .wait_tick =
+                    [](void *c) {
+                        auto &s = *static_cast<Sleeper *>(c);
+                        hal_result_t result = s.world.wait_tick(s.world.context);
+                        for (s.tick++; result == HAL_OK && s.tick > 200 && s.tick <= 200 + s.gap; s.tick++)
+                            result = s.world.wait_tick(s.world.context);
+                        return result;
+                    },
+                .read =
+                    [](void *c, sensor_frame_t *frame) {
+                        const hal_t &inner = static_cast<Sleeper *>(c)->world;
+                        return inner.read(inner.context, frame);
+                    },
+                .write =
+                    [](void *c, const actuator_frame_t *actuator) {
+                        const hal_t &inner = static_cast<Sleeper *>(c)->world;
+                        return inner.write(inner.context, actuator);
+                    },
+                .safe_stop =
+                    [](void *c) {
+                        const hal_t &inner = static_cast<Sleeper *>(c)->world;
+                        inner.safe_stop(inner.context);
+                    }};
+    }
+};
+
+class Cruise : public Link {
+  public:
+    void command(const sensor_frame_t &, command_t &command) override {
+        command.mode = MODE_PLATFORM_SPEED;
+        command.platform_speed_m_s = 0.4f;
+    }
+    void log(const sensor_frame_t &, const command_t &, const trace_t &trace) override { traces.push_back(trace); }
+    std::vector<trace_t> traces;
+};
+
+} // namespace
+
 TEST(Fault, lost_ticks_turn_the_motors_off_in_the_first_tick_that_follows) {
     for (const std::uint32_t gap : {5u, 6u, 50u}) {
         hal::SimHalConfig world;
@@ -224,26 +269,30 @@ TEST(Fault, lost_ticks_turn_the_motors_off_in_the_first_tick_that_follows) {
         world.plant.ground.soil = *sim::find_soil("concrete");
         world.ticks = 400;
         hal::SimHal rover(world);
-        const hal_t hal = rover.hal();
-        const control_config_t config = rover_config_default();
-        const auto state = std::make_unique<control_state_t>();
-        control_reset(&config, state.get());
-        command_t command{};
-        command.mode = MODE_PLATFORM_SPEED;
-        command.platform_speed_m_s = 0.4f;
-        trace_t trace{};
-        while (hal.wait_tick(hal.context) == HAL_OK) {
-            sensor_frame_t frame{};
-            ASSERT_GE(hal.read(hal.context, &frame), 0);
-            if (frame.tick >= 200 && frame.tick < 200 + gap) continue;
-            trace = control_step(&config, state.get(), &command, &frame);
-            ASSERT_GE(hal.write(hal.context, &trace.actuator), 0);
-            if (frame.tick == 200 + gap) {
-                EXPECT_EQ(trace.faults, gap > 5 ? static_cast<std::uint32_t>(FAULT_MISSED_TICKS) : 0u) << gap; // 50 ms are forgiven
-                EXPECT_EQ(trace.actuator.motor_enable, gap <= 5) << gap;
-            }
-        }
-        hal.safe_stop(hal.context);
-        EXPECT_EQ(trace.actuator.motor_enable, gap <= 5) << gap;
+        Sleeper sleeper{.world = rover.hal(), .gap = gap};
+        Cruise person;
+        EXPECT_EQ(run_loop(sleeper.hal(), rover_config_default(), person).ticks, 400 - gap);
+        const trace_t &next = person.traces.at(200);
+        EXPECT_EQ(next.tick, 200 + gap);
+        EXPECT_EQ(next.faults, gap > 5 ? static_cast<std::uint32_t>(FAULT_MISSED_TICKS) : 0u) << gap; // 50 ms are forgiven
+        EXPECT_EQ(next.actuator.motor_enable, gap <= 5) << gap;
+        EXPECT_EQ(person.traces.back().actuator.motor_enable, gap <= 5) << gap;
     }
+}
+
+// hal.h: a device that does not answer in time is what its bits in `present` say; simulate runs on as the rover does.
+TEST(Fault, a_device_that_times_out_is_left_to_safety_and_the_run_goes_on) {
+    for (const char *sensor : {"encoder", "current", "battery", "accel", "gyro", "radar"}) {
+        const auto brief = run(drive_04 + sensor_fault(sensor, "timeout", "to_s = 2.06\n")); // 6 ticks, patience 7
+        EXPECT_EQ(brief.ended_by, HAL_END) << sensor;
+        EXPECT_EQ(brief.ticks, 700u) << sensor;
+        EXPECT_EQ(brief.faults, 0u) << sensor;
+        const auto lasting = run(drive_04 + sensor_fault(sensor, "timeout"));
+        EXPECT_EQ(lasting.ticks, 700u) << sensor;
+        EXPECT_NE(lasting.faults, 0u) << sensor;
+        EXPECT_EQ(ticks_until_off(lasting.log), 7) << sensor; // as for a silent one: in the 8th bad tick
+        // what is recorded is what a silent device leaves: the time-out is the HAL's word, not the firmware's
+        EXPECT_EQ(lasting.trace_hash, run(drive_04 + sensor_fault(sensor, "dropped")).trace_hash) << sensor;
+    }
+    EXPECT_THROW(run(drive_04 + sensor_fault("camera", "timeout")), sim::ScenarioError);
 }

@@ -1,6 +1,8 @@
 // The closed loop: firmware on the simulated rover. Each mode does its job on each soil, faults run to the end, runs repeat.
 //
 // Bounds are two-sided where a value that is too good would be as wrong as one too bad.
+#include "hal/replay/replay_hal.h"
+#include "host_tools/loop/loop.h"
 #include "host_tools/simulate/batch.h"
 #include "host_tools/simulate/simulate.h"
 
@@ -88,7 +90,7 @@ mode = "platform_speed"
 speed_m_s = -0.4
 )",
                                16));
-    // the loop rests on the fused speed: 4.5 % relative error of a window at 0.4 m/s (DSP.md), averaged over 5 s and
+    // the loop rests on the fused speed: 4.5 % relative error of a window at 0.4 m/s (docs/evidence.md section 3), averaged over 5 s and
     // 10 windows to 1.5 %; the lower bound on the deviation: a loop that rides on a noisy estimate cannot be perfect
     EXPECT_NEAR(mean_between(result.truth, "truth.speed_m_s", 3, 8), 0.4, 0.4 * 0.045);
     EXPECT_NEAR(mean_between(result.truth, "truth.speed_m_s", 11, 16), -0.4, 0.4 * 0.045);
@@ -133,7 +135,8 @@ wheel_speed_rad_s = [6.0, 6.0, 6.0, 2.0]
 
 TEST_P(EachSoil, slip_is_held_at_its_set_point) {
     const auto result = run_file(std::string("fig17_slip_servo_") + GetParam(), 3);
-    // estimated slip s = 1 - v/(R w): dv/v = 5 % (DSP.md, at 0.3 m/s) is (1 - s) * 5 % = 0.03; mean of 8 s and 16 windows
+    // estimated slip s = 1 - v/(R w): dv/v = 5 % (docs/evidence.md section 3, at 0.3 m/s) is (1 - s) * 5 % = 0.03; mean of 8 s and 16
+    // windows
     EXPECT_NEAR(mean_between(result.log, "wheel1.slip", 6, 15), 0.4, 0.02);
     EXPECT_NEAR(mean_between(result.truth, "truth.wheel1.slip", 6, 15), 0.4, 0.03);
     const double wobble = rms_between(result.truth, "truth.wheel1.slip", 0.4, 6, 15);
@@ -154,7 +157,7 @@ TEST_P(EachSoil, the_sweep_takes_slip_from_minus_one_through_zero_to_traction) {
     const double zero_s = crossing_s(truth, "truth.wheel2.slip", 0, start_s + 3) - start_s;
     EXPECT_GT(zero_s, 9.5);
     EXPECT_LT(zero_s, 12.5);
-    // (1) at the end: 1 - 0.3/(0.057 * 10.5) = 0.5 where the duty lasts, about 0.4 where the motors saturate (SPEC section 6)
+    // (1) at the end: 1 - 0.3/(0.057 * 10.5) = 0.5 where the duty lasts, about 0.4 where the motors saturate (docs/sources.md section 6)
     const double last = mean_between(truth, "truth.wheel2.slip", start_s + 18.5, start_s + 20);
     EXPECT_GT(last, 0.35);
     EXPECT_LT(last, 0.55);
@@ -217,8 +220,8 @@ TEST(Loop, the_fused_speed_tracks_the_truth) {
             count++;
         }
     }
-    // DSP.md goal over all profiles: 1.8 cm/s; the identification drive is harder (reverse, hard braking, slip of one wheel):
-    // twice that. Below 0.5 cm/s would beat the posterior bound, hence be wrong.
+    // goal (docs/evidence.md section 3) over all profiles: 1.8 cm/s; the identification drive is harder (reverse, hard braking, slip of one
+    // wheel): twice that. Below 0.5 cm/s would beat the posterior bound, hence be wrong.
     EXPECT_LT(std::sqrt(square / count), 0.036);
     EXPECT_GT(std::sqrt(square / count), 0.005);
     EXPECT_LT(std::fabs(error_sum / count), 0.01);
@@ -255,40 +258,53 @@ TEST(Loop, a_batch_gives_each_seed_what_it_gives_alone) {
     for (std::uint64_t seed = 1; seed <= 4; seed++) EXPECT_EQ(hash[seed - 1], run(scenario, seed).trace_hash);
 }
 
-// control_step fed again with what the log holds must make the trace that the log holds.
-TEST(Loop, the_log_holds_all_that_a_replay_needs) {
-    auto scenario = sim::read_scenario("scenarios/demo_sand.toml");
-    scenario.sensor_faults = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::dropped, .from_s = 5, .to_s = 5.05},
-                              {.sensor = sim::FaultySensor::gyro, .kind = sim::FaultKind::dropped, .from_s = 7, .to_s = 7.04}};
-    const auto result = run(scenario);
-    const log::Log &log = result.log;
-    const control_config_t config = rover_config_default();
-    control_state_t state;
-    control_reset(&config, &state);
-    const auto ticks = log.find("frame.present")->value.size();
-    std::map<std::string, std::size_t> place;
+namespace {
+
+// Frames and commands read out of a log column by column, by no code of the tools; what the loop makes of them, compared with the log.
+class FromLog : public Link {
+  public:
+    explicit FromLog(const log::Log &log) : log_(log) {
+        replay_.source = this;
+        replay_.next = [](void *source, sensor_frame_t *frame, command_t *command) {
+            auto &self = *static_cast<FromLog *>(source);
+            const log::Signal &clock = *self.log_.find("frame.present");
+            if (self.tick_ == clock.t_s.size()) return HAL_END;
+            self.read(clock.t_s[self.tick_], static_cast<std::uint32_t>(self.tick_), *frame, *command);
+            self.tick_++;
+            return HAL_OK;
+        };
+    }
+    hal_t hal() { return replay_hal(&replay_); }
+    void command(const sensor_frame_t &, command_t &command) override { command = replay_.command; }
+    void log(const sensor_frame_t &, const command_t &, const trace_t &trace) override {
+        const double t_s = log_.find("frame.present")->t_s[tick_ - 1];
+        // the log rounds to 1e-6; float32 of values below 16 adds 1e-6
+        ASSERT_NEAR(static_cast<double>(trace.speed_m_s), at("estimate.speed_m_s", t_s), 1.1e-6) << t_s;
+        ASSERT_NEAR(static_cast<double>(trace.wheel[3].duty), at("wheel3.duty", t_s), 1.1e-6) << t_s;
+        ASSERT_EQ(trace.faults, static_cast<std::uint32_t>(at("control.faults", t_s)));
+    }
+    std::size_t samples() const { return sample_; }
+
+  private:
     // the value of a signal at a time, or `absent` when it has none then
-    const auto at = [&](const std::string &name, double t_s, double absent = 0) {
-        const log::Signal *signal = log.find(name);
+    double at(const std::string &name, double t_s, double absent = 0) {
+        const log::Signal *signal = log_.find(name);
         if (signal == nullptr) return absent;
-        std::size_t &i = place[name];
+        std::size_t &i = place_[name];
         while (i < signal->t_s.size() && signal->t_s[i] < t_s) i++;
         return i < signal->t_s.size() && signal->t_s[i] == t_s ? signal->value[i] : absent;
-    };
-    std::size_t sample = 0;
-    int compared = 0;
-    for (std::size_t k = 0; k < ticks; k++) {
-        const double t_s = log.find("frame.present")->t_s[k];
-        sensor_frame_t frame{};
-        frame.tick = static_cast<std::uint32_t>(k);
+    }
+    void read(double t_s, std::uint32_t tick, sensor_frame_t &frame, command_t &command) {
+        frame = {};
+        command = {};
+        frame.tick = tick;
         frame.present = static_cast<std::uint32_t>(at("frame.present", t_s));
         frame.battery_count = static_cast<std::uint16_t>(at("battery.voltage_count", t_s));
         frame.accel_x_count = static_cast<std::int16_t>(at("imu.accel_x_count", t_s));
         frame.gyro_z_count = static_cast<std::int16_t>(at("imu.gyro_z_count", t_s));
         frame.radar_samples = static_cast<std::uint8_t>(at("frame.radar_samples", t_s));
         for (int i = 0; i < frame.radar_samples; i++)
-            frame.radar_count[i] = static_cast<std::uint16_t>(log.find("radar.adc_count")->value[sample++]);
-        command_t command{};
+            frame.radar_count[i] = static_cast<std::uint16_t>(log_.find("radar.adc_count")->value[sample_++]);
         command.mode = static_cast<control_mode_t>(at("command.mode", t_s));
         command.platform_speed_m_s = static_cast<float>(at("command.speed_m_s", t_s));
         command.yaw_rate_rad_s = static_cast<float>(at("command.yaw_rate_rad_s", t_s));
@@ -301,20 +317,31 @@ TEST(Loop, the_log_holds_all_that_a_replay_needs) {
             command.wheel_speed_rad_s[i] = static_cast<float>(at(wheel + "command_speed_rad_s", t_s));
             command.duty[i] = static_cast<float>(at(wheel + "command_duty", t_s));
         }
-        const trace_t trace = control_step(&config, &state, &command, &frame);
-        // the log rounds to 1e-6; float32 of values below 16 adds 1e-6
-        ASSERT_NEAR(static_cast<double>(trace.speed_m_s), at("estimate.speed_m_s", t_s), 1.1e-6) << t_s;
-        ASSERT_NEAR(static_cast<double>(trace.wheel[3].duty), at("wheel3.duty", t_s), 1.1e-6) << t_s;
-        ASSERT_EQ(trace.faults, static_cast<std::uint32_t>(at("control.faults", t_s)));
-        compared++;
     }
-    EXPECT_EQ(compared, 6100);
-    EXPECT_EQ(sample, log.find("radar.adc_count")->value.size());
+    const log::Log &log_;
+    replay_hal_t replay_{};
+    std::size_t tick_ = 0, sample_ = 0;
+    std::map<std::string, std::size_t> place_;
+};
+
+} // namespace
+
+// The loop fed again with what the log holds must make the trace that the log holds.
+TEST(Loop, the_log_holds_all_that_a_replay_needs) {
+    auto scenario = sim::read_scenario("scenarios/demo_sand.toml");
+    scenario.sensor_faults = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::dropped, .from_s = 5, .to_s = 5.05},
+                              {.sensor = sim::FaultySensor::gyro, .kind = sim::FaultKind::dropped, .from_s = 7, .to_s = 7.04}};
+    const auto result = run(scenario);
+    const log::Log &log = result.log;
+    FromLog again(log);
+    EXPECT_EQ(run_loop(again.hal(), rover_config_default(), again).ticks, 6100u);
+    EXPECT_EQ(again.samples(), log.find("radar.adc_count")->value.size());
 }
 
 TEST(Loop, every_scripted_fault_runs_to_the_end) {
     for (const char *sensor : {"encoder", "current", "battery", "accel", "gyro", "radar", "camera"})
-        for (const char *how : {"stuck", "noisy", "dropped", "delayed"}) {
+        for (const char *how : {"stuck", "noisy", "dropped", "delayed", "timeout"}) {
+            if (std::string(sensor) == "camera" && std::string(how) == "timeout") continue; // no device of the rover: refused
             const std::string text = std::string("[[fault]]\nwhat = \"sensor\"\nsensor = \"") + sensor + "\"\nhow = \"" + how +
                                      "\"\nfrom_s = 1.0\nto_s = 2.0\n" +
                                      (std::string(how) == "noisy"     ? "noise = 0.5\n"

@@ -69,6 +69,8 @@ TEST(Scenario, a_mistake_is_told_with_file_line_key_value_and_mend) {
          "effect[0].wheel = 1: this effect is not confined to a wheel"},
         {"duration_s = 1\n" + drive + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = 7\n",
          "effect[0].coefficient = 7: out of range; give a number from 0 to 0.6"},
+        {"duration_s = 1\n" + drive + "[[effect]]\nname = \"torque_ripple\"\norder = 0.5\n",
+         "effect[0].order = 0.5: out of range; give a number from 1 to 8, or from -8 to -1"},
         {"duration_s = 1\n" + drive + "[hidden]\n", "hidden.draw_from_seed: missing"},
         {"duration_s = 1\n[radar]\nmodel = \"X\"\n" + drive,
          "x.toml:3: radar.model = 'X': not known here; use one of: MDU1130, DJ Radar II"},

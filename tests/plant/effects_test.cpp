@@ -1,6 +1,5 @@
 // The catalogue is consistent, each law is its closed form, and the plant does what catalogue and law say.
-#include "sim/physics/effects/catalogue.h"
-#include "sim/physics/effects/laws.h"
+#include "sim/physics/effects/acting.h"
 #include "sim/plant/plant.h"
 
 #include <gtest/gtest.h>
@@ -102,19 +101,22 @@ TEST(Laws, teeth_push_beyond_the_play_and_never_pull) {
 }
 
 TEST(Laws, motor) {
-    EXPECT_NEAR(law::winding_heating_K_s(20, 60, 0.5, 3.24, 3), (0.81 * 20 - 3) / 60, rounding); // 0.81 W of copper loss
+    EXPECT_NEAR(law::winding_heating_K(20, 0.5, 3.24), 0.81 * 20, rounding); // 0.81 W of copper loss
     EXPECT_NEAR(law::hot_resistance_ohm(3.24, 50), 3.24 * 1.195, rounding);
     EXPECT_NEAR(law::hot_torque_constant(0.265, 50), 0.265 * 0.9, rounding);
     EXPECT_NEAR(law::torque_constant(0.265, -0.2), 0.212, rounding);
-    EXPECT_NEAR(law::wiring_resistance_V(0.4, -0.5), -0.2, rounding);
+    EXPECT_NEAR(law::wiring_resistance_ohm(3.24, 0.4), 3.64, rounding);
     EXPECT_EQ(law::bridge_dead_time_V(0.4, -0.5), -0.4);
+    EXPECT_EQ(law::bridge_dead_time_V(0.4, 0.3), 0.3); // below it all of the drop is lost
     EXPECT_EQ(law::bridge_dead_time_V(0.4, 0), 0);
+    EXPECT_EQ(law::bridge_dead_time_V(0.4, -0.5, 0.1), -0.4);               // a soft edge narrower than the loss is none
+    EXPECT_NEAR(law::bridge_dead_time_V(0.01, 0.05, 0.1), 0.005, rounding); // halfway up the edge
 }
 
 TEST(Laws, ground) {
-    EXPECT_NEAR(law::rolling_resistance_N(0.06, 7), 0.42, rounding);
-    EXPECT_NEAR(law::slip_sinkage_N(0.2, -0.5, 7), 0.7, rounding);
-    EXPECT_NEAR(law::speed_resistance_N(0.08, -0.5, 7), 0.28, rounding);
+    EXPECT_EQ(law::rolling_resistance(0.06), 0.06);
+    EXPECT_NEAR(law::slip_sinkage(0.2, -0.5), 0.1, rounding);
+    EXPECT_NEAR(law::speed_resistance(0.08, -0.5), 0.04, rounding);
     EXPECT_EQ(law::multi_pass(0.25, 0), 1);
     EXPECT_EQ(law::multi_pass(0.25, 1), 1.25);
     EXPECT_EQ(law::soil_patch(0.35, 1, 0.8, 0.999), 1);
@@ -122,42 +124,99 @@ TEST(Laws, ground) {
     EXPECT_EQ(law::soil_patch(0.35, 1, 0.8, 1.8), 1);
     EXPECT_NEAR(law::soil_gradient(0.06, -2), 0.88, rounding);
     EXPECT_EQ(law::soil_gradient(-0.2, 20), 0.05); // soil never turns against the wheel
-    EXPECT_NEAR(law::sliding_speed_loss(0.5, -2), 0.36787944117144233, rounding);
+    EXPECT_NEAR(law::sliding_speed_loss(0.5, -2.0), 0.36787944117144233, rounding);
     EXPECT_NEAR(law::relaxation_length_m(0.005, 0.08), 0.085, rounding);
     EXPECT_NEAR(law::shear_stiffness(0.27, 0.5), 0.405, rounding);
     EXPECT_NEAR(law::wheel_radius_m(0.057, 0.1), 0.0627, rounding);
-    EXPECT_NEAR(law::lateral_scrub_N(0.4, 7), 2.8, rounding);
+    EXPECT_NEAR(law::lateral_scrub_N(0.4, 7.0), 2.8, rounding);
 }
 
 TEST(Laws, loads_and_body_forces) {
-    EXPECT_NEAR(law::load_transfer_N(2.88, 1, 0.08, 0.166), -0.6939759036144578, rounding);     // 0.2304 N m over twice the wheelbase
-    EXPECT_NEAR(law::mass_offset_N(2.88, 9.81, 0.0083, 0.083), 0.70632, rounding);              // a tenth of the weight's quarter
-    EXPECT_NEAR(law::grade_N(2.88, 9.81, 0.5235987755982988, 1, 1), -14.1264, 1e-11);           // half the weight up 30 degrees
-    EXPECT_NEAR(law::grade_N(2.88, 9.81, 0.5235987755982988, 0, 1.5707963267948966), 0, 1e-14); // across the slope: cos is 6e-17
+    EXPECT_NEAR(law::load_transfer_m(0.05, 0.08), 0.13, rounding);
+    EXPECT_NEAR(law::mass_offset_m(0.083, 0.025), 0.058, rounding);
+    EXPECT_NEAR(law::mass_offset_Nm(28.2528, -0.025), -0.70632, rounding);
+    const auto up = law::grade_m_s2(9.81, 0.5235987755982988, 0), aside = law::grade_m_s2(9.81, 0.5235987755982988, 1.5707963267948966);
+    EXPECT_NEAR(up.along_m_s2, -4.905, 1e-11); // half the weight up 30 degrees
+    EXPECT_EQ(up.across_m_s2, 0);
+    EXPECT_NEAR(aside.along_m_s2, 0, 1e-14);      // across the slope: cos is 6e-17
+    EXPECT_NEAR(aside.across_m_s2, 4.905, 1e-11); // turned to the left of the rise, its foot lies to the left
     EXPECT_NEAR(law::tether_drag_N(0.6, 2), -1.2, rounding);
-    EXPECT_EQ(law::body_drag_N(1.2, -0.1), 1.2);
+    EXPECT_EQ(law::body_drag_N(1.2, -1), 1.2);
 }
 
 TEST(Laws, sensors) {
     EXPECT_NEAR(law::accel_bias(0.5, 0.15), 0.65, rounding);
     EXPECT_NEAR(law::accel_drift(0.5, 0.003, 100), 0.8, rounding);
-    EXPECT_NEAR(law::accel_scale(0.5, 0.1), 0.55, rounding);
     EXPECT_NEAR(law::accel_tilt(0.5, 9.81, 0.01, 0.4), 0.53924, rounding);
-    EXPECT_NEAR(law::radar_scale(0.5, -0.08), 0.46, rounding);
-    EXPECT_NEAR(law::radar_pitch(0.5, 0.1, -2), 0.4, rounding);
-    EXPECT_NEAR(law::current_gain(0.5, 0.12), 0.56, rounding);
+    EXPECT_NEAR(law::accel_scale(1.01, 0.1), 1.11, rounding);
+    EXPECT_NEAR(law::radar_scale(1.01, -0.08), 0.93, rounding);
+    EXPECT_NEAR(law::radar_pitch(0.1, -2), 0.8, rounding);
+    EXPECT_NEAR(law::current_gain(1, 0.12), 1.12, rounding);
     EXPECT_NEAR(law::current_offset(0.5, -0.08), 0.42, rounding);
-    EXPECT_NEAR(law::voltage_gain(7.2, 0.05), 7.56, rounding);
-    EXPECT_NEAR(law::encoder_missed(10, 0.06), 9.4, rounding);
-    EXPECT_NEAR(law::camera_scale(2, 0.05), 2.1, rounding);
-    EXPECT_NEAR(law::delayed_time_s(1, 0.12), 0.88, rounding);
+    EXPECT_NEAR(law::voltage_gain(1, 0.05), 1.05, rounding);
+    EXPECT_NEAR(law::encoder_missed(0.06), 0.94, rounding);
+    EXPECT_NEAR(law::camera_scale(1, 0.05), 1.05, rounding);
+    EXPECT_NEAR(law::camera_delay_s(0.03, 0.12), 0.15, rounding);
+    EXPECT_NEAR(law::actuation_delay_s(0, 0.05), 0.05, rounding);
+}
+
+// ---------------------------------------------------------------- what they add up to
+
+TEST(Acting, effects_of_one_kind_add_up_shapes_replace_and_one_wheel_is_one) {
+    const std::vector<ActiveEffect> all{{find_effect("stribeck_friction"), -1, {0.03, 2}},
+                                        {find_effect("stribeck_friction"), 2, {0.01, 4}},
+                                        {find_effect("accel_scale"), -1, {0.1}},
+                                        {find_effect("accel_scale"), -1, {0.05}}};
+    const RoverEffects e = act_together(all);
+    EXPECT_EQ(e.wheel[0].stribeck_Nm, 0.03);
+    EXPECT_EQ(e.wheel[0].stribeck_speed_rad_s, 2);
+    EXPECT_EQ(e.wheel[2].stribeck_Nm, 0.03 + 0.01);
+    EXPECT_EQ(e.wheel[2].stribeck_speed_rad_s, 4);
+    EXPECT_EQ(e.body.accel_scale, 0.1 + 0.05);
+}
+
+TEST(Acting, friction_and_resistance_are_the_sums_of_their_laws) {
+    const WheelEffects e{.coulomb_Nm = 0.04, .stribeck_Nm = 0.03, .stribeck_speed_rad_s = 2, .mesh_fraction = 0.1, .rolling = 0.06};
+    EXPECT_NEAR(dry_friction_Nm(0.03, e, 2, -0.3), 0.03 + 0.04 + 0.03 + 0.03 / 2.718281828459045, rounding);
+    double sum = 0;
+    each_resistance(e, BodyEffects{.slip_sinkage = 0.2, .speed_resistance_s_m = 0.08}, 0.5, -0.5, [&](double c) { sum += c; });
+    EXPECT_NEAR(sum, 0.06 + 0.1 + 0.04, rounding);
+}
+
+TEST(Acting, without_effects_what_was_given_comes_back_bit_for_bit) {
+    const WheelEffects e;
+    const BodyEffects b;
+    for (const double x : {0.1, 0.73, 1e-9}) {
+        EXPECT_EQ(dry_friction_Nm(x, e, 3, 0.2), x);
+        EXPECT_EQ(motor_constant(x, e, 0), x);
+        EXPECT_EQ(circuit_ohm(x, e), x);
+        EXPECT_EQ(strength_here(x, b, 1, 2, 1), x);
+        EXPECT_EQ(strength_sliding(x, b, 0.3), x);
+        EXPECT_EQ(periodic_Nm(e, x, true), 0);
+        EXPECT_EQ(periodic_Nm(e, x, false), 0);
+        EXPECT_EQ(heating_gap_K(e, x, 3, 0), 0);
+        double sum = x;
+        each_resistance(e, b, 0.4, 0.5, [&](double c) { sum += c; });
+        EXPECT_EQ(sum, x);
+    }
+}
+
+TEST(Acting, every_parameter_of_the_catalogue_has_a_number_of_its_own) {
+    std::vector<const EffectParameter *> all;
+    for (const Effect &effect : catalogue())
+        for (const EffectParameter &p : effect.parameters) {
+            EXPECT_NE(p.in_wheel == nullptr, p.in_body == nullptr) << effect.name << " " << p.name;
+            for (const EffectParameter *other : all)
+                EXPECT_FALSE(p.in_wheel == other->in_wheel && p.in_body == other->in_body) << effect.name << " " << p.name;
+            all.push_back(&p);
+        }
 }
 
 // ---------------------------------------------------------------- the drive train obeys them
 
 TEST(Drive, current_follows_ohms_law_with_every_electrical_effect_at_once) {
     const DriveParameters p;
-    DriveEffects e;
+    WheelEffects e;
     e.wiring_ohm = 0.4, e.dead_voltage_V = 0.4, e.constant_change = 0.1;
     DriveState s;
     s.motor_speed_rad_s = 5, s.heat_K = 40;
@@ -168,7 +227,7 @@ TEST(Drive, current_follows_ohms_law_with_every_electrical_effect_at_once) {
 }
 
 // Steady state of (17) with these effects: KG*I - b*w - load, which is the dry torque that must be left.
-double dry_torque_Nm(const DriveEffects &e, double duty, double load_Nm) {
+double dry_torque_Nm(const WheelEffects &e, double duty, double load_Nm) {
     const DriveParameters p;
     DriveState s;
     for (int i = 0; i < 20000; ++i) { // 20 s; J over b + KG^2/Ra is 0.22 s
@@ -188,9 +247,34 @@ TEST(Drive, friction_of_the_gear_adds_up_at_steady_speed) {
     EXPECT_NEAR(dry_torque_Nm({.coulomb_Nm = 0.04}, -0.5, -0.1), -0.07, settled); // against the motion, both ways
 }
 
+TEST(Drive, a_friction_that_varies_over_the_turn_opposes_the_motion_both_ways_and_cogging_does_not) {
+    // one turn at a held speed: what the motor must give beyond the constant friction, averaged
+    const DriveParameters p;
+    const auto taken_J = [&](double order, double speed_rad_s) {
+        const WheelEffects e{.ripple_cos_Nm = 0.02, .ripple_order = order};
+        double work = 0;
+        for (int i = 0; i < 360; ++i) {
+            DriveState s;
+            s.wheel_angle_rad = s.motor_angle_rad = i * 0.017453292519943295;
+            s.wheel_speed_rad_s = s.motor_speed_rad_s = speed_rad_s;
+            DriveState plain = s;
+            drive_step(p, e, s, 0, 1e-3);
+            drive_step(p, {}, plain, 0, 1e-3);
+            // where the cosine is positive, the torque that brakes counts, elsewhere the one that helps
+            work += (plain.wheel_speed_rad_s - s.wheel_speed_rad_s) * (speed_rad_s > 0 ? 1 : -1) * std::cos(order * s.wheel_angle_rad);
+        }
+        return work / 360 * p.inertia_kg_m2 / 1e-3; // N m: half the amplitude, the mean of cos^2
+    };
+    constexpr double within = 1e-3 * 0.02; // the angle moves by 2 mrad within a step, friction's own change of speed likewise
+    EXPECT_NEAR(taken_J(-2, 1), 0.01, within);
+    EXPECT_NEAR(taken_J(-2, -1), 0.01, within); // a friction
+    EXPECT_NEAR(taken_J(2, 1), 0.01, within);
+    EXPECT_NEAR(taken_J(2, -1), -0.01, within); // cogging keeps its sign
+}
+
 TEST(Drive, windings_warm_up_exponentially) {
     const DriveParameters p;
-    const DriveEffects e{.heating_K_W = 20, .heating_time_s = 20};
+    const WheelEffects e{.heating_K_W = 20, .heating_time_s = 20};
     DriveState s;
     for (int i = 0; i < 20000; ++i) {
         s.current_A = 0.5;
@@ -202,7 +286,7 @@ TEST(Drive, windings_warm_up_exponentially) {
 
 TEST(Drive, the_motor_crosses_its_play_freely_and_then_takes_the_wheel_along) {
     const DriveParameters p;
-    const DriveEffects e{.play_rad = 0.06};
+    const WheelEffects e{.play_rad = 0.06};
     DriveState s;
     s.motor_angle_rad = -0.03; // teeth touch on the backward side
     s.current_A = 0.4;
@@ -217,6 +301,14 @@ TEST(Drive, the_motor_crosses_its_play_freely_and_then_takes_the_wheel_along) {
 }
 
 // ---------------------------------------------------------------- the plant obeys them
+
+// Closed forms: load on one front wheel minus its static value, at acceleration a; on one wheel of the heavier side; slope's pull.
+double transfer_N(double mass_kg, double accel_m_s2, double height_m, double wheelbase_m) {
+    return -mass_kg * accel_m_s2 * height_m / (2 * wheelbase_m);
+}
+double offset_N(double mass_kg, double gravity_m_s2, double offset_m, double half_base_m) {
+    return mass_kg * gravity_m_s2 * offset_m / (4 * half_base_m);
+}
 
 ActiveEffect with(std::string_view name, std::vector<double> values, int wheel = -1) {
     return {find_effect(name), wheel, std::move(values)};
@@ -238,7 +330,7 @@ TEST(PlantEffects, an_offset_mass_loads_the_wheels_on_its_side) {
     settle(plant, 2);
     const double weight = 2.88 * 9.81 / 4;
     // the halves pitch freely on their joint: each side splits its own share fore and aft, so the shares multiply
-    const double fore = law::mass_offset_N(2.88, 9.81, 0.025, 0.083) / weight, left = law::mass_offset_N(2.88, 9.81, -0.02, 0.12) / weight;
+    const double fore = offset_N(2.88, 9.81, 0.025, 0.083) / weight, left = offset_N(2.88, 9.81, -0.02, 0.12) / weight;
     for (std::size_t i = 0; i < 4; ++i) {
         const double expected = weight * (1 + (i >= 2 ? fore : -fore)) * (1 + (i % 2 == 0 ? left : -left));
         // the springs let a half pitch by 5 N/6000 N/m over 0.166 m = 5 mrad: 1 - cos is 1.3e-5 of 11 N, for each of pitch, roll and joint
@@ -257,12 +349,12 @@ TEST(PlantEffects, a_slope_pulls_by_its_law_and_a_high_centre_then_loads_the_low
         along += plant.truth().wheel[i].traction_N;
         (i >= 2 ? front : rear) += plant.truth().wheel[i].normal_N / 2;
     }
-    const double pull = law::grade_N(2.88, 9.81, 0.1, 0.2, 0.7);
+    const double pull = 2.88 * law::grade_m_s2(9.81, 0.1, 0.7 - 0.2).along_m_s2;
     EXPECT_LT(pull, -2);             // uphill in front
     EXPECT_NEAR(along, -pull, 0.01); // N: yaw drifts by less than 3 mrad while the contact settles, 2.5 N * tan(0.5) * 3 mrad = 4 mN
     EXPECT_NEAR(plant.truth().specific_force_m_s2[0], -pull / 2.88,
                 0.015); // the springs tilt it by 0.6 N/(6000 N/m * 83 mm): 1.2 mrad of g
-    const double shift = law::load_transfer_N(2.88, -pull / 2.88, 0.08, 0.166);
+    const double shift = transfer_N(2.88, -pull / 2.88, 0.08, 0.166);
     EXPECT_NEAR((front - rear) / 2, shift, 0.02 * std::fabs(shift)); // the springs' tilt of 1 mrad moves the centre: 1.4 % of the shift
 }
 
@@ -281,7 +373,7 @@ TEST(PlantEffects, tether_and_drag_pull_by_their_laws) {
         settle(plant, 5);
         const Truth &truth = plant.truth();
         ASSERT_GT(truth.position_m[0], 0.5);
-        const double expected = tether ? law::tether_drag_N(0.6, truth.position_m[0]) : law::body_drag_N(1.2, truth.v_body_m_s[0]);
+        const double expected = tether ? law::tether_drag_N(0.6, truth.position_m[0]) : law::body_drag_N(1.2, 1);
         EXPECT_NEAR(push_N(plant), expected, 1e-3); // the tether is taken at the step's start: 0.6 N/m of half a millimetre
     }
 }

@@ -2,7 +2,7 @@
 //
 // States: x, y, yaw, vx, vy (body frame), r, and per wheel w, s, sy. Loads follow from the moment balance of each half (pitch,
 // the joint passes none) and of the whole (roll), by fixed-point iteration; vertical motion is left out. Wheels keep turning
-// forward, so dry friction has one sign. Written from the equations of SPEC and docs/physics.md, not from the plant's code.
+// forward, so dry friction has one sign. Written from the equations of docs/sources.md and docs/physics.md, not from the plant's code.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // Every effect of the catalogue that acts in the plant: it disturbs the balances it claims, no other, and nothing at zero strength.
 //
-// The balances are those of the baseline (SPEC sections 2 and 3), computed from the truth by this file's own formulas; without an
-// effect each residual vanishes, so a residual is the effect itself.
+// The balances are those of the baseline (docs/sources.md sections 2 and 3), computed from the truth by this file's own formulas; without
+// an effect each residual vanishes, so a residual is the effect itself.
 #include "sim/plant/plant.h"
 
 #include <gtest/gtest.h>

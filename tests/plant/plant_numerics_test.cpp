@@ -29,7 +29,7 @@ struct Rms {
     double about_mean() const { return std::sqrt(std::max(0.0, square / count - (sum / count) * (sum / count))); }
 };
 
-// Gates of SIM.md: creep < 0.01 mm/s, accelerometer < 0.01 m/s^2 rms, on a 5 degree slope with locked wheels.
+// Gates of docs/evidence.md section 6: creep < 0.01 mm/s, accelerometer < 0.01 m/s^2 rms, on a 5 degree slope with locked wheels.
 TEST(parked, on_a_slope_neither_creeps_nor_shakes) {
     for (const char *soil : {"concrete", "gravel", "sand", "dry_sand_literature", "loam", "snow", "lunar_simulant"})
         for (const ContactLaw contact : {ContactLaw::aggregated, ContactLaw::bekker, ContactLaw::arc})

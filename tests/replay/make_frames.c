@@ -1,4 +1,4 @@
-// make_frames - writes a deterministic drive through every mode for `replay`: integer arithmetic only, so its bytes are the same
+// make_frames - writes a deterministic drive through every mode for the HAL `replay`: integer arithmetic only, so its bytes are the same
 // on every machine. usage: make_frames OUT.txt
 #include <inttypes.h>
 #include <stdio.h>

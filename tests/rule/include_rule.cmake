@@ -6,11 +6,20 @@ set(same_folder "[^/]+")
 set(rules
   "firmware/core|${same_folder}|firmware/core/.+|stdint.h|stdbool.h|stddef.h|math.h"
   "firmware/template|${same_folder}|*"  # programs of the build machine
-  "firmware/app|${same_folder}|firmware/(core|app)/.+|hal/hal.h|*"
+  "firmware/app|${same_folder}|firmware/(core|app)/.+|hal/(hal|open|pace/pace_hal).h|*"
   "hal|${same_folder}|firmware/core/signals.h|hal/.+|*"
   "hal/sim|${same_folder}|firmware/core/signals.h|hal/.+|sim/.+|*"
   "sim|${same_folder}|sim/.+|*"
   "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
+# The lab's rooms, in the order in which data goes through them: a room includes itself and the rooms before it. session.h opens model and
+# log for whoever uses the lab, so that it may look into every room and none looks back.
+set(rooms model inputs forward fit decision next result)
+list(APPEND rules "host_tools/lab|${same_folder}|sim/physics/.+|host_tools/log/.+|host_tools/lab/.+|*")
+set(earlier "")
+foreach(room IN LISTS rooms)
+  string(APPEND earlier "|host_tools/lab/${room}/.+")
+  list(APPEND rules "host_tools/lab/${room}|${same_folder}|sim/physics/.+|host_tools/log/.+${earlier}|*")
+endforeach()
 # System headers that are somebody's own: folder that may have them
 set(owned "linux/.+=hal/linux" "gpiod.h=hal/linux" "sys/socket.h=(hal/linux|firmware/app|host_tools)"
   "ode/.+=sim/plant|tests" "ceres/.+=host_tools/lab" "muParser.h=host_tools/lab")

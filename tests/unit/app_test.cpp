@@ -49,7 +49,7 @@ struct Bench {
     daemon_link_t link() {
         return {.context = this,
                 .command =
-                    [](void *, uint32_t, command_t *command) {
+                    [](void *, const sensor_frame_t *, command_t *command) {
                         command->mode = MODE_OPEN_LOOP;
                         command->duty[0] = 0.25f;
                     },

@@ -51,7 +51,7 @@ TEST(Fft, keeps_88_dB_from_full_scale_to_minus_60_dB) {
                 const double phase = 2 * clutter::pi * (3.3 + 10.17 * i) * n / 256 + i;
                 x[n] = static_cast<int16_t>(std::floor(32767 * std::pow(10, level / 20) * std::sin(phase) + 0.5));
             }
-            EXPECT_GE(snr_dB(x), 88) << level << " dBFS, tone " << i; // DSP.md's goal
+            EXPECT_GE(snr_dB(x), 88) << level << " dBFS, tone " << i; // goal of docs/evidence.md section 1
         }
     }
 }

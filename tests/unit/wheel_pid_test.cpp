@@ -8,7 +8,7 @@
 
 namespace {
 
-// A free wheel behind the circuit of SPEC section 3, integrated with 1 ms steps, measured with one tick's delay by the encoder.
+// A free wheel behind the circuit of docs/sources.md section 3, integrated with 1 ms steps, measured with one tick's delay by the encoder.
 struct Wheel {
     double w = 0;
     double load_Nm = 0;

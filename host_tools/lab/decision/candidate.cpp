@@ -29,10 +29,12 @@ std::vector<std::vector<std::pair<std::string, double>>> shape_choices(const sim
         if (p.strength || p.variants.empty()) continue;
         std::vector<std::vector<std::pair<std::string, double>>> next;
         for (const auto &base : list)
-            for (const double value : p.variants) {
-                next.push_back(base);
-                next.back().emplace_back(std::string(p.name), value);
-            }
+            for (const double sign : {1.0, -1.0})
+                for (const double value : p.variants) {
+                    if (sign < 0 && !p.both_signs) continue;
+                    next.push_back(base);
+                    next.back().emplace_back(std::string(p.name), sign * value);
+                }
         list = std::move(next);
     }
     return list;
@@ -78,8 +80,7 @@ FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle 
             free.slots.push_back(slot);
         }
     }
-    const bool play = candidate.effect == "backlash" || candidate.effect == "relaxation_length"; // whole integrations with a kink
-    free.step = play ? std::max(1e-3 * span, 0.2 * spec.of_interest) : 1e-7 * span;
+    free.step = handle.remembers ? std::max(1e-3 * span, 0.2 * spec.of_interest) : 1e-7 * span;
     return free;
 }
 
@@ -89,7 +90,7 @@ struct ShapeKind {
     const char *name;
     bool straight = false; // a straight line too: a free curve spends its certainty on its coefficients
 };
-// LAB.md section 2. Never measured current or PWM as an axis; "current" is the model's own.
+// docs/evidence.md section 4. Never measured current or PWM as an axis; "current" is the model's own.
 constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::wheel_speed, "torque(wheel speed)"},
     {TermTarget::wheel_torque, Axis::slip, "torque(slip)"},
@@ -185,10 +186,6 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
         if (effect == nullptr || model.find_effect(handle.name, -1) != nullptr) continue;
         const bool patch = handle.name == "soil_patch";
         auto shapes = patch ? patch_choices(motion) : shape_choices(*effect);
-        if (handle.name == "torque_ripple") { // cogging keeps its sign when the motion reverses, friction that varies does not
-            const std::size_t n = shapes.size();
-            for (std::size_t i = 0; i < n; ++i) shapes.push_back({{"order", -shapes[i][0].second}});
-        }
         const auto wheels = wheel_choices(*effect, model);
         for (const auto &shape : shapes)
             for (const int wheel : wheels) {
@@ -211,8 +208,8 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
                     c.of_interest.push_back(spec->of_interest);
                     c.minimum.push_back(spec->minimum);
                     c.maximum.push_back(spec->maximum);
-                    const bool play = c.effect == "backlash" || c.effect == "relaxation_length"; // nothing at zero tells of them
-                    c.step.push_back(play ? std::max(spec->of_interest, 0.05 * spec->maximum) : 1e-6 * spec->of_interest);
+                    // of what remembers nothing at zero tells
+                    c.step.push_back(handle.remembers ? std::max(spec->of_interest, 0.05 * spec->maximum) : 1e-6 * spec->of_interest);
                 }
                 if (!c.strengths.empty()) list.push_back(std::move(c));
             }
@@ -232,7 +229,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.touched = target_stages(kind.target);
         const AxisValues x = values_on(kind.axis, data, motion, physics, current_A);
         if (x.values.empty()) continue;
-        c.parts_wheels = x.parts_wheels;
+        c.varies_between_wheels = x.varies_between_wheels;
         c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);
         if (c.knots.size() < 3) continue;
         for (std::size_t j = 0; j < c.knots.size(); ++j) c.strengths.emplace_back();

@@ -26,15 +26,15 @@ struct Candidate {
     Axis axis = Axis::time;
     TermTarget target = TermTarget::wheel_torque;
     std::vector<double> knots;
-    double order = 0;          // periodic in the wheel angle
-    bool parts_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
+    double order = 0;                   // periodic in the wheel angle
+    bool varies_between_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
 
     std::string label() const; // "slip_sinkage", "wiring_resistance on wheel 2"
     // Puts the shape parameters (and for structure-free ones the term) into a physics so that the strengths can move.
     void prepare(Physics &physics) const;
 };
 
-// Every catalogue effect that is not in the model yet. Patches come from path cells, see patch_cells().
+// Every catalogue effect that is not in the model yet. Soil patches begin on cells of the path that `motion` drove.
 std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &data, const Motion &motion);
 
 // Structure-free shapes that this log can carry: axis x target, knots at quantiles of the axis.

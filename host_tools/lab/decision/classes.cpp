@@ -9,13 +9,14 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
                                     const DiagnoseOptions &options) {
     std::vector<std::size_t> members;
     const Trial &w = trials[winner];
-    const bool by_priors = w.gain - w.assessment.relief < options.least_gain * base_error && w.best_balance_gain < options.least_gain_one;
+    const bool by_priors =
+        w.gain - w.assessment.prior_reduction < options.least_gain * base_error && w.best_balance_gain < options.least_gain_one;
     DiagnoseOptions nearly = options;
     nearly.p_limit = 0.05;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (i == winner || !trials[i].refitted) continue;
         Trial t = trials[i];
-        const bool explains_more = t.promise > w.promise;
+        const bool explains_more = t.error_reduction > w.error_reduction;
         judge(t, base_error, by_priors || explains_more ? nearly : options);
         if (t.verdict != "passes") continue;
         // the same effect on two wheels is a question, on all of them or on one of them it is one answer
@@ -29,7 +30,7 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
     return members;
 }
 
-void forget_class(Diagnosis &d, const std::string &label) {
+void remove_class(Diagnosis &d, const std::string &label) {
     const auto found =
         std::find_if(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
     if (found == d.classes.end()) return;
@@ -45,7 +46,7 @@ void forget_class(Diagnosis &d, const std::string &label) {
         }
 }
 
-void part_classes(Diagnosis &d) {
+void separate_accepted(Diagnosis &d) {
     const auto accepted = [&](const std::string &label) {
         return std::any_of(d.accepted.begin(), d.accepted.end(), [&](const CandidateResult &a) { return a.candidate.label() == label; });
     };
@@ -55,7 +56,7 @@ void part_classes(Diagnosis &d) {
         std::erase_if(c.members, [&](const std::string &member) { return member != front && accepted(member); });
         if (c.members.size() == 1) alone.push_back(front);
     }
-    for (const std::string &label : alone) forget_class(d, label);
+    for (const std::string &label : alone) remove_class(d, label);
     for (std::vector<CandidateResult> *list : {&d.ranking, &d.accepted})
         for (CandidateResult &r : *list) {
             const std::string label = r.candidate.label();

@@ -8,16 +8,16 @@
 
 namespace traction::lab {
 
-// Which passers the data cannot tell from the winner. The nearly sure are in the class too where they explain more of all rows than the
-// winner does, or where the rows alone would not have named it but the data sheet's tolerances did: then what explains half as much may be
-// meant.
+// Which of the candidates that pass the data cannot tell from the winner. The nearly sure are in the class too where they explain more of
+// all rows than the winner does, or where the rows alone would not have named it but the data sheet's tolerances did: then what explains
+// half as much may be meant.
 std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error,
                                     const DiagnoseOptions &options);
 
 // Takes out the class that the label stands for, if there is one; those behind it move up.
-void forget_class(Diagnosis &d, const std::string &label);
+void remove_class(Diagnosis &d, const std::string &label);
 
 // What was accepted beside a name is no alternative to it.
-void part_classes(Diagnosis &d);
+void separate_accepted(Diagnosis &d);
 
 } // namespace traction::lab

@@ -71,8 +71,8 @@ void Columns::fill_cells(const Candidate &c, const FreeParameter &p, std::size_t
         return;
     }
     Physics at = physics_;
-    at.body.patch_start = cell_start_ + static_cast<double>(first) * cell_length_;
-    at.body.patch_length = cell_length_;
+    at.body.patch_start_m = cell_start_ + static_cast<double>(first) * cell_length_;
+    at.body.patch_length_m = cell_length_;
     cells_[first] = problem_.column(at, p, c.step[0]).cwiseQuotient(problem_.row_scale);
 }
 

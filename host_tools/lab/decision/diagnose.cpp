@@ -2,7 +2,6 @@
 
 #include "classes.h"
 #include "host_tools/lab/fit/screen.h"
-#include "host_tools/lab/session.h"
 #include "shapes.h"
 #include "trial.h"
 
@@ -29,7 +28,7 @@ std::string figures(double value) {
     return buffer;
 }
 
-// Forward selection, round by round, then each effect tried without.
+// Forward selection, round by round, then backward elimination, then structure-free shapes.
 class Search {
   public:
     Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), options_(options) { d_.model = model; }
@@ -43,12 +42,12 @@ class Search {
                                  overall_heldout(problem), 1});
             refresh(problem, screen);
             if (round == options_.most_effects) break;
-            std::optional<Problem> next = try_all(problem, screen, round == 0);
+            std::optional<Problem> next = forward_step(problem, screen, round == 0);
             if (!next) break;
             problem = std::move(*next);
         }
-        drop_idle(problem);
-        if (options_.shapes) look_beyond(first, problem);
+        eliminate_backward(problem);
+        if (options_.shapes) test_shapes(first, problem);
         conclude();
         return std::move(d_);
     }
@@ -81,15 +80,15 @@ class Search {
                     const FreeParameter &p = problem.parameters[i];
                     if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
                     a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
-                    const double reach = errors[i].reach + std::fabs(a.value[j]) * smoothing_doubt(a.candidate);
-                    a.low[j] = a.value[j] - reach;
-                    a.high[j] = a.value[j] + reach;
+                    const double half_width = errors[i].half_width + std::fabs(a.value[j]) * smoothing_loss(a.candidate);
+                    a.low[j] = a.value[j] - half_width;
+                    a.high[j] = a.value[j] + half_width;
                 }
     }
 
     // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses
     // at the ripple's frequency is not known of its size.
-    double smoothing_doubt(const Candidate &c) const {
+    double smoothing_loss(const Candidate &c) const {
         if (c.effect != "torque_ripple" || c.variant.empty()) return 0;
         double squares = 0, n = 0;
         for (const WheelInput &w : data_.wheel)
@@ -98,7 +97,7 @@ class Search {
         return n > 0 ? data_.acceleration_loss(std::fabs(c.variant[0].second) * std::sqrt(squares / n)) : 0;
     }
 
-    // Best shape of each effect and wheel, those that promise most first.
+    // Best shape of each effect and wheel, largest predicted reduction of the error first.
     std::vector<Trial> screened(Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
         std::map<std::string, Trial> best;
@@ -109,7 +108,7 @@ class Search {
             if (found == best.end()) {
                 order.push_back(c.label());
                 best.emplace(c.label(), std::move(t));
-            } else if (t.promise > found->second.promise) {
+            } else if (t.error_reduction > found->second.error_reduction) {
                 found->second = std::move(t);
             }
             tick();
@@ -118,18 +117,19 @@ class Search {
         for (const std::string &key : order) trials.push_back(std::move(best.at(key)));
         for (Trial &t : trials)
             if (t.candidate.wheel < 0) scan(t, problem, screen);
-        std::stable_sort(trials.begin(), trials.end(), [](const Trial &a, const Trial &b) { return a.promise > b.promise; });
+        std::stable_sort(trials.begin(), trials.end(),
+                         [](const Trial &a, const Trial &b) { return a.error_reduction > b.error_reduction; });
         return trials;
     }
 
-    // One round: the problem with the winner in, or nothing where no candidate passes.
-    std::optional<Problem> try_all(Problem &problem, const Screen &screen, bool is_first, bool may_rebase = true) {
+    // One step of the forward selection: the problem with the winner in, or nothing where no candidate passes.
+    std::optional<Problem> forward_step(Problem &problem, const Screen &screen, bool is_first, bool may_restart = true) {
         std::vector<Trial> trials = screened(problem, screen);
         const double base_error = screen.heldout_error();
         for (Trial &t : trials) judge(t, base_error, options_);
         refit_likely(trials, problem, screen);
-        if (may_rebase && rebase(trials, problem)) return try_all(problem, Screen(problem), is_first, false);
-        weigh_beyond(trials, base_error);
+        if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
+        judge_beyond_range(trials, base_error);
         for (Trial &t : trials)
             if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
         std::stable_sort(trials.begin(), trials.end(),
@@ -144,13 +144,13 @@ class Search {
             else
                 trials[i].verdict = "not_significant";
         }
-        if (is_first) note_unseen(trials);
+        if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first);
         return next;
     }
 
     // A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range.
-    void weigh_beyond(std::vector<Trial> &trials, double base_error) {
+    void judge_beyond_range(std::vector<Trial> &trials, double base_error) {
         double most = 0;
         Trial *best = nullptr;
         for (Trial &t : trials) {
@@ -168,7 +168,8 @@ class Search {
                               (much ? "): read its size as at least that" : "): not named"));
     }
 
-    // Those most sure by their linear step, those that promise more than what passed, then those whose scan saw more than the step did.
+    // Those most sure by their linear step, those of larger predicted reduction than what passed, then those whose scan saw more than the
+    // step did.
     void refit_likely(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
         double best = 0; // of the held-out gains that passed: what explains less than half can be neither the winner nor of its class
@@ -188,27 +189,31 @@ class Search {
             }
         };
         refit_some(
-            options_.refits, [&](const Trial &t) { return t.p_value < 0.2 && t.promise > least_promise && t.promise > 0.5 * best; },
+            options_.refits,
+            [&](const Trial &t) { return t.p_value < 0.2 && t.error_reduction > least_reduction && t.error_reduction > 0.5 * best; },
             [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
-        const auto most_promise = [](const Trial &a, const Trial &b) { return a.promise > b.promise; };
+        const auto largest_reduction = [](const Trial &a, const Trial &b) { return a.error_reduction > b.error_reduction; };
         // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
         refit_some(
             3,
             [&](const Trial &t) {
-                return t.promise > std::max(3 * least_promise, (t.frees ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best);
+                return t.error_reduction > std::max(3 * least_reduction, (t.leaves_active_set ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best);
             },
-            most_promise);
+            largest_reduction);
         refit_some(
-            3, [&](const Trial &t) { return t.surprise > std::max(3 * least_promise, 0.3 * t.promise) && t.promise > 0.5 * best; },
-            most_promise);
+            3,
+            [&](const Trial &t) {
+                return t.nonlinear_reduction > std::max(3 * least_reduction, 0.3 * t.error_reduction) && t.error_reduction > 0.5 * best;
+            },
+            largest_reduction);
     }
 
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
-    bool rebase(const std::vector<Trial> &trials, Problem &problem) const {
+    bool restart_from_refit(const std::vector<Trial> &trials, Problem &problem) const {
         const Trial *best = nullptr;
         for (const Trial &t : trials)
-            if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.promise > 3 * least_promise &&
-                (best == nullptr || t.promise > best->promise))
+            if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.error_reduction > 3 * least_reduction &&
+                (best == nullptr || t.error_reduction > best->error_reduction))
                 best = &t;
         if (best == nullptr) return false;
         Problem moved = problem;
@@ -216,15 +221,15 @@ class Search {
         moved.theta = best->baseline;
         moved.within_bounds();
         moved.jacobian.resize(0, 0);
-        moved.polish(3);
-        if (moved.cost() > before - least_promise) return false;
+        moved.gauss_newton(3);
+        if (moved.cost() > before - least_reduction) return false;
         moved.fit({});
         problem = std::move(moved);
         return true;
     }
 
     // Held-out error; where it lies below that of the fit, the linear step that left a block out went where a bound would have stopped it.
-    static double honest_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
+    static double larger_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
 
     // The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
     // candidate must keep its size.
@@ -236,13 +241,13 @@ class Search {
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
         if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) ||
-            honest_error(problem) > 1.03 * honest_error(before))
+            larger_error(problem) > 1.03 * larger_error(before))
             return std::nullopt;
         return problem;
     }
 
     // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
-    void note_unseen(const std::vector<Trial> &trials) {
+    void note_not_excited(const std::vector<Trial> &trials) {
         for (const Trial &t : trials) {
             const Candidate &c = t.candidate;
             if (c.wheel >= 0 || c.of_interest.empty()) continue;
@@ -293,8 +298,9 @@ class Search {
         d_.model.effects.push_back(effect_of(w.candidate, w.value));
     }
 
-    // Drops what no longer matters beside the others. `last`: the problem of the model as it stands, replaced with it.
-    void drop_idle(Problem &last) {
+    // Backward elimination: drops what no longer matters beside the others. `last`: the problem of the model as it stands, replaced with
+    // it.
+    void eliminate_backward(Problem &last) {
         for (std::size_t i = d_.accepted.size(); i-- > 0;) {
             const CandidateResult one = d_.accepted[i];
             bool sure = false; // larger than its own uncertainty
@@ -321,8 +327,8 @@ class Search {
 
     void remove(std::size_t i, Model without, const Problem &problem) {
         const std::string label = d_.accepted[i].candidate.label();
-        std::erase_if(d_.ladder, [&](const Rung &r) { return r.label == "+ " + label; });
-        forget_class(d_, label);
+        std::erase_if(d_.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
+        remove_class(d_, label);
         if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = overall_heldout(problem);
         d_.model = std::move(without);
         d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
@@ -330,30 +336,30 @@ class Search {
     }
 
     // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
-    // that is not needed beside a shape stood in for it. What goes is told as the nearest of the catalogue.
-    void look_beyond(const Problem &first, Problem &last) {
+    // that is not needed beside a shape was its proxy. What is rejected is told as the nearest of the catalogue.
+    void test_shapes(const Problem &first, Problem &last) {
         for (bool again = true; again;) {
             again = false;
             std::vector<Candidate> named;
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
-            Beyond beyond = find_unknown(first, last, named, options_);
-            if (beyond.shape) d_.unknown = beyond.shape;
-            std::vector<std::size_t> &rest = beyond.replaced;
-            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * beyond.gain_squares);
+            ShapeFindings findings = find_unknown(first, last, named, options_);
+            if (findings.shape) d_.unknown = findings.shape;
+            std::vector<std::size_t> &rest = findings.replaced;
+            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);
                  rest.pop_back()) {
-                demote(rest.back(), last);
+                reject_as_nearest(rest.back(), last);
                 again = true;
             }
-            if (!again && beyond.stand_in) {
-                d_.unknown = beyond.cause;
-                demote(*beyond.stand_in, last);
+            if (!again && findings.proxy) {
+                d_.unknown = findings.cause;
+                reject_as_nearest(*findings.proxy, last);
                 again = true;
             }
             again = again && !d_.accepted.empty();
         }
     }
 
-    void demote(std::size_t i, Problem &last) {
+    void reject_as_nearest(std::size_t i, Problem &last) {
         const CandidateResult one = d_.accepted[i];
         Model without = d_.model;
         std::erase_if(without.effects,
@@ -369,7 +375,7 @@ class Search {
     }
 
     void conclude() {
-        part_classes(d_);
+        separate_accepted(d_);
         for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
         if (d_.accepted.empty())
             d_.kind = d_.unknown ? "unknown" : "nothing";
@@ -378,7 +384,7 @@ class Search {
         d_.text = verdict_text(d_);
     }
 
-    static constexpr double least_promise = 9; // three standard deviations of white noise: below it no rule can pass
+    static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
     const DiagnoseOptions &options_;
     Diagnosis d_;

@@ -1,8 +1,9 @@
-// diagnose.h - which physics the model lacks: screening, refits, forward selection, backward drop, confounded, unknown, not excited.
+// diagnose.h - which physics the model lacks: screening, refits, forward selection, backward elimination, confounded classes, unknown
+// shapes, effects that were not excited.
 #pragma once
 
 #include "candidate.h"
-#include "host_tools/lab/fit/problem.h"
+#include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/inputs/dataset.h"
 
 #include <functional>
@@ -14,18 +15,18 @@ namespace traction::lab {
 
 // Decision thresholds (docs/lab_method.md says where each comes from).
 struct DiagnoseOptions {
-    double p_limit = 0.003;       // of the corrected p: stricter than LAB.md's 0.01, uneven ground mimics soil effects
+    double p_limit = 0.003;       // of the corrected p (Bonferroni): uneven ground mimics soil effects at 0.01, docs/evidence.md section 5
     double least_gain = 0.01;     // fall of the held-out error, all balances
     double least_gain_one = 0.03; // the same in one balance
-    double least_relief = 9.0;    // relief of priors, squared standard deviations
-    int refits = 5;               // classes that are fitted in full
+    double least_prior_reduction = 9.0; // fall of the priors' penalty, squared standard deviations
+    int refits = 5;                     // candidates of least p that are fitted in full; a few more by other rules
     int most_effects = 4;
     double same_cosine = 0.9;       // above it two candidates are one class
-    double shape_p_limit = 0.02;    // of the corrected p of a structure-free shape, which must also gain 2.5 standard errors
+    double shape_p_limit = 0.02;    // of the corrected p of a structure-free shape, whose gain must also repeat over blocks
     double least_shape_gain = 0.02; // a structure-free shape has many freedoms
     double shape_margin = 1.10;     // a shape must beat the winner by this factor
     bool shapes = true;
-    std::function<void(int, int)> progress; // done, total
+    std::function<void(int, int)> progress; // candidates done; 500, a guess of how many there will be
 };
 
 struct CandidateResult {
@@ -56,11 +57,6 @@ struct BalanceScore {
     double rms = 0, noise_rms = 0, heldout_noise = 0; // noise_rms: in units of noise
 };
 
-struct Rung { // of the ladder
-    std::string label;
-    double train = 0, heldout = 0, floor = 1;
-};
-
 struct Diagnosis {
     std::vector<CandidateResult> ranking;  // first round, best first
     std::vector<CandidateResult> accepted; // in order of acceptance, final values
@@ -69,20 +65,16 @@ struct Diagnosis {
     std::optional<UnknownShape> unknown;
     std::string kind; // named class partial unknown nothing
     std::vector<std::string> effects;
-    std::vector<std::string> nearest; // of the catalogue to the unknown shape, in whose stead they were found first: not the cause
+    std::vector<std::string> nearest; // of the catalogue to the unknown shape, whose proxies they were: not the cause
     std::string text;
-    std::vector<Rung> ladder;
+    std::vector<LadderStep> ladder;
     Model model; // with the accepted effects, refitted
     std::vector<std::string> messages;
 };
 
 Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOptions &options);
 
-// Error of a fitted problem, in units of noise over all balances: root of the mean over balances of the mean square.
-double overall_error(const Problem &problem);
-double overall_heldout(const Problem &problem);
-
-// Fits a model to the data and writes the values with intervals into it. Returns the rung of the ladder.
-Rung fit_model(Model &model, const Dataset &data, const std::string &label);
+// The sentence that ends a diagnosis; conclude() of diagnose.cpp puts it into `text`.
+std::string verdict_text(const Diagnosis &diagnosis);
 
 } // namespace traction::lab

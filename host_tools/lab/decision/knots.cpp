@@ -102,7 +102,7 @@ AxisValues values_on(Axis axis, const Dataset &data, const Motion &motion, const
                 out.values.push_back(absolute ? std::fabs((*series)[k]) : (*series)[k]);
         spread.add(out.values);
     }
-    out.parts_wheels = spread.within < spread.between;
+    out.varies_between_wheels = spread.within < spread.between;
     return out;
 }
 

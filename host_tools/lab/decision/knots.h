@@ -9,8 +9,8 @@
 namespace traction::lab {
 
 struct AxisValues {
-    std::vector<double> values; // of all wheels
-    bool parts_wheels = false;  // X differs between the wheels more than within one: f(X) may stand for the wheels
+    std::vector<double> values;         // of all wheels
+    bool varies_between_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
 };
 
 // `current_A`: the model's, per wheel.

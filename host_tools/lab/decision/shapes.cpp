@@ -24,7 +24,7 @@ struct ShapeScore {
 };
 
 // Several shapes of equally many coefficients side by side: one pass serves them all.
-class Beside : public Term {
+class StackedTerm : public Term {
   public:
     void add(std::shared_ptr<Term> term, std::size_t count) { part_.push_back(std::move(term)), count_ = count; }
     double value(const Signals &signals, const double *c) const override {
@@ -72,7 +72,7 @@ class ShapeColumns {
                 for (std::size_t i = first; i < last; ++i) list.push_back(of(waves[i]));
                 continue;
             }
-            Beside all;
+            StackedTerm all;
             for (std::size_t i = first; i < last; ++i) all.add(make_periodic(waves[i].axis, waves[i].order), 2);
             const Eigen::MatrixXd columns = problem_.row_scale.asDiagonal() *
                                             problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
@@ -197,7 +197,7 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
 
 // A problem less one of its effects, at the same linearisation: its columns are handed out and what it contributes goes back into the
 // residual.
-Problem without(const Problem &last, const Candidate &effect, Eigen::MatrixXd &columns) {
+Problem without_effect(const Problem &last, const Candidate &effect, Eigen::MatrixXd &columns) {
     Problem less = last;
     std::vector<Eigen::Index> kept;
     less.parameters.clear();
@@ -220,7 +220,7 @@ Problem without(const Problem &last, const Candidate &effect, Eigen::MatrixXd &c
 }
 
 // What the effect still gains where the shape's coefficients are free beside it.
-Assessment beside(const Problem &less, const Eigen::MatrixXd &effect, const ShapeScore &shape) {
+Assessment effect_given_shape(const Problem &less, const Eigen::MatrixXd &effect, const ShapeScore &shape) {
     Problem with = less;
     const Eigen::Index n = less.theta.size(), k = shape.columns.cols();
     with.jacobian.conservativeResize(Eigen::NoChange, n + k);
@@ -237,17 +237,17 @@ bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
 // A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none
 // either: f(X) may stand for anything that differed between them.
 bool is_curve(const Candidate &shape) {
-    return shape.order == 0 && !shape.parts_wheels &&
+    return shape.order == 0 && !shape.varies_between_wheels &&
            (shape.knots.size() > 3 || is_straight(shape) || is_bump(shape) || shape.axis == Axis::direction ||
             shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current);
 }
 
-// The shape in whose stead the effect was named, if there is one: needed beside the effect, and explaining more than it by itself, while
-// the effect is not needed beside the shape. A law that is right passes: no freer shape does better than it.
-std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &effect, const std::vector<ShapeScore> &shapes,
-                                        const ShapeScore *flagged, const DiagnoseOptions &options) {
+// The confounding shape of which the effect is a proxy, if there is one: needed beside the effect, and explaining more than it by itself,
+// while the effect is not needed beside the shape. A law that is right passes: no freer shape does better than it.
+std::optional<UnknownShape> confounding_shape(const Problem &last, const Candidate &effect, const std::vector<ShapeScore> &shapes,
+                                              const ShapeScore *flagged, const DiagnoseOptions &options) {
     Eigen::MatrixXd columns;
-    const Problem less = without(last, effect, columns);
+    const Problem less = without_effect(last, effect, columns);
     const Screen screen(less);
     const Assessment own = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
     std::optional<ShapeScore> best;
@@ -259,7 +259,7 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
         if (!(s.p_value < options.shape_p_limit) || (best && !(s.assessment.gain > best->assessment.gain))) continue;
         const bool better = s.assessment.gain - own.gain > 2 * sum_error(s.assessment.block_gain - own.block_gain);
         if (!better && (is_straight(shape.candidate) || &shape != flagged)) continue;
-        const Assessment left = beside(less, columns, shape);
+        const Assessment left = effect_given_shape(less, columns, shape);
         if (left.gain > 0 && left.p_value * shapes_tried < options.p_limit) continue; // needed beside the shape too
         best = std::move(s);
     }
@@ -269,17 +269,17 @@ std::optional<UnknownShape> shadowed_by(const Problem &last, const Candidate &ef
 
 // The named effects that say the same as the shape. One that keeps more than half of what it gains beside it is about something else, and
 // neither stands nor falls with it.
-std::vector<std::size_t> in_its_way(const Problem &last, const std::vector<Candidate> &named, const std::string &shape,
-                                    const std::vector<ShapeScore> &scores) {
+std::vector<std::size_t> explained_by_shape(const Problem &last, const std::vector<Candidate> &named, const std::string &shape,
+                                            const std::vector<ShapeScore> &scores) {
     const auto found = std::find_if(scores.begin(), scores.end(),
                                     [&](const ShapeScore &s) { return s.candidate.effect == shape && s.columns.cols() > 0; });
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < named.size(); ++i) {
         Eigen::MatrixXd columns;
         if (found != scores.end()) {
-            const Problem less = without(last, named[i], columns);
+            const Problem less = without_effect(last, named[i], columns);
             const double own = Screen(less).assess(columns, Eigen::VectorXd::Zero(columns.cols()), false).gain;
-            if (beside(less, columns, *found).gain > 0.5 * own) continue;
+            if (effect_given_shape(less, columns, *found).gain > 0.5 * own) continue;
         }
         list.push_back(i);
     }
@@ -296,9 +296,9 @@ bool repeats(const ShapeScore &s) {
 
 } // namespace
 
-Beyond find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
+ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
     const std::size_t named_count = named.size();
-    Beyond beyond;
+    ShapeFindings findings;
     Problem at_last = last, at_first = first; // their forward models are moved about
     const Screen last_screen(at_last);
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
@@ -318,14 +318,14 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
     }
-    if (best != nullptr) beyond.shape = describe(*best, last_screen.heldout_error());
-    if (named_count == 0) return beyond;
-    for (std::size_t i = named_count; i-- > 0 && !beyond.stand_in;)
-        if ((beyond.cause = shadowed_by(last, named[i], scores, best, options))) beyond.stand_in = i;
+    if (best != nullptr) findings.shape = describe(*best, last_screen.heldout_error());
+    if (named_count == 0) return findings;
+    for (std::size_t i = named_count; i-- > 0 && !findings.proxy;)
+        if ((findings.cause = confounding_shape(last, named[i], scores, best, options))) findings.proxy = i;
     // where nothing is left that any shape would explain, no shape can do better than what was named
     double left = 0;
     for (const ShapeScore &s : scores) left = std::max(left, s.assessment.gain);
-    if (!beyond.shape && left < 0.01 * last_screen.heldout_error()) return beyond;
+    if (!findings.shape && left < 0.01 * last_screen.heldout_error()) return findings;
     // does one shape alone do better than all that was named?
     const Screen first_screen(at_first);
     at_last.keep_scales(first);
@@ -334,18 +334,18 @@ Beyond find_unknown(const Problem &first, const Problem &last, const std::vector
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
         if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > 0.95 * named_gain)) continue;
-        const std::vector<std::size_t> replaced = in_its_way(last, named, s.candidate.effect, scores);
+        const std::vector<std::size_t> replaced = explained_by_shape(last, named, s.candidate.effect, scores);
         if (replaced.empty()) continue;
-        // one shape in the stead of several effects is the simpler story; of one effect that leaves a shape behind only a shadow's name
+        // one shape in place of several effects is the simpler model; of one effect that leaves a shape behind only a proxy's name
         // goes
-        const double margin = replaced.size() > 1 ? 0.95 : beyond.shape ? 2.0 : options.shape_margin;
+        const double margin = replaced.size() > 1 ? 0.95 : findings.shape ? 2.0 : options.shape_margin;
         const double error = sum_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
         if (!(s.assessment.gain > margin * named_gain) || (replaced.size() == 1 && s.assessment.gain - named_gain < 2 * error)) continue;
-        beyond.shape = describe(s, first_screen.heldout_error());
-        beyond.replaced = replaced, beyond.gain_squares = s.assessment.gain;
-        return beyond;
+        findings.shape = describe(s, first_screen.heldout_error());
+        findings.replaced = replaced, findings.gain_squares = s.assessment.gain;
+        return findings;
     }
-    return beyond;
+    return findings;
 }
 
 } // namespace traction::lab

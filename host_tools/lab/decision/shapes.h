@@ -1,5 +1,5 @@
 // shapes.h - what no effect of the catalogue explains: structure-free shapes f(X), tested like any candidate; and which of the named
-// effects were only standing in for such a shape.
+// effects were only proxies of such a shape.
 #pragma once
 
 #include "diagnose.h"
@@ -9,15 +9,15 @@
 
 namespace traction::lab {
 
-struct Beyond {
+struct ShapeFindings {
     std::optional<UnknownShape> shape;
-    std::vector<std::size_t> replaced;   // of the named: the shape alone does better than they together
-    double gain_squares = 0;             // what it explains of the first problem's held-out error, where it replaces any
-    std::optional<std::size_t> stand_in; // of the named: it is not needed beside a shape that is needed beside it
-    std::optional<UnknownShape> cause;   // that shape
+    std::vector<std::size_t> replaced; // of the named: the shape alone does better than they together
+    double gain_squares = 0;           // what it explains of the first problem's held-out error, where it replaces any
+    std::optional<std::size_t> proxy;  // of the named: not needed beside a shape that is needed beside it
+    std::optional<UnknownShape> cause; // that shape
 };
 
 // `first`: the baseline; `last`: with all that was named.
-Beyond find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options);
+ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options);
 
 } // namespace traction::lab

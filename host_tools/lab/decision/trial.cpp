@@ -31,11 +31,11 @@ void test(Trial &t) {
 
 void take(Trial &t, const Assessment &a) {
     t.assessment = a;
-    t.error.clear(), t.reach.clear();
+    t.error.clear(), t.half_width.clear();
     const double quantile = t_quantile(0.05, std::max(1.0, a.freedom));
     for (Eigen::Index j = 0; j < a.strength.size(); ++j) {
         t.error.push_back(a.standard_error[j]);
-        t.reach.push_back(quantile * a.standard_error[j]);
+        t.half_width.push_back(quantile * a.standard_error[j]);
     }
 }
 
@@ -102,8 +102,8 @@ Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &column
     for (Eigen::Index j = 0; j < C.cols(); ++j) t.value.push_back(t.assessment.strength[j]);
     if (t.p_value < 0.01) t.best_balance_gain = screen.best_balance_fall(C, t.assessment);
     if (!plausible_sign(c, t.value)) return t; // its bound stops it
-    t.promise = t.assessment.fall;
-    t.frees = screen.frees(t.assessment.change);
+    t.error_reduction = t.assessment.error_reduction;
+    t.leaves_active_set = screen.leaves_active_set(t.assessment.change);
     return t;
 }
 
@@ -126,21 +126,21 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
         Physics moved = at;
         c.strengths[0].add(moved, size);
         Eigen::VectorXd change;
-        const double error = screen.error_absorbed(base.scaled_residual(moved, c.touched), change);
+        const double error = screen.profiled_error(base.scaled_residual(moved, c.touched), change);
         if (error > clearly_worse * before && !strongly_nonlinear(c.effect)) too_large = std::min(too_large, std::fabs(size));
         if (!(error < best)) continue;
         best = error;
         t.start = {size};
         t.start_change = change;
     }
-    const double by_step = plausible_sign(c, t.value) && !strongly_nonlinear(c.effect) ? t.promise : 0;
-    t.promise = std::max(by_step, before - best);
-    t.surprise = t.promise - by_step;
+    const double by_step = plausible_sign(c, t.value) && !strongly_nonlinear(c.effect) ? t.error_reduction : 0;
+    t.error_reduction = std::max(by_step, before - best);
+    t.nonlinear_reduction = t.error_reduction - by_step;
 }
 
 void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data) {
     const bool linear = t.candidate.touched == stage_sensors || t.candidate.touched == stage_torque;
-    if (linear && !t.frees) { // the step is the fit
+    if (linear && !t.leaves_active_set) { // the step is the fit
         t.refitted = true;
         t.baseline = base.theta + t.assessment.change;
         return;
@@ -155,14 +155,15 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
         if (!t.candidate.of_interest.empty() && std::fabs(start) < 1e-3 * (p.maximum - p.minimum)) start = t.candidate.of_interest[i];
         problem.theta[n + j] = start;
     }
-    if ((t.candidate.touched & stage_motion) != 0 || t.frees) {
+    if ((t.candidate.touched & stage_motion) != 0 || t.leaves_active_set) {
         if (linear)
             t.start_change = t.assessment.change;
         else if (t.start.empty())
             shorten(problem, n);
         if (t.start_change.size() == n) problem.theta.head(n) += t.start_change, problem.within_bounds();
-        problem.polish(
-            strongly_nonlinear(t.candidate.effect) || t.frees ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
+        problem.gauss_newton(strongly_nonlinear(t.candidate.effect) || t.leaves_active_set
+                                 ? 8
+                                 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
     } else {
         problem.quick_fit(base, 3);
     }
@@ -173,12 +174,12 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
     t.value.clear();
     for (Eigen::Index j = 0; j < k; ++j) t.value.push_back(problem.theta[n + j]);
     t.gain = base_screen.heldout_error() - (screen.heldout_error() - t.assessment.gain);
-    t.assessment.relief += base_screen.penalty() - screen.penalty();
+    t.assessment.prior_reduction += base_screen.penalty() - screen.penalty();
     t.block_gain = base_screen.block_error() - (screen.block_error() - t.assessment.block_gain);
     test(t);
     t.gain_error = sum_error(t.block_gain);
     const Screen with(problem);
-    t.promise = base_screen.error() - with.error();
+    t.error_reduction = base_screen.error() - with.error();
     t.best_balance_gain = 0;
     const std::vector<double> before = base_screen.heldout_by_balance(), after = with.heldout_by_balance();
     for (std::size_t b = 0; b < before.size(); ++b)
@@ -187,8 +188,9 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
 
 void judge(Trial &t, double base_error, const DiagnoseOptions &options) {
     const double relative = base_error > 0 ? t.gain / base_error : 0;
-    const bool by_rows = relative > options.least_gain || t.best_balance_gain > options.least_gain_one; // ranks know nothing of relief
-    const bool gains = t.gain > 0 && (by_rows || t.assessment.relief > options.least_relief);
+    const bool by_rows =
+        relative > options.least_gain || t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
+    const bool gains = t.gain > 0 && (by_rows || t.assessment.prior_reduction > options.least_prior_reduction);
     if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
@@ -206,8 +208,8 @@ CandidateResult result_of(const Trial &t, double base_error, const Screen &scree
     r.candidate = t.candidate;
     r.value = t.value;
     for (std::size_t j = 0; j < t.value.size(); ++j) {
-        r.low.push_back(t.value[j] - t.reach[j]);
-        r.high.push_back(t.value[j] + t.reach[j]);
+        r.low.push_back(t.value[j] - t.half_width[j]);
+        r.high.push_back(t.value[j] + t.half_width[j]);
         if (t.error[j] > 0 && std::isfinite(t.error[j])) r.detectability = std::max(r.detectability, std::fabs(t.value[j]) / t.error[j]);
     }
     const double unit = base_error > 0 ? 1 / base_error : 0;

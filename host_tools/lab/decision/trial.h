@@ -13,18 +13,19 @@ namespace traction::lab {
 struct Trial {
     Candidate candidate;
     Assessment assessment;
-    double promise = 0;  // fall of the error on all rows, by the linear step or by a scan of sizes, whichever is more
-    double surprise = 0; // the part of it that the linear step does not see
-    bool frees = false;  // its step brings parameters back that lie at their bounds without it: far from where the step is linear
-    double gain = 0;     // fall of the held-out error, squares
+    double error_reduction = 0;     // fall of the error on all rows, by the linear step or by a scan of sizes, whichever is more
+    double nonlinear_reduction = 0; // the part of it that the linear step does not see
+    bool leaves_active_set =
+        false;       // its step takes parameters off the bounds at which they lie without it: far from where the step is linear
+    double gain = 0; // fall of the held-out error, squares
     double gain_error = 0;
     double p_value = 1;           // corrected for the number tried
     double own_p_value = 1;       // of the coefficient alone
     double best_balance_gain = 0; // largest relative fall in one balance
     Eigen::VectorXd block_gain;
-    std::vector<double> value, error, reach; // reach: half of the 95 % interval
-    std::vector<double> start;               // of a refit: the best size of the scan; empty: the linear step's
-    Eigen::VectorXd start_change;            // of the baseline's parameters there
+    std::vector<double> value, error, half_width; // standard error; half of the 95 % interval
+    std::vector<double> start;                    // of a refit: the best size of the scan; empty: the linear step's
+    Eigen::VectorXd start_change;                 // of the baseline's parameters there
     std::string verdict;
     bool refitted = false;
     bool at_least = false;    // its size lies where the fit may go no further, yet nothing else explains as much

@@ -9,7 +9,7 @@ namespace traction::lab {
 // function, continued fraction by Lentz's method; relative error < 1e-10 for d1 <= 20, d2 in 1..1000.
 double f_tail(double f, double d1, double d2);
 
-// t with P(|T| > t) = p for a Student t of `freedom` degrees. By bisection on f_tail; p in (0, 1).
+// t with P(|T| > t) = p for a Student t of `freedom` degrees, at most 1000. By bisection on f_tail; p in (0, 1).
 double t_quantile(double p, double freedom);
 
 // One-sided p of Wilcoxon's signed-rank test (Biometrics Bulletin 1 (1945) 80): that values symmetric about 0, or lying below it, rank

@@ -1,7 +1,7 @@
 #include "problem.h"
 
-#include "felt.h"
 #include "host_tools/lab/inputs/smooth.h"
+#include "sparse_jacobian.h"
 
 #include <ceres/ceres.h>
 
@@ -38,11 +38,11 @@ Eigen::VectorXd Problem::noise_rows() const {
     return rows;
 }
 
-Eigen::VectorXd Problem::doubt_rows() const {
+Eigen::VectorXd Problem::smoothing_bias_rows() const {
     Eigen::VectorXd rows = Eigen::VectorXd::Zero(measured_.size());
     for (std::size_t b = 0; b < data_->balance.size(); ++b)
-        for (std::size_t r = 0; r < data_->balance[b].doubt.size(); ++r)
-            rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data_->balance[b].doubt[r];
+        for (std::size_t r = 0; r < data_->balance[b].smoothing_bias.size(); ++r)
+            rows[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data_->balance[b].smoothing_bias[r];
     return rows;
 }
 
@@ -83,7 +83,7 @@ bool Problem::at_bound(std::size_t i) const {
 
 void Problem::linearise() {
     const Physics at = physics();
-    settle();
+    update_residual();
     jacobian.resize(measured_.size(), theta.size());
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         double low = 0, high = 0;
@@ -270,7 +270,7 @@ void Problem::quick_fit(const Problem &base, int iterations) {
     Eigen::MatrixXd columns_before;
     for (int i = 0; i <= iterations; ++i) {
         const Physics at = physics();
-        settle();
+        update_residual();
         const double cost = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
         if (i > 0 && !(cost < cost_before)) { // too far: half way back, at most a few times
             if (cost > 1.0001 * cost_before && i < iterations) {
@@ -298,11 +298,11 @@ void Problem::quick_fit(const Problem &base, int iterations) {
         Eigen::MatrixXd system = normal;
         system.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(all, 1e-12);
         const Eigen::VectorXd moment = jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta);
-        theta += bounded_step(system, moment);
+        theta += active_set_step(system, moment);
     }
 }
 
-Eigen::VectorXd Problem::bounded_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const {
+Eigen::VectorXd Problem::active_set_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const {
     const Eigen::Index n = theta.size();
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
     std::vector<Eigen::Index> open;
@@ -337,28 +337,28 @@ Eigen::VectorXd Problem::bounded_step(const Eigen::MatrixXd &normal, const Eigen
     return step;
 }
 
-void Problem::settle() {
-    if (!settled_ || settled_at_ != theta) forward_.set_base(physics());
-    settled_ = true;
-    settled_at_ = theta;
+void Problem::update_residual() {
+    if (!has_base_ || base_theta_ != theta) forward_.set_base(physics());
+    has_base_ = true;
+    base_theta_ = theta;
     residual = measured_ - forward_.base();
 }
 
-void Problem::polish(int fresh) {
+void Problem::gauss_newton(int fresh) {
     constexpr int steps = 5;      // with the same sensitivities
     constexpr double worth = 0.3; // fall of the cost below which a step is the last: well below one squared standard deviation
     const Eigen::VectorXd precision = prior_precision();
     if (jacobian.rows() != measured_.size() || jacobian.cols() != theta.size()) linearise(), --fresh;
     for (;; --fresh) {
-        const Felt felt(*data_, jacobian);
-        Eigen::MatrixXd normal = felt.gram();
+        const SparseJacobian sparse(*data_, jacobian);
+        Eigen::MatrixXd normal = sparse.gram();
         normal.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(theta.size(), 1e-12);
         const Eigen::VectorXd start = theta;
         const double first = residual.cwiseProduct(row_scale).squaredNorm() + theta.cwiseAbs2().dot(precision);
         double best = first;
         for (int i = 0; i < steps; ++i) {
             const Eigen::VectorXd before = theta, residual_before = residual;
-            theta += bounded_step(normal, felt.moment(residual.cwiseProduct(row_scale)) - precision.cwiseProduct(theta));
+            theta += active_set_step(normal, sparse.moment(residual.cwiseProduct(row_scale)) - precision.cwiseProduct(theta));
             double now = cost();
             for (int halving = 0; halving < 3 && !(now < best); ++halving) theta = 0.5 * (theta + before), now = cost();
             if (!(now < best)) {
@@ -371,7 +371,7 @@ void Problem::polish(int fresh) {
         }
         const Eigen::VectorXd moved = theta - start;
         if (fresh <= 0 || moved.dot(normal * moved) < 0.1)
-            return settle(); // a third of a standard deviation: the sensitivities serve there too
+            return update_residual(); // a third of a standard deviation: the sensitivities serve there too
         linearise();
         if (first - best < worth) return;
     }
@@ -381,15 +381,15 @@ void Problem::fit(const FitOptions &options) {
     if (data_->count < 3 || measured_.size() == 0) return;
     jacobian.resize(0, 0);
     if (options.reweight) {
-        settle();
+        update_residual();
         set_scales();
-        polish(options.thorough ? 2 : 1); // Ceres then starts where the quick steps end: from far away it may end at a bound
+        gauss_newton(options.thorough ? 2 : 1); // Ceres then starts where the quick steps end: from far away it may end at a bound
         set_scales();
     }
     if (options.thorough)
         solve(options.iterations);
     else
-        polish(options.iterations);
+        gauss_newton(options.iterations);
 }
 
 double Problem::balance_rms(std::size_t b, bool in_noise) const {

@@ -2,7 +2,9 @@
 //
 // Sensitivities are structured finite differences of the stages that a parameter touches only (forward.h); those of the motion come
 // from a linear recursion beside it (tangent.cpp).
-// Every balance is scaled by max(its noise, its own residual): what the model cannot explain in a channel must not drown the others.
+// Scales: the variance of a row is a non-negative sum of its constant part and of five that follow the drive (row_variance in problem.cpp),
+// fitted to its balance's residual and never below the row's measurement noise: what the model cannot explain in a channel must not drown
+// the others. Huber weights beyond three scales.
 #pragma once
 
 #include "host_tools/lab/forward/forward.h"
@@ -42,8 +44,8 @@ class Problem {
     std::vector<double> sigma; // per balance: scale in use
     Eigen::VectorXd prior_precision() const;
 
-    Eigen::VectorXd noise_rows() const; // measurement noise of each row
-    Eigen::VectorXd doubt_rows() const; // Balance::doubt of each row
+    Eigen::VectorXd noise_rows() const;          // measurement noise of each row
+    Eigen::VectorXd smoothing_bias_rows() const; // Balance::smoothing_bias of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
     Eigen::VectorXd scaled_residual(const Physics &at,
@@ -58,7 +60,7 @@ class Problem {
 
     // Gauss-Newton with the scales as they are: sensitivities are computed afresh at most `fresh` times, and serve for several steps
     // each. Leaves the problem linearised at its optimum.
-    void polish(int fresh);
+    void gauss_newton(int fresh);
 
     // Keeps the scales of another problem on the same data, so that their errors compare.
     void keep_scales(const Problem &other);
@@ -69,20 +71,20 @@ class Problem {
   private:
     friend class RowsCost;
     void set_scales();                                  // the Jacobian, if there is one, is scaled anew
-    void settle();                                      // prediction and residual at the present increments; the Jacobian stays
+    void update_residual();                             // prediction and residual at the present increments; the Jacobian stays
     double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
     Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
-    // Gauss-Newton step that keeps within the bounds: what would leave them is held there, the others solve without it.
-    Eigen::VectorXd bounded_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
+    // Gauss-Newton step by an active set: what would leave its bound is held there, the others solve without it.
+    Eigen::VectorXd active_set_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
 
     const Dataset *data_;
     Physics base_;
     Forward forward_;
     Eigen::VectorXd measured_;
-    bool settled_ = false; // the forward model has a base, at these increments:
-    Eigen::VectorXd settled_at_;
+    bool has_base_ = false; // the forward model has a base, at:
+    Eigen::VectorXd base_theta_;
 };
 
 } // namespace traction::lab

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 namespace traction::lab {
@@ -164,13 +163,14 @@ double crossing(const std::function<double(double, Eigen::VectorXd &, bool)> &ri
 }
 
 // Walks from the best value outwards until the rise passes the limit, a bound stops it, or it has gone as far as is sensible.
-Side walk(Held &held, double best_cost, const FreeParameter &p, double increment, double error, double reach, int sign, Profile &out) {
+Side walk(Held &held, double best_cost, const FreeParameter &p, double increment, double error, double search_range, int sign,
+          Profile &out) {
     const auto rise_at = [&](double x, Eigen::VectorXd &theta, bool fresh) {
         return std::max(0.0, (held.cost(x, theta, fresh) - best_cost) / out.dispersion);
     };
     const double bound = sign > 0 ? p.maximum - p.base : p.minimum - p.base;
     const bool bounded = std::isfinite(bound);
-    const double far = bounded ? bound : increment + sign * reach;
+    const double far = bounded ? bound : increment + sign * search_range;
     if (sign * (far - increment) <= 1e-12 * std::fabs(far)) return {p.base + far, false, bounded}; // stands at its bound
     double step = std::min(0.5 * error, std::fabs(far - increment) / 8), x = increment, rise = 0;
     Eigen::VectorXd theta = held.start();
@@ -207,10 +207,10 @@ Profile profile_one(Problem &best, const Model &model, Eigen::Index i, double er
     const double ratio = error / white_error;
     out.dispersion = std::isfinite(ratio) && ratio > 0 ? std::clamp(ratio * ratio, 0.25, 1e4) : 1;
     const double held_error = 1 / std::max(1e-12, best.jacobian.col(i).norm()); // were all the others known
-    const double reach = std::max({10 * std::fabs(out.value), 40 * held_error, 5 * std::min(error, 1e4 * held_error)});
+    const double search_range = std::max({10 * std::fabs(out.value), 40 * held_error, 5 * std::min(error, 1e4 * held_error)});
     Held held(best, model, i);
-    const Side low = walk(held, best_cost, p, best.theta[i], error, reach, -1, out),
-               high = walk(held, best_cost, p, best.theta[i], error, reach, 1, out);
+    const Side low = walk(held, best_cost, p, best.theta[i], error, search_range, -1, out),
+               high = walk(held, best_cost, p, best.theta[i], error, search_range, 1, out);
     out.low = low.end, out.low_open = low.open, out.low_at_bound = low.at_bound;
     out.high = high.end, out.high_open = high.open, out.high_at_bound = high.at_bound;
     out.x.push_back(out.value), out.rise.push_back(0);
@@ -262,7 +262,7 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const std::vector<ParameterError> errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();
-    for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's whisper
+    for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's ridge
     const Eigen::VectorXd white =
         normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0).cwiseSqrt();
     const double best_cost = best.cost();
@@ -270,50 +270,6 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     std::vector<Profile> out;
     for (const Eigen::Index i : list)
         out.push_back(profile_one(best, model, i, errors[static_cast<std::size_t>(i)].standard, white[i], best_cost));
-    return out;
-}
-
-std::string profile_text(const std::vector<Profile> &profiles) {
-    std::string text = "profile likelihood: rise of the misfit over the design effect phi, 95 % at 3.84\n";
-    char line[400];
-    std::snprintf(line, sizeof line, "%-40s %11s %25s %25s %6s  %s\n", "parameter", "best", "profile 95 %", "Wald 95 %", "phi", "verdict");
-    text += line;
-    for (const Profile &p : profiles) {
-        const auto end = [](double value, bool open, bool at_bound) {
-            char number[40];
-            std::snprintf(number, sizeof number, "%s%.5g%s", open ? "beyond " : "", value, at_bound ? " (bound)" : "");
-            return std::string(number);
-        };
-        std::string interval = "[";
-        interval.append(end(p.low, p.low_open, p.low_at_bound)).append(", ").append(end(p.high, p.high_open, p.high_at_bound)).append("]");
-        char wald[64];
-        std::snprintf(wald, sizeof wald, "[%.5g, %.5g]", p.wald_low, p.wald_high);
-        std::snprintf(line, sizeof line, "%-40s %11.5g %25s %25s %6.1f  %s %s\n", p.parameter.c_str(), p.value, interval.c_str(), wald,
-                      p.dispersion, p.verdict.c_str(), p.unit == "1" ? "" : p.unit.c_str());
-        text += line;
-    }
-    return text;
-}
-
-nlohmann::json profile_json(const std::vector<Profile> &profiles) {
-    const auto finite = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); };
-    nlohmann::json out = nlohmann::json::array();
-    for (const Profile &p : profiles)
-        out.push_back({{"parameter", p.parameter},
-                       {"unit", p.unit},
-                       {"value", finite(p.value)},
-                       {"low", finite(p.low)},
-                       {"high", finite(p.high)},
-                       {"low_open", p.low_open},
-                       {"high_open", p.high_open},
-                       {"low_at_bound", p.low_at_bound},
-                       {"high_at_bound", p.high_at_bound},
-                       {"wald_low", finite(p.wald_low)},
-                       {"wald_high", finite(p.wald_high)},
-                       {"dispersion", finite(p.dispersion)},
-                       {"verdict", p.verdict},
-                       {"x", p.x},
-                       {"rise", p.rise}});
     return out;
 }
 

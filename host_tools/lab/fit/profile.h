@@ -10,8 +10,6 @@
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/model/model.h"
 
-#include <nlohmann/json.hpp>
-
 #include <string>
 #include <vector>
 
@@ -33,8 +31,5 @@ struct Profile {
 // Fits the model and profiles the wanted parameters: "slip_sinkage", "slip_sinkage.coefficient", "motor.resistance_ohm"; none: every
 // strength of the model's effects. Throws ModelError for a name that is not free in this model, or when there is none.
 std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data, const std::vector<std::string> &wanted);
-
-std::string profile_text(const std::vector<Profile> &profiles);
-nlohmann::json profile_json(const std::vector<Profile> &profiles);
 
 } // namespace traction::lab

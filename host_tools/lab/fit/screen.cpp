@@ -9,7 +9,7 @@
 namespace traction::lab {
 
 namespace {
-constexpr double heldout_block_s = 5.0; // LAB.md section 2
+constexpr double heldout_block_s = 5.0; // docs/evidence.md section 4
 constexpr double test_block_s = 2.5;
 constexpr double fewest_blocks = 10; // shorter logs are cut finer
 constexpr double most_heldout = 4;   // a block's held-out error counts up to so many times its error in the fit: beyond, the linear
@@ -25,14 +25,14 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
     const Eigen::Index n = leading < 0 ? problem.theta.size() : leading;
     const Eigen::VectorXd theta = problem.theta.head(n);
     nuisance_ = problem.jacobian.leftCols(n);
-    felt_ = Felt(problem.data(), nuisance_);
+    sparse_ = SparseJacobian(problem.data(), nuisance_);
     residual_ = problem.residual.cwiseProduct(problem.row_scale);
     precision_ = problem.prior_precision().head(n);
-    // a parameter that the data do not see and no prior holds would make the system singular: a whisper holds it
+    // a parameter that the data do not see and no prior holds would make the system singular: a ridge (Tikhonov) holds it
     for (Eigen::Index j = 0; j < n; ++j) precision_[j] = std::max(precision_[j], 1e-9 * (1 + nuisance_.col(j).squaredNorm()));
     pull_ = -precision_.cwiseProduct(theta);
-    doubt_ = problem.doubt_rows().cwiseProduct(problem.row_scale);
-    doubt_moment_ = felt_.moment(doubt_);
+    bias_ = problem.smoothing_bias_rows().cwiseProduct(problem.row_scale);
+    bias_moment_ = sparse_.moment(bias_);
     cut();
     total_ = precision_.asDiagonal();
     moment_ = pull_;
@@ -91,13 +91,13 @@ void Screen::cut() {
     for (std::size_t i = 0; i < segments_.size(); ++i) {
         Segment &s = segments_[i];
         s.fine = fine.at(place[i].first), s.coarse = coarse.at(place[i].second);
-        const Felt::Part &felt = felt_.parts()[s.balance];
-        const auto N = felt.value.middleRows(s.first - felt.first, s.size);
+        const SparseJacobian::Part &sparse = sparse_.parts()[s.balance];
+        const auto N = sparse.value.middleRows(s.first - sparse.first, s.size);
         const auto r = residual_.segment(s.first, s.size);
         const Eigen::MatrixXd gram = N.transpose() * N;
         const Eigen::VectorXd moment = N.transpose() * r;
-        fine_.gram[s.fine](felt.column, felt.column) += gram, coarse_.gram[s.coarse](felt.column, felt.column) += gram;
-        fine_.moment[s.fine](felt.column) += moment, coarse_.moment[s.coarse](felt.column) += moment;
+        fine_.gram[s.fine](sparse.column, sparse.column) += gram, coarse_.gram[s.coarse](sparse.column, sparse.column) += gram;
+        fine_.moment[s.fine](sparse.column) += moment, coarse_.moment[s.coarse](sparse.column) += moment;
         fine_.squares[s.fine] += r.squaredNorm(), coarse_.squares[s.coarse] += r.squaredNorm();
     }
 }
@@ -113,14 +113,14 @@ void Screen::parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) con
     const Eigen::Index k = columns.cols();
     Eigen::VectorXd nc;
     for (const Segment &s : segments_) {
-        const Felt::Part &felt = felt_.parts()[s.balance];
-        const auto N = felt.value.middleRows(s.first - felt.first, s.size);
+        const SparseJacobian::Part &sparse = sparse_.parts()[s.balance];
+        const auto N = sparse.value.middleRows(s.first - sparse.first, s.size);
         const auto r = residual_.segment(s.first, s.size);
         for (Eigen::Index j = 0; j < k; ++j) {
             const auto c = columns.col(j).segment(s.first, s.size);
             if ((c.array() == 0).all()) continue; // most effects leave most balances alone
             nc.noalias() = N.transpose() * c;
-            fine.nc[s.fine].col(j)(felt.column) += nc, coarse.nc[s.coarse].col(j)(felt.column) += nc;
+            fine.nc[s.fine].col(j)(sparse.column) += nc, coarse.nc[s.coarse].col(j)(sparse.column) += nc;
             const double mc = c.dot(r);
             fine.mc[s.fine][j] += mc, coarse.mc[s.coarse][j] += mc;
             for (Eigen::Index i = 0; i <= j; ++i) {
@@ -135,15 +135,15 @@ void Screen::parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) con
 class Screen::LeaveOut {
   public:
     LeaveOut(const Blocks &blocks, const Part &part, const Eigen::MatrixXd &nc, const Eigen::MatrixXd &cc, const Eigen::VectorXd &mc,
-             const Eigen::VectorXd &whisper)
-        : blocks_(blocks), part_(part), nc_(nc), cc_(cc), mc_(mc), whisper_(whisper) {}
+             const Eigen::VectorXd &ridge)
+        : blocks_(blocks), part_(part), nc_(nc), cc_(cc), mc_(mc), ridge_(ridge) {}
 
     const Eigen::VectorXd &strength(std::size_t b) {
         half_ = nc_ - part_.nc[b];
         blocks_.without[b].matrixL().solveInPlace(half_);
         schur_ = cc_ - part_.cc[b];
         schur_.noalias() -= half_.transpose() * half_;
-        schur_.diagonal() += whisper_;
+        schur_.diagonal() += ridge_;
         gamma = mc_ - part_.mc[b];
         gamma.noalias() -= half_.transpose() * blocks_.half[b];
         if (gamma.size() == 1)
@@ -166,7 +166,7 @@ class Screen::LeaveOut {
     const Blocks &blocks_;
     const Part &part_;
     const Eigen::MatrixXd &nc_, &cc_;
-    const Eigen::VectorXd &mc_, &whisper_;
+    const Eigen::VectorXd &mc_, &ridge_;
     Eigen::MatrixXd half_, schur_;
     Eigen::VectorXd delta_;
     Eigen::LDLT<Eigen::MatrixXd> factor_;
@@ -181,34 +181,35 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     Eigen::VectorXd mc = Eigen::VectorXd::Zero(k);
     for (std::size_t b = 0; b < fine.nc.size(); ++b) nc += fine.nc[b], cc += fine.cc[b], mc += fine.mc[b];
 
-    const Eigen::MatrixXd absorb = total_factor_.solve(nc); // what the baseline does in the candidate's stead
-    Eigen::MatrixXd schur = cc - nc.transpose() * absorb;
+    const Eigen::MatrixXd projection = total_factor_.solve(nc); // coefficients of the candidate's projection onto the nuisance parameters
+    Eigen::MatrixXd schur = cc - nc.transpose() * projection;
     out.strength = Eigen::VectorXd::Zero(k);
     out.standard_error = Eigen::VectorXd::Constant(k, std::numeric_limits<double>::infinity());
     out.change = Eigen::VectorXd::Zero(n);
     out.block_gain = Eigen::VectorXd::Zero(coarse_.count());
     const double own = cc.trace();
     out.column_norm = std::sqrt(cc(0, 0));
-    if (!(own > 0) || !(schur.diagonal().minCoeff() > 1e-9 * cc.diagonal().maxCoeff())) return out; // absorbed, or not seen at all
+    if (!(own > 0) || !(schur.diagonal().minCoeff() > 1e-9 * cc.diagonal().maxCoeff()))
+        return out; // collinear with the nuisance parameters, or without effect
     out.information = schur.trace() / own;
     // a coefficient that the data barely see (a knot without samples) must not blow up
     for (Eigen::Index j = 0; j < k; ++j) schur(j, j) += 1e-9 * schur.diagonal().maxCoeff();
     const Eigen::LLT<Eigen::MatrixXd> schur_factor(schur);
-    out.strength = schur_factor.solve(mc - absorb.transpose() * moment_);
-    out.fall = out.strength.dot(schur * out.strength);
+    out.strength = schur_factor.solve(mc - projection.transpose() * moment_);
+    out.error_reduction = out.strength.dot(schur * out.strength);
     out.change = total_factor_.solve(moment_ - nc * out.strength);
     if (!out.strength.allFinite()) {
         out.strength.setZero();
         return out;
     }
 
-    const Eigen::VectorXd whisper = 1e-6 * schur.diagonal();
+    const Eigen::VectorXd ridge = 1e-6 * schur.diagonal();
     // jackknife over the fine blocks
     const Eigen::Index count = fine_.count();
     Eigen::MatrixXd deviation(k, count);
     Eigen::VectorXd weight(count);
-    const Eigen::VectorXd a0 = absorb.col(0);
-    LeaveOut without_fine(fine_, fine, nc, cc, mc, whisper);
+    const Eigen::VectorXd a0 = projection.col(0);
+    LeaveOut without_fine(fine_, fine, nc, cc, mc, ridge);
     for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
         deviation.col(b) = without_fine.strength(i) - out.strength;
@@ -216,14 +217,14 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     }
     const double scale = static_cast<double>(count - 1) / static_cast<double>(count);
     Eigen::MatrixXd covariance = scale * deviation * deviation.transpose();
-    const Eigen::MatrixXd by_prior = schur_factor.solve(absorb.transpose()); // d strength / d (precision * prior mean)
+    const Eigen::MatrixXd by_prior = schur_factor.solve(projection.transpose()); // d strength / d (precision * prior mean)
     const Eigen::MatrixXd prior_part = by_prior * precision_.asDiagonal() * by_prior.transpose();
-    const double blocks_that_inform = weight.squaredNorm() > 0 ? weight.sum() * weight.sum() / weight.squaredNorm() : 1;
+    const double effective_blocks = weight.squaredNorm() > 0 ? weight.sum() * weight.sum() / weight.squaredNorm() : 1;
     const double data_part = covariance.trace();
     covariance += prior_part;
-    const Eigen::VectorXd by_doubt =
-        schur_factor.solve(columns.transpose() * doubt_ - absorb.transpose() * doubt_moment_); // what the smoothing alone would pass for
-    covariance += by_doubt * by_doubt.transpose();
+    const Eigen::VectorXd by_bias = schur_factor.solve(
+        columns.transpose() * bias_ - projection.transpose() * bias_moment_); // what the bias of the smoothing alone would pass for
+    covariance += by_bias * by_bias.transpose();
     // never below what white residuals of unit scale would give
     const Eigen::MatrixXd least = schur_factor.solve(Eigen::MatrixXd::Identity(k, k));
     for (Eigen::Index j = 0; j < k; ++j)
@@ -232,7 +233,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     // at least 5 after the strengths are counted: the jackknife is conservative already where one block carries the evidence (assumed;
     // clean logs stay silent with it)
     const double freedom =
-        std::clamp((blocks_that_inform - 1) * share * share, std::min(4.0 + static_cast<double>(k), static_cast<double>(count)),
+        std::clamp((effective_blocks - 1) * share * share, std::min(4.0 + static_cast<double>(k), static_cast<double>(count)),
                    std::max(4.0 + static_cast<double>(k), static_cast<double>(count - 1)));
     out.standard_error = covariance.diagonal().cwiseSqrt();
     const Eigen::VectorXd whole = out.strength + present;
@@ -242,7 +243,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     out.freedom = freedom;
 
     // held-out error by the coarse blocks
-    LeaveOut without_coarse(coarse_, coarse, nc, cc, mc, whisper);
+    LeaveOut without_coarse(coarse_, coarse, nc, cc, mc, ridge);
     for (Eigen::Index b = 0; b < coarse_.count(); ++b) {
         const auto i = static_cast<std::size_t>(b);
         without_coarse.strength(i);
@@ -250,8 +251,8 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
         out.block_gain[b] = block_error_[b] - std::min(most_heldout * rr, error);
     }
     const Eigen::VectorXd final_theta = problem_.theta.head(n) + out.change;
-    out.relief = base_penalty_ - final_theta.cwiseProduct(final_theta).dot(precision_);
-    out.gain = out.block_gain.sum() + out.relief;
+    out.prior_reduction = base_penalty_ - final_theta.cwiseProduct(final_theta).dot(precision_);
+    out.gain = out.block_gain.sum() + out.prior_reduction;
     out.gain_error = sum_error(out.block_gain);
     out.strength = whole;
     if (full) out.projected = projected(columns.col(0), a0);
@@ -259,23 +260,23 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
 }
 
 Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column) const {
-    return projected(column, total_factor_.solve(felt_.moment(column)));
+    return projected(column, total_factor_.solve(sparse_.moment(column)));
 }
 
-Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const {
-    Eigen::VectorXd out(column.size() + absorb.size());
-    out << column - nuisance_ * absorb, -precision_.cwiseSqrt().cwiseProduct(absorb);
+Eigen::VectorXd Screen::projected(const Eigen::VectorXd &column, const Eigen::VectorXd &projection) const {
+    Eigen::VectorXd out(column.size() + projection.size());
+    out << column - nuisance_ * projection, -precision_.cwiseSqrt().cwiseProduct(projection);
     return out;
 }
 
-double Screen::error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const {
+double Screen::profiled_error(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const {
     const Eigen::Index n = nuisance_.cols();
-    const Eigen::VectorXd theta = problem_.theta.head(n), moment = felt_.moment(scaled_residual) + pull_;
+    const Eigen::VectorXd theta = problem_.theta.head(n), moment = sparse_.moment(scaled_residual) + pull_;
     change = total_factor_.solve(moment);
     return scaled_residual.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment.dot(change);
 }
 
-bool Screen::frees(const Eigen::VectorXd &change) const {
+bool Screen::leaves_active_set(const Eigen::VectorXd &change) const {
     for (Eigen::Index i = 0; i < nuisance_.cols(); ++i) {
         const double theta = problem_.theta[i], prior = problem_.parameters[static_cast<std::size_t>(i)].prior;
         if (prior > 0 && problem_.at_bound(static_cast<std::size_t>(i)) && theta * change[i] < 0 && std::fabs(change[i]) > prior)
@@ -334,7 +335,7 @@ std::vector<ParameterError> Screen::parameter_errors() const {
     std::vector<ParameterError> errors = parameter_errors_by(fine_);
     const std::vector<ParameterError> by_long = parameter_errors_by(coarse_);
     for (std::size_t j = 0; j < errors.size(); ++j)
-        if (by_long[j].reach > errors[j].reach) errors[j] = by_long[j];
+        if (by_long[j].half_width > errors[j].half_width) errors[j] = by_long[j];
     return errors;
 }
 
@@ -342,7 +343,7 @@ std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of)
     const Eigen::Index n = nuisance_.cols(), count = blocks_of.count();
     const Eigen::VectorXd whole = total_factor_.solve(moment_);
     const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(n, n));
-    const Eigen::VectorXd by_doubt = inverse * doubt_moment_;
+    const Eigen::VectorXd by_bias = inverse * bias_moment_;
     Eigen::MatrixXd deviation(n, count), information(n, count); // information: of a parameter beside the others, per block
     for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
@@ -353,7 +354,7 @@ std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of)
     for (Eigen::Index j = 0; j < n; ++j) {
         const double by_data = deviation.row(j).squaredNorm() * static_cast<double>(count - 1) / static_cast<double>(count);
         const double by_prior = inverse.row(j).cwiseAbs2().dot(precision_); // d theta / d prior mean = inverse * precision
-        const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j)) + by_doubt[j] * by_doubt[j];
+        const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j)) + by_bias[j] * by_bias[j];
         const double blocks =
             information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;
         const double share = by_data > 0 ? (by_data + by_prior) / by_data : 1e3;

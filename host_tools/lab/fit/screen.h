@@ -1,12 +1,14 @@
 // screen.h - the statistics of one candidate against one baseline fit, from Gram matrices kept per time block.
 //
-// One linear step from the baseline: columns of the candidate, projected off what the baseline can absorb (its parameters with
-// their priors). Held-out error by leaving out 5 s blocks; the test by leaving out 2.5 s blocks (jackknife, i.e. cluster-robust
-// with leverage correction), the priors' own uncertainty added; degrees of freedom from how many blocks inform it.
+// One linear step from the baseline: the candidate's columns, orthogonal to the nuisance parameters (the model's own, with their priors).
+// Cross-validation over 5 s blocks gives the held-out error; the delete-one-block jackknife over 2.5 s blocks the covariance
+// (cluster-robust, leverage included), to which the priors' own variance and the bias of the smoothing are added; the F test's denominator
+// has the effective number of blocks that inform the candidate. A log shorter than ten blocks is cut finer; rows of a table of trials are
+// blocks each.
 #pragma once
 
-#include "felt.h"
 #include "problem.h"
+#include "sparse_jacobian.h"
 
 #include <Eigen/Dense>
 
@@ -21,21 +23,21 @@ struct Assessment {
     Eigen::VectorXd strength; // estimate, what is present included
     Eigen::VectorXd standard_error;
     Eigen::VectorXd change;     // of the baseline's parameters, with the candidate in
-    double fall = 0;            // of the error on all rows, in squared units of scale
+    double error_reduction = 0; // of all rows, in squared units of scale
     double gain = 0;            // fall of the held-out error incl. priors, in squared units of scale
     double gain_error = 0;      // its standard error over blocks
-    double relief = 0;          // part of the gain that is relief of priors
+    double prior_reduction = 0; // part of the gain that is fall of the priors' penalty
     double p_value = 1;         // of the robust F test, not corrected
     double column_norm = 0;     // size of the first column alone: what one unit changes, in standard deviations
     double freedom = 1;         // degrees of freedom of the test's denominator
-    double information = 0;     // share of the candidate's column that the baseline cannot absorb
+    double information = 0;     // share of the candidate's columns orthogonal to the nuisance parameters
     Eigen::VectorXd block_gain; // held-out fall per 5 s block
     Eigen::VectorXd projected;  // column (first strength) after projection, for cosines
 };
 
 struct ParameterError {
-    double standard = 0; // standard error
-    double reach = 0;    // half of the 95 % interval: Student's t with the parameter's own degrees of freedom
+    double standard = 0;   // standard error
+    double half_width = 0; // half of the 95 % interval: Student's t with the parameter's own degrees of freedom
 };
 
 class Screen {
@@ -48,13 +50,14 @@ class Screen {
     // full: also fills `projected`.
     Assessment assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd &present, bool full) const;
 
-    // The column off which the baseline's share is taken, and what that costs its priors: for cosines.
+    // The column orthogonal to the nuisance parameters, the priors' rows below it: for cosines.
     Eigen::VectorXd projected(const Eigen::VectorXd &column) const;
 
-    // Error on all rows with this scaled residual, after what the baseline's parameters would then absorb: for a candidate moved alone.
-    double error_absorbed(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const;
-    // Does this change of the baseline's parameters bring one back by more than its prior's deviation that lies at its bound?
-    bool frees(const Eigen::VectorXd &change) const;
+    // Error on all rows with this scaled residual, minimised over the nuisance parameters (profiled): for a candidate moved alone.
+    // `change`: theirs.
+    double profiled_error(const Eigen::VectorXd &scaled_residual, Eigen::VectorXd &change) const;
+    // Does this change of the baseline's parameters take one out of the active set (off its bound) by more than its prior's deviation?
+    bool leaves_active_set(const Eigen::VectorXd &change) const;
     // Largest relative fall of one balance's error on all rows, by the linear step.
     double best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const;
     double error() const { return error_; }              // on all rows, priors included, at the baseline's optimum
@@ -94,18 +97,18 @@ class Screen {
     void cut();
     void factor(Blocks &blocks) const;
     void parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) const;
-    Eigen::VectorXd projected(const Eigen::VectorXd &column, const Eigen::VectorXd &absorb) const;
+    Eigen::VectorXd projected(const Eigen::VectorXd &column, const Eigen::VectorXd &projection) const;
     std::vector<ParameterError> parameter_errors_by(const Blocks &blocks) const;
 
     const Problem &problem_;
     std::vector<Segment> segments_;
     Eigen::MatrixXd nuisance_;
-    Felt felt_;                            // the same
-    Eigen::VectorXd residual_;             // scaled
-    Eigen::VectorXd moment_;               // N' r + pull
-    Eigen::VectorXd doubt_, doubt_moment_; // of the smoothing, scaled; N' doubt
-    Eigen::VectorXd precision_;            // of the priors
-    Eigen::VectorXd pull_;                 // -precision * theta
+    SparseJacobian sparse_;              // the same
+    Eigen::VectorXd residual_;           // scaled
+    Eigen::VectorXd moment_;             // N' r + pull
+    Eigen::VectorXd bias_, bias_moment_; // of the smoothing, scaled; N' bias
+    Eigen::VectorXd precision_;          // of the priors
+    Eigen::VectorXd pull_;               // -precision * theta
     Eigen::MatrixXd total_;
     Eigen::LLT<Eigen::MatrixXd> total_factor_;
     Blocks fine_, coarse_;

@@ -13,9 +13,6 @@ constexpr double friction_speed_rad_s = 0.05; // friction reverses over this spe
 constexpr double bridge_current_A = 0.01;     // the bridge's dead time reverses over this current at least: assumed
 constexpr double voltage_part_s =
     0.01; // dead time bends the voltage balance: it is taken over parts of a row as long as this, a control tick
-constexpr double copper_per_K = 0.0039; // resistance of copper
-constexpr double magnet_per_K = -0.002; // flux of ferrite magnets
-constexpr double tilt_lag_s = 0.1;      // suspension's lag, the catalogue's
 
 bool has_electric_terms(const Physics &physics) {
     return std::any_of(physics.terms.begin(), physics.terms.end(),
@@ -95,9 +92,8 @@ void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t b
     const Dataset &d = *data_;
     const Balance &b = d.balance[balance];
     const WheelPhysics &p = physics.wheel[wheel];
-    const std::vector<double> voltage =
-        voltage_parts(balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
-    const double offset = p.current_offset + p.current_extra, last = static_cast<double>(d.count - 2);
+    const std::vector<double> voltage = voltage_parts(balance, physics.body.current_delay, command_delay_s(physics.body));
+    const double offset = sim::law::current_offset(p.current_offset0, p.current_offset_A), last = static_cast<double>(d.count - 2);
     std::size_t at = 0;
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const std::size_t parts = parts_of(b.t1_s[r] - b.t0_s[r]);
@@ -110,8 +106,9 @@ void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t b
             const double f = x - static_cast<double>(k);
             const double per_V = electric_.per_V[k] + f * (electric_.per_V[k + 1] - electric_.per_V[k]),
                          lost = electric_.lost[k] + f * (electric_.lost[k + 1] - electric_.lost[k]);
-            const double free = per_V * voltage[at] - lost - offset, most = per_V * (1 + physics.body.voltage_gain) * p.dead_voltage;
-            taken += most * std::clamp(free / std::max(std::fabs(most), bridge_current_A), -1.0, 1.0);
+            const double free = per_V * voltage[at] - lost - offset,
+                         most = per_V * sim::law::voltage_gain(1, physics.body.voltage_gain) * p.dead_voltage_V;
+            taken += sim::law::bridge_dead_time_V(most, free, bridge_current_A);
         }
         rows[static_cast<Eigen::Index>(r)] -= taken / static_cast<double>(parts);
     }
@@ -128,15 +125,15 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     const std::size_t balance = balance_of(BalanceKind::current_torque, wheel);
     if (balance == data_->balance.size()) return;
     const WheelPhysics &p = physics.wheel[wheel];
-    const double radius = p.radius * (1 + p.radius_change), KG = p.KG * (1 + p.constant_change);
+    const double radius = rolling_radius(p), KG = sim::motor_constant(p.KG, p, 0), factor = sim::law::current_gain(1, p.current_gain);
     if (!(KG > 0)) return;
-    const double per_N = (1 + p.current_gain) * radius / KG;
+    const double per_N = factor * radius / KG, by_load = sim::load_friction_Nm(p, 1); // in proportion: its slope
     const std::vector<double> &now = motion.wheel[wheel].traction_N, &before = base_motion_.wheel[wheel].traction_N;
     series_.resize(data_->count);
     for (std::size_t k = 0; k < data_->count; ++k) {
         series_[k] = per_N * (now[k] - before[k]);
-        if (p.mesh != 0)
-            series_[k] += per_N * p.mesh * (std::fabs(now[k]) - std::fabs(before[k])) *
+        if (by_load != 0)
+            series_[k] += per_N * by_load * (std::fabs(now[k]) - std::fabs(before[k])) *
                           soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
         if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
     }
@@ -147,13 +144,13 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
     const Dataset &d = *data_;
     const WheelInput &in = d.wheel[wheel];
     const Motion::Wheel &m = motion.wheel[wheel];
-    const double gain = 1 / (1 - std::min(0.9, physics.wheel[wheel].encoder_missed));
+    const double gain = count_gain(physics.wheel[wheel]);
     Signals s;
     s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k],
     s.theta = gain * in.angle_rad[k];
     s.x = motion.path_m[k] + physics.wheel[wheel].x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k],
     s.r = motion.yaw_rate_rad_s[k];
-    s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / (1 + physics.body.voltage_gain);
+    s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / sim::law::voltage_gain(1, physics.body.voltage_gain);
     s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = s.Ia = s.Is = 0;
     for (std::size_t j = 0; j < base_current_.size(); ++j) {
         if (j == wheel || base_current_[j].size() != d.count) continue;
@@ -170,7 +167,7 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
     const WheelPhysics &p = physics.wheel[wheel];
     const WheelInput &in = d.wheel[wheel];
     const std::vector<double> &traction = motion.wheel[wheel].traction_N;
-    const double gain = 1 / (1 - std::min(0.9, p.encoder_missed)), radius = p.radius * (1 + p.radius_change);
+    const double gain = count_gain(p), radius = rolling_radius(p);
     std::vector<const ExtraTerm *> terms;
     for (const ExtraTerm &term : physics.terms)
         if ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel)))
@@ -180,18 +177,13 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
     double heat_K = 0;
     for (std::size_t k = 0; k < d.count; ++k) {
         const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
-        const double constant = (1 + p.constant_change) * (1 + magnet_per_K * heat_K);
-        double KG = p.KG * constant, ke = p.ke * constant, Ra = p.Ra * (1 + copper_per_K * heat_K), u_lost = 0;
-        double friction = (p.b + p.viscous) * std::fabs(w) + p.t0 + p.coulomb;
-        if (p.stribeck != 0) friction += p.stribeck * std::exp(-(w / p.stribeck_speed) * (w / p.stribeck_speed));
-        if (p.mesh != 0) friction += p.mesh * std::fabs(radius * traction[k]);
+        double KG = sim::motor_constant(p.KG, p, heat_K), ke = sim::motor_constant(p.ke, p, heat_K);
+        double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
+        const double viscous = sim::viscous_friction_Nm(p.b, p, std::fabs(w)), angle = gain * in.angle_rad[k];
+        const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k]);
         const double side = soft_sign(w, friction_speed_rad_s);
-        double gear = friction * side, current_factor = 1 + p.current_gain;
-        if (p.ripple_cos != 0 || p.ripple_sin != 0) {
-            const double angle = std::fabs(p.ripple_order) * gain * in.angle_rad[k];
-            const double ripple = p.ripple_cos * std::cos(angle) + p.ripple_sin * std::sin(angle);
-            gear += p.ripple_order < 0 ? ripple * side : ripple; // negative order: a friction that varies over the turn
-        }
+        double gear = friction * side, current_factor = sim::law::current_gain(1, p.current_gain);
+        gear += sim::periodic_Nm<law::Library>(p, angle, false) + sim::periodic_Nm<law::Library>(p, angle, true) * side;
         if (!terms.empty()) {
             Signals s = signals_of(physics, motion, wheel, k);
             s.I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
@@ -214,12 +206,12 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
         const double I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
         current[k] = I;
         out.shaft[k] = radius * traction[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
-        const double I_read = current_factor * I + p.current_offset + p.current_extra;
+        const double I_read = sim::law::current_offset(current_factor * I + p.current_offset0, p.current_offset_A);
         out.reading[k] = physics.unsigned_current ? std::fabs(I_read) : I_read;
-        const double per_V = Ra + p.wiring > 0 ? current_factor / (Ra + p.wiring) : 0;
-        out.per_V[k] = per_V / (1 + physics.body.voltage_gain);
-        out.lost[k] = per_V * (u_lost + ke * w) - p.current_offset - p.current_extra;
-        if (p.heating != 0) heat_K += d.step_s / p.heating_time * (p.heating * I * I * p.Ra - heat_K);
+        const double ohm = sim::circuit_ohm(Ra, p), per_V = ohm > 0 ? current_factor / ohm : 0;
+        out.per_V[k] = per_V / sim::law::voltage_gain(1, physics.body.voltage_gain);
+        out.lost[k] = sim::law::current_offset(per_V * (u_lost + ke * w) - p.current_offset0, -p.current_offset_A);
+        heat_K += d.step_s / p.heating_time_s * sim::heating_gap_K(p, I, p.Ra, heat_K);
     }
 }
 
@@ -235,14 +227,13 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
     electric_series(physics, motion, wheel, current, electric_);
     if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_.reading, physics.body.current_delay, false, out);
     if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
-        const Eigen::VectorXd &voltage =
-            mean_voltage(voltage_balance, physics.body.current_delay, physics.body.voltage_delay0 + physics.body.actuation_delay);
+        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, physics.body.current_delay, command_delay_s(physics.body));
         auto rows = out.segment(static_cast<Eigen::Index>(first_row_[voltage_balance]), voltage.size());
         rows_of(voltage_balance, electric_.per_V, physics.body.current_delay, false, out);
         const Eigen::VectorXd through = rows.cwiseProduct(voltage);
         rows_of(voltage_balance, electric_.lost, physics.body.current_delay, false, out);
         rows = through - rows;
-        if (physics.wheel[wheel].dead_voltage != 0) dead_zone(physics, wheel, voltage_balance, rows);
+        if (physics.wheel[wheel].dead_voltage_V != 0) dead_zone(physics, wheel, voltage_balance, rows);
         if (physics.unsigned_current) rows = rows.cwiseAbs();
     }
     if (with_bench) rows_of(bench_balance, electric_.shaft, 0, false, out);
@@ -282,25 +273,27 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         double delay = 0;
         if (kind == BalanceKind::accel) {
             double lagged = 0, before = 0;
-            const double share = 1 - std::exp(-d.step_s / tilt_lag_s);
+            const double share = 1 - std::exp(-d.step_s / sim::law::accel_tilt_lag_s);
             for (std::size_t k = 0; k < d.count; ++k) {
                 const double a = motion.accel_m_s2[k];
                 lagged += share * (0.5 * (a + before) - lagged);
                 before = a;
-                x[k] = (a + b.gravity * b.accel_tilt * lagged) * (1 + b.accel_scale) + b.accel_bias0 + b.accel_bias +
-                       b.accel_drift * d.time(k) + factor(TermTarget::accel, k) - 1;
+                const double tilted = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
+                const double read = tilted * sim::law::accel_scale(1, b.accel_scale) + b.accel_bias0;
+                x[k] = sim::law::accel_drift(sim::law::accel_bias(read, b.accel_bias_m_s2), b.accel_drift_m_s3, d.time(k)) +
+                       factor(TermTarget::accel, k) - 1;
             }
         } else if (kind == BalanceKind::radar) {
             delay = b.radar_delay;
             for (std::size_t k = 0; k < d.count; ++k)
-                x[k] = std::fabs(motion.v_m_s[k]) * (1 + b.radar_scale0 + b.radar_scale) * (1 + b.radar_pitch * motion.accel_m_s2[k]) *
-                       factor(TermTarget::radar, k);
+                x[k] = std::fabs(motion.v_m_s[k]) * sim::law::radar_scale(1 + b.radar_scale0, b.radar_scale) *
+                       sim::law::radar_pitch(b.radar_pitch_s2_m, motion.accel_m_s2[k]) * factor(TermTarget::radar, k);
         } else if (kind == BalanceKind::camera_x || kind == BalanceKind::camera_y || kind == BalanceKind::camera_yaw) {
-            delay = b.camera_delay0 + b.camera_delay;
+            delay = sim::law::camera_delay_s(b.camera_delay0, b.camera_delay_s);
             const auto &source = kind == BalanceKind::camera_x   ? motion.v_m_s
                                  : kind == BalanceKind::camera_y ? motion.vy_m_s
                                                                  : motion.yaw_rate_rad_s;
-            const double scale = kind == BalanceKind::camera_yaw ? 1 : 1 + b.camera_scale0 + b.camera_scale;
+            const double scale = kind == BalanceKind::camera_yaw ? 1 : sim::law::camera_scale(1 + b.camera_scale0, b.camera_scale);
             for (std::size_t k = 0; k < d.count; ++k) x[k] = source[k] * scale * factor(TermTarget::camera, k);
         } else if (kind == BalanceKind::yaw_rate) {
             for (std::size_t k = 0; k < d.count; ++k) x[k] = motion.yaw_rate_rad_s[k] + b.gyro_bias;
@@ -340,7 +333,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         const WheelPhysics &p = physics.wheel[i];
         const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
-        if (whole || (moves && (terms || p.heating != 0)))
+        if (whole || (moves && (terms || sim::needs_any(p, sim::needs_heat))))
             electrical(physics, motion, i, stages, current_, out);
         else if (moves)
             torque_of_traction(physics, motion, i, out);

@@ -6,7 +6,8 @@
 //   voltage balance: I = (duty*V - ke*w)/Ra, from clean voltage and speed, never from the noisy current              (2)
 //     with dead time Vd of the bridge: I = e - Vd sgn(I) over Ra, e = duty*V - ke*w; hence none for |e| < Vd              (3)
 // Stages are cached: a parameter that leaves the motion alone costs only the balances it touches; one that does not costs a linear
-// recursion beside the base motion (tangent.cpp), unless wheels carry a memory (backlash, relaxation length).
+// recursion beside the base motion (tangent.cpp), unless a wheel has play (backlash), begins or ceases to lag (a relaxation length from or
+// to zero), or the motion is imposed: then a whole integration.
 #pragma once
 
 #include "motion.h"

@@ -7,7 +7,7 @@ namespace traction::lab {
 
 bool plain_currents(const Physics &physics) {
     return std::all_of(physics.wheel.begin(), physics.wheel.end(),
-                       [](const WheelPhysics &w) { return w.dead_voltage == 0 && w.heating == 0; });
+                       [](const WheelPhysics &w) { return !sim::needs_any(w, sim::needs_heat | sim::needs_bend); });
 }
 
 Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count) {
@@ -20,7 +20,7 @@ Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, c
         const std::size_t j = k == 0 ? 0 : k - 1;
         s.t = d.time(k), s.X = m.path_m[j], s.a = m.rate[j][0], s.V = m.v_m_s[k], s.r = m.yaw_rate_rad_s[k];
         for (std::size_t i = 0; i < wheels; ++i) {
-            const double gain = 1 / (1 - std::min(0.9, base.wheel[i].encoder_missed));
+            const double gain = count_gain(base.wheel[i]);
             s.w = gain * d.wheel[i].speed_rad_s[k], s.v = m.wheel[i].ground_speed_m_s[k], s.s = m.wheel[i].slip[k],
             s.Fn = m.wheel[i].load_N[k];
             s.theta = gain * d.wheel[i].angle_rad[k], s.x = s.X + base.wheel[i].x;
@@ -86,8 +86,7 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
             if (const std::size_t b = balance_of(BalanceKind::current_torque, i); b < d.balance.size())
                 place(b) = rows_of_unit(b, unit[i].reading);
             if (const std::size_t b = balance_of(BalanceKind::current_voltage, i); b < d.balance.size()) {
-                through = rows_of_unit(b, unit[i].per_V)
-                              .cwiseProduct(mean_voltage(b, base.body.current_delay, base.body.voltage_delay0 + base.body.actuation_delay));
+                through = rows_of_unit(b, unit[i].per_V).cwiseProduct(mean_voltage(b, base.body.current_delay, command_delay_s(base.body)));
                 place(b) = through - rows_of_unit(b, unit[i].lost);
             }
         }

@@ -78,7 +78,7 @@ class Solver {
     void prepare(std::size_t k, const Vector3d &right, double share, double v_before, double accel_before, double path, double away) {
         step_.prepare(k, v_before, accel_before, path, away);
         right_ = right;
-        reach_ = share * data_.step_s;
+        implicit_step_ = share * data_.step_s;
         grade_ = step_.grade_accel();
         gyro_ = data_.yaw_rate_rad_s.empty() ? 0 : data_.yaw_rate_rad_s[k];
         centre_ = v_before;
@@ -88,7 +88,7 @@ class Solver {
 
     Vector3d residual(const Vector3d &q) {
         rate_ = rate(q);
-        return q - right_ - reach_ * rate_;
+        return q - right_ - implicit_step_ * rate_;
     }
 
     // From a near start: chord iteration with an inverse that each step mends (Broyden's good update). A last change smaller than
@@ -104,7 +104,7 @@ class Solver {
             const Vector3d change = -(inverse * f), f_before = f;
             q += change;
             if (!exact && change.cwiseAbs().maxCoeff() < near_end) {
-                rate_ = (q - right_) / reach_;
+                rate_ = (q - right_) / implicit_step_;
                 for (std::size_t w = 0; w < step_.wheels(); ++w) step_.nudge(w, change, guess.wheel[w].traction_by_speed[k].dot(change));
                 return true;
             }
@@ -124,8 +124,8 @@ class Solver {
             f = residual(q);
             if (std::fabs(f[0]) < 1e-6 || freedom_.vy) return q;
         }
-        const double reach = reach_ * most_ + std::fabs(right_[0] - centre_);
-        q[0] = bracketed_root([&](double v) { return residual({v, q[1], q[2]})[0]; }, right_[0] - reach, right_[0] + reach, q[0]);
+        const double half_range = implicit_step_ * most_ + std::fabs(right_[0] - centre_);
+        q[0] = bracketed_root([&](double v) { return residual({v, q[1], q[2]})[0]; }, right_[0] - half_range, right_[0] + half_range, q[0]);
         residual(q);
         return q;
     }
@@ -153,7 +153,7 @@ class Solver {
         for (int c = 0; c < 3; ++c) {
             Vector3d moved = q;
             moved[c] += step_speed;
-            if (free[c]) J.col(c) -= reach_ * (rate(moved) - at) / step_speed;
+            if (free[c]) J.col(c) -= implicit_step_ * (rate(moved) - at) / step_speed;
             for (std::size_t i = 0; i < step_.wheels(); ++i) {
                 m.wheel[i].traction_by_speed[k][c] = free[c] ? (step_.state(i).traction - traction[i]) / step_speed : 0;
                 if (!step_.lags(i)) continue;
@@ -255,7 +255,7 @@ class Solver {
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
     std::array<Vector3d, most_wheels> force_{};
     Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
-    double reach_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
+    double implicit_step_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
 };
 
 // whole: not the tractions alone, which are all that a plain prediction reads.
@@ -284,7 +284,7 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
     const bool chord = guess != nullptr && guess->tangent.size() == data.count, exact = keep || solver.step().has_play();
     const bool whole = keep || !p.terms.empty() ||
                        std::any_of(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::force; });
-    const bool far = keep || p.body.tether != 0; // who else asks how far away it is?
+    const bool far = keep || p.body.tether_N_m != 0; // who else asks how far away it is?
     for (std::size_t k = 0; k < data.count; ++k) {
         const double given = data.yaw_rate_rad_s.empty() ? 0 : data.yaw_rate_rad_s[k];
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
@@ -347,8 +347,9 @@ void integrate_imposed(const Dataset &data, const Physics &p, Motion &m) {
 
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep) {
     const bool free = physics.motion == BodyMotion::longitudinal || physics.motion == BodyMotion::planar;
-    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(),
-                                  [&](const WheelPhysics &w) { return w.relaxation + physics.body.relaxation > 0; });
+    const bool lags = std::any_of(physics.wheel.begin(), physics.wheel.end(), [&](const WheelPhysics &w) {
+        return sim::law::relaxation_length_m(w.relaxation, physics.body.relaxation_m) > 0;
+    });
     detail::resize(motion, data.count, physics.wheel.size(), keep && free, lags);
     if (physics.wheel.size() > most_wheels) return;
     if (free)

@@ -3,7 +3,7 @@
 //   q_k = 4/3 q_{k-1} - 1/3 q_{k-2} + 2/3 h rate(q_k)     second-order backward differences (Gear 1971), L-stable: the soil is stiff  (1)
 //   rate = (Fx/M + r vy, Fy/M - r vx, Mz/Izz)             Euler's equations in the body's frame; vy = 0 for longitudinal motion     (2)
 // With a gyro: Mz/Izz + observer_1_s * (gyro - yaw rate). Where all wheels slide nothing else holds the heading, and uneven
-// ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull is not felt.
+// ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull has no effect.
 // Neighbours of a known motion by one linear recursion, tangent.cpp:
 //   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1} + rate_s ds_{k-1}))      (3)
 // where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips (along and

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace traction::lab {
 
@@ -29,7 +30,7 @@ constexpr Key keys[] = {
     {"motor", "inertia_kg_m2", &W::J, nullptr, stage_torque},
     {"motor", "viscous_Nms", &W::b, nullptr, stage_torque},
     {"motor", "coulomb_Nm", &W::t0, nullptr, stage_torque},
-    {"motor", "current_offset_A", &W::current_offset, nullptr, stage_torque | stage_voltage},
+    {"motor", "current_offset_A", &W::current_offset0, nullptr, stage_torque | stage_voltage},
     {"soil", "mu", &W::mu, nullptr, stage_motion},
     {"soil", "adhesion_N", &W::adhesion, nullptr, stage_motion},
     {"soil", "shear_slip", &W::sc, nullptr, stage_motion},
@@ -51,7 +52,7 @@ constexpr Key keys[] = {
     {"sensors", "camera.delay_s", nullptr, &B::camera_delay0, stage_sensors},
 };
 
-const Parameters &table_of(const WheelSpec &wheel, const std::string &table) {
+const Parameters &table_of(const WheelSpec &wheel, std::string_view table) {
     return table == "wheel" ? wheel.geometry : table == "motor" ? wheel.motor : wheel.soil;
 }
 
@@ -74,64 +75,28 @@ Slot body_slot(double B::*member) {
 }
 
 std::vector<EffectHandle> make_handles() {
-    constexpr unsigned electric = stage_torque | stage_voltage;
-    return {
-        {"coulomb_friction", {{"torque_Nm", &W::coulomb, nullptr}}, {}, stage_torque},
-        {"viscous_friction", {{"coefficient_Nms", &W::viscous, nullptr}}, {}, stage_torque},
-        {"stribeck_friction", {{"torque_Nm", &W::stribeck, nullptr}}, {{"speed_rad_s", &W::stribeck_speed, nullptr}}, stage_torque},
-        {"mesh_loss", {{"fraction", &W::mesh, nullptr}}, {}, stage_torque},
-        {"backlash", {{"play_rad", &W::backlash, nullptr}}, {}, stage_motion},
-        {"torque_ripple",
-         {{"cos_Nm", &W::ripple_cos, nullptr}, {"sin_Nm", &W::ripple_sin, nullptr}},
-         {{"order", &W::ripple_order, nullptr}},
-         stage_torque},
-        {"winding_heating", {{"resistance_K_W", &W::heating, nullptr}}, {{"time_constant_s", &W::heating_time, nullptr}}, electric},
-        {"wiring_resistance", {{"resistance_ohm", &W::wiring, nullptr}}, {}, stage_voltage},
-        {"bridge_dead_time", {{"voltage_V", &W::dead_voltage, nullptr}}, {}, stage_voltage},
-        {"torque_constant", {{"change", &W::constant_change, nullptr}}, {}, electric},
-        {"rolling_resistance", {{"coefficient", &W::rolling, nullptr}}, {}, stage_motion},
-        {"slip_sinkage", {{"coefficient", nullptr, &B::slip_sinkage}}, {}, stage_motion},
-        {"speed_resistance", {{"coefficient_s_m", nullptr, &B::speed_resistance}}, {}, stage_motion},
-        {"multi_pass", {{"gain", nullptr, &B::multi_pass}}, {}, stage_motion},
-        {"load_transfer", {{"height_m", nullptr, &B::load_height}}, {}, stage_motion},
-        {"mass_offset_x", {{"offset_m", nullptr, &B::offset_x}}, {}, stage_motion},
-        {"mass_offset_y", {{"offset_m", nullptr, &B::offset_y}}, {}, stage_motion},
-        {"soil_patch",
-         {{"change", nullptr, &B::patch_change}},
-         {{"start_m", nullptr, &B::patch_start}, {"length_m", nullptr, &B::patch_length}},
-         stage_motion},
-        {"soil_gradient", {{"change_per_m", nullptr, &B::soil_gradient}}, {}, stage_motion},
-        {"relaxation_length", {{"length_m", nullptr, &B::relaxation}}, {}, stage_motion},
-        {"sliding_speed_loss", {{"coefficient_s_m", nullptr, &B::sliding_loss}}, {}, stage_motion},
-        {"shear_stiffness", {{"change", nullptr, &B::shear_change}}, {}, stage_motion},
-        {"wheel_radius", {{"change", &W::radius_change, nullptr}}, {}, stage_motion | stage_torque},
-        {"lateral_scrub", {{"coefficient", nullptr, &B::scrub}}, {}, stage_motion},
-        {"grade", {{"slope_rad", nullptr, &B::grade}}, {{"direction_rad", nullptr, &B::grade_direction}}, stage_motion},
-        {"tether_drag", {{"stiffness_N_m", nullptr, &B::tether}}, {}, stage_motion},
-        {"body_drag", {{"force_N", nullptr, &B::drag}}, {}, stage_motion},
-        {"accel_bias", {{"bias_m_s2", nullptr, &B::accel_bias}}, {}, stage_sensors},
-        {"accel_drift", {{"rate_m_s3", nullptr, &B::accel_drift}}, {}, stage_sensors},
-        {"accel_scale", {{"change", nullptr, &B::accel_scale}}, {}, stage_sensors},
-        {"accel_tilt", {{"compliance_rad_s2_m", nullptr, &B::accel_tilt}}, {}, stage_sensors},
-        {"radar_scale", {{"change", nullptr, &B::radar_scale}}, {}, stage_sensors},
-        {"radar_pitch", {{"coefficient_s2_m", nullptr, &B::radar_pitch}}, {}, stage_sensors},
-        {"current_gain", {{"change", &W::current_gain, nullptr}}, {}, electric},
-        {"current_offset", {{"offset_A", &W::current_extra, nullptr}}, {}, electric},
-        {"voltage_gain", {{"change", nullptr, &B::voltage_gain}}, {}, stage_voltage},
-        {"encoder_missed", {{"fraction", &W::encoder_missed, nullptr}}, {}, stage_motion | electric},
-        {"camera_delay", {{"delay_s", nullptr, &B::camera_delay}}, {}, stage_sensors},
-        {"camera_scale", {{"change", nullptr, &B::camera_scale}}, {}, stage_sensors},
-        {"actuation_delay", {{"delay_s", nullptr, &B::actuation_delay}}, {}, stage_voltage},
-    };
+    std::vector<EffectHandle> handles;
+    for (const sim::Effect &effect : sim::catalogue()) {
+        EffectHandle handle;
+        handle.name = effect.name;
+        handle.touched = effect.needs & stage_all;
+        handle.remembers = (effect.needs & sim::needs_memory) != 0;
+        for (const sim::EffectParameter &p : effect.parameters)
+            (p.strength ? handle.strengths : handle.shapes).push_back({std::string(p.name), p.in_wheel, p.in_body});
+        handles.push_back(std::move(handle));
+    }
+    return handles;
 }
 
-void set_effect(Physics &physics, const EffectHandle::Strength &place, int wheel, double value) {
+// As a scenario switches it on: strengths of one kind add up.
+void set_effect(Physics &physics, const EffectHandle::Strength &place, int wheel, double value, bool shape) {
+    const auto put = [&](double &number) { number = shape ? value : number + value; };
     if (place.in_body != nullptr) {
-        physics.body.*place.in_body = value;
+        put(physics.body.*place.in_body);
         return;
     }
     for (std::size_t i = 0; i < physics.wheel.size(); ++i)
-        if (wheel < 0 || static_cast<std::size_t>(wheel) == i) physics.wheel[i].*place.in_wheel = value;
+        if (wheel < 0 || static_cast<std::size_t>(wheel) == i) put(physics.wheel[i].*place.in_wheel);
 }
 
 void add_user_effect(Physics &physics, const Model &model, const EffectUse &use) {
@@ -204,9 +169,9 @@ Physics make_physics(const Model &model) {
         if (key.in_body != nullptr)
             physics.body.*key.in_body = value_of(std::string(key.table) == "rover" ? model.rover : model.sensors, key.key);
     if (!(physics.body.yaw_inertia > 0)) { // a plate under the wheels
-        double reach = 0;
-        for (const WheelPhysics &w : physics.wheel) reach = std::max(reach, w.x * w.x + w.y * w.y);
-        physics.body.yaw_inertia = std::max(1e-6, physics.body.mass * reach * 2 / 3);
+        double largest_arm2 = 0;
+        for (const WheelPhysics &w : physics.wheel) largest_arm2 = std::max(largest_arm2, w.x * w.x + w.y * w.y);
+        physics.body.yaw_inertia = std::max(1e-6, physics.body.mass * largest_arm2 * 2 / 3);
     }
     physics.body.gravity = value_of(model.rover, "gravity_m_s2");
     physics.body.battery_V = value_of(model.rover, "battery_voltage_V");
@@ -221,7 +186,8 @@ Physics make_physics(const Model &model) {
                              "`traction effects` lists the names; an effect of your own needs acts_on and expression");
         for (const auto *list : {&handle->strengths, &handle->shapes})
             for (const auto &place : *list)
-                if (use.parameters.count(place.key) != 0) set_effect(physics, place, use.wheel, use.parameters.at(place.key).value);
+                if (use.parameters.count(place.key) != 0)
+                    set_effect(physics, place, use.wheel, use.parameters.at(place.key).value, list == &handle->shapes);
     }
     return physics;
 }
@@ -306,8 +272,7 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model) {
                 }
             }
             const double span = std::isfinite(p.maximum - p.minimum) ? p.maximum - p.minimum : std::fabs(p.value) + 1.0;
-            const bool play = use.name == "backlash" || use.name == "relaxation_length"; // whole integrations with a kink
-            free.step = std::max((play ? 1e-3 : 1e-7) * span, 1e-10);
+            free.step = std::max((handle != nullptr && handle->remembers ? 1e-3 : 1e-7) * span, 1e-10);
             if (!p.fixed && !free.slots.empty()) list.push_back(std::move(free));
         }
         if (handle == nullptr) ++term;
@@ -344,12 +309,12 @@ std::vector<FreeParameter> free_parameters(const Model &model, const Physics &ph
     return list;
 }
 
-void store(Model &model, const FreeParameter &parameter, double increment, double reach) {
+void store(Model &model, const FreeParameter &parameter, double increment, double half_width) {
     const auto put = [&](Parameter &p) {
         p.value += increment;
-        if (reach > 0) {
-            p.low = p.value - reach;
-            p.high = p.value + reach;
+        if (half_width > 0) {
+            p.low = p.value - half_width;
+            p.high = p.value + half_width;
         }
     };
     for (EffectUse &use : model.effects)

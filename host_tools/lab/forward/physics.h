@@ -7,6 +7,9 @@
 #include "host_tools/lab/model/model.h"
 #include "host_tools/lab/model/terms.h"
 
+#include "sim/physics/effects/acting.h"
+
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -14,36 +17,31 @@
 
 namespace traction::lab {
 
-// What a parameter touches, hence what must be computed again.
-enum Stage : unsigned { stage_motion = 1, stage_torque = 2, stage_voltage = 4, stage_sensors = 8, stage_all = 15 };
-
-struct WheelPhysics {
-    // the machine
+// The machine, beside the effects that act on it (acting.h).
+struct WheelPhysics : sim::WheelEffects {
     double x = 0, y = 0, heading = 0, radius = 0, load = 0; // load 0: from the geometry
     double KG = 0, ke = 0, Ra = 0, J = 0, b = 0, t0 = 0;
     double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0,
            relaxation = 0; // grip: 1 where the soil holds sideways as it holds lengthways
-    double current_offset = 0;
-    // effects, in the catalogue's units
-    double coulomb = 0, viscous = 0, stribeck = 0, stribeck_speed = 1, mesh = 0, backlash = 0;
-    double ripple_cos = 0, ripple_sin = 0, ripple_order = 1, heating = 0, heating_time = 60, wiring = 0, dead_voltage = 0;
-    double constant_change = 0, rolling = 0, radius_change = 0, current_gain = 0, current_extra = 0, encoder_missed = 0;
+    double current_offset0 = 0;
 };
+
+inline double rolling_radius(const WheelPhysics &w) { return sim::law::wheel_radius_m(w.radius, w.radius_change); }
+// True over measured wheel speed.
+inline double count_gain(const WheelPhysics &w) { return 1 / sim::law::encoder_missed(std::min(0.9, w.encoder_missed)); }
 
 // Motors that may share a lead.
 inline bool same_axle(const WheelPhysics &a, const WheelPhysics &b) { return std::fabs(a.x - b.x) < 0.01; } // 1 cm: assumed
 inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y * b.y > 0; }
 
-struct BodyPhysics {
+struct BodyPhysics : sim::BodyEffects {
     double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;
     double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0,
            camera_scale0 = 0, camera_delay0 = 0;
-    double slip_sinkage = 0, speed_resistance = 0, multi_pass = 0, load_height = 0, offset_x = 0, offset_y = 0;
-    double patch_change = 0, patch_start = 0, patch_length = 1, soil_gradient = 0, relaxation = 0, sliding_loss = 0;
-    double shear_change = 0, scrub = 0, grade = 0, grade_direction = 0, tether = 0, drag = 0;
-    double accel_bias = 0, accel_drift = 0, accel_scale = 0, accel_tilt = 0, radar_scale = 0, radar_pitch = 0;
-    double voltage_gain = 0, camera_delay = 0, camera_scale = 0, actuation_delay = 0;
 };
+
+// By which the duty takes effect later than the log has it.
+inline double command_delay_s(const BodyPhysics &b) { return sim::law::actuation_delay_s(b.voltage_delay0, b.actuation_delay_s); }
 
 struct ExtraTerm {
     std::string name;
@@ -98,8 +96,9 @@ struct EffectHandle {
     };
     std::vector<Strength> strengths, shapes;
     unsigned touched = stage_all;
+    bool remembers = false; // whole integrations with a kink
 };
-const std::vector<EffectHandle> &effect_handles(); // in the catalogue's order
+const std::vector<EffectHandle> &effect_handles(); // the catalogue's rows, in its order
 const EffectHandle *find_handle(const std::string &name);
 
 // Throws ModelError when an effect of the model is neither in the catalogue nor a user's expression.
@@ -109,7 +108,7 @@ Physics make_physics(const Model &model);
 std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics);
 
 // Writes fitted values back: value of each key that a free parameter stands for.
-// `reach`: half of its 95 % interval.
-void store(Model &model, const FreeParameter &parameter, double increment, double reach);
+// `half_width`: of its 95 % interval.
+void store(Model &model, const FreeParameter &parameter, double increment, double half_width);
 
 } // namespace traction::lab

@@ -72,7 +72,7 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
         const Vector3d moved_rate =
             change.rate_change(k, at, k == 0 ? at[0] : known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j]);
         const StepTangent &t = known.tangent[k];
-        const double reach = (k < 2 ? 1.0 : 2.0 / 3) * data.step_s;
+        const double implicit_step = (k < 2 ? 1.0 : 2.0 / 3) * data.step_s;
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
         if (!freedom.yaw) right[2] = 0;
         Vector3d by_slip = Vector3d::Zero();
@@ -80,7 +80,8 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
             if (change.step().lags(i)) by_slip += known.wheel[i].force_by_slip[k] * slip[i] + known.wheel[i].force_by_side[k] * side[i];
         by_slip = by_slip.cwiseProduct(
             Vector3d(1 / moved.body.mass, freedom.vy ? 1 / moved.body.mass : 0, freedom.yaw ? 1 / moved.body.yaw_inertia : 0));
-        const Vector3d next = t.inverse * (right + reach * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path + by_slip));
+        const Vector3d next =
+            t.inverse * (right + implicit_step * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path + by_slip));
         for (std::size_t i = 0; i < wheels; ++i) {
             const Motion::Wheel &w = known.wheel[i];
             m.wheel[i].traction_N[k] = w.traction_N[k] + change.traction_change(i, k) + w.traction_by_speed[k].dot(next) +
@@ -92,7 +93,7 @@ template <typename Change> void follow(const Dataset &data, const Physics &moved
         }
         before = q;
         q = next;
-        accel = (q[0] - right[0]) / reach;
+        accel = (q[0] - right[0]) / implicit_step;
         const Vector3d now = at + q;
         path += data.step_s * (freedom.omni ? std::hypot(now[0], now[1]) - std::hypot(at[0], at[1]) : q[0]);
         m.v_m_s[k] = now[0];

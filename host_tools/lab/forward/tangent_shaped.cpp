@@ -31,7 +31,7 @@ template <int Lanes> class Shapes {
     // share: of this step, wheel by wheel.
     void step(std::size_t k, const double *share, std::vector<Motion> &motions) {
         const StepTangent &t = known_.tangent[k];
-        const double reach = (k < 2 ? 1.0 : 2.0 / 3) * data_.step_s;
+        const double implicit_step = (k < 2 ? 1.0 : 2.0 / 3) * data_.step_s;
         const std::size_t wheels = unit_.force.size(), lanes = motions.size();
         std::array<Lane, most_wheels> f;
         Lane3 force{Lane::Zero(), Lane::Zero(), Lane::Zero()}, right, known_part;
@@ -48,7 +48,7 @@ template <int Lanes> class Shapes {
             const auto at = static_cast<Eigen::Index>(c);
             right[c] = k < 2 ? q_[c] : Lane((4 * q_[c] - before_[c]) / 3);
             if (c == 2 && !freedom_.yaw) right[c].setZero();
-            known_part[c] = right[c] + reach * (per_N_[c] * force[c] + t.rate_by_accel[at] * accel_ + t.rate_by_path[at] * path_);
+            known_part[c] = right[c] + implicit_step * (per_N_[c] * force[c] + t.rate_by_accel[at] * accel_ + t.rate_by_path[at] * path_);
         }
         before_ = q_;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -56,7 +56,7 @@ template <int Lanes> class Shapes {
             q_[c] = t.inverse(at, 0) * known_part[0] + t.inverse(at, 1) * known_part[1] + t.inverse(at, 2) * known_part[2];
         }
         for (std::size_t i = 0; i < wheels; ++i) wheel(i, k, f[i], motions);
-        accel_ = (q_[0] - right[0]) / reach;
+        accel_ = (q_[0] - right[0]) / implicit_step;
         body(k, motions);
     }
 
@@ -82,8 +82,8 @@ template <int Lanes> class Shapes {
         Lane along = q_[0];
         if (freedom_.omni) along = ((v + q_[0]).square() + (vy + q_[1]).square()).sqrt() - std::hypot(v, vy);
         path_ += data_.step_s * along;
-        Lane felt = known_.accel_m_s2[k] + accel_;
-        if (freedom_.vy) felt += turn * vy - (turn + q_[2]) * (vy + q_[1]);
+        Lane body_accel = known_.accel_m_s2[k] + accel_;
+        if (freedom_.vy) body_accel += turn * vy - (turn + q_[2]) * (vy + q_[1]);
         for (std::size_t j = 0; j < motions.size(); ++j) {
             const auto at = static_cast<Eigen::Index>(j);
             Motion &m = motions[j];
@@ -91,7 +91,7 @@ template <int Lanes> class Shapes {
             m.vy_m_s[k] = vy + q_[1][at];
             m.yaw_rate_rad_s[k] = turn + q_[2][at];
             m.path_m[k] = known_.path_m[k] + path_[at];
-            m.accel_m_s2[k] = felt[at];
+            m.accel_m_s2[k] = body_accel[at];
         }
     }
 

@@ -8,6 +8,8 @@
 
 #include "host_tools/lab/model/model.h"
 
+#include "sim/physics/effects/acting.h"
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -35,6 +37,17 @@ inline double root(double x) { return std::sqrt(x); }
 inline Lane root(const Lane &x) { return x.sqrt(); }
 inline double falling(double x) { return std::exp(-x); }
 inline Lane falling(const Lane &x) { return (-x).exp(); }
+// By sc, of which four wheels side by side carry the inverse: a division for each would cost.
+inline double by(double x, double sc) { return x / sc; }
+inline Lane by(const Lane &x, const Lane &per_sc) { return x * per_sc; }
+
+// What the effects' laws take theirs from (sim/physics/effects/laws.h): a fit need not repeat on another machine, it must be fast.
+struct Library {
+    static double exp(double x) { return std::exp(x); }
+    static double sin(double x) { return std::sin(x); }
+    static double cos(double x) { return std::cos(x); }
+    static Lane exp(const Lane &x) { return x.exp(); }
+};
 
 } // namespace law
 
@@ -68,6 +81,17 @@ template <typename T> inline T side_slip(const T &rim, const T &v, const T &vy, 
 template <typename T> inline T traction_slope(SoilLaw soil, const T &size) {
     const T x = law::larger(size, 1e-4), per_x = 1 / x, risen = 1 - law::falling(x);
     return soil == SoilLaw::burckhardt ? T(risen * per_x) : T((1 - risen * per_x) * per_x);
+}
+
+// What a wheel pulls along its heading and across it at slips s, sy. Combined slip S = |(s, sy)|, (Ft, Fy) = f(S)/S (Fm s, Fym sy) inside
+// the friction ellipse, Fym = share Fm (Pacejka's similarity). Where the body is not followed sideways its sideways speed is only
+// presumed, and `share` is the part of it that slides: S = |(s, share sy)|.
+template <typename T> struct Grip { T traction, side; };
+template <typename T>
+inline Grip<T> grip_of(SoilLaw soil, const T &Fm, const T &sc, const T &slip, const T &side_slip, const T &share, bool followed) {
+    const T across = share * side_slip, side = followed ? side_slip : across;
+    const T grip = T(law::by(Fm, sc)) * traction_slope(soil, T(law::by(T(law::root(T(slip * slip + side * side))), sc)));
+    return {T(grip * slip), T(grip * across)};
 }
 
 } // namespace traction::lab

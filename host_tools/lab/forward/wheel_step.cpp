@@ -14,6 +14,20 @@ constexpr double least_combined_m_s = 0.02; // combined slip is taken against at
 
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
 
+// Slips, and resistance over load, of a wheel or of four side by side. lag_1_m: the step over the relaxation length, where it lags.
+template <typename T> T slip_now(bool lags, const T &before, const T &lag_1_m, const T &rim, const T &v) {
+    return lags ? lagging_slip(before, lag_1_m, rim, v) : slip_of(rim, v);
+}
+template <typename T> T side_slip_now(bool lags, const T &before, const T &lag_1_m, const T &rim, const T &v, const T &side_v) {
+    return lags ? side_slip(before, lag_1_m, rim, v, side_v) : side_slip(rim, v, side_v, least_combined_m_s);
+}
+template <typename T>
+T resistance(const T &known, const sim::WheelEffectsOf<T> &wheel, const sim::BodyEffects &body, const T &slip, const T &v) {
+    T sum = known;
+    sim::each_resistance(wheel, body, slip, v, [&](const T &per_load) { sum += per_load; });
+    return sum;
+}
+
 } // namespace
 
 WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data), p_(physics), n_(physics.wheel.size()) {
@@ -21,19 +35,21 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
     loads();
     followers();
     const BodyPhysics &b = p_.body;
-    feels_path_ = b.patch_change != 0 || b.soil_gradient != 0 || b.tether != 0;
+    feels_path_ = sim::needs_any(b, sim::needs_path);
     for (std::size_t i = 0; i < n_; ++i) {
         const WheelPhysics &w = p_.wheel[i];
         State &s = state_[i];
-        s.x = w.x - (sideways_ ? b.offset_x : 0);
-        s.y = w.y - (sideways_ ? b.offset_y : 0);
+        feels_path_ = feels_path_ || sim::needs_any(w, sim::needs_path);
+        s.x = sideways_ ? sim::law::mass_offset_m(w.x, b.offset_x_m) : w.x;
+        s.y = sideways_ ? sim::law::mass_offset_m(w.y, b.offset_y_m) : w.y;
         s.c = std::cos(w.heading);
         s.s = std::sin(w.heading);
-        s.radius = w.radius * (1 + w.radius_change);
-        s.gain = 1 / (1 - std::min(0.9, w.encoder_missed));
-        s.sigma = w.relaxation + b.relaxation;
-        s.plain_sc = std::max(1e-4, w.sc * (1 + b.shear_change));
-        play_ = play_ || w.backlash > 0;
+        s.radius = rolling_radius(w);
+        s.gain = count_gain(w);
+        s.sigma = sim::law::relaxation_length_m(w.relaxation, b.relaxation_m);
+        s.lag_1_m = s.sigma > 0 ? data_.step_s / s.sigma : 0;
+        s.plain_sc = std::max(1e-4, sim::law::shear_stiffness(w.sc, b.shear_change));
+        play_ = play_ || w.play_rad > 0;
         lags_ = lags_ || s.sigma > 0;
     }
     for (const ExtraTerm &term : p_.terms) motion_terms_ = motion_terms_ || (target_stages(term.target) & stage_motion) != 0;
@@ -49,16 +65,18 @@ void WheelStep::gather() {
         Four &four = four_[i / 4];
         const auto at = static_cast<Eigen::Index>(i % 4);
         four.c[at] = s.c, four.s[at] = s.s, four.x[at] = s.x, four.y[at] = s.y, four.per_sc[at] = 1 / s.plain_sc;
-        four.grip[at] = w.grip, four.resistance[at] = w.crr + w.rolling, four.lateral[at] = w.lateral + p_.body.scrub;
+        four.grip[at] = w.grip, four.resistance[at] = w.crr, four.lateral[at] = w.lateral + p_.body.scrub;
+        for (std::size_t field = 0; field < sim::WheelEffects::all().size(); ++field)
+            (four.effects.*sim::WheelEffectsOf<Lane>::all()[field])[at] = w.*sim::WheelEffects::all()[field];
         four.per_speed_m[at] = s.radius * s.gain, four.adhesion[at] = w.adhesion, four.mu[at] = w.mu;
         four.load_0[at] = w.load > 0 ? w.load : s.load_0, four.load_per_accel[at] = w.load > 0 ? 0 : s.load_per_accel;
         four.load_per_side[at] = w.load > 0 ? 0 : s.load_per_side;
         four.load_per_twist[at] = w.load > 0 ? 0 : s.load_per_twist;
-        four.lag_1_m[at] = s.sigma > 0 ? data_.step_s / s.sigma : 0;
+        four.lag_1_m[at] = s.lag_1_m;
         all_grip = all_grip && p_.grips_sideways[i];
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
     }
-    even_ = p_.body.patch_change == 0 && p_.body.soil_gradient == 0 && p_.body.multi_pass == 0;
+    even_ = sim::even_strength(p_.body);
     plain_ = (p_.motion == BodyMotion::longitudinal || sideways_) && all_grip && (all_lag || none_lags) && !motion_terms_ && !play_;
 }
 
@@ -79,16 +97,9 @@ void WheelStep::prepare(std::size_t k, double v_before, double accel_before, dou
 
 // Of the ground under wheel i, relative.
 double WheelStep::strength(std::size_t i, double v_before) const {
-    const BodyPhysics &b = p_.body;
-    double strength = 1;
-    const double place = path_ + p_.wheel[i].x; // each wheel at its own place, as the catalogue has it
-    if (b.patch_change != 0 && place >= b.patch_start && place < b.patch_start + b.patch_length) strength *= 1 + b.patch_change;
-    if (b.soil_gradient != 0) strength *= std::max(0.05, 1 + b.soil_gradient * path_);
-    if (b.multi_pass != 0) {
-        const double forward = 0.5 * (1 + soft_sign(v_before, 0.01));
-        strength *= 1 + b.multi_pass * (ahead_[i] * forward + behind_[i] * (1 - forward));
-    }
-    return strength;
+    const double forward = 0.5 * (1 + soft_sign(v_before, 0.01));
+    const double follows = ahead_[i] * forward + behind_[i] * (1 - forward);
+    return sim::strength_here(1, p_.body, path_ + p_.wheel[i].x, path_, follows); // each wheel at its own place, as the catalogue has it
 }
 
 void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
@@ -124,20 +135,17 @@ void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
     }
 }
 
-// As pull() has it, for wheels that grip sideways.
+// As pull() has it, for wheels that grip sideways and feel no terms and no play.
 inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     const BodyPhysics &b = p_.body;
     f.v = v;
-    f.slip = state_[0].sigma > 0 ? lagging_slip(f.slip_before, f.lag_1_m, f.rim, v) : slip_of(f.rim, v);
-    Lane Fm = f.Fm;
-    if (b.sliding_loss != 0) Fm *= (-(b.sliding_loss * (f.rim - v).abs()).min(20.0)).exp();
-    f.side_slip = sideways_ && state_[0].sigma > 0 ? side_slip(f.side_slip_before, f.lag_1_m, f.rim, v, side_v)
-                                                   : side_slip(f.rim, v, side_v, least_combined_m_s);
-    const Lane across = f.grip * f.side_slip, felt = sideways_ ? f.side_slip : across;
-    const Lane grip = Fm * f.per_sc * traction_slope(p_.soil_law, Lane((f.slip.square() + felt.square()).sqrt() * f.per_sc));
-    f.traction = grip * f.slip;
-    f.side = grip * across;
-    const Lane resist = f.load * (f.resistance + b.slip_sinkage * f.slip.abs() + b.speed_resistance * v.abs());
+    const bool lags = state_[0].sigma > 0;
+    f.slip = slip_now(lags, f.slip_before, f.lag_1_m, f.rim, v);
+    f.side_slip = side_slip_now(sideways_ && lags, f.side_slip_before, f.lag_1_m, f.rim, v, side_v);
+    const Lane Fm = sim::strength_sliding<law::Library>(f.Fm, b, Lane(f.rim - v));
+    const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.slip, f.side_slip, f.grip, sideways_);
+    f.traction = traction, f.side = side;
+    const Lane resist = f.load * resistance(f.resistance, f.effects, b, f.slip, v);
     f.rolling = resist * soft_sign(v, resist_speed_m_s);
 }
 
@@ -154,10 +162,11 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
         const Lane vx = q[0] - f.y * q[2], vy = q[1] + f.x * q[2];
         const Lane side_v = vy * f.c - vx * f.s;
         contact_of(f, vx * f.c + vy * f.s, side_v);
-        if (sideways_) f.side -= f.lateral * f.load * soft_sign(side_v, drift_speed_m_s);
+        const Lane scrub = sim::law::lateral_scrub_N(f.lateral, f.load);
+        if (sideways_) f.side -= scrub * soft_sign(side_v, drift_speed_m_s);
         const Lane forward = f.traction - f.rolling, fx = forward * f.c - f.side * f.s, fy = forward * f.s + f.side * f.c;
         Lane moment = f.x * fy - f.y * fx;
-        if (!sideways_) moment -= f.lateral * f.load * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
+        if (!sideways_) moment -= scrub * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
             const auto at = static_cast<Eigen::Index>(i % 4);
             State &s = state_[i];
@@ -179,25 +188,23 @@ Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     const double forward = pull(i, along, q[0], across);
     const double fx = forward * s.c - s.side * s.s, fy = forward * s.s + s.side * s.c;
     double moment = s.x * fy - s.y * fx;
+    const double most_scrub = sim::law::lateral_scrub_N(w.lateral + p_.body.scrub, s.load);
     if (p_.motion == BodyMotion::longitudinal) { // vy = 0: skid steer turns about its middle
-        moment -= (w.lateral + p_.body.scrub) * s.load * s.x * soft_sign(s.x * q[2], scrub_speed_m_s);
+        moment -= most_scrub * s.x * soft_sign(s.x * q[2], scrub_speed_m_s);
         return {fx, 0, moment};
     }
     if (sideways_ && p_.grips_sideways[i]) {
-        const double scrub = -(w.lateral + p_.body.scrub) * s.load * soft_sign(across, drift_speed_m_s);
+        const double scrub = -most_scrub * soft_sign(across, drift_speed_m_s);
         return {fx - scrub * s.s, fy + scrub * s.c, moment + scrub * (s.x * s.c + s.y * s.s)};
     }
     return {fx, fy, moment};
 }
 
-double WheelStep::slip_at(const State &s, double v) const {
-    if (!(s.sigma > 0)) return slip_of(s.rim, v);
-    return lagging_slip(s.slip_before, data_.step_s / s.sigma, s.rim, v);
-}
+double WheelStep::slip_at(const State &s, double v) const { return slip_now(s.sigma > 0, s.slip_before, s.lag_1_m, s.rim, v); }
 
 double WheelStep::side_slip_at(const State &s, double v, double side_v) const {
-    if (!(sideways_ && s.sigma > 0)) return side_slip(s.rim, v, side_v, least_combined_m_s); // a presumed sideways speed has no memory
-    return side_slip(s.side_slip_before, data_.step_s / s.sigma, s.rim, v, side_v);
+    // a presumed sideways speed has no memory
+    return side_slip_now(sideways_ && s.sigma > 0, s.side_slip_before, s.lag_1_m, s.rim, v, side_v);
 }
 
 void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double traction_N) {
@@ -210,9 +217,7 @@ void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double tract
     s.traction += traction_N;
 }
 
-// Force along the heading at wheel-centre speed v; side_v across it. Combined slip S = |(s, sy)|, (Ft, Fy) = f(S)/S (Fm s, Fym sy) inside
-// the friction ellipse, Fym = lateral_grip Fm (Pacejka's similarity). Where the body is not followed sideways its sideways speed is only
-// presumed, and lateral_grip is the share of it that slides: S = |(s, lateral_grip sy)|.
+// Force along the heading at wheel-centre speed v; side_v across it.
 double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     State &s = state_[i];
     const BodyPhysics &b = p_.body;
@@ -220,22 +225,12 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     s.side_v = side_v;
     s.slip = slip_at(s, v);
     s.side_slip = p_.grips_sideways[i] ? side_slip_at(s, v, side_v) : 0;
-    double Fm = s.Fm, sc = s.sc, extra = 0, extra_rolling = 0;
-    if (b.sliding_loss != 0) Fm *= std::exp(-std::min(20.0, b.sliding_loss * std::fabs(s.rim - v)));
+    double Fm = sim::strength_sliding<law::Library>(s.Fm, b, s.rim - v), sc = s.sc, extra = 0, extra_rolling = 0;
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
-    s.side = 0;
-    if (s.side_slip != 0 && p_.wheel[i].grip > 0) {
-        const double across = p_.wheel[i].grip * s.side_slip;
-        const double grip = Fm / sc * traction_slope(p_.soil_law, length(s.slip, sideways_ ? s.side_slip : across) / sc);
-        s.traction = grip * s.slip;
-        s.side = grip * across;
-    } else {
-        s.traction = Fm / sc * traction_slope(p_.soil_law, std::fabs(s.slip) / sc) * s.slip;
-    }
-    if (p_.wheel[i].backlash > 0) s.traction *= contact(i, v);
-    const double resist =
-        s.load * (p_.wheel[i].crr + p_.wheel[i].rolling + b.slip_sinkage * std::fabs(s.slip) + b.speed_resistance * std::fabs(v)) +
-        extra_rolling;
+    const auto [traction, side] = grip_of(p_.soil_law, Fm, sc, s.slip, s.side_slip, p_.wheel[i].grip, sideways_);
+    s.traction = traction, s.side = side;
+    if (p_.wheel[i].play_rad > 0) s.traction *= contact(i, v);
+    const double resist = s.load * resistance<double>(p_.wheel[i].crr, p_.wheel[i], b, s.slip, v) + extra_rolling;
     // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
     const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v), share = resist / length(speed, resist_speed_m_s);
     s.rolling = share * v;
@@ -246,11 +241,11 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
 // Share of the drive that is engaged: the wheel rolls freely while the play is being crossed.
 double WheelStep::contact(std::size_t i, double v) {
     State &s = state_[i];
-    const double half = 0.5 * p_.wheel[i].backlash;
+    const double half = 0.5 * p_.wheel[i].play_rad;
     const double next = s.play_before + data_.step_s * (s.w - v / s.radius);
     s.play = std::clamp(next, -half, half);
     const double soft = 0.02 * half + 1e-6; // rad beyond the end of the play over which the teeth take the load
-    const double over = std::fabs(next) - half;
+    const double over = sim::law::backlash_rad(p_.wheel[i].play_rad, next);
     // engaged only if the slip pushes on the side that touches
     if (over <= 0 || next * (s.rim - v) <= 0) return 0;
     return std::min(1.0, over / soft);
@@ -277,7 +272,7 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
 
 double WheelStep::body_force(double v) const {
     const BodyPhysics &b = p_.body;
-    double force = -b.tether * away_ - b.drag * soft_sign(v, resist_speed_m_s);
+    double force = sim::law::tether_drag_N(b.tether_N_m, away_) + sim::law::body_drag_N(b.drag_N, soft_sign(v, resist_speed_m_s));
     if (motion_terms_) {
         Signals signals;
         signals.t = t_, signals.v = v, signals.V = v, signals.x = signals.X = path_, signals.a = accel_, signals.r = yaw_rate_;
@@ -289,9 +284,9 @@ double WheelStep::body_force(double v) const {
 
 Eigen::Vector2d WheelStep::grade_accel() const {
     const BodyPhysics &b = p_.body;
-    if (b.grade == 0) return {0, 0};
-    const double steep = b.gravity * std::sin(b.grade), turned = yaw_ - b.grade_direction;
-    return {-steep * std::cos(turned), steep * std::sin(turned)};
+    if (b.slope_rad == 0) return {0, 0};
+    const auto slope = sim::law::grade_m_s2<law::Library>(b.gravity, b.slope_rad, yaw_ - b.slope_direction_rad);
+    return {slope.along_m_s2, slope.across_m_s2};
 }
 
 void WheelStep::commit() {
@@ -310,16 +305,16 @@ void WheelStep::loads() {
     }
     const Eigen::Matrix3d share = S.completeOrthogonalDecomposition().pseudoInverse();
     const BodyPhysics &b = p_.body;
-    const double W = b.mass * b.gravity;
+    const double W = b.mass * b.gravity, height = sim::law::load_transfer_m(b.centre_height, b.raised_m);
+    const Eigen::Vector3d static_loads(W, sim::law::mass_offset_Nm(W, b.offset_x_m), sim::law::mass_offset_Nm(W, b.offset_y_m));
     for (std::size_t i = 0; i < n_; ++i) {
         const Eigen::Vector3d X(1, p_.wheel[i].x, p_.wheel[i].y);
-        state_[i].load_0 = X.dot(share * Eigen::Vector3d(W, W * b.offset_x, W * b.offset_y));
-        const double M_h = b.mass * (b.centre_height + b.load_height);
+        state_[i].load_0 = X.dot(share * static_loads);
+        const double M_h = b.mass * height;
         if (p_.halves) {
-            double reach = 0; // of this half
-            for (const WheelPhysics &w : p_.wheel) reach += same_side(w, p_.wheel[i]) ? w.x * w.x : 0;
-            state_[i].load_per_twist =
-                reach > 0 ? -(b.centre_height + b.load_height) * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / reach : 0;
+            double sum_x2 = 0; // of this half
+            for (const WheelPhysics &w : p_.wheel) sum_x2 += same_side(w, p_.wheel[i]) ? w.x * w.x : 0;
+            state_[i].load_per_twist = sum_x2 > 0 ? -height * soft_sign(p_.wheel[i].y, 1e-6) * p_.wheel[i].x / sum_x2 : 0;
         }
         state_[i].load_per_side = X.dot(share * Eigen::Vector3d(0, 0, -M_h));
         state_[i].load_per_accel = X.dot(share * Eigen::Vector3d(0, -M_h, 0));

@@ -1,6 +1,5 @@
 #include "dataset.h"
 
-#include "host_tools/lab/forward/jumps.h"
 #include "inputs.h"
 #include "smooth.h"
 
@@ -278,28 +277,6 @@ struct Builder : InputBuilder {
     }
 };
 
-// Two runs of one drive: the standard deviation of their difference over sqrt(2) is the noise of one.
-void noise_from_repeat(Dataset &data, const Dataset &other) {
-    for (Balance &balance : data.balance) {
-        for (const Balance &twin : other.balance) {
-            if (twin.name != balance.name) continue;
-            double sum = 0;
-            std::size_t n = 0;
-            for (std::size_t i = 0, j = 0; i < balance.measured.size(); ++i) {
-                const double t = balance.t0_s[i] - data.start_s;
-                while (j < twin.t0_s.size() && twin.t0_s[j] - other.start_s < t - 0.02) ++j;
-                if (j >= twin.t0_s.size() || std::fabs(twin.t0_s[j] - other.start_s - t) > 0.02) continue;
-                const double d = balance.measured[i] - twin.measured[j];
-                sum += d * d;
-                ++n;
-            }
-            if (n < 20 || !(sum > 0)) continue;
-            balance.noise = std::sqrt(sum / static_cast<double>(n) / 2);
-            balance.noise_source = "repeat run";
-        }
-    }
-}
-
 } // namespace
 
 double Dataset::acceleration_loss(double omega) const {
@@ -325,16 +302,31 @@ std::vector<double> Dataset::voltage_integral(const WheelInput &input, double la
     return sum;
 }
 
-Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
+Dataset measured_data(const Model &model, const log::Log &log) {
     Builder builder(model, log);
     builder.build();
-    doubt_jumps(model, builder.data);
-    if (repeat != nullptr) {
-        Builder other(model, *repeat);
-        other.build();
-        noise_from_repeat(builder.data, other.data);
-    }
     return builder.data;
+}
+
+void noise_from_repeat(Dataset &data, const Dataset &other) {
+    for (Balance &balance : data.balance) {
+        for (const Balance &twin : other.balance) {
+            if (twin.name != balance.name) continue;
+            double sum = 0;
+            std::size_t n = 0;
+            for (std::size_t i = 0, j = 0; i < balance.measured.size(); ++i) {
+                const double t = balance.t0_s[i] - data.start_s;
+                while (j < twin.t0_s.size() && twin.t0_s[j] - other.start_s < t - 0.02) ++j;
+                if (j >= twin.t0_s.size() || std::fabs(twin.t0_s[j] - other.start_s - t) > 0.02) continue;
+                const double d = balance.measured[i] - twin.measured[j];
+                sum += d * d;
+                ++n;
+            }
+            if (n < 20 || !(sum > 0)) continue;
+            balance.noise = std::sqrt(sum / static_cast<double>(n) / 2);
+            balance.noise_source = "repeat run";
+        }
+    }
 }
 
 } // namespace traction::lab

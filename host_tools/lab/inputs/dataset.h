@@ -1,7 +1,8 @@
 // dataset.h - a log as the forward model wants it: inputs on one uniform grid, and the measured rows of every balance.
 //
 // Inputs (encoder angle, speed and acceleration by zero-phase local polynomials, motor voltage, yaw rate) are resampled.
-// Measurements keep their own times: a row is the mean of a balance over [t0, t1], its prediction the mean over the same window.
+// Measurements keep their own times: a row is the mean of a balance over [t0, t1] (of a camera: its change from t0 to t1), its prediction
+// that of the same window.
 // A signal that the log lacks removes its balance and leaves a message.
 #pragma once
 
@@ -38,14 +39,15 @@ struct Balance {
     std::string noise_source;
     std::vector<double> t0_s, t1_s, measured; // one entry per row
     std::vector<double> noise_factor;         // of a row's noise, relative to `noise`; empty: all 1
-    std::vector<double> doubt;                // what the smoothing may cost a row's prediction, with its sign; empty: nothing
+    std::vector<double> smoothing_bias;       // what the smoothing may cost a row's prediction, with its sign [unit]; empty: nothing
 };
 
 struct WheelInput {
     std::vector<double> angle_rad, speed_rad_s, accel_rad_s2; // on the grid, smoothed
     std::vector<double> travel_rad;                           // since the wheel last reversed
     std::vector<double> plain_speed_rad_s,
-        plain_accel_rad_s2;                               // by parabolas throughout: speed_rad_s differs where it jumps; empty: nowhere
+        plain_accel_rad_s2; // by parabolas throughout: speed_rad_s differs where the wheel jumps, accel_rad_s2 is by cubics; empty: it
+                            // never turns
     std::vector<double> voltage_V;                        // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
     std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged
@@ -66,7 +68,7 @@ struct Dataset {
     std::vector<char> gap;                    // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
     std::vector<std::string> messages; // what is missing and what that removes
-    double smoothing_half_s = 0;       // half width of the encoder's parabolas
+    double smoothing_half_s = 0;       // half width of the encoder's parabolas, of the last wheel and before half_width_for() widens them
     double accel_bias_prior_m_s2 = 0;  // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
     std::string log_file, scenario, date;
     double duration_s = 0;
@@ -78,8 +80,12 @@ struct Dataset {
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
 
-// Never throws for a poor log: what cannot be used is left out with a message. `repeat`: a second run of the same drive, whose
-// difference gives the noise; nullptr when there is none.
-Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat = nullptr);
+// Inputs and balances of a log, without what its smoothing may cost where speeds jump (forward/make_dataset.h adds that). Never throws
+// for a poor log: what cannot be used is left out with a message.
+Dataset measured_data(const Model &model, const log::Log &log);
+
+// Two runs of one drive: where at least 20 rows of a balance lie within 20 ms of the other run's, the standard deviation of their
+// difference over sqrt(2) becomes the balance's noise.
+void noise_from_repeat(Dataset &data, const Dataset &other);
 
 } // namespace traction::lab

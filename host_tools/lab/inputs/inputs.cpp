@@ -203,12 +203,12 @@ void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, doub
     const auto place = moving.begin() + static_cast<std::ptrdiff_t>(calm * static_cast<double>(moving.size()));
     std::nth_element(moving.begin(), place, moving.end());
     const double limit = jump * std::max(least_noise, *place / quantile);
-    const auto reach = static_cast<std::size_t>(std::lround(0.5 * data.smoothing_half_s / data.step_s));
+    const auto half_steps = static_cast<std::size_t>(std::lround(0.5 * data.smoothing_half_s / data.step_s));
     input.plain_speed_rad_s = input.speed_rad_s;
     input.plain_accel_rad_s2 = std::exchange(input.accel_rad_s2, sharp.accel_rad_s2);
     for (std::size_t k = 0; k < data.count; ++k) {
         if (!(size[k] > limit)) continue;
-        for (std::size_t j = k - std::min(k, reach); j <= std::min(data.count - 1, k + reach); ++j) {
+        for (std::size_t j = k - std::min(k, half_steps); j <= std::min(data.count - 1, k + half_steps); ++j) {
             input.speed_rad_s[j] = sharp.speed_rad_s[j];
         }
     }
@@ -228,12 +228,13 @@ void InputBuilder::slopes_of(WheelInput &input) const {
     std::vector<double> &dw = input.accel_rad_s2;
     const std::vector<double> &w = input.speed_rad_s;
     dw.assign(data.count, 0);
-    const auto n = static_cast<std::ptrdiff_t>(data.count), reach = std::max<std::ptrdiff_t>(1, std::lround(0.02 / data.step_s));
+    const auto n = static_cast<std::ptrdiff_t>(data.count), half_steps = std::max<std::ptrdiff_t>(1, std::lround(0.02 / data.step_s));
     const auto over = [&](std::ptrdiff_t k, std::ptrdiff_t by) {
         const std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, k - by), b = std::min(n - 1, k + by);
         return (w[static_cast<std::size_t>(b)] - w[static_cast<std::size_t>(a)]) / (static_cast<double>(b - a) * data.step_s);
     };
-    for (std::ptrdiff_t k = 0; k < n; ++k) dw[static_cast<std::size_t>(k)] = (4 * over(k, reach) - over(k, 2 * reach)) / 3; // fourth order
+    for (std::ptrdiff_t k = 0; k < n; ++k)
+        dw[static_cast<std::size_t>(k)] = (4 * over(k, half_steps) - over(k, 2 * half_steps)) / 3; // fourth order
 }
 
 void InputBuilder::mark_gaps(const std::vector<double> &distance_s, const log::Signal &s) {

@@ -4,7 +4,7 @@ namespace traction::lab {
 
 namespace {
 
-// Priors are assumed: a brushed gear motor's data sheet holds within 3 % for its constant and winding, 15 % for friction; a soil is
+// Priors are assumed: a brushed gear motor's data sheet holds within 2 to 3 % for its constant and winding, 10 % for friction; a soil is
 // known to 20 %; a tyre's radius under load to 0.5 %.
 constexpr ModelKey rover[] = {
     {"mass_kg", "kg", 0, 0, 1e5, 0, 0},          {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},

@@ -1,7 +1,5 @@
 #include "terms.h"
 
-#include "host_tools/lab/forward/physics.h"
-
 #include <muParser.h>
 
 #include <algorithm>

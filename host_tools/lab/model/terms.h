@@ -6,6 +6,8 @@
 // Ia of those on the same axle, Is of those on the same side (the model's).
 #pragma once
 
+#include "sim/physics/effects/catalogue.h"
+
 #include <array>
 #include <memory>
 #include <string>
@@ -13,6 +15,15 @@
 #include <vector>
 
 namespace traction::lab {
+
+// What a parameter, term or effect touches of the prediction, hence what must be computed again when it moves.
+enum Stage : unsigned {
+    stage_motion = sim::needs_motion,
+    stage_torque = sim::needs_torque,
+    stage_voltage = sim::needs_voltage,
+    stage_sensors = sim::needs_sensors,
+    stage_all = sim::needs_stages
+};
 
 // Where a term acts. Multipliers act as times (1 + f).
 enum class TermTarget {
@@ -35,7 +46,7 @@ enum class TermTarget {
 
 std::string_view target_name(TermTarget target);
 bool parse_target(std::string_view name, TermTarget &target);
-unsigned target_stages(TermTarget target); // Stage bits of physics.h
+unsigned target_stages(TermTarget target); // Stage bits
 
 struct Signals {
     double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0, X = 0, d = 0, Io = 0, Ia = 0,

@@ -32,7 +32,7 @@ double spacing_of(const Balance &balance) {
     return median(steps);
 }
 
-Eigen::Index first_column(const std::vector<Sized> &candidates, Eigen::Index parameters, int which) {
+Eigen::Index first_column(const std::vector<SizedCandidate> &candidates, Eigen::Index parameters, int which) {
     Eigen::Index at = parameters;
     for (int i = 0; i < which; ++i) at += static_cast<Eigen::Index>(candidates[static_cast<std::size_t>(i)].size.size());
     return at;
@@ -65,7 +65,8 @@ std::map<std::string, double> scale_over_noise(const Problem &problem) {
     return scale;
 }
 
-Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double> &scale, const std::vector<Sized> &candidates) {
+Eigen::MatrixXd fisher_information(Problem &problem, const std::map<std::string, double> &scale,
+                                   const std::vector<SizedCandidate> &candidates) {
     const Eigen::VectorXd before = problem.row_scale;
     problem.row_scale = problem.noise_rows().cwiseInverse();
     Eigen::Index first = 0;
@@ -80,7 +81,7 @@ Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double
     X.col(all) = problem.residual.cwiseProduct(problem.row_scale);
     X.leftCols(parameters) = problem.jacobian;
     Eigen::Index column = parameters;
-    for (const Sized &s : candidates)
+    for (const SizedCandidate &s : candidates)
         for (std::size_t j = 0; j < s.size.size(); ++j) {
             Physics at = problem.physics();
             s.candidate.prepare(at);
@@ -91,21 +92,21 @@ Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double
 
 namespace {
 
-// A at its size, and any column, with all that the parameters and the rival can take from them.
-struct Unabsorbed {
+// A at its size, and any column, orthogonal to the parameters and the rival: the Schur complement of their block.
+struct SchurComplement {
     double own = 0;  // square of A
     double with = 0; // A times the column
 };
 
-Unabsorbed unabsorbed(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
-                      int rival, Eigen::Index column) {
+SchurComplement schur_complement(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision,
+                                 const std::vector<SizedCandidate> &candidates, int truth, int rival, Eigen::Index column) {
     const Eigen::Index parameters = precision.size();
     std::vector<Eigen::Index> rest;
     for (Eigen::Index i = 0; i < parameters; ++i) rest.push_back(i);
     if (rival >= 0)
         for (std::size_t j = 0; j < candidates[static_cast<std::size_t>(rival)].size.size(); ++j)
             rest.push_back(first_column(candidates, parameters, rival) + static_cast<Eigen::Index>(j));
-    const Sized &true_one = candidates[static_cast<std::size_t>(truth)];
+    const SizedCandidate &true_one = candidates[static_cast<std::size_t>(truth)];
     const Eigen::Index at = first_column(candidates, parameters, truth), k = static_cast<Eigen::Index>(true_one.size.size());
     const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(true_one.size.data(), k);
     Eigen::MatrixXd R = gram(rest, rest);
@@ -114,22 +115,25 @@ Unabsorbed unabsorbed(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precis
     R = unit.asDiagonal() * R * unit.asDiagonal();
     R.diagonal().array() += 1e-9; // a parameter that nothing sees stays where it is
     const Eigen::LDLT<Eigen::MatrixXd> factor(R);
-    const Eigen::VectorXd cross = unit.cwiseProduct(gram(rest, Eigen::seqN(at, k)) * g), absorbed = factor.solve(cross);
-    Unabsorbed out{std::max(0.0, g.dot(gram.block(at, at, k, k) * g) - cross.dot(absorbed)), 0};
-    if (column >= 0) out.with = g.dot(gram.block(at, column, k, 1).col(0)) - absorbed.dot(unit.cwiseProduct(gram(rest, column)));
+    Eigen::VectorXd cross = Eigen::VectorXd::Zero(R.rows()); // gram(rest, seqN(at, k)) * g, in which gcc 14 sees a bound that is not there
+    for (Eigen::Index j = 0; j < k; ++j) cross += g[j] * gram.col(at + j)(rest);
+    cross = unit.cwiseProduct(cross).eval();
+    const Eigen::VectorXd projection = factor.solve(cross);
+    SchurComplement out{std::max(0.0, g.dot(gram.block(at, at, k, k) * g) - cross.dot(projection)), 0};
+    if (column >= 0) out.with = g.dot(gram.block(at, column, k, 1).col(0)) - projection.dot(unit.cwiseProduct(gram.col(column)(rest)));
     return out;
 }
 
 } // namespace
 
-double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
-                     int rival) {
-    return std::sqrt(unabsorbed(gram, precision, candidates, truth, rival, -1).own);
+double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<SizedCandidate> &candidates,
+                     int truth, int rival) {
+    return std::sqrt(schur_complement(gram, precision, candidates, truth, rival, -1).own);
 }
 
-double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
-                 int rival) {
-    const Unabsorbed u = unabsorbed(gram, precision, candidates, truth, rival, gram.cols() - 1);
+double score_statistic(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<SizedCandidate> &candidates,
+                       int truth, int rival) {
+    const SchurComplement u = schur_complement(gram, precision, candidates, truth, rival, gram.cols() - 1);
     return u.own > 0 ? std::fabs(u.with) / std::sqrt(u.own) : 0;
 }
 

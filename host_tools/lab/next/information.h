@@ -1,8 +1,9 @@
 // information.h - what a log, made or planned, tells of a model's parameters and of effects that it lacks; and how far two of these
 // stay apart when everything else may give way.
 //
-//   G = sum over rows of x x' / s^2,  x = [sensitivities to the model's free parameters | to the candidates' strengths | residual] (1)
-//   d'^2 = g' (G_AA - G_AR (G_RR + P)^-1 G_RA) g,  A the true effect of size g, R all free parameters and the rival, P priors     (2)
+//   G = sum over rows of x x' / s^2 (Fisher information),  x = [sensitivities to the model's free parameters | to the candidates' strengths
+//   | residual] (1) d'^2 = g' (G_AA - G_AR (G_RR + P)^-1 G_RA) g,  A the true effect of size g, R all free parameters and the rival, P
+//   priors     (2)
 // (2) is the squared difference between what A does and the nearest that the rival and the parameters can do (T-optimality, Atkinson
 // and Fedorov 1975, linearised). Gram matrices of several drives add: what a log told tightens what the next may give way.
 // s of a row: noise times the balance's residual over noise times the root of its design effect 1 + 2 sum rho_k (rows that err alike
@@ -21,7 +22,7 @@
 namespace traction::lab {
 
 // A candidate at the sizes in question, one per strength.
-struct Sized {
+struct SizedCandidate {
     Candidate candidate;
     std::vector<double> size;
 };
@@ -32,14 +33,16 @@ std::map<std::string, double> scale_over_noise(const Problem &problem);
 
 // (1), with row scales of noise times `scale` (1 where a balance is not listed), which it gives to the problem. The problem must be
 // linearised.
-Eigen::MatrixXd information(Problem &problem, const std::map<std::string, double> &scale, const std::vector<Sized> &candidates);
+Eigen::MatrixXd fisher_information(Problem &problem, const std::map<std::string, double> &scale,
+                                   const std::vector<SizedCandidate> &candidates);
 
-// (2) as d', the sum of G over drives given. `truth` and `rival` index the candidates, in the order given to information(); rival -1:
-// none. precision: of the parameters' priors.
-double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth,
-                     int rival);
+// (2) as d', the sum of G over drives given. `truth` and `rival` index the candidates, in the order given to fisher_information(); rival
+// -1: none. precision: of the parameters' priors.
+double detectability(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<SizedCandidate> &candidates,
+                     int truth, int rival);
 
 // What the residual shows of A, beside R, in standard deviations: about 1 where it is noise.
-double imitation(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<Sized> &candidates, int truth, int rival);
+double score_statistic(const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const std::vector<SizedCandidate> &candidates,
+                       int truth, int rival);
 
 } // namespace traction::lab

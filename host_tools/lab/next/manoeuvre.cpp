@@ -50,7 +50,7 @@ class Drive {
     Manoeuvre made_;
 };
 
-// Sizes are those of a rover of a few kilograms; LAB.md section 3 says what each separates.
+// Sizes are those of a rover of a few kilograms; docs/evidence.md section 5 says what separates the closest pairs.
 std::vector<Manoeuvre> make_manoeuvres() {
     return {
         Drive("there and back over the same ground", {"grade", "multi_pass", "mass_offset_x", "soil_patch", "soil_gradient", "tether_drag",
@@ -141,7 +141,9 @@ std::string effect_table(const EffectUse &use, std::vector<std::string> &notes) 
     for (const sim::EffectParameter &p : known->parameters) {
         const auto found = use.parameters.find(std::string(p.name));
         if (found == use.parameters.end()) continue;
-        const double value = std::clamp(found->second.value, p.minimum, p.maximum);
+        const double given = found->second.value, size = p.both_signs ? std::fabs(given) : given;
+        const double value =
+            p.both_signs ? std::copysign(std::clamp(size, p.minimum, p.maximum), given) : std::clamp(size, p.minimum, p.maximum);
         if (value != found->second.value)
             notes.push_back(use.name + "." + std::string(p.name) + " is beyond what the plant takes: driven with " + text_of(value));
         text += std::string(p.name) + " = " + text_of(value) + "\n";
@@ -233,33 +235,9 @@ std::string scenario_of(const Model &model, const std::vector<const Manoeuvre *>
 }
 
 std::string measure_instead(const std::string &effect) {
-    static const std::pair<std::vector<const char *>, const char *> table[] = {
-        {{"mass_offset_x", "mass_offset_y"}, "weigh the rover wheel by wheel"},
-        {{"load_transfer"}, "tilt the rover until it tips: the angle gives the height of its centre of mass"},
-        {{"wheel_radius"}, "roll the loaded rover by hand over ten turns of the wheel and measure the distance"},
-        {{"encoder_missed"}, "turn the wheel ten turns by hand and read the count"},
-        {{"camera_scale"}, "put a rule in the camera's field and compare"},
-        {{"camera_delay", "actuation_delay"}, "light a lamp by the duty line in the camera's field: frame against command"},
-        {{"radar_scale"}, "pull the rover over a measured distance in a measured time"},
-        {{"radar_pitch", "accel_tilt"}, "tilt the rover by a known angle and read the sensor"},
-        {{"accel_bias", "accel_drift"}, "log the rover at rest on a level plate, then turned by half a turn"},
-        {{"accel_scale"}, "stand the rover on its nose: the sensor must read 9.81 m/s^2"},
-        {{"grade"}, "lay a spirit level on the ground"},
-        {{"wiring_resistance", "bridge_dead_time"},
-         "block the wheel and measure the voltage at the motor's terminals with a meter, at two currents"},
-        {{"winding_heating"}, "measure the winding's resistance with a meter, cold and after a hard drive"},
-        {{"torque_constant"}, "turn the motor at a known speed and measure its open-circuit voltage"},
-        {{"current_gain", "current_offset"}, "put an ammeter in the motor's lead"},
-        {{"voltage_gain"}, "put a voltmeter on the battery"},
-        {{"rolling_resistance", "body_drag", "tether_drag", "speed_resistance"},
-         "pull the rover with a spring balance, motors disconnected"},
-        {{"coulomb_friction", "viscous_friction", "stribeck_friction", "torque_ripple", "mesh_loss", "backlash"},
-         "lift the wheel off the ground and run it alone"},
-        {{"lateral_scrub"}, "pull the rover sideways with a spring balance"},
-    };
-    for (const auto &[names, words] : table)
-        if (std::any_of(names.begin(), names.end(), [&](const char *name) { return effect == name; })) return words;
-    return "measure the ground itself: pull one wheel, held fast, with a spring balance in and beside the track";
+    const sim::Effect *known = sim::find_effect(effect);
+    return known != nullptr ? std::string(known->measure)
+                            : "measure the ground itself: pull one wheel, held fast, with a spring balance in and beside the track";
 }
 
 } // namespace traction::lab

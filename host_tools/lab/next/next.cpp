@@ -1,5 +1,7 @@
 #include "next.h"
 
+#include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "information.h"
 #include "manoeuvre.h"
 
@@ -14,7 +16,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double answered_at = 2; // d' from which 85 to 93 % are named right (LAB.md section 3)
+constexpr double answered_at = 2; // d' from which 85 to 93 % are named right (docs/evidence.md section 5)
 constexpr double sizes_of_interest = 3;
 constexpr double noticed_at = 4.588; // 2/sqrt(1 - 0.9^2): at this size |cos| = 0.9, the lab's limit of a class, means d' = 2
 constexpr int most_manoeuvres = 3;
@@ -26,7 +28,7 @@ struct Asked {
 // What is asked, of which model, on top of which log.
 struct Plan {
     Model base; // without the members in question
-    std::vector<Sized> candidates;
+    std::vector<SizedCandidate> candidates;
     std::vector<Asked> asked;
     const Dataset *data = nullptr;
     std::map<std::string, double> scale; // of the present log's rows
@@ -34,16 +36,16 @@ struct Plan {
     bool undecided = false;              // the log was judged and did not decide, whatever d' it should have had
 };
 
-Sized of_interest(const Candidate &c) {
-    Sized s{c, {}};
+SizedCandidate of_interest(const Candidate &c) {
+    SizedCandidate s{c, {}};
     for (std::size_t j = 0; j < c.strengths.size(); ++j)
         s.size.push_back(sizes_of_interest * (j < c.of_interest.size() ? c.of_interest[j] : c.step[j]));
     return s;
 }
 
 // The fitted size where it is one to speak of and has the sign physics allows, else three sizes of interest.
-Sized as_found(const CandidateResult &r) {
-    Sized s = of_interest(r.candidate);
+SizedCandidate as_found(const CandidateResult &r) {
+    SizedCandidate s = of_interest(r.candidate);
     for (std::size_t j = 0; j < r.value.size() && j < s.size.size(); ++j) {
         const double least = s.size[j] / sizes_of_interest, sign = r.candidate.minimum[j] >= 0 ? 1.0 : (r.value[j] < 0 ? -1.0 : 1.0);
         if (std::fabs(r.value[j]) > least && r.value[j] * sign > 0)
@@ -73,7 +75,7 @@ std::optional<Candidate> catalogue_candidate(const std::string &effect, int whee
     return best;
 }
 
-int place_of(Plan &plan, Sized sized) {
+int place_of(Plan &plan, SizedCandidate sized) {
     for (std::size_t i = 0; i < plan.candidates.size(); ++i)
         if (plan.candidates[i].candidate.label() == sized.candidate.label()) return static_cast<int>(i);
     plan.candidates.push_back(std::move(sized));
@@ -88,16 +90,16 @@ const CandidateResult *find_result(const Diagnosis &d, const std::string &label)
 }
 
 // d' of one role, less where the forward model's own error on these drives looks like the effect: it must not be taken for it.
-double trusted(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, int truth, int rival) {
+double discounted(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, int truth, int rival) {
     return detectability(gram, precision, plan.candidates, truth, rival) /
-           std::max(1.0, imitation(gram, precision, plan.candidates, truth, rival));
+           std::max(1.0, score_statistic(gram, precision, plan.candidates, truth, rival));
 }
 
-// The least of "A is true, B stands in" and the other way round; whether A shows at all when it is alone.
+// The least of "A is true, B is its proxy" and the other way round; whether A shows at all when it is alone.
 double distance(const Plan &plan, const Eigen::MatrixXd &gram, const Eigen::VectorXd &precision, const Asked &asked) {
-    if (asked.members.size() == 1) return trusted(plan, gram, precision, asked.members[0], -1);
-    return std::min(trusted(plan, gram, precision, asked.members[0], asked.members[1]),
-                    trusted(plan, gram, precision, asked.members[1], asked.members[0]));
+    if (asked.members.size() == 1) return discounted(plan, gram, precision, asked.members[0], -1);
+    return std::min(discounted(plan, gram, precision, asked.members[0], asked.members[1]),
+                    discounted(plan, gram, precision, asked.members[1], asked.members[0]));
 }
 
 bool answers(const Plan &plan, double before, double after) {
@@ -105,8 +107,8 @@ bool answers(const Plan &plan, double before, double after) {
     return plan.undecided && after * after - before * before >= answered_at * answered_at;
 }
 
-// Gram of what a drive of this scenario would tell.
-Eigen::MatrixXd told_by(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
+// Fisher information of a drive of this scenario.
+Eigen::MatrixXd information_of(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
     Dataset trial = make_dataset(plan.base, drive(scenario));
     if (plan.data != nullptr) { // sensors that this rover's log lacks will be lacking again, and be as noisy
         std::erase_if(trial.balance, [&](const Balance &b) {
@@ -122,7 +124,7 @@ Eigen::MatrixXd told_by(const Plan &plan, const std::string &scenario, const Dri
     std::map<std::string, double> scale = scale_over_noise(problem);
     for (auto &[name, value] : scale)
         if (const auto found = plan.scale.find(name); found != plan.scale.end()) value = std::max(value, found->second);
-    return information(problem, scale, plan.candidates);
+    return fisher_information(problem, scale, plan.candidates);
 }
 
 struct Choice {
@@ -133,7 +135,7 @@ struct Choice {
 
 void name_kinds(const Plan &plan, NextExperiment &next) {
     for (const Manoeuvre &m : manoeuvres()) {
-        const bool fits = std::any_of(plan.candidates.begin(), plan.candidates.end(), [&](const Sized &s) {
+        const bool fits = std::any_of(plan.candidates.begin(), plan.candidates.end(), [&](const SizedCandidate &s) {
             return std::find(m.good_for.begin(), m.good_for.end(), s.candidate.effect) != m.good_for.end();
         });
         if (fits) next.tried.push_back({m.title, 0, 0, 0});
@@ -142,10 +144,10 @@ void name_kinds(const Plan &plan, NextExperiment &next) {
 }
 
 // Fills base, its fit to the log and the rows' scales from the model that explains the log best.
-void learn_from_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen::VectorXd &precision) {
+void condition_on_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen::VectorXd &precision) {
     const auto count = [&] {
         Eigen::Index n = 0;
-        for (const Sized &s : plan.candidates) n += static_cast<Eigen::Index>(s.size.size());
+        for (const SizedCandidate &s : plan.candidates) n += static_cast<Eigen::Index>(s.size.size());
         return n;
     }();
     if (plan.data == nullptr || plan.data->balance.empty() || plan.data->count < 3) {
@@ -167,7 +169,7 @@ void learn_from_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eigen:
     fit_model(plan.base, *plan.data, "");
     Problem problem(*plan.data, make_physics(plan.base), free_parameters(plan.base, make_physics(plan.base)));
     problem.linearise();
-    gram = information(problem, plan.scale, plan.candidates);
+    gram = fisher_information(problem, plan.scale, plan.candidates);
     gram.rightCols(1).setZero(); // its residual holds what is hidden
     gram.bottomRows(1).setZero();
     precision = problem.prior_precision();
@@ -188,7 +190,7 @@ struct Table {
 // Effects that the model's own parameters would hide at three sizes of interest are asked for at the size that stands out.
 void enlarge(Plan &plan, const Eigen::MatrixXd &everything, const Eigen::VectorXd &precision) {
     for (std::size_t i = 0; i < plan.candidates.size(); ++i) {
-        Sized &s = plan.candidates[i];
+        SizedCandidate &s = plan.candidates[i];
         const double alone = detectability(everything, precision, plan.candidates, static_cast<int>(i), -1);
         if (!(alone > 0)) continue;
         for (std::size_t j = 0; j < s.size.size(); ++j)
@@ -276,10 +278,10 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
         return next;
     }
     Table table{plan, {}, {}, {}, {}, {}};
-    learn_from_log(plan, best, table.log, table.precision);
+    condition_on_log(plan, best, table.log, table.precision);
     for (const Manoeuvre &m : manoeuvres()) {
         next.notes.clear(); // the same for each
-        table.grams.push_back(told_by(plan, scenario_of(plan.base, {&m}, next.notes), drive));
+        table.grams.push_back(information_of(plan, scenario_of(plan.base, {&m}, next.notes), drive));
     }
     Eigen::MatrixXd everything = table.log;
     for (const Eigen::MatrixXd &gram : table.grams) everything += gram;
@@ -293,7 +295,7 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
         next.notes.clear();
         next.scenario_toml = scenario_of(plan.base, list, next.notes);
         for (const Manoeuvre *m : list) next.title += (next.title.empty() ? "" : ", then ") + m->title, next.duration_s += m->duration_s;
-        after += list.size() > 1 ? told_by(plan, next.scenario_toml, drive)
+        after += list.size() > 1 ? information_of(plan, next.scenario_toml, drive)
                                  : table.grams[choice.manoeuvres[0]]; // in one go, as it will be driven
     }
     conclude(table, after, next);

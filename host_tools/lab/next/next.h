@@ -13,8 +13,6 @@
 
 #include "host_tools/log/log.h"
 
-#include <nlohmann/json.hpp>
-
 #include <functional>
 #include <string>
 #include <vector>
@@ -56,8 +54,5 @@ NextExperiment next_experiment(const Diagnosis &diagnosis, const Model &model, c
 // already; nullptr when there is no log. Throws ModelError for a name that is no candidate.
 NextExperiment next_experiment(const std::vector<std::string> &effects, const Model &model, const Dataset *data,
                                const DriveScenario &drive);
-
-nlohmann::json next_json(const NextExperiment &next); // null when there is no question
-std::string next_text(const NextExperiment &next);
 
 } // namespace traction::lab

@@ -13,11 +13,11 @@
 
 namespace traction::lab {
 
-void append_lineage(Model &model, const Dataset &data, const std::vector<Rung> &ladder, const Rung &final_rung) {
+void append_lineage(Model &model, const Dataset &data, const std::vector<LadderStep> &ladder, const LadderStep &final_step) {
     for (std::size_t i = 0; i < ladder.size(); ++i) {
         if (i == 0 && !model.lineage.empty()) continue; // the baseline is the last entry already
         const bool last = i + 1 == ladder.size();
-        const Rung &r = last && std::isfinite(final_rung.train) ? final_rung : ladder[i];
+        const LadderStep &r = last && std::isfinite(final_step.train) ? final_step : ladder[i];
         model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor});
     }
 }

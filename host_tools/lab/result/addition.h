@@ -10,8 +10,8 @@ namespace traction::lab {
 
 struct Added {
     Model model;
-    std::vector<Rung> ladder; // baseline, + effect
-    bool helps = false;       // the held-out error fell
+    std::vector<LadderStep> ladder; // baseline, + effect
+    bool helps = false;             // the held-out error fell
     std::string text;
 };
 
@@ -21,6 +21,6 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
 std::string added_text(const Added &added);
 
 // Appends the ladder's steps to the model's history.
-void append_lineage(Model &model, const Dataset &data, const std::vector<Rung> &ladder, const Rung &final_rung);
+void append_lineage(Model &model, const Dataset &data, const std::vector<LadderStep> &ladder, const LadderStep &final_step);
 
 } // namespace traction::lab

@@ -46,7 +46,8 @@ struct Comparison {
     std::vector<std::string> messages;
 };
 
-// as_is: the model's values untouched; otherwise its parameters may move within their priors first.
+// `error` and `adjusted` always; balances and regimes show the model as it stands (as_is), else after its parameters moved within their
+// priors.
 Comparison compare(const Model &model, const Dataset &data, bool as_is);
 
 } // namespace traction::lab

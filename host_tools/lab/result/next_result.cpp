@@ -1,5 +1,4 @@
-// next_result.cpp - the next experiment as text and JSON.
-#include "host_tools/lab/next/next.h"
+#include "next_result.h"
 
 #include "append.h"
 #include "host_tools/lab/next/manoeuvre.h"

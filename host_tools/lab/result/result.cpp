@@ -125,9 +125,9 @@ void put_comparison(json &out, const Comparison &c) {
     out["messages"] = c.messages;
 }
 
-json ladder_json(const std::vector<Rung> &ladder) {
+json ladder_json(const std::vector<LadderStep> &ladder) {
     json out = json::array();
-    for (const Rung &r : ladder)
+    for (const LadderStep &r : ladder)
         out.push_back({{"label", r.label}, {"train", finite(r.train)}, {"heldout", finite(r.heldout)}, {"floor", finite(r.floor)}});
     return out;
 }
@@ -169,10 +169,10 @@ std::string comparison_text(const Comparison &c) {
     return text;
 }
 
-std::string ladder_text(const std::vector<Rung> &ladder) {
+std::string ladder_text(const std::vector<LadderStep> &ladder) {
     std::string text;
     append(text, "%-36s %10s %10s   (in units of noise)\n", "ladder", "training", "held out");
-    for (const Rung &r : ladder) append(text, "%-36s %10.3f %10.3f\n", r.label.c_str(), r.train, r.heldout);
+    for (const LadderStep &r : ladder) append(text, "%-36s %10.3f %10.3f\n", r.label.c_str(), r.train, r.heldout);
     append(text, "%-36s %10.3f %10.3f\n", "noise floor", ladder.empty() ? 1.0 : ladder.back().floor,
            ladder.empty() ? 1.0 : ladder.back().floor);
     return text;

@@ -13,10 +13,10 @@ namespace traction::lab {
 nlohmann::json head_json(const std::string &verb, const Model &model, const Dataset &data);
 void put_comparison(nlohmann::json &json, const Comparison &comparison);
 void put_diagnosis(nlohmann::json &json, const Diagnosis &diagnosis);
-nlohmann::json ladder_json(const std::vector<Rung> &ladder);
+nlohmann::json ladder_json(const std::vector<LadderStep> &ladder);
 
 std::string comparison_text(const Comparison &comparison);
 std::string diagnosis_text(const Diagnosis &diagnosis);
-std::string ladder_text(const std::vector<Rung> &ladder);
+std::string ladder_text(const std::vector<LadderStep> &ladder);
 
 } // namespace traction::lab

@@ -1,6 +1,8 @@
+import { readFileSync } from 'node:fs';
 import { defineConfig } from 'vite';
 
-// Puts the one script and the one style sheet into the page, so that a single file opens from disk.
+// Puts the one script and the one style sheet into the page, so that a single file opens from disk, and the notice that uPlot's
+// licence asks for (MIT) before them.
 function oneFile() {
   return {
     name: 'one-file',
@@ -18,7 +20,8 @@ function oneFile() {
         } else continue;
         delete bundle[file.fileName];
       }
-      page.source = html;
+      const licence = readFileSync('node_modules/uplot/LICENSE', 'utf8').trim();
+      page.source = html.replace('<head>', () => `<head>\n<!-- Contains uPlot (https://github.com/leeoniya/uPlot):\n${licence}\n-->`);
     },
   };
 }

@@ -3,6 +3,7 @@
 #include "parts.h"
 
 #include <array>
+#include <charconv>
 #include <stdexcept>
 
 namespace traction::sim {
@@ -21,6 +22,19 @@ const Effect *find_effect(std::string_view name) {
     for (const Effect &effect : catalogue())
         if (effect.name == name) return &effect;
     return nullptr;
+}
+
+bool EffectParameter::takes(double value) const {
+    return (value >= minimum && value <= maximum) || (both_signs && value >= -maximum && value <= -minimum);
+}
+
+std::string EffectParameter::range() const {
+    const auto text = [](double value) {
+        std::array<char, 32> buffer{};
+        return std::string(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
+    };
+    const std::string plain = "a number from " + text(minimum) + " to " + text(maximum);
+    return both_signs ? plain + ", or from " + text(-maximum) + " to " + text(-minimum) : plain;
 }
 
 double ActiveEffect::value(std::string_view parameter) const {

@@ -2,6 +2,7 @@
 #include "host_tools/bench_lab/answer.h"
 #include "host_tools/bench_lab/peers.h"
 #include "host_tools/bench_lab/regressors.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/log/log.h"
 #include "tests/lab/generator/generator.h"
 

@@ -244,7 +244,7 @@ BlindCase draw_case(std::uint64_t seed, double duration_s) {
     blind.config.duration_s = duration_s;
     const double soil = random.uniform();
     blind.config.soil = soil < 0.45 ? Soil::sand : soil < 0.65 ? Soil::gravel : Soil::concrete;
-    const double category = random.uniform(); // LAB.md's mixture: clean 15 %, one 55 %, two 15 %, outside 15 %
+    const double category = random.uniform(); // the mixture of docs/evidence.md section 5: clean 15 %, one 55 %, two 15 %, outside 15 %
     if (category < 0.15)
         blind.category = "clean";
     else if (category < 0.70)

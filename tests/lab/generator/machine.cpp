@@ -22,7 +22,7 @@ double soft_sign(double x, double width) { return std::tanh(x / width); }
 Machine nominal(Soil soil) {
     Machine m;
     m.soil = soil;
-    const double Fn = 7.0; // [N] the load for which SPEC states Fm
+    const double Fn = 7.0; // [N] the load for which the paper states Fm
     if (soil == Soil::sand) {
         m.mu = 5.1 / Fn;
         m.sc = 0.27;

@@ -20,7 +20,7 @@ namespace traction::generator {
 
 enum class Soil { sand, gravel, concrete };
 
-// One machine: SPEC table I and (17)-(21), then spread by `draw` as real machines are.
+// One machine: table I and (17)-(21) of docs/sources.md, then spread by `draw` as real machines are.
 struct Machine {
     double mass = 2.88, yaw_inertia = 0.0391; // yaw: a plate of 30 x 27 cm, assumed
     double radius = 0.057, half_base = 0.083, half_track = 0.12, gravity = 9.81;

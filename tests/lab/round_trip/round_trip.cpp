@@ -1,6 +1,7 @@
 #include "round_trip.h"
 
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/physics/effects/catalogue.h"

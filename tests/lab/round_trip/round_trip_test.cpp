@@ -1,6 +1,7 @@
 // A sample of the round trip (all 100 seeds: lab_round_trip), and a model that was improved used as a rover.
 #include "round_trip.h"
 
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"

@@ -1,8 +1,8 @@
-#include "felt.h"
+#include "sparse_jacobian.h"
 
 namespace traction::lab {
 
-Felt::Felt(const Dataset &data, const Eigen::MatrixXd &jacobian) : columns_(jacobian.cols()) {
+SparseJacobian::SparseJacobian(const Dataset &data, const Eigen::MatrixXd &jacobian) : columns_(jacobian.cols()) {
     Eigen::Index first = 0;
     for (const Balance &balance : data.balance) {
         const auto rows = static_cast<Eigen::Index>(balance.measured.size());
@@ -16,7 +16,7 @@ Felt::Felt(const Dataset &data, const Eigen::MatrixXd &jacobian) : columns_(jaco
     }
 }
 
-Eigen::MatrixXd Felt::gram() const {
+Eigen::MatrixXd SparseJacobian::gram() const {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns_, columns_), own;
     for (const Part &part : parts_) {
         own.noalias() = part.value.transpose() * part.value;
@@ -25,7 +25,7 @@ Eigen::MatrixXd Felt::gram() const {
     return sum;
 }
 
-Eigen::VectorXd Felt::moment(const Eigen::VectorXd &rows) const {
+Eigen::VectorXd SparseJacobian::moment(const Eigen::VectorXd &rows) const {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(columns_), own;
     for (const Part &part : parts_) {
         own.noalias() = part.value.transpose() * rows.segment(part.first, part.value.rows());

@@ -1,7 +1,6 @@
-// Errors of a fitted model over all balances, and the rung of the ladder that it makes.
-#include "diagnose.h"
+#include "ladder.h"
 
-#include "host_tools/lab/fit/screen.h"
+#include "screen.h"
 
 #include <cmath>
 
@@ -23,16 +22,16 @@ double overall_heldout(const Problem &problem) {
     return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0;
 }
 
-Rung fit_model(Model &model, const Dataset &data, const std::string &label) {
+LadderStep fit_model(Model &model, const Dataset &data, const std::string &label) {
     const Physics physics = make_physics(model);
     Problem problem(data, physics, free_parameters(model, physics));
     problem.fit({.iterations = 10, .thorough = true});
-    Rung rung{label, overall_error(problem), overall_heldout(problem), 1};
+    LadderStep step{label, overall_error(problem), overall_heldout(problem), 1};
     const Screen screen(problem);
     const std::vector<ParameterError> errors = screen.parameter_errors();
     for (std::size_t i = 0; i < problem.parameters.size(); ++i)
-        store(model, problem.parameters[i], problem.theta[static_cast<Eigen::Index>(i)], errors[i].reach);
-    return rung;
+        store(model, problem.parameters[i], problem.theta[static_cast<Eigen::Index>(i)], errors[i].half_width);
+    return step;
 }
 
 } // namespace traction::lab

@@ -1,4 +1,4 @@
-// felt.h - a Jacobian without its zeros: per balance the columns that its rows feel at all.
+// sparse_jacobian.h - a block-sparse Jacobian: per balance a dense block of the columns that are not zero in all of its rows.
 //
 // Most of a wheel's parameters leave the rows of the other wheels and of the body's sensors alone, so that more than half of a Jacobian is
 // zero. Products skip it; they are those of the whole matrix but for the order of the sums. Rows: all balances in the data's order; units:
@@ -13,10 +13,10 @@
 
 namespace traction::lab {
 
-class Felt {
+class SparseJacobian {
   public:
-    Felt() = default;
-    Felt(const Dataset &data, const Eigen::MatrixXd &jacobian);
+    SparseJacobian() = default;
+    SparseJacobian(const Dataset &data, const Eigen::MatrixXd &jacobian);
 
     struct Part { // the rows of one balance
         Eigen::Index first = 0;

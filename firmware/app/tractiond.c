@@ -1,0 +1,236 @@
+// tractiond - the rover's daemon: opens a HAL by its name and runs daemon_run over it until it ends or is asked to stop.
+//
+// Exit codes: 0 the run ended or was asked to stop (SIGINT, SIGTERM); 1 a device was lost, the motors are stopped; 2 wrong command line;
+// 3 bad input (parameters, scenario, frames); 4 the trace could not be written.
+#define _POSIX_C_SOURCE 200809L // sigaction, getopt_long's unistd
+#include "daemon.h"
+#include "parameters.h"
+#include "trace_text.h"
+
+#include "firmware/core/rover_config.h"
+#include "hal/open.h"
+#include "hal/pace/pace_hal.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { EXIT_DONE = 0, EXIT_DEVICE_LOST = 1, EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_FILE = 4 };
+
+static volatile sig_atomic_t asked_to_stop;
+
+static void ask_to_stop(int signal)
+{
+    (void)signal;
+    asked_to_stop = 1;
+}
+
+typedef struct {
+    const char *hal, *parameters, *firmware, *trace;
+    bool hash, realtime, help;
+} options_t;
+
+static void print_help(void)
+{
+    (void)puts(
+        "usage: tractiond --hal NAME [options] [ARGUMENT...]\n"
+        "Runs the rover's firmware on a HAL until it ends, or SIGINT or SIGTERM asks it to stop. The motors are stopped whatever ends it.\n"
+        "\n"
+        "  --hal NAME          the world to drive, below; the ARGUMENTs are the HAL's\n"
+        "  --parameters FILE   the rover's own numbers (traction export --firmware, calibrate, tune)\n"
+        "  --firmware NAME     default, or paper: the paper's own estimator and gains\n"
+        "  --trace FILE        every trace, one line a tick, floats as their bits; - is standard output\n"
+        "  --hash              print the FNV-1a hash over all trace lines at the end\n"
+        "  --realtime          a tick of 10 ms takes 10 ms\n"
+        "  --help              this\n"
+        "\nHALs:");
+    size_t count = 0;
+    const hal_entry_t *list = hal_list(&count);
+    for (size_t i = 0; i < count; i++) {
+        (void)printf("  %s %s\n      %s\n", list[i].name, list[i].arguments, list[i].about);
+    }
+    (void)puts("\nExit codes: 0 ended or asked to stop, 1 a device was lost, 2 wrong command line, 3 bad input, 4 the trace could not be "
+               "written.");
+}
+
+// Returns false after telling what is wrong.
+static bool parse(int argc, char **argv, options_t *options)
+{
+    static const struct option known[] = {
+        {"hal", required_argument, NULL, 'H'},      {"parameters", required_argument, NULL, 'p'},
+        {"firmware", required_argument, NULL, 'f'}, {"trace", required_argument, NULL, 't'},
+        {"hash", no_argument, NULL, 'x'},           {"realtime", no_argument, NULL, 'r'},
+        {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
+    };
+    for (int letter = 0; (letter = getopt_long(argc, argv, "h", known, NULL)) != -1;) {
+        options->hal = letter == 'H' ? optarg : options->hal;
+        options->parameters = letter == 'p' ? optarg : options->parameters;
+        options->firmware = letter == 'f' ? optarg : options->firmware;
+        options->trace = letter == 't' ? optarg : options->trace;
+        options->hash = options->hash || letter == 'x';
+        options->realtime = options->realtime || letter == 'r';
+        options->help = options->help || letter == 'h';
+        if (letter == '?') {
+            return false; // getopt has named it
+        }
+    }
+    if (strcmp(options->firmware, "default") != 0 && strcmp(options->firmware, "paper") != 0) {
+        (void)fprintf(stderr, "tractiond: --firmware %s: unknown; give default or paper\n", options->firmware);
+        return false;
+    }
+    if (options->hal == NULL && !options->help) {
+        (void)fputs("tractiond: no --hal; tractiond --help lists them\n", stderr);
+        return false;
+    }
+    return true;
+}
+
+// --- the loop's hooks
+
+typedef struct {
+    hal_t inner;
+} stoppable_t;
+
+// The run is over once a signal has asked for it; so the loop ends where it always ends, with the motors stopped.
+static hal_result_t wait_unless_stopped(void *context)
+{
+    const hal_t *inner = &((stoppable_t *)context)->inner;
+    const hal_result_t result = asked_to_stop ? HAL_END : inner->wait_tick(inner->context);
+    return asked_to_stop && result >= 0 ? HAL_END : result;
+}
+
+static hal_result_t read_inner(void *context, sensor_frame_t *frame)
+{
+    const hal_t *inner = &((stoppable_t *)context)->inner;
+    return inner->read(inner->context, frame);
+}
+
+static hal_result_t write_inner(void *context, const actuator_frame_t *actuator)
+{
+    const hal_t *inner = &((stoppable_t *)context)->inner;
+    return inner->write(inner->context, actuator);
+}
+
+static void stop_inner(void *context)
+{
+    const hal_t *inner = &((stoppable_t *)context)->inner;
+    inner->safe_stop(inner->context);
+}
+
+typedef struct {
+    const hal_opened_t *world;
+    FILE *trace; // null: none
+    uint64_t hash;
+    bool hashed;
+} drive_t;
+
+static void ask_world(void *context, const sensor_frame_t *frame, command_t *command)
+{
+    const hal_opened_t *world = ((drive_t *)context)->world;
+    world->command(world->hal.context, frame, command);
+}
+
+static void log_tick(void *context, const sensor_frame_t *frame, const command_t *command, const trace_t *trace)
+{
+    (void)frame;
+    (void)command;
+    drive_t *drive = context;
+    char line[TRACE_TEXT];
+    trace_text(trace, line);
+    drive->hash = drive->hashed ? trace_text_hash(drive->hash, line) : 0u;
+    if (drive->trace != NULL) {
+        (void)fputs(line, drive->trace); // a log that cannot be written does not stop the rover: told at the end
+    }
+}
+
+static daemon_result_t run(const options_t *options, const control_config_t *config, const hal_opened_t *world, drive_t *drive)
+{
+    pace_hal_t pace;
+    stoppable_t stoppable = {.inner = options->realtime ? pace_hal(&pace, &world->hal) : world->hal};
+    const hal_t hal = {
+        .context = &stoppable, .wait_tick = wait_unless_stopped, .read = read_inner, .write = write_inner, .safe_stop = stop_inner};
+    const bool logged = drive->trace != NULL || drive->hashed;
+    const daemon_link_t link = {.context = drive, .command = ask_world, .log = logged ? log_tick : NULL};
+    return daemon_run(&hal, config, &link);
+}
+
+// Says how it ended; returns the exit code.
+static int report(const options_t *options, const hal_opened_t *world, const daemon_result_t *result)
+{
+    const char *trouble = world->trouble(world->hal.context);
+    if (result->ended_by < 0) {
+        (void)fprintf(stderr, "tractiond: %s; motors stopped after %" PRIu32 " ticks\n", *trouble != '\0' ? trouble : "a device was lost",
+                      result->ticks);
+        return *trouble != '\0' ? EXIT_INPUT : EXIT_DEVICE_LOST;
+    }
+    (void)fprintf(stderr, "tractiond: %s, %" PRIu32 " ticks, motors stopped; faults seen %08" PRIx32 "\n",
+                  asked_to_stop ? "asked to stop" : options->hal, result->ticks, result->faults);
+    return EXIT_DONE;
+}
+
+static FILE *open_trace(const char *path)
+{
+    FILE *file = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
+    if (file == NULL) {
+        (void)fprintf(stderr, "tractiond: %s: cannot be written: %s\n", path, strerror(errno));
+    }
+    return file;
+}
+
+static int drive_world(const options_t *options, const control_config_t *config, const hal_opened_t *world)
+{
+    drive_t drive = {.world = world, .trace = NULL, .hash = TRACE_HASH_BEGIN, .hashed = options->hash};
+    if (options->trace != NULL && (drive.trace = open_trace(options->trace)) == NULL) {
+        return EXIT_FILE;
+    }
+    const daemon_result_t result = run(options, config, world, &drive);
+    int code = report(options, world, &result);
+    if (options->hash && code == EXIT_DONE) {
+        (void)printf("%016" PRIx64 "\n", drive.hash);
+    }
+    const bool kept = drive.trace == NULL || ferror(drive.trace) == 0;
+    const bool closed = drive.trace == NULL || drive.trace == stdout || fclose(drive.trace) == 0;
+    if (!kept || !closed || fflush(stdout) != 0) {
+        (void)fprintf(stderr, "tractiond: %s: the trace could not be written whole\n", options->trace != NULL ? options->trace : "-");
+        code = code == EXIT_DONE ? EXIT_FILE : code;
+    }
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    options_t options = {.firmware = "default"};
+    if (!parse(argc, argv, &options)) {
+        return EXIT_USAGE;
+    }
+    if (options.help) {
+        print_help();
+        return fflush(stdout) == 0 ? EXIT_DONE : EXIT_FILE;
+    }
+    control_config_t config = strcmp(options.firmware, "paper") == 0 ? rover_config_paper() : rover_config_default();
+    char refused[PARAMETERS_MESSAGE];
+    if (options.parameters != NULL && !parameters_read(options.parameters, &config, refused)) {
+        (void)fprintf(stderr, "tractiond: %s\n", refused);
+        return EXIT_INPUT;
+    }
+    hal_opened_t world;
+    char message[HAL_MESSAGE];
+    const hal_result_t opened = hal_open(options.hal, argc - optind, (const char *const *)(argv + optind), &world, message);
+    if (message[0] != '\0') {
+        (void)fprintf(stderr, "tractiond: %s\n", message);
+    }
+    if (opened < 0) {
+        return opened == HAL_ERR_CONFIG ? EXIT_USAGE : EXIT_INPUT;
+    }
+    const struct sigaction stop = {.sa_handler = ask_to_stop}; // no SA_RESTART: a wait ends with the signal
+    const struct sigaction ignore = {.sa_handler = SIG_IGN};
+    (void)sigaction(SIGINT, &stop, NULL);
+    (void)sigaction(SIGTERM, &stop, NULL);
+    (void)sigaction(SIGPIPE, &ignore, NULL); // a reader that went away is an error of writing, not an end without a stop
+    const int code = drive_world(&options, &config, &world);
+    world.close(world.hal.context);
+    return code;
+}

@@ -1,0 +1,48 @@
+#include "sim_rover.h"
+
+#include "sim/physics/effects/acting.h"
+
+namespace traction::hal {
+
+namespace {
+constexpr std::int64_t tick_ms = TICK_US / 1000;
+} // namespace
+
+std::vector<sim::ActiveEffect> effects_of(const sim::Scenario &scenario) {
+    std::vector<sim::ActiveEffect> effects = scenario.effects;
+    if (scenario.hidden) {
+        const auto hidden = sim::draw_effects(*scenario.hidden);
+        effects.insert(effects.end(), hidden.begin(), hidden.end());
+    }
+    return effects;
+}
+
+std::int64_t actuation_delay_ms(std::span<const sim::ActiveEffect> effects) {
+    const double delay_s = sim::law::actuation_delay_s(0, sim::act_together(effects).body.actuation_delay_s);
+    return static_cast<std::int64_t>(delay_s * 1000 + 0.5);
+}
+
+// Whole ticks of an order's delay are DelayHal's; what is left of a tick passes on the simulated bus.
+SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed) {
+    SimHalConfig world{.plant = scenario.plant,
+                       .sensors = scenario.sensors,
+                       .scale = {},
+                       .wheel_blocks = {},
+                       .bus_latency_ms = static_cast<int>(actuation_delay_ms(effects) % tick_ms),
+                       .ticks = static_cast<std::uint32_t>(scenario.duration_s * 100 + 0.5),
+                       .seed = seed};
+    world.plant.effects.assign(effects.begin(), effects.end());
+    world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
+    sim::apply_sensor_effects(effects, world.sensors);
+    for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
+    return world;
+}
+
+SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed)
+    : SimRover(scenario, effects, world_of(scenario, effects, seed)) {}
+
+SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, const SimHalConfig &world)
+    : world_(world), delay_(world_.hal(), static_cast<std::uint32_t>(actuation_delay_ms(effects) / tick_ms)),
+      faults_(delay_.hal(), {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops}, world.scale, world.seed) {}
+
+} // namespace traction::hal

@@ -1,0 +1,42 @@
+// The sentence that ends a diagnosis.
+#include "diagnose.h"
+
+#include <cstdio>
+
+namespace traction::lab {
+
+std::string verdict_text(const Diagnosis &d) {
+    char buffer[400];
+    const double before = d.ladder.empty() ? 0 : d.ladder.front().heldout, after = d.ladder.empty() ? 0 : d.ladder.back().heldout;
+    std::string names;
+    for (const CandidateResult &a : d.accepted) names += (names.empty() ? "" : " and ") + a.candidate.label();
+    if (d.kind == "nothing") {
+        std::snprintf(buffer, sizeof buffer,
+                      "Nothing found that the log supports; the error stands at %.2f x noise. %zu effects could not have been seen in it.",
+                      before, d.not_excited.size());
+        return buffer;
+    }
+    std::string text;
+    if (!names.empty()) {
+        std::snprintf(buffer, sizeof buffer, "The model lacks %s: held-out error %.3f -> %.3f x noise.", names.c_str(), before, after);
+        text = buffer;
+    }
+    for (const ConfoundedClass &c : d.classes) {
+        text += " This log cannot tell";
+        for (std::size_t i = 0; i < c.members.size(); ++i)
+            text += (i == 0 ? " " : i + 1 == c.members.size() ? " from " : ", ") + c.members[i];
+        text += '.';
+    }
+    if (d.unknown) {
+        if (!text.empty())
+            text += " That explains it only partly:";
+        else
+            text += "Unknown: no effect of the catalogue explains it:";
+        text += " what is left depends on " + d.unknown->variable + ": " + d.unknown->balance + '.';
+        for (std::size_t i = 0; i < d.nearest.size(); ++i)
+            text += (i == 0 ? " Nearest in the catalogue, not the cause: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
+    }
+    return text;
+}
+
+} // namespace traction::lab

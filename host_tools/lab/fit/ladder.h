@@ -1,0 +1,25 @@
+// ladder.h - the ladder of models, each a step richer than the one before: the error of each on what it was fitted to and on blocks left
+// out, beside the noise floor.
+#pragma once
+
+#include "problem.h"
+
+#include <string>
+
+namespace traction::lab {
+
+struct LadderStep {
+    std::string label;                        // "baseline", "+ slip_sinkage"
+    double train = 0, heldout = 0, floor = 1; // in units of noise
+};
+
+// Root of the mean over balances of the mean square of the residual, in units of each row's measurement noise: of the rows that were
+// fitted, and of 5 s blocks each predicted by the linear step that leaves it out. The problem must be linearised at its optimum. 0 without
+// balances.
+double overall_error(const Problem &problem);
+double overall_heldout(const Problem &problem);
+
+// Fits a model to the data (Ceres, to its own convergence) and writes the values with their 95 % intervals into it.
+LadderStep fit_model(Model &model, const Dataset &data, const std::string &label);
+
+} // namespace traction::lab

@@ -1,0 +1,105 @@
+#!/bin/sh
+# bare.sh SUITE [--test] [--keep] - what a stranger's first minutes are: a minimal Debian of that suite (bookworm, trixie), this checkout
+# cloned into it, and README's commands. Says what each step took. Needs root, debootstrap and a package mirror; copies this machine's
+# way to the package index (apt's proxy and certificates, pip's and npm's settings), and ../shared where it exists.
+# TRACTION_BARE: the folder in which the system is made (default: a temporary one); --keep leaves it there.
+set -eu
+here=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd)
+suite=${1:?bare.sh: which suite, bookworm or trixie?}
+shift
+run_tests=no keep=no
+for option; do
+    case $option in
+        --test) run_tests=yes ;;
+        --keep) keep=yes ;;
+        *) echo "bare: unknown option '$option' (known: --test, --keep)" >&2; exit 2 ;;
+    esac
+done
+say() { echo "bare: $*"; }
+die() { say "$*" >&2; exit 1; }
+[ "$(id -u)" -eq 0 ] || die "needs root, for debootstrap and chroot"
+command -v debootstrap >/dev/null || { say "SKIPPED: no debootstrap here (apt-get install debootstrap)"; exit 77; }
+git -C "$here" diff --quiet HEAD -- || say "the clone has what is committed; this checkout has changes beside that"
+
+base=${TRACTION_BARE:-$(mktemp -d)}
+system=$base/$suite
+mounted=
+leave() {
+    for place in $mounted; do umount -l "$place" 2>/dev/null || true; done
+    [ "$keep" = yes ] || [ ! -d "$system" ] || grep -q " $system/" /proc/mounts || rm -rf "$system"
+}
+trap leave EXIT
+trap 'exit 130' INT TERM
+
+# the mirror that apt uses here; the archive's own name otherwise
+mirror=$(sed -n 's/^URIs: *\([^ ]*\/debian\)\/* *$/\1/p; s/^deb  *\(\[[^]]*\] *\)*\([^ ]*\/debian\)\/* .*/\2/p' /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list 2>/dev/null | head -n 1)
+mirror=${mirror:-http://deb.debian.org/debian}
+
+# timed NAME COMMAND...: its wall and CPU seconds, its output to NAME.log
+timed() {
+    name=$1
+    shift
+    began=$(date +%s.%N)
+    status=0
+    # shellcheck disable=SC2016
+    bash -c 'TIMEFORMAT="%R %U %S"; log=$1; shift; time "$@" >"$log" 2>&1' bash "$base/$suite.$name.log" "$@" 2>"$base/$suite.$name.time" || status=$?
+    tail -n 1 "$base/$suite.$name.time" | awk -v name="$name" '{ printf "bare: %-22s %6.0f s, %6.0f CPU s\n", name, $1, $2 + $3 }'
+    if [ "$status" -ne 0 ]; then
+        tail -n 40 "$base/$suite.$name.log"
+        keep=yes
+        die "$name failed with $status; its output: $base/$suite.$name.log, the system: $system"
+    fi
+}
+
+say "$suite from $mirror, checkout $(git -C "$here" rev-parse --short HEAD)"
+rm -rf "$system"
+timed debootstrap debootstrap --variant=minbase "$suite" "$system" "$mirror"
+for file in /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/*registry* /etc/ssl/certs/ca-certificates.crt /etc/pip.conf /etc/npmrc /root/.npmrc /root/.config/pip/pip.conf /etc/hosts /etc/resolv.conf; do
+    [ -f "$file" ] || continue
+    mkdir -p "$system$(dirname "$file")"
+    cp -L "$file" "$system$file"
+done
+for place in proc dev; do
+    mount --rbind "/$place" "$system/$place"
+    mount --make-rslave "$system/$place"
+    mounted="$system/$place $mounted"
+done
+git clone -q "$here" "$system/root/traction"
+if [ -d "$here/../shared" ]; then cp -r "$here/../shared" "$system/root/shared"; fi
+
+# "$inside" COMMAND...: in that system, with this machine's settings of proxies, certificates and indexes and nothing else of it
+inside=$base/$suite.inside
+{
+    echo '#!/bin/sh'
+    echo "exec chroot '$system' /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \\"
+    echo "PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \\"
+    env | grep -E '^(https?_proxy|HTTPS?_PROXY|no_proxy|NO_PROXY|SSL_CERT_FILE|NODE_EXTRA_CA_CERTS|PIP_[A-Z_]*|npm_config_[a-z_]*)=' |
+        grep -v "'" | sed "s/=\(.*\)/='\1' \\\\/" || true
+    echo '"$@"'
+} >"$inside"
+chmod +x "$inside"
+enter='cd /root/traction && '
+"$inside" apt-get update -q >"$base/$suite.update.log" 2>&1 || die "apt-get update failed ($base/$suite.update.log)"
+packages=$(awk '$1 == "build" { print $2 }' "$here/cmake/apt-packages.txt")
+# shellcheck disable=SC2086
+"$inside" apt-get install -s --no-install-recommends $packages >"$base/$suite.plan.log" 2>&1 || die "apt cannot install the build's packages ($base/$suite.plan.log)"
+say "packages: $(grep -c '^Inst ' "$base/$suite.plan.log") to install, $("$inside" apt-get install --no-install-recommends --assume-no $packages 2>/dev/null | sed -n 's/^Need to get \(.*\) of archives.*/\1/p; s/^ *Download size: \(.*\)/\1/p' | head -n 1) to download"
+# README's first command: installs, configures, builds, runs
+timed first_demo "$inside" sh -c "${enter}./traction demo"
+grep '^traction: ' "$base/$suite.first_demo.log" | sed 's/^traction: /bare:   /; s/\(are not here:\).*/\1 .../'
+tail -n 8 "$base/$suite.first_demo.log"
+timed second_demo "$inside" sh -c "${enter}./traction demo"
+! grep '^traction: building' "$base/$suite.second_demo.log" || die "the second demo built again"
+say "compiler: $("$inside" sh -c 'c++ --version' | head -n 1)"
+# the build alone, from installed packages and without ccache: the figures of docs/performance.md
+"$inside" rm -rf /root/traction/build
+timed configure_and_build "$inside" sh -c "${enter}CCACHE_DISABLE=1 ./traction build"
+if grep -q 'warning:' "$system/root/traction/build/host/build.log"; then
+    grep 'warning:' "$system/root/traction/build/host/build.log" | sort | uniq -c
+    die "the build warns"
+fi
+if [ "$run_tests" = yes ]; then
+    timed tests "$inside" sh -c "${enter}./traction test"
+    grep -E 'tests passed|SKIPPED|Skipped|\*\*\*' "$base/$suite.tests.log" || true
+fi
+say "$suite: all green"
