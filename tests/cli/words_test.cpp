@@ -13,7 +13,7 @@ TEST(Progress, never_says_more_than_all_nor_a_time_below_zero) {
     for (const long total : {1L, 10L, 400L})
         for (long done = 0; done <= 2 * total; ++done) {
             const std::string text = Progress::text("x", done, total, 7.0);
-            EXPECT_EQ(text.find('-'), std::string::npos) << text;                      // "-2 s left"
+            EXPECT_EQ(text.find('-'), std::string::npos) << text;                         // "-2 s left"
             EXPECT_TRUE(done <= total || text.find(" of ") == std::string::npos) << text; // "527 of 400"
         }
     EXPECT_EQ(Progress::text("drive", 3, 10, 3.0), "drive: 3 of 10, about 7 s left");
