@@ -25,9 +25,11 @@ fs::path program_folder() {
 fs::path data_root() {
     if (const char *root = std::getenv("TRACTION_ROOT"); root != nullptr && *root != '\0') return root;
     const fs::path here = program_folder(), installed = here.parent_path() / "share/traction";
-    if (holds_data(installed)) return installed;
+    if (!here.empty() && holds_data(installed)) return installed;
     for (fs::path folder = here; folder.has_relative_path(); folder = folder.parent_path()) // build/host/host_tools/cli in a source tree
         if (holds_data(folder)) return folder;
+    for (const char *prefix : {"/usr/local/share/traction", "/usr/share/traction"}) // without /proc nothing tells where the program is
+        if (holds_data(prefix)) return prefix;
     return holds_data(fs::current_path()) ? fs::current_path() : fs::path();
 }
 

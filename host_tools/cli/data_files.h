@@ -8,7 +8,7 @@
 namespace traction::cli {
 
 // The folder that holds scenarios/ and models/: $TRACTION_ROOT; else the source tree of the build that this program stands in; else
-// share/traction beside the installed program's bin/. Empty when none of them is there.
+// share/traction of the prefix it is installed in, of /usr/local or of /usr. Empty when none of them is there.
 std::filesystem::path data_root();
 
 // data_root(), or a message (std::runtime_error) that says where was looked.

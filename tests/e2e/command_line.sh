@@ -174,7 +174,7 @@ if command -v groff >/dev/null 2>&1; then
 fi
 
 # one writer, one file that knows the parser
-grep -rnE 'ofstream|fopen\(' "$root/host_tools" "$root/sim" "$root/hal" --include='*.cpp' --include='*.c' --include='*.h' &&
+grep -rnE 'ofstream|fopen\([^)]*"[wa]' "$root/host_tools" "$root/sim" "$root/hal" --include='*.cpp' --include='*.c' --include='*.h' &&
     bad "a file is written without host_tools/log/write_file.h"
 [ "$(grep -rl 'CLI/CLI.hpp' "$root/host_tools" | wc -l)" -eq 1 ] || bad "more than one file includes CLI11"
 

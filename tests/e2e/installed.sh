@@ -25,6 +25,7 @@ call compare --model rover_sand run.csv
 [ $code -eq 0 ] || { cat out.txt; exit 1; }
 call game --new 3 --soil sand
 [ $code -eq 0 ] && [ -s out/game/run.csv ] || { cat out.txt; exit 1; }
+[ ! -e /usr/share/traction ] && [ ! -e /usr/local/share/traction ] || { echo "installed, it runs from any folder"; exit 0; }
 mv "$usr/share/traction" "$usr/share/gone"
 call game --new 4
 [ $code -eq 3 ] && grep -q TRACTION_ROOT out.txt || { echo "without its data it says: $(cat out.txt)"; exit 1; }
