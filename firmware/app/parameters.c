@@ -9,21 +9,6 @@
 
 enum { LINE_MAX_CHARS = 512, FILE_MAX_BYTES = 65536 };
 
-typedef enum { RADIUS, TORQUE_CONSTANT, VISCOUS, COULOMB, INERTIA, RESISTANCE, MASS, DOPPLER_SCALE, WHEEL_KP, WHEEL_KI, KNOWN } parameter_t;
-
-typedef struct {
-    const char *name;
-    float low, high; // plausible for a machine of this kind; beyond is a mistake of unit
-} known_t;
-
-static const known_t known[KNOWN] = {
-    [RADIUS] = {"wheel_radius_m", 0.01f, 0.5f}, [TORQUE_CONSTANT] = {"torque_constant_Nm_A", 0.001f, 20.0f},
-    [VISCOUS] = {"viscous_Nms", 0.0f, 1.0f},    [COULOMB] = {"coulomb_Nm", 0.0f, 5.0f},
-    [INERTIA] = {"inertia_kg_m2", 1e-5f, 1.0f}, [RESISTANCE] = {"resistance_ohm", 0.01f, 100.0f},
-    [MASS] = {"mass_kg", 0.1f, 200.0f},         [DOPPLER_SCALE] = {"doppler_scale", 0.5f, 2.0f},
-    [WHEEL_KP] = {"wheel_kp_s", 0.0f, 10.0f},   [WHEEL_KI] = {"wheel_ki_1", 0.0f, 200.0f},
-};
-
 typedef struct {
     const char *file;
     int line;
@@ -49,47 +34,69 @@ static char *trim(char *text)
     return text;
 }
 
-static int find(const char *key)
+int32_t parameters_find(const char *key)
 {
-    for (int i = 0; i < KNOWN; i++) {
-        if (strcmp(known[i].name, key) == 0) {
+    for (int32_t i = 0; i < ROVER_PARAMETER_COUNT; i++) {
+        if (strcmp(rover_parameter_name(i), key) == 0) {
             return i;
         }
     }
     return -1;
 }
 
-// Sets everything that follows from the numbers given; value[i] counts where given[i].
-static void apply(control_config_t *config, const float *value, const bool *given)
+// What a file says, and where.
+typedef struct {
+    parameters_t read;
+    int line[ROVER_PARAMETER_COUNT];
+    int radar_line;
+    bool format_seen;
+} reading_t;
+
+static bool read_radar(const place_t *place, const char *value, reading_t *reading)
 {
-    motor_config_t *motor = &config->motor;
-    const float radius = given[RADIUS] ? value[RADIUS] : config->geometry.wheel_radius_m;
-    const float old_resistance = motor->resistance_ohm;
-    if (given[RADIUS]) {
-        config->soil_sweep.ramp_1_m *= config->geometry.wheel_radius_m / radius;
-        config->speed_control.kv_rad_m *= config->geometry.wheel_radius_m / radius;
-        config->geometry.wheel_radius_m = radius;
-        config->slip.wheel_radius_m = radius;
-        config->speed_control.per_radius_1_m = 1.0f / radius;
-        config->speed_control.half_track_per_radius = config->geometry.half_track_m / radius;
-        motor->per_radius_1_m = 1.0f / radius;
+    if (reading->radar_line != 0) {
+        return fail(place, "radar", value, "given twice; keep one");
     }
-    motor->torque_constant_Nm_A = given[TORQUE_CONSTANT] ? value[TORQUE_CONSTANT] : motor->torque_constant_Nm_A;
-    motor->back_emf_Vs = given[TORQUE_CONSTANT] ? value[TORQUE_CONSTANT] : motor->back_emf_Vs;
-    motor->viscous_Nms = given[VISCOUS] ? value[VISCOUS] : motor->viscous_Nms;
-    motor->dry_Nm = given[COULOMB] ? value[COULOMB] : motor->dry_Nm;
-    motor->inertia_kg_m2 = given[INERTIA] ? value[INERTIA] : motor->inertia_kg_m2;
-    motor->resistance_ohm = given[RESISTANCE] ? value[RESISTANCE] : motor->resistance_ohm;
-    motor->volt_per_speed_Vs = motor->resistance_ohm * motor->viscous_Nms / motor->torque_constant_Nm_A + motor->back_emf_Vs;
-    motor->volt_dry_V = motor->resistance_ohm * motor->dry_Nm / motor->torque_constant_Nm_A;
-    config->safety.heating_K_A2 *= motor->resistance_ohm / old_resistance;
-    config->geometry.mass_kg = given[MASS] ? value[MASS] : config->geometry.mass_kg;
-    config->doppler.scale = given[DOPPLER_SCALE] ? value[DOPPLER_SCALE] : config->doppler.scale;
-    config->wheel_pid.kp_s = given[WHEEL_KP] ? value[WHEEL_KP] : config->wheel_pid.kp_s;
-    config->wheel_pid.ki_T_s = given[WHEEL_KI] ? value[WHEEL_KI] * config->safety.tick_s : config->wheel_pid.ki_T_s;
+    for (int32_t i = 0; i < ROVER_RADAR_COUNT; i++) {
+        const char *name = rover_radar_name(i);
+        const size_t length = strlen(name);
+        if (strlen(value) == length + 2 && value[0] == '"' && value[length + 1] == '"' && memcmp(value + 1, name, length) == 0) {
+            reading->read.rover.radar = i;
+            reading->read.radar_given = true;
+            reading->radar_line = place->line;
+            return true;
+        }
+    }
+    return fail(place, "radar", value, "no template is linked; use \"MDU1130\", \"DJ Radar II\", \"DJ Radar III\", \"DRS1000\"");
 }
 
-static bool read_line(const place_t *place, char *line, float *number, bool *given, bool *format_seen)
+static bool read_number(const place_t *place, const char *key, const char *value, reading_t *reading)
+{
+    const int32_t i = parameters_find(key);
+    if (i < 0) {
+        return fail(place, key, value, "unknown key; docs/rover_format.md lists the known ones");
+    }
+    if (reading->read.given[i]) {
+        return fail(place, key, value, "given twice; keep one");
+    }
+    char *end = NULL;
+    const float number = strtof(value, &end);
+    if (end == value || *end != '\0' || !fixed_is_finite(number)) {
+        return fail(place, key, value, "not a finite number");
+    }
+    if (number < rover_parameter_low(i) || number > rover_parameter_high(i)) {
+        char mend[80];
+        (void)snprintf(mend, sizeof mend, "out of range; give a number from %g to %g", (double)rover_parameter_low(i),
+                       (double)rover_parameter_high(i));
+        return fail(place, key, value, mend);
+    }
+    reading->read.rover.value[i] = number;
+    reading->read.given[i] = true;
+    reading->line[i] = place->line;
+    return true;
+}
+
+static bool read_line(const place_t *place, char *line, reading_t *reading)
 {
     char *comment = strchr(line, '#');
     if (comment != NULL) {
@@ -105,61 +112,100 @@ static bool read_line(const place_t *place, char *line, float *number, bool *giv
     }
     *equals = '\0';
     key = trim(key);
-    char *value = trim(equals + 1);
+    const char *value = trim(equals + 1);
     if (strcmp(key, "format") == 0) {
-        *format_seen = strcmp(value, "\"traction.firmware/1\"") == 0;
-        return *format_seen || fail(place, key, value, "not known here; this firmware reads \"traction.firmware/1\"");
+        reading->format_seen = strcmp(value, "\"traction.firmware/1\"") == 0;
+        return reading->format_seen || fail(place, key, value, "not known here; this firmware reads \"traction.firmware/1\"");
     }
-    const int i = find(key);
-    if (i < 0) {
-        return fail(place, key, value, "unknown key; firmware/app/parameters.c lists the known ones");
-    }
-    if (given[i]) {
-        return fail(place, key, value, "given twice; keep one");
-    }
-    char *end = NULL;
-    number[i] = strtof(value, &end);
-    if (end == value || *end != '\0' || !fixed_is_finite(number[i])) {
-        return fail(place, key, value, "not a finite number");
-    }
-    if (number[i] < known[i].low || number[i] > known[i].high) {
-        char mend[80];
-        (void)snprintf(mend, sizeof mend, "out of range; give a number from %g to %g", (double)known[i].low, (double)known[i].high);
-        return fail(place, key, value, mend);
-    }
-    given[i] = true;
-    return true;
+    return strcmp(key, "radar") == 0 ? read_radar(place, value, reading) : read_number(place, key, value, reading);
 }
 
-bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, char message[PARAMETERS_MESSAGE])
+static bool read_text(const char *text, size_t length, place_t *place, reading_t *reading)
 {
-    place_t place = {.file = name, .line = 0, .message = message};
-    float number[KNOWN] = {0.0f};
-    bool given[KNOWN] = {false};
-    bool format_seen = false;
-    message[0] = '\0';
+    const reading_t nothing = {.radar_line = 0};
+    *reading = nothing;
+    rover_parameters_reference(&reading->read.rover);
+    place->message[0] = '\0';
     for (size_t start = 0; start < length;) {
         size_t end = start;
         while (end < length && text[end] != '\n') {
             end++;
         }
-        place.line++;
+        place->line++;
         char line[LINE_MAX_CHARS];
         if (end - start >= sizeof line || memchr(text + start, '\0', end - start) != NULL) {
-            return fail(&place, "line", "...", "too long or not text; a line has at most 511 characters");
+            return fail(place, "line", "...", "too long or not text; a line has at most 511 characters");
         }
         memcpy(line, text + start, end - start);
         line[end - start] = '\0';
-        if (!read_line(&place, line, number, given, &format_seen)) {
+        if (!read_line(place, line, reading)) {
             return false;
         }
         start = end + 1;
     }
-    if (!format_seen) {
-        return fail(&place, "format", "", "missing; write format = \"traction.firmware/1\"");
+    if (!reading->format_seen) {
+        return fail(place, "format", "", "missing; write format = \"traction.firmware/1\"");
     }
-    apply(config, number, given);
+    rover_parameters_scale(&reading->read.rover, reading->read.given);
     return true;
+}
+
+bool parameters_parse_rover(const char *text, size_t length, const char *name, parameters_t *out, char message[PARAMETERS_MESSAGE])
+{
+    place_t place = {.file = name, .line = 0, .message = message};
+    reading_t reading;
+    const bool read = read_text(text, length, &place, &reading);
+    if (read) {
+        *out = reading.read;
+    }
+    return read;
+}
+
+// Tells a refusal with the line of its key, or that the number was made from the others.
+static bool tell(const place_t *place, const reading_t *reading, const control_refusal_t *refusal)
+{
+    const int32_t i = parameters_find(refusal->key);
+    if (i < 0) {
+        (void)snprintf(place->message, PARAMETERS_MESSAGE, "%.80s:%d: %s = \"%s\": %s", place->file, reading->radar_line, refusal->key,
+                       rover_radar_name(reading->read.rover.radar), refusal->reason);
+    } else if (reading->read.given[i]) {
+        (void)snprintf(place->message, PARAMETERS_MESSAGE, "%.80s:%d: %s = %g: %s", place->file, reading->line[i], refusal->key,
+                       (double)reading->read.rover.value[i], refusal->reason);
+    } else {
+        (void)snprintf(place->message, PARAMETERS_MESSAGE, "%.80s: %s = %g (not given: %s): %s", place->file, refusal->key,
+                       (double)reading->read.rover.value[i],
+                       rover_parameter_scaled(i) ? "from the rover's own numbers" : "the reference rover's", refusal->reason);
+    }
+    return false;
+}
+
+bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, char message[PARAMETERS_MESSAGE])
+{
+    place_t place = {.file = name, .line = 0, .message = message};
+    reading_t reading;
+    if (!read_text(text, length, &place, &reading)) {
+        return false;
+    }
+    control_config_t built;
+    control_config_build(&reading.read.rover, &built);
+    const control_refusal_t refusal = control_config_check(&reading.read.rover, &built);
+    if (refusal.key != NULL) {
+        return tell(&place, &reading, &refusal);
+    }
+    *config = built;
+    return true;
+}
+
+size_t parameters_write(const parameters_t *parameters, const char *about, char text[PARAMETERS_TEXT])
+{
+    int length = snprintf(text, PARAMETERS_TEXT, "# %.200s\nformat = \"traction.firmware/1\"\nradar = \"%s\"\n", about,
+                          rover_radar_name(parameters->rover.radar));
+    for (int32_t i = 0; i < ROVER_PARAMETER_COUNT && length < PARAMETERS_TEXT; i++) {
+        const bool follows = rover_parameter_scaled(i) && !parameters->given[i];
+        length += snprintf(text + length, (size_t)(PARAMETERS_TEXT - length), "%s%s = %.9g%s\n", follows ? "# " : "",
+                           rover_parameter_name(i), (double)parameters->rover.value[i], follows ? " (from the rover's own numbers)" : "");
+    }
+    return (size_t)length;
 }
 
 bool parameters_read(const char *path, control_config_t *config, char message[PARAMETERS_MESSAGE])

@@ -216,6 +216,9 @@ int main(int argc, char **argv)
         (void)fprintf(stderr, "tractiond: %s\n", refused);
         return EXIT_INPUT;
     }
+    if (strcmp(options.firmware, "paper") == 0) {
+        control_config_make_paper(&config); // over any rover
+    }
     hal_opened_t world;
     char message[HAL_MESSAGE];
     const hal_result_t opened = hal_open(options.hal, argc - optind, (const char *const *)(argv + optind), &world, message);

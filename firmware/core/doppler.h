@@ -26,6 +26,17 @@ enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
 
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
+enum { DOPPLER_WINDOW_TICKS_MAX = 64 };
+
+// Which past a Doppler value tells of: the weight of each tick in the window's mean, newest first.
+typedef struct {
+    int32_t ticks;                                // that the window covers, at most DOPPLER_WINDOW_TICKS_MAX
+    float tau_s;                                  // mean age
+    float tau_ticks;                              // the same in ticks
+    float per_s;                                  // 1 / length of the window [1/s]
+    int16_t weight_q15[DOPPLER_WINDOW_TICKS_MAX]; // sum 32768
+} doppler_window_t;
+
 // Arrays, not pointers: a pointer in a constant must be relocated, hence lies in writable memory.
 // Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
 typedef struct {
@@ -40,6 +51,7 @@ typedef struct {
         __attribute__((aligned(8)));    // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
     int32_t volume[DOPPLER_SPEEDS_MAX]; // q * sum_k ln S_v[k]
     int32_t quiet[DOPPLER_SPEEDS_MAX];  // q * expected J/a of an echo of which half is white noise
+    doppler_window_t window;            // at sample_rate_Hz, for ground_speed
 } doppler_template_t;
 
 typedef struct {

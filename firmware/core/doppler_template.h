@@ -13,6 +13,9 @@ extern const doppler_template_t doppler_template_dj_radar_2; // 24.13 GHz, 15 de
 extern const doppler_template_t doppler_template_dj_radar_3; // 24.13 GHz, 20 x 16 deg
 extern const doppler_template_t doppler_template_drs1000;    // 35.5 GHz, 12 deg
 
+// The template of a rover_radar_t; 0 when none is linked.
+const doppler_template_t *doppler_template_of(int32_t radar);
+
 #ifdef __cplusplus
 }
 #endif

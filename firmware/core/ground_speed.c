@@ -4,18 +4,6 @@
 
 #include <math.h>
 
-enum { WINDOW_TICKS = 51 }; // ticks that a window of 256 samples at 512 Hz covers
-
-// w_j of (3): the square of the Hann window over its age in ticks, Q15, sum 32768. A sample's weight is shared between the two
-// ticks around it, so the mean age is the window's own. ground_speed_test: no lag with exact sensors.
-static const int16_t weight_q15[WINDOW_TICKS] = {
-    0,    0,    1,    3,    8,    18,   35,   61,   99,   151,  217,  298,  396,  507,  629,  762,  902,
-    1044, 1184, 1317, 1440, 1551, 1632, 1695, 1733, 1745, 1728, 1685, 1617, 1532, 1417, 1291, 1157, 1016,
-    874,  736,  604,  484,  375,  281,  203,  140,  91,   55,   31,   15,   6,    2,    0,    0,    0,
-};
-static const float window_tau_s = 0.249f; // [s] mean age: 127.5 samples at 512 Hz, the newest half a sample old on average
-static const float window_tau_ticks = 24.9f;
-
 static const float early_accel_m_s2 = 0.2f; // [m/s^2] assumed: the speed changes by 0.05 m/s at most in the first half window
 
 void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -71,13 +59,13 @@ static void watch_noise(const ground_speed_config_t *config, ground_speed_state_
 }
 
 // sum_j w_j (V(t) - V(t - s_j)) of (3).
-static float window_change_m_s(const ground_speed_state_t *state)
+static float window_change_m_s(const doppler_window_t *window, const ground_speed_state_t *state)
 {
     const int32_t now = state->integral_q20[state->head];
-    int32_t sum = 0; // Q19, each product truncated: 51 * 2^-20 m/s at most
-    for (uint32_t j = 0; j < WINDOW_TICKS; j++) {
+    int32_t sum = 0; // Q19, each product truncated: 2^-20 m/s a tick at most
+    for (uint32_t j = 0; j < (uint32_t)window->ticks; j++) {
         const int32_t then = state->integral_q20[((uint32_t)state->head - j) % GROUND_SPEED_HISTORY];
-        sum += fixed_mul_low(fixed_wrap_difference(now, then), (uint32_t)weight_q15[j]);
+        sum += fixed_mul_low(fixed_wrap_difference(now, then), (uint32_t)window->weight_q15[j]);
     }
     return (float)sum * (1.0f / 524288.0f);
 }
@@ -115,15 +103,15 @@ typedef struct {
     float accel_m_s2; // mean acceleration over the window
 } window_t;
 
-static window_t look_back(const ground_speed_state_t *state, float accel, float late_s)
+static window_t look_back(const doppler_window_t *window, const ground_speed_state_t *state, float accel, float late_s)
 {
-    const int32_t oldest = (state->head - (WINDOW_TICKS - 1) + GROUND_SPEED_HISTORY) % GROUND_SPEED_HISTORY;
+    const int32_t oldest = (state->head - (window->ticks - 1) + GROUND_SPEED_HISTORY) % GROUND_SPEED_HISTORY;
     const float span = (float)fixed_wrap_difference(state->integral_q20[state->head], state->integral_q20[oldest]) * (1.0f / 1048576.0f);
-    const float tau = window_tau_s + late_s;
+    const float tau = window->tau_s + late_s;
     const window_t out = {
         .tau_s = tau,
-        .middle_m_s = state->speed_m_s + tau * state->bias_m_s2 - window_change_m_s(state) - accel * late_s, // (3)
-        .accel_m_s2 = span * 2.0f - state->bias_m_s2,                                                        // over 0.5 s
+        .middle_m_s = state->speed_m_s + tau * state->bias_m_s2 - window_change_m_s(window, state) - accel * late_s, // (3)
+        .accel_m_s2 = span * window->per_s - state->bias_m_s2,
     };
     return out;
 }
@@ -143,7 +131,7 @@ static void watch_bias(const ground_speed_config_t *config, ground_speed_state_t
 
 static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
-    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
+    const window_t window = look_back(config->window, state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
     const float measured = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
     float sign = window.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const bool lost = state->refused >= config->gate_patience;
@@ -177,7 +165,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
 // A quiet echo says that the window's mean speed was too low to be heard.
 static void update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
-    const window_t window = look_back(state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
+    const window_t window = look_back(config->window, state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
     const float spread = state->p_vv + window.tau_s * (2.0f * state->p_vb + window.tau_s * state->p_bb) + config->quiet_noise_m2_s2;
     if (window.middle_m_s * window.middle_m_s <= config->gate_sigma * config->gate_sigma * spread) { // else a fade of the echo
         correct(state, -window.middle_m_s, window.tau_s, config->quiet_noise_m2_s2);
@@ -221,7 +209,8 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || state->std_m_s == 0.0f) { // between, the filter forgets little: a root is dear
         // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
-        const float unseen = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * window_tau_ticks;
+        const float unseen =
+            config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
         const float variance = state->p_vv + unseen;
         state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
     }

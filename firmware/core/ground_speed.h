@@ -14,6 +14,8 @@
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
+#include "doppler.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -21,32 +23,33 @@
 extern "C" {
 #endif
 
-enum { GROUND_SPEED_HISTORY = 64 };
+enum { GROUND_SPEED_HISTORY = DOPPLER_WINDOW_TICKS_MAX };
 
 typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t;
 
 typedef struct {
     ground_speed_method_t method;
-    float tick_s;                // T
-    float speed_noise_m2_s2;     // Qv per tick, at least
-    float speed_noise_max_m2_s2; // and at most; at or below the other, (6) is off
-    float bias_noise_m2_s4;      // Qb per tick
-    float bias_start_m_s2;       // standard deviation of the bias at reset
-    float bias_max_m_s2;         // |b| limit
-    float doppler_noise_m2_s2;   // R, constant part
-    float doppler_noise_m_s;     // R per |v|
-    float doppler_accel_s2;      // R per a^2
-    float gate_sigma;            // values further than this from the prediction are refused
-    int32_t gate_patience;       // refusals in a row after which the next value is taken as the truth
-    float jump_share;            // c of (4)
-    float jump_limit;            // |m| of (4) that tells of a jump of the bias
-    float jump_m2_s4;            // by how much its variance grows then
-    int32_t quiet_needed;        // quiet Doppler values in a row that mean a speed too low to be heard
-    float quiet_noise_m2_s2;     // R of that speed, taken as 0
-    float still_m_s;             // rim speed below which the wheels are at rest
-    int32_t still_needed;        // ticks of rest before the rover can be standing
-    float standing_noise_m2_s2;  // R of speed 0 in each standing tick
-    float sign_hysteresis_m_s;   // |v| below which the wheels decide the sign, and standing needs no quiet echo
+    const doppler_window_t *window; // w_j and tau of (3): the radar's
+    float tick_s;                   // T
+    float speed_noise_m2_s2;        // Qv per tick, at least
+    float speed_noise_max_m2_s2;    // and at most; at or below the other, (6) is off
+    float bias_noise_m2_s4;         // Qb per tick
+    float bias_start_m_s2;          // standard deviation of the bias at reset
+    float bias_max_m_s2;            // |b| limit
+    float doppler_noise_m2_s2;      // R, constant part
+    float doppler_noise_m_s;        // R per |v|
+    float doppler_accel_s2;         // R per a^2
+    float gate_sigma;               // values further than this from the prediction are refused
+    int32_t gate_patience;          // refusals in a row after which the next value is taken as the truth
+    float jump_share;               // c of (4)
+    float jump_limit;               // |m| of (4) that tells of a jump of the bias
+    float jump_m2_s4;               // by how much its variance grows then
+    int32_t quiet_needed;           // quiet Doppler values in a row that mean a speed too low to be heard
+    float quiet_noise_m2_s2;        // R of that speed, taken as 0
+    float still_m_s;                // rim speed below which the wheels are at rest
+    int32_t still_needed;           // ticks of rest before the rover can be standing
+    float standing_noise_m2_s2;     // R of speed 0 in each standing tick
+    float sign_hysteresis_m_s;      // |v| below which the wheels decide the sign, and standing needs no quiet echo
 } ground_speed_config_t;
 
 typedef struct {

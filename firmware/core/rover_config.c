@@ -1,57 +1,77 @@
 #include "rover_config.h"
 
 #include "doppler_template.h"
+#include "fixed.h"
 
-// --- table I and text (docs/sources.md section 3)
-static const float wheel_radius_m = 0.057f;                       // [m] under load, table I
-static const float half_wheelbase_m = 0.083f;                     // [m] table I
-static const float half_track_m = 0.12f;                          // [m] table I
-static const float mass_kg = 2.88f;                               // [kg] table I
-static const float wheel_inertia_kg_m2 = 5e-3f;                   // [kg m^2] identified, section 3
-static const float torque_constant_Nm_A = 0.265f;                 // [N m/A] at the wheel, (17)
-static const float viscous_Nms = 1.6e-3f;                         // [N m s] (18)
-static const float dry_Nm = 0.03f;                                // [N m] (18)
-static const float resistance_ohm = 3.24f;                        // [ohm] assumed: V^2/(4 Ra) = 4 W at 7.2 V
-static const float speed_max_m_s = 1.0f;                          // [m/s] table I
-static const float tick_s = 0.01f;                                // [s] dT of (13)
-static const float encoder_rad_per_count = 6.28318531f / 6000.0f; // [rad] 120 pulses x gear 50, section 3
+static const float tick_s = 0.01f;            // [s] dT of (13)
+static const float ticks_per_s = 100.0f;      // exact, where tick_s is not
+static const float rate_tolerance_Hz = 0.01f; // [Hz] a converter's clock in a description
 
-static sense_config_t sense_default(void)
+const doppler_template_t *doppler_template_of(int32_t radar)
 {
-    const sense_config_t sense = {
-        .encoder_rad_per_count = encoder_rad_per_count,
-        .speed_rad_s_per_count = encoder_rad_per_count / tick_s,
-        .accel_rad_s2_per_count = encoder_rad_per_count / (16.0f * tick_s * tick_s),
-        .current_A_per_count = 0.002f,   // [A] assumed: 12 bit over +-4.1 A
-        .battery_V_per_count = 0.004f,   // [V] assumed: 12 bit over 16.4 V
-        .accel_m_s2_per_count = 0.004f,  // [m/s^2] assumed, about 0.4 mg
-        .gyro_rad_s_per_count = 0.0005f, // [rad/s] assumed
-        .current_offset_count = 2048,    // [count] assumed: offset binary, 12 bit
-        .current_max_count = 4095,
-        .battery_max_count = 4095,
-        .radar_max_count = 1023,
-        .encoder_step_max = 573, // [count/tick] 60 rad/s, twice the no-load speed 7.2 V/ke = 27 rad/s (assumed margin)
-    };
-    return sense;
+    switch (radar) {
+    case ROVER_RADAR_MDU1130:
+        return &doppler_template_mdu1130;
+    case ROVER_RADAR_DJ_2:
+        return &doppler_template_dj_radar_2;
+    case ROVER_RADAR_DJ_3:
+        return &doppler_template_dj_radar_3;
+    case ROVER_RADAR_DRS1000:
+        return &doppler_template_drs1000;
+    default:
+        return 0;
+    }
 }
 
-static doppler_config_t doppler_default(void)
+// Nearest whole number, held in the range of 16 bits unsigned and signed.
+static int32_t whole(float value)
 {
-    const doppler_config_t doppler = {
-        .beam = &doppler_template_mdu1130,
-        .method = DOPPLER_LIKELIHOOD,
-        .offset_count = 512, // [count] assumed: mid-scale of 10 bit
-        .hop = 64,
-        .scale = 1.0f,           // until `traction calibrate` has measured it
-        .quiet_power_count2 = 2, // [count^2] assumed
-    };
-    return doppler;
+    const float held = fixed_clamp(fixed_finite(value), -65535.0f, 65535.0f);
+    return held < 0.0f ? (int32_t)(held - 0.5f) : (int32_t)(held + 0.5f);
 }
 
-static ground_speed_config_t ground_speed_default(void)
+// --- the parts
+
+static void build_sense(const float *v, sense_config_t *sense)
 {
-    const ground_speed_config_t ground_speed = {
+    const float rad_per_count = 6.28318531f / v[ROVER_encoder_counts_per_turn];
+    sense->encoder_rad_per_count = rad_per_count;
+    sense->speed_rad_s_per_count = rad_per_count / tick_s;
+    sense->accel_rad_s2_per_count = rad_per_count / (16.0f * tick_s * tick_s);
+    sense->current_A_per_count = v[ROVER_current_A_per_count];
+    sense->battery_V_per_count = v[ROVER_battery_V_per_count];
+    sense->accel_m_s2_per_count = v[ROVER_accel_m_s2_per_count];
+    sense->gyro_rad_s_per_count = v[ROVER_gyro_rad_s_per_count];
+    for (int32_t i = 0; i < WHEEL_COUNT; i++) {
+        sense->encoder_sign[i] = v[ROVER_encoder_sign_0 + i] < 0.0f ? -1 : 1;
+        sense->current_offset_count[i] = whole(v[ROVER_current_offset_count_0 + i]);
+    }
+    sense->battery_offset_count = whole(v[ROVER_battery_offset_count]);
+    sense->accel_offset_count = whole(v[ROVER_accel_offset_count]);
+    sense->gyro_offset_count = whole(v[ROVER_gyro_offset_count]);
+    sense->current_max_count = whole(v[ROVER_current_max_count]);
+    sense->battery_max_count = whole(v[ROVER_battery_max_count]);
+    sense->radar_max_count = whole(v[ROVER_radar_max_count]);
+    sense->encoder_step_max = whole(v[ROVER_encoder_absurd_rad_s] / (rad_per_count * ticks_per_s));
+}
+
+static void build_doppler(const rover_parameters_t *parameters, doppler_config_t *doppler)
+{
+    const doppler_template_t *beam = doppler_template_of(parameters->radar);
+    doppler->beam = beam != 0 ? beam : &doppler_template_mdu1130;
+    doppler->method = DOPPLER_LIKELIHOOD;
+    doppler->offset_count = whole(parameters->value[ROVER_radar_offset_count]);
+    doppler->hop = 64;
+    doppler->scale = parameters->value[ROVER_doppler_scale];
+    doppler->quiet_power_count2 = (uint32_t)whole(fixed_clamp(parameters->value[ROVER_radar_quiet_count2], 0.0f, 65535.0f));
+}
+
+// What does not depend on the rover: the accelerometer's and the radar's noise, and the estimator's patience.
+static void build_ground_speed(const float *v, const doppler_window_t *window, ground_speed_config_t *ground_speed)
+{
+    const ground_speed_config_t method = {
         .method = GROUND_SPEED_BIAS,
+        .window = window,
         .tick_s = tick_s,
         .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
@@ -67,104 +87,275 @@ static ground_speed_config_t ground_speed_default(void)
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
         .quiet_needed = 3,
-        .quiet_noise_m2_s2 = 9e-4f,    // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
-        .still_m_s = 0.006f,           // one encoder pulse a tick
+        .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
+        .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
         .sign_hysteresis_m_s = 0.12f,
     };
-    return ground_speed;
+    *ground_speed = method;
 }
 
-static safety_config_t safety_default(void)
+static void build_motor(const float *v, motor_config_t *motor)
 {
-    const safety_config_t safety = {
+    const float KG = v[ROVER_torque_constant_Nm_A];
+    const float Ra = v[ROVER_resistance_ohm];
+    motor->torque_constant_Nm_A = KG;
+    motor->volt_per_speed_Vs = Ra * v[ROVER_viscous_Nms] / KG + v[ROVER_back_emf_Vs_rad];
+    motor->volt_dry_V = Ra * v[ROVER_coulomb_Nm] / KG;
+    motor->back_emf_Vs = v[ROVER_back_emf_Vs_rad];
+    motor->resistance_ohm = Ra;
+    motor->viscous_Nms = v[ROVER_viscous_Nms];
+    motor->dry_Nm = v[ROVER_coulomb_Nm];
+    motor->per_dry_speed_s = 1.0f / v[ROVER_dry_speed_rad_s];
+    motor->inertia_kg_m2 = v[ROVER_inertia_kg_m2];
+    motor->per_radius_1_m = 1.0f / v[ROVER_wheel_radius_m];
+}
+
+static void build_control(const float *v, control_config_t *config)
+{
+    const wheel_pid_config_t wheel_pid = {.kp_s = v[ROVER_wheel_kp_s],
+                                          .ki_T_s = v[ROVER_wheel_ki_1] / ticks_per_s,
+                                          .kd_s2 = 0.0f,
+                                          .slew_T_rad_s = v[ROVER_wheel_slew_rad_s2] / ticks_per_s,
+                                          .integral_max = 2.0f,
+                                          .duty_max = 1.0f};
+    const slip_pi_config_t slip_pi = {.kp = v[ROVER_slip_kp_1],
+                                      .ki_T = v[ROVER_slip_ki_1_s] / ticks_per_s,
+                                      .duty_max = 1.0f,
+                                      .per_speed_s_m = 1.0f / v[ROVER_slip_gain_speed_m_s],
+                                      .gain_min = 0.25f,
+                                      .gain_max = 2.5f};
+    const speed_control_config_t speed_control = {.per_radius_1_m = 1.0f / v[ROVER_wheel_radius_m],
+                                                  .half_track_per_radius = v[ROVER_half_track_m] / v[ROVER_wheel_radius_m],
+                                                  .kv_rad_m = v[ROVER_speed_kv_rad_m],
+                                                  .ki_T_rad_m = v[ROVER_speed_ki_rad_m_s] / ticks_per_s,
+                                                  .integral_max_rad_s = v[ROVER_speed_integral_max_rad_s],
+                                                  .speed_max_m_s = v[ROVER_speed_max_m_s],
+                                                  .yaw_rate_max_rad_s = v[ROVER_yaw_rate_max_rad_s],
+                                                  .wheel_max_rad_s = v[ROVER_wheel_max_rad_s]};
+    config->wheel_pid = wheel_pid;
+    config->slip_pi = slip_pi;
+    config->speed_control = speed_control;
+    config->soil_sweep.ramp_1_m = tick_s / (v[ROVER_wheel_radius_m] * v[ROVER_sweep_zero_s]); // (15)
+    config->soil_sweep.duration_ticks =
+        (uint32_t)(fixed_clamp(fixed_finite(v[ROVER_sweep_duration_s]), 0.0f, 36000.0f) * ticks_per_s + 0.5f);
+    config->soil_sweep.wheel_max_rad_s = v[ROVER_wheel_max_rad_s];
+    config->feed_forward = true;
+}
+
+static void build_safety(const float *v, safety_config_t *safety)
+{
+    const float continuous_A = v[ROVER_current_continuous_A];
+    const safety_config_t built = {
         .tick_s = tick_s,
         .required = 0xfffu,
         .patience_ticks = 7,         // off in the 8th bad tick: 80 ms, inside the 100 ms asked for
         .command_patience_ticks = 8, // 80 ms
         .missed_ticks_max = 5,       // 50 ms
         .missed_forget_ticks = 100,  // assumed: 1 % missed ticks are tolerated for ever
-        .current_continuous_A2 = 2.25f,
-        .current_continuous_A = 1.5f, // [A] assumed: above the 1.35 A of full traction on concrete (5.6 N R + Gr)/KG
-        .i2t_max_A2_ticks = 800.0f,   // 8 A^2 s assumed: 3 s of stall at 2.2 A
-        .stall_current_A = 1.4f,      // [A] assumed: above the current of a wheel held by full traction
-        .stall_speed_rad_s = 0.3f,    // [rad/s] assumed
-        .stall_s = 1.0f,              // [s] assumed
-        .heating_K_A2 = 4.0f * tick_s * resistance_ohm / 5.0f, // C_th = 5 J/K assumed
-        .keeping = 1.0f - 4.0f * tick_s / (12.0f * 5.0f),      // R_th = 12 K/W assumed: time constant 60 s
-        .temperature_rise_max_K = 95.0f,                       // [K] assumed: class B winding at 35 C
-        .battery_min_V = 5.4f,                                 // [V] assumed: 0.9 V per cell of 6
-        .battery_s = 0.5f,                                     // [s] assumed
-        .disagree_m_s = 0.15f,                                 // [m/s] assumed
-        .disagree_ratio = 1.5f,                                // [1] assumed
-        .disagree_s = 1.0f,                                    // [s] assumed
+        .current_continuous_A2 = continuous_A * continuous_A,
+        .current_continuous_A = continuous_A,
+        .i2t_max_A2_ticks = v[ROVER_current_peak_A2s] * ticks_per_s,
+        .stall_current_A = v[ROVER_stall_current_A],
+        .stall_speed_rad_s = v[ROVER_stall_speed_rad_s],
+        .stall_s = v[ROVER_stall_s],
+        .heating_K_A2 = 4.0f * tick_s * v[ROVER_resistance_ohm] / v[ROVER_winding_J_K],
+        .keeping = 1.0f - 4.0f * tick_s / (v[ROVER_winding_K_W] * v[ROVER_winding_J_K]),
+        .temperature_rise_max_K = v[ROVER_winding_rise_max_K],
+        .battery_min_V = v[ROVER_battery_min_V],
+        .battery_s = v[ROVER_battery_low_s],
+        .disagree_m_s = v[ROVER_disagree_m_s],
+        .disagree_ratio = v[ROVER_disagree_ratio],
+        .disagree_s = v[ROVER_disagree_s],
     };
-    return safety;
+    *safety = built;
 }
+
+void control_config_build(const rover_parameters_t *parameters, control_config_t *config)
+{
+    const float *v = parameters->value;
+    config->geometry.wheel_radius_m = v[ROVER_wheel_radius_m];
+    config->geometry.half_wheelbase_m = v[ROVER_half_wheelbase_m];
+    config->geometry.half_track_m = v[ROVER_half_track_m];
+    config->geometry.mass_kg = v[ROVER_mass_kg];
+    build_sense(v, &config->sense);
+    build_doppler(parameters, &config->doppler);
+    build_ground_speed(v, &config->doppler.beam->window, &config->ground_speed);
+    config->slip.wheel_radius_m = v[ROVER_wheel_radius_m];
+    config->slip.valid_m_s = v[ROVER_slip_valid_m_s];
+    build_motor(v, &config->motor);
+    build_control(v, config);
+    build_safety(v, &config->safety);
+}
+
+// --- what cannot work
+
+static control_refusal_t refuse(const char *key, const char *reason)
+{
+    const control_refusal_t refusal = {key, reason};
+    return refusal;
+}
+
+static control_refusal_t check_ranges(const rover_parameters_t *parameters)
+{
+    for (int32_t i = 0; i < ROVER_PARAMETER_COUNT; i++) {
+        const float value = parameters->value[i];
+        if (!fixed_is_finite(value) || value < rover_parameter_low(i) || value > rover_parameter_high(i)) {
+            return refuse(rover_parameter_name(i), "not finite, or outside the range of docs/rover_format.md; mend the number or its unit");
+        }
+    }
+    for (int32_t i = 0; i < WHEEL_COUNT; i++) {
+        const float sign = parameters->value[ROVER_encoder_sign_0 + i];
+        if (sign > -1.0f && sign < 1.0f) {
+            return refuse(rover_parameter_name(ROVER_encoder_sign_0 + i), "a sign is 1 or -1; give one of them");
+        }
+    }
+    return refuse(0, 0);
+}
+
+static control_refusal_t check_radar(const rover_parameters_t *parameters, const control_config_t *config)
+{
+    const float *v = parameters->value;
+    const doppler_template_t *beam = doppler_template_of(parameters->radar);
+    if (beam == 0) {
+        return refuse("radar", "no template of this radar is linked; use MDU1130, DJ Radar II, DJ Radar III or DRS1000");
+    }
+    const float off_Hz = v[ROVER_radar_rate_Hz] - beam->sample_rate_Hz;
+    if (off_Hz > rate_tolerance_Hz || off_Hz < -rate_tolerance_Hz) {
+        return refuse("radar_rate_Hz", "the radar's template is made for another rate; sample at 512 Hz, or add a template of this rate");
+    }
+    if (v[ROVER_radar_depression_deg] < 15.0f || v[ROVER_radar_depression_deg] > 25.0f) {
+        return refuse("radar_depression_deg", "the templates are made for 20 deg, which a scale mends within 5; mount it at 15 to 25 deg");
+    }
+    if (config->speed_control.speed_max_m_s > beam->speed_m_s[beam->speeds - 1]) {
+        return refuse("speed_max_m_s", "faster than the radar hears at this rate; lower it, or choose a radar of longer wave");
+    }
+    if (v[ROVER_radar_offset_count] < 0.25f * v[ROVER_radar_max_count] || v[ROVER_radar_offset_count] > 0.75f * v[ROVER_radar_max_count]) {
+        return refuse("radar_offset_count", "an echo around it meets the converter's rail; bring it near the middle of the range");
+    }
+    return refuse(0, 0);
+}
+
+static control_refusal_t check_speeds(const rover_parameters_t *parameters, const control_config_t *config)
+{
+    const float *v = parameters->value;
+    const float wheel_max = config->speed_control.wheel_max_rad_s;
+    if (wheel_max * config->motor.back_emf_Vs > v[ROVER_battery_voltage_V]) {
+        return refuse("wheel_max_rad_s", "beyond the no-load speed V/ke, where no duty reaches; lower it");
+    }
+    if (config->speed_control.speed_max_m_s > wheel_max * config->slip.wheel_radius_m) {
+        return refuse("speed_max_m_s", "faster than the wheels may turn (wheel_max_rad_s * wheel_radius_m); lower it");
+    }
+    if (v[ROVER_encoder_absurd_rad_s] <= wheel_max) {
+        return refuse("encoder_absurd_rad_s", "speeds that the wheels may have would count as absurd; give more than wheel_max_rad_s");
+    }
+    if (config->sense.encoder_step_max < 4) {
+        return refuse("encoder_counts_per_turn", "less than four pulses a tick at encoder_absurd_rad_s tell no speed; use a finer encoder");
+    }
+    if (v[ROVER_encoder_absurd_rad_s] * v[ROVER_encoder_counts_per_turn] > 65535.0f * 6.28318531f * ticks_per_s) {
+        return refuse("encoder_counts_per_turn", "more than 65535 pulses in a tick; use a coarser encoder or lower encoder_absurd_rad_s");
+    }
+    return refuse(0, 0);
+}
+
+static control_refusal_t check_currents(const rover_parameters_t *parameters, const control_config_t *config)
+{
+    const float *v = parameters->value;
+    const safety_config_t *safety = &config->safety;
+    const float stalled_A = v[ROVER_battery_voltage_V] / v[ROVER_resistance_ohm];
+    const float most_A = safety->stall_current_A > safety->current_continuous_A ? safety->stall_current_A : safety->current_continuous_A;
+    if (safety->stall_current_A >= stalled_A) {
+        return refuse("stall_current_A", "a stalled wheel takes V/Ra, which is less: a stall would never be seen; lower it");
+    }
+    for (int32_t i = 0; i < WHEEL_COUNT; i++) {
+        const int32_t offset = config->sense.current_offset_count[i];
+        const int32_t above = config->sense.current_max_count - offset;
+        const int32_t room = above < offset ? above : offset;
+        if ((float)(room - 1) * config->sense.current_A_per_count <= most_A) {
+            return refuse(rover_parameter_name(ROVER_current_offset_count_0 + i),
+                          "the converter's rail comes before the current limits; mend offset, current_A_per_count or current_max_count");
+        }
+    }
+    if (safety->current_continuous_A2 * v[ROVER_resistance_ohm] * v[ROVER_winding_K_W] >= safety->temperature_rise_max_K) {
+        return refuse("current_continuous_A", "a wheel limited to it still overheats (I^2 Ra R_th reaches winding_rise_max_K); lower it");
+    }
+    if (!(safety->keeping > 0.0f && safety->keeping < 1.0f)) {
+        return refuse("winding_J_K",
+                      "the winding's time constant is below four ticks or beyond what float resolves; mend winding_J_K or winding_K_W");
+    }
+    if (safety->battery_min_V >= v[ROVER_battery_voltage_V]) {
+        return refuse("battery_min_V", "not below the battery's own voltage: it would always count as low; lower it");
+    }
+    if ((float)(config->sense.battery_max_count - 1 - config->sense.battery_offset_count) * config->sense.battery_V_per_count <=
+        v[ROVER_battery_voltage_V]) {
+        return refuse("battery_V_per_count", "the converter's rail comes before the battery's voltage; mend scale, offset or rail");
+    }
+    return refuse(0, 0);
+}
+
+// Crossover k Kp times the delay of 20 ms (half a tick of hold, half of difference, one of computation) against the phase left.
+static control_refusal_t check_loop(const rover_parameters_t *parameters, const control_config_t *config)
+{
+    const float *v = parameters->value;
+    const float gain = v[ROVER_battery_voltage_V] * v[ROVER_torque_constant_Nm_A] / (v[ROVER_resistance_ohm] * v[ROVER_inertia_kg_m2]);
+    if (gain * config->wheel_pid.kp_s * 0.02f >= 1.57f) {
+        return refuse("wheel_kp_s", "the wheel's loop is unstable: crossover times 20 ms of delay reaches 90 deg; lower it");
+    }
+    return refuse(0, 0);
+}
+
+control_refusal_t control_config_check(const rover_parameters_t *parameters, const control_config_t *config)
+{
+    control_refusal_t refusal = check_ranges(parameters);
+    if (refusal.key == 0) {
+        refusal = check_radar(parameters, config);
+    }
+    if (refusal.key == 0) {
+        refusal = check_speeds(parameters, config);
+    }
+    if (refusal.key == 0) {
+        refusal = check_currents(parameters, config);
+    }
+    if (refusal.key == 0) {
+        refusal = check_loop(parameters, config);
+    }
+    return refusal;
+}
+
+// --- the reference
 
 control_config_t rover_config_default(void)
 {
-    const control_config_t config = {
-        .geometry = {.wheel_radius_m = wheel_radius_m,
-                     .half_wheelbase_m = half_wheelbase_m,
-                     .half_track_m = half_track_m,
-                     .mass_kg = mass_kg},
-        .sense = sense_default(),
-        .doppler = doppler_default(),
-        .ground_speed = ground_speed_default(),
-        .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
-        .motor = {.torque_constant_Nm_A = torque_constant_Nm_A,
-                  .volt_per_speed_Vs = resistance_ohm * viscous_Nms / torque_constant_Nm_A + torque_constant_Nm_A,
-                  .volt_dry_V = resistance_ohm * dry_Nm / torque_constant_Nm_A,
-                  .back_emf_Vs = torque_constant_Nm_A, // assumed: equal in SI
-                  .resistance_ohm = resistance_ohm,
-                  .viscous_Nms = viscous_Nms,
-                  .dry_Nm = dry_Nm,
-                  .per_dry_speed_s = 5.0f, // 1/0.2 [rad/s] assumed: five steps of the speed's rounding noise
-                  .inertia_kg_m2 = wheel_inertia_kg_m2,
-                  .per_radius_1_m = 1.0f / wheel_radius_m},
-        .wheel_pid = {.kp_s = 0.2f,     // docs/firmware.md: crossover 24 rad/s free, 16 rad/s gripping
-                      .ki_T_s = 0.009f, // zero of the PI on the motor's pole 4.6 rad/s
-                      .kd_s2 = 0.0f,
-                      .slew_T_rad_s = 0.6f, // 60 rad/s^2: half of what stall torque gives a free wheel
-                      .integral_max = 2.0f,
-                      .duty_max = 1.0f},
-        .slip_pi = {.kp = 2.0f, .ki_T = 0.09f, .duty_max = 1.0f, .per_speed_s_m = 5.0f, .gain_min = 0.25f, .gain_max = 2.5f},
-        .speed_control = {.per_radius_1_m = 1.0f / wheel_radius_m,
-                          .half_track_per_radius = half_track_m / wheel_radius_m,
-                          .kv_rad_m = 17.5f,   // 1/R: halves the error, docs/firmware.md
-                          .ki_T_rad_m = 0.35f, // 35 rad/s per m/s per s
-                          .integral_max_rad_s = 6.0f,
-                          .speed_max_m_s = speed_max_m_s,
-                          .yaw_rate_max_rad_s = 4.0f,                 // [rad/s] assumed
-                          .wheel_max_rad_s = 25.0f},                  // [rad/s] below the no-load speed of 27
-        .soil_sweep = {.ramp_1_m = tick_s / (wheel_radius_m * 10.0f), // t_zero = 10 s, section 6
-                       .duration_ticks = 2000,
-                       .wheel_max_rad_s = 25.0f},
-        .safety = safety_default(),
-        .feed_forward = true,
-    };
+    rover_parameters_t parameters;
+    control_config_t config;
+    rover_parameters_reference(&parameters);
+    control_config_build(&parameters, &config);
     return config;
+}
+
+void control_config_make_paper(control_config_t *config)
+{
+    config->doppler.method = DOPPLER_ARGMAX;
+    config->doppler.hop = FFT_LENGTH; // one value every 0.5 s
+    config->ground_speed.method = GROUND_SPEED_PAPER;
+    // With Q per tick and one value every 50 ticks a gain of 0.22 has a time constant of 2 s: Q = R 0.22^2/(1 - 0.22)/50
+    config->ground_speed.doppler_noise_m2_s2 = 4e-4f; // (0.02 m/s)^2: 10 % at 0.2 m/s, (12)
+    config->ground_speed.speed_noise_m2_s2 = 5e-7f;
+    config->ground_speed.speed_noise_max_m2_s2 = 5e-7f;
+    config->ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
+    config->ground_speed.bias_start_m_s2 = 0.0f;
+    config->wheel_pid.slew_T_rad_s = 1e6f;
+    config->feed_forward = false;
+    config->speed_control.ki_T_rad_m = 0.0f; // (22) has no integral
+    config->slip_pi.per_speed_s_m = 0.0f;    // (23) has no schedule
+    config->slip_pi.gain_min = 1.0f;
+    config->slip_pi.gain_max = 1.0f;
 }
 
 control_config_t rover_config_paper(void)
 {
     control_config_t config = rover_config_default();
-    config.doppler.method = DOPPLER_ARGMAX;
-    config.doppler.hop = FFT_LENGTH; // one value every 0.5 s
-    config.ground_speed.method = GROUND_SPEED_PAPER;
-    // With Q per tick and one value every 50 ticks a gain of 0.22 has a time constant of 2 s: Q = R 0.22^2/(1 - 0.22)/50
-    config.ground_speed.doppler_noise_m2_s2 = 4e-4f; // (0.02 m/s)^2: 10 % at 0.2 m/s, (12)
-    config.ground_speed.speed_noise_m2_s2 = 5e-7f;
-    config.ground_speed.speed_noise_max_m2_s2 = 5e-7f;
-    config.ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
-    config.ground_speed.bias_start_m_s2 = 0.0f;
-    config.wheel_pid.slew_T_rad_s = 1e6f;
-    config.feed_forward = false;
-    config.speed_control.ki_T_rad_m = 0.0f; // (22) has no integral
-    config.slip_pi.per_speed_s_m = 0.0f;    // (23) has no schedule
-    config.slip_pi.gain_min = 1.0f;
-    config.slip_pi.gain_max = 1.0f;
+    control_config_make_paper(&config);
     return config;
 }

@@ -28,7 +28,7 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
             out->absurd |= bit; // the new count is the base of the next difference; the speed is held
         } else {
             state->step[wheel] = step;
-            state->speed_rad_s[wheel] = (float)step * config->speed_rad_s_per_count; // (1)
+            state->speed_rad_s[wheel] = (float)(step * config->encoder_sign[wheel]) * config->speed_rad_s_per_count; // (1)
             out->usable |= bit;
         }
         if (first) {
@@ -42,7 +42,7 @@ static void measure_wheel(const sense_config_t *config, sense_state_t *state, co
     const int32_t limit = 4 * config->encoder_step_max;
     const int32_t limited = bend < -limit ? -limit : bend > limit ? limit : bend;
     out->speed_rad_s[wheel] = state->speed_rad_s[wheel];
-    out->accel_rad_s2[wheel] = (float)limited * config->accel_rad_s2_per_count; // (2)
+    out->accel_rad_s2[wheel] = (float)(limited * config->encoder_sign[wheel]) * config->accel_rad_s2_per_count; // (2)
     ring[state->head] = now;
 }
 
@@ -54,7 +54,7 @@ static void measure_current(const sense_config_t *config, sense_state_t *state, 
         if (count <= 0 || count >= config->current_max_count) {
             out->absurd |= bit;
         } else {
-            state->current_A[wheel] = (float)(count - config->current_offset_count) * config->current_A_per_count;
+            state->current_A[wheel] = (float)(count - config->current_offset_count[wheel]) * config->current_A_per_count;
             out->usable |= bit;
         }
     }
@@ -67,7 +67,7 @@ static void measure_body(const sense_config_t *config, sense_state_t *state, con
         if (frame->battery_count == 0u || frame->battery_count >= config->battery_max_count) {
             out->absurd |= FRAME_BATTERY;
         } else {
-            state->battery_V = (float)frame->battery_count * config->battery_V_per_count;
+            state->battery_V = (float)(frame->battery_count - config->battery_offset_count) * config->battery_V_per_count;
             out->usable |= FRAME_BATTERY;
         }
     }
@@ -75,7 +75,7 @@ static void measure_body(const sense_config_t *config, sense_state_t *state, con
         if (frame->accel_x_count == INT16_MAX || frame->accel_x_count == INT16_MIN) {
             out->absurd |= FRAME_ACCEL;
         } else {
-            state->accel_x_m_s2 = (float)frame->accel_x_count * config->accel_m_s2_per_count;
+            state->accel_x_m_s2 = (float)(frame->accel_x_count - config->accel_offset_count) * config->accel_m_s2_per_count;
             out->usable |= FRAME_ACCEL;
         }
     }
@@ -83,7 +83,7 @@ static void measure_body(const sense_config_t *config, sense_state_t *state, con
         if (frame->gyro_z_count == INT16_MAX || frame->gyro_z_count == INT16_MIN) {
             out->absurd |= FRAME_GYRO;
         } else {
-            state->gyro_z_rad_s = (float)frame->gyro_z_count * config->gyro_rad_s_per_count;
+            state->gyro_z_rad_s = (float)(frame->gyro_z_count - config->gyro_offset_count) * config->gyro_rad_s_per_count;
             out->usable |= FRAME_GYRO;
         }
     }

@@ -24,8 +24,12 @@ typedef struct {
     float battery_V_per_count;
     float accel_m_s2_per_count;
     float gyro_rad_s_per_count;
-    int32_t current_offset_count; // 0 A
-    int32_t current_max_count;    // the converter's rail
+    int32_t encoder_sign[WHEEL_COUNT];         // 1, or -1 where the count falls as the wheel drives forward
+    int32_t current_offset_count[WHEEL_COUNT]; // 0 A
+    int32_t battery_offset_count;              // 0 V
+    int32_t accel_offset_count;                // 0 m/s^2
+    int32_t gyro_offset_count;                 // 0 rad/s
+    int32_t current_max_count;                 // the converter's rail
     int32_t battery_max_count;
     int32_t radar_max_count;
     int32_t encoder_step_max; // more pulses in one tick than any wheel can make

@@ -7,12 +7,14 @@
 //   S_v[k] = (1 - e) sum dP |H(f)|^2 (|W(k - f/df)|^2 + |W(k + f/df)|^2) / sum + e / bins              (3)
 //   X[k] = sum_m sqrt(dP_m) |H| (z_m W(k - f_m/df) + z_m* W(k + f_m/df)) + noise,  z_m complex normal     (4)
 //   grid speed = v / mean(v_found / v) over draws of (4)                                                 (5)
+//   w_j: square of the Hann window over its age in ticks, Q15, sum 32768                                 (6)
 //
 // (1): range r = h/sin(th), ground area dA = h^2 cos(th)/sin^3(th) dth dph, power ~ G^2 sigma0 dA / r^4, sigma0 ~ sin^n(th):
 // the height h drops out (derived here). (2): (11) Lhomme-Desages for one direction. (3): band-pass H, Hann window W, a real
 // signal's mirror image, and a share e of white noise. (4), (5): where the firmware's search finds its minimum for echoes of this very
 // model, speckle included; it lies 1 to 2 % low where few bins carry the echo, because the power that scales J is that of the same
-// few bins. A closed form of second order does not converge there (tried), so the generator draws windows.
+// few bins. A closed form of second order does not converge there (tried), so the generator draws windows. (6): a sample's weight is
+// shared between the two ticks around its age, so that the mean age is the window's own; the newest sample is half a sample old.
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -23,24 +25,25 @@ typedef struct {
     const char *name;
     const char *title;
     double f0_Hz, beam_vertical_deg, beam_horizontal_deg;
+    double rate_Hz; // of the converter
 } radar_t;
 
-// Table II, Lhomme-Desages
+// Table II, Lhomme-Desages; 512 Hz: section 4
 static const radar_t radars[] = {
-    {"mdu1130", "MDU1130, 9.9 GHz, 36 x 72 deg", 9.9e9, 36, 72},
-    {"dj_radar_2", "DJ Radar II, 24.13 GHz, 15 deg", 24.13e9, 15, 15},
-    {"dj_radar_3", "DJ Radar III, 24.13 GHz, 20 x 16 deg", 24.13e9, 20, 16},
-    {"drs1000", "DRS1000, 35.5 GHz, 12 deg", 35.5e9, 12, 12},
+    {"mdu1130", "MDU1130, 9.9 GHz, 36 x 72 deg", 9.9e9, 36, 72, 512},
+    {"dj_radar_2", "DJ Radar II, 24.13 GHz, 15 deg", 24.13e9, 15, 15, 512},
+    {"dj_radar_3", "DJ Radar III, 24.13 GHz, 20 x 16 deg", 24.13e9, 20, 16, 512},
+    {"drs1000", "DRS1000, 35.5 GHz, 12 deg", 35.5e9, 12, 12, 512},
 };
 
 static const double pi = 3.14159265358979323846;
 static const double c_m_s = 299792458.0;
-static const double mounting_deg = 20;    // theta_d, section 4; for the others assumed
-static const double ground_exponent = 1;  // n, assumed: middle of 0..2
-static const double sample_rate_Hz = 512; // section 4
-static const double band_low_Hz = 3;      // section 4
-static const double band_high_Hz = 80;    // section 4, at 9.9 GHz; scales with f0 for the other radars
-static const double noise_share = 0.05;   // e, assumed
+static const double mounting_deg = 20;   // theta_d, section 4; for the others assumed
+static const double ground_exponent = 1; // n, assumed: middle of 0..2
+static const double tick_Hz = 100;
+static const double band_low_Hz = 3;    // section 4
+static const double band_high_Hz = 80;  // section 4, at 9.9 GHz; scales with f0 for the other radars
+static const double noise_share = 0.05; // e, assumed
 static const double speed_low_m_s = 0.04;
 static const double speed_high_m_s = 1.35;
 
@@ -48,6 +51,7 @@ static const double calm_share =
     0.004; // white noise in (4), assumed: 20 dB below the echo at the converter, 48 of 128 bins of it in the band
 
 enum { LENGTH = 256, SPEEDS = 96, FINE = 2000, FIRST_BIN = 1, BINS = 120 };
+enum { TICKS = 64, SAMPLES_PER_TICK = 8 };                                          // of the firmware: longest window, most samples
 enum { COARSE = 4 };                                                                // of doppler.c: where it searches first
 enum { QUARTERS = 4 * (BINS + 8), DRAWS = 1500, REACH = 20, EDGE = 8, SMOOTH = 4 }; // REACH: (4) is cut 5 bins from f, 1e-4 of its peak
 
@@ -91,7 +95,7 @@ static double band_power(double f, double high) { return f <= 0 ? 0 : 1 / (1 + p
 static void spectrum(const radar_t *radar, const double *weight, double v, int bins, double *S)
 {
     const double high = band_high_Hz * radar->f0_Hz / radars[0].f0_Hz;
-    const double df = sample_rate_Hz / LENGTH;
+    const double df = radar->rate_Hz / LENGTH;
     double sum = 0;
     for (int k = 0; k < bins; k++) {
         S[k] = 0;
@@ -169,7 +173,7 @@ static void amplitudes(const radar_t *radar, const double *weight, double v, int
     double power[QUARTERS] = {0}, sum = 0;
     for (int i = 0; i < FINE; i++) {
         const double f = 2 * v * radar->f0_Hz / c_m_s * (i + 0.5) / FINE;
-        const int m = (int)(4 * f * LENGTH / sample_rate_Hz + 0.5);
+        const int m = (int)(4 * f * LENGTH / radar->rate_Hz + 0.5);
         power[m < QUARTERS ? m : QUARTERS - 1] += weight[i] * band_power(f, high);
     }
     for (int m = 1; m < QUARTERS; m++) {
@@ -270,6 +274,35 @@ static void mean_found(const radar_t *radar, const double *weight, const table_t
     }
 }
 
+// --- (6)
+
+static int window_ticks(const radar_t *radar) { return (int)(LENGTH * tick_Hz / radar->rate_Hz) + 1; }
+
+static void write_window(const radar_t *radar, FILE *out)
+{
+    double weight[TICKS + 1] = {0}, sum = 0;
+    int whole[TICKS + 1], rest = 32768, most = 0;
+    for (int n = 0; n < LENGTH; n++) {
+        const double hann = 0.5 - 0.5 * cos(2 * pi * n / LENGTH), age = (LENGTH - 0.5 - n) / radar->rate_Hz * tick_Hz;
+        weight[(int)age] += hann * hann * (1 - (age - (int)age));
+        weight[(int)age + 1] += hann * hann * (age - (int)age);
+        sum += hann * hann;
+    }
+    for (int j = 0; j < window_ticks(radar); j++) {
+        whole[j] = (int)floor(weight[j] / sum * 32768 + 0.5);
+        rest -= whole[j];
+        most = whole[j] > whole[most] ? j : most;
+    }
+    whole[most] += rest; // what rounding left
+    const double tau_s = floor((LENGTH - 1) / 2.0 / radar->rate_Hz * 1000 + 0.5) / 1000;
+    fprintf(out, "    .window = {.ticks = %d, .tau_s = %.3ff, .tau_ticks = %.1ff, .per_s = %.8ef, .weight_q15 = {", window_ticks(radar),
+            tau_s, tau_s * tick_Hz, radar->rate_Hz / LENGTH);
+    for (int j = 0; j < window_ticks(radar); j++) {
+        fprintf(out, "%d, ", whole[j]);
+    }
+    fprintf(out, "}},\n");
+}
+
 static int write_template(const radar_t *radar, FILE *out)
 {
     static double weight[FINE];
@@ -277,9 +310,9 @@ static int write_template(const radar_t *radar, FILE *out)
     static table_t table;
     double ratio[SPEEDS];
     const double shift = 2 * radar->f0_Hz / c_m_s; // [Hz per m/s] along the ground
-    const double highest = fmin(speed_high_m_s, 0.46 * sample_rate_Hz / shift);
+    const double highest = fmin(speed_high_m_s, 0.46 * radar->rate_Hz / shift);
     const double step = log(highest / speed_low_m_s) / (SPEEDS - 1);
-    int bins = (int)ceil(highest * shift / (sample_rate_Hz / LENGTH)) - FIRST_BIN + 1;
+    int bins = (int)ceil(highest * shift / (radar->rate_Hz / LENGTH)) - FIRST_BIN + 1;
     bins = (bins + 7) / 8 * 8; // rows of whole 128-bit groups
     bins = bins > BINS ? BINS : bins;
     double smallest = 1;
@@ -308,7 +341,7 @@ static int write_template(const radar_t *radar, FILE *out)
             "#include \"firmware/core/doppler_template.h\"\n\nconst doppler_template_t doppler_template_%s = {\n    .log_step = %.8ef,\n"
             "    .paper_m_s_per_Hz = %.8ef,\n    .sample_rate_Hz = %.1ff,\n    .speeds = %d,\n    .first_bin = %d,\n    .bins = %d,\n"
             "    .speed_m_s = {",
-            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), sample_rate_Hz, SPEEDS, FIRST_BIN, bins);
+            radar->name, step, 1 / (shift * cos(mounting_deg * pi / 180)), radar->rate_Hz, SPEEDS, FIRST_BIN, bins);
     for (int i = 0; i < SPEEDS; i++) {
         fprintf(out, "%.8ef, ", speed_low_m_s * exp(step * i) / ratio[i]); // (5)
     }
@@ -333,23 +366,36 @@ static int write_template(const radar_t *radar, FILE *out)
         }
         fprintf(out, "%d, ", (int)floor(scale * mean + 0.5));
     }
-    fprintf(out, "},\n};\n");
+    fprintf(out, "},\n");
+    write_window(radar, out);
+    fprintf(out, "};\n");
     return ferror(out) ? 4 : 0;
 }
 
 int main(int argc, char **argv)
 {
-    for (size_t i = 0; argc == 3 && i < sizeof radars / sizeof *radars; i++) {
+    for (size_t i = 0; (argc == 3 || argc == 5) && i < sizeof radars / sizeof *radars; i++) {
         if (strcmp(argv[1], radars[i].name) == 0) {
+            radar_t radar = radars[i];
+            if (argc == 5) { // the same radar behind a converter of another rate, under another name
+                radar.rate_Hz = atof(argv[3]);
+                radar.name = argv[4];
+            }
+            if (!(radar.rate_Hz > 0) || window_ticks(&radar) > TICKS || radar.rate_Hz > SAMPLES_PER_TICK * tick_Hz) {
+                fprintf(stderr,
+                        "doppler_template_gen: RATE_HZ = %g: the firmware holds %d ticks of window and %d samples a tick; give %g to %g\n",
+                        radar.rate_Hz, TICKS, SAMPLES_PER_TICK, ceil(LENGTH * tick_Hz / (TICKS - 1)), SAMPLES_PER_TICK * tick_Hz);
+                return 2;
+            }
             FILE *out = fopen(argv[2], "w");
             if (out == NULL) {
                 fprintf(stderr, "doppler_template_gen: cannot write %s\n", argv[2]);
                 return 4;
             }
-            const int result = write_template(&radars[i], out);
+            const int result = write_template(&radar, out);
             return fclose(out) != 0 ? 4 : result;
         }
     }
-    fprintf(stderr, "usage: doppler_template_gen mdu1130|dj_radar_2|dj_radar_3|drs1000 OUT.c\n");
+    fprintf(stderr, "usage: doppler_template_gen mdu1130|dj_radar_2|dj_radar_3|drs1000 OUT.c [RATE_HZ NAME]\n");
     return 2;
 }

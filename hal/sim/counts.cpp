@@ -5,6 +5,28 @@
 
 namespace traction::hal {
 
+namespace {
+int whole(double value) { return static_cast<int>(std::floor(value + 0.5)); }
+} // namespace
+
+CountScale count_scale(const sim::RoverDescription &rover) {
+    CountScale scale;
+    scale.current_A = rover.at("current", "A_per_count");
+    scale.battery_V = rover.at("battery", "V_per_count");
+    scale.accel_m_s2 = rover.at("accel", "m_s2_per_count");
+    scale.gyro_rad_s = rover.at("gyro", "rad_s_per_count");
+    scale.battery_offset = whole(rover.at("battery", "offset_count"));
+    scale.accel_offset = whole(rover.at("accel", "offset_count"));
+    scale.gyro_offset = whole(rover.at("gyro", "offset_count"));
+    scale.current_max = whole(rover.at("current", "max_count"));
+    scale.battery_max = whole(rover.at("battery", "max_count"));
+    for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
+        scale.current_offset[i] = whole(rover.current_offset_count(i));
+        scale.encoder_sign[i] = rover.wheel[i].encoder_sign < 0 ? -1 : 1;
+    }
+    return scale;
+}
+
 int round_count(double value, int low, int high) {
     if (!(value > low)) return low; // NaN too
     if (value > high) return high;
@@ -13,13 +35,17 @@ int round_count(double value, int low, int high) {
 
 void to_counts(const CountScale &scale, const sim::Measurements &measured, sensor_frame_t *frame) {
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
-        frame->encoder_count[i] = measured.encoder_count[i];
-        const double current = measured.current_A[i] / scale.current_A + scale.current_offset;
-        frame->current_count[i] = static_cast<std::uint16_t>(round_count(current, 0, scale.converter_max));
+        frame->encoder_count[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(measured.encoder_count[i]) *
+                                                            static_cast<std::uint32_t>(scale.encoder_sign[i])); // wraps
+        const double current = measured.current_A[i] / scale.current_A + scale.current_offset[i];
+        frame->current_count[i] = static_cast<std::uint16_t>(round_count(current, 0, scale.current_max));
     }
-    frame->battery_count = static_cast<std::uint16_t>(round_count(measured.battery_V / scale.battery_V, 0, scale.converter_max));
-    frame->accel_x_count = static_cast<std::int16_t>(round_count(measured.accel_x_m_s2 / scale.accel_m_s2, INT16_MIN, INT16_MAX));
-    frame->gyro_z_count = static_cast<std::int16_t>(round_count(measured.gyro_z_rad_s / scale.gyro_rad_s, INT16_MIN, INT16_MAX));
+    frame->battery_count =
+        static_cast<std::uint16_t>(round_count(measured.battery_V / scale.battery_V + scale.battery_offset, 0, scale.battery_max));
+    frame->accel_x_count =
+        static_cast<std::int16_t>(round_count(measured.accel_x_m_s2 / scale.accel_m_s2 + scale.accel_offset, INT16_MIN, INT16_MAX));
+    frame->gyro_z_count =
+        static_cast<std::int16_t>(round_count(measured.gyro_z_rad_s / scale.gyro_rad_s + scale.gyro_offset, INT16_MIN, INT16_MAX));
     const std::size_t samples = std::min<std::size_t>(measured.radar_count.size(), RADAR_SAMPLES_PER_TICK_MAX);
     std::copy_n(measured.radar_count.begin(), samples, frame->radar_count);
     std::fill(frame->radar_count + samples, frame->radar_count + RADAR_SAMPLES_PER_TICK_MAX, std::uint16_t{0});

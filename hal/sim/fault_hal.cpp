@@ -67,10 +67,10 @@ void FaultHal::add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame
     for (unsigned i = 0; i < WHEEL_COUNT; i++) {
         if (bit == encoder_bit(i)) frame->encoder_count[i] = noisy(frame->encoder_count[i], 1, INT32_MIN, INT32_MAX);
         if (bit == current_bit(i))
-            frame->current_count[i] = static_cast<std::uint16_t>(noisy(frame->current_count[i], scale_.current_A, 0, scale_.converter_max));
+            frame->current_count[i] = static_cast<std::uint16_t>(noisy(frame->current_count[i], scale_.current_A, 0, scale_.current_max));
     }
     if (bit == FRAME_BATTERY)
-        frame->battery_count = static_cast<std::uint16_t>(noisy(frame->battery_count, scale_.battery_V, 0, scale_.converter_max));
+        frame->battery_count = static_cast<std::uint16_t>(noisy(frame->battery_count, scale_.battery_V, 0, scale_.battery_max));
     if (bit == FRAME_ACCEL)
         frame->accel_x_count = static_cast<std::int16_t>(noisy(frame->accel_x_count, scale_.accel_m_s2, INT16_MIN, INT16_MAX));
     if (bit == FRAME_GYRO)

@@ -26,12 +26,14 @@ std::int64_t actuation_delay_ms(std::span<const sim::ActiveEffect> effects) {
 SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed) {
     SimHalConfig world{.plant = scenario.plant,
                        .sensors = scenario.sensors,
-                       .scale = {},
+                       .scale = count_scale(scenario.rover),
                        .wheel_blocks = {},
                        .bus_latency_ms = static_cast<int>(actuation_delay_ms(effects) % tick_ms),
                        .ticks = static_cast<std::uint32_t>(scenario.duration_s * 100 + 0.5),
                        .seed = seed};
     world.plant.effects.assign(effects.begin(), effects.end());
+    const std::vector<sim::ActiveEffect> wheels = sim::wheel_differences(scenario.rover);
+    world.plant.effects.insert(world.plant.effects.end(), wheels.begin(), wheels.end());
     world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
     sim::apply_sensor_effects(effects, world.sensors);
     for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});

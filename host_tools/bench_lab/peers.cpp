@@ -3,6 +3,8 @@
 #include "answer.h"
 #include "reading.h"
 
+#include "host_tools/log/write_file.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -55,7 +57,7 @@ nlohmann::json run_peers(const std::vector<SealedLog> &logs, const CampaignOptio
     const std::string list = folder + "/logs.json", answer = folder + "/peers.json", said = folder + "/peers.txt";
     nlohmann::json files = nlohmann::json::array();
     for (const SealedLog &one : logs) files.push_back({{"log", one.log}, {"model", campaign_model(options.generator, one.soil)}});
-    std::ofstream(list) << files.dump(1) << '\n';
+    log::write_file(files.dump(1) + '\n', list);
     std::filesystem::remove(answer);
     const std::string command = "sh " + quoted(script) + " " + quoted(list) + " " + quoted(answer) + " " + quoted(options.traction) +
                                 " > " + quoted(said) + " 2>&1";

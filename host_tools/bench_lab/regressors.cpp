@@ -1,10 +1,9 @@
 #include "regressors.h"
 
 #include "host_tools/lab/decision/columns.h"
+#include "host_tools/log/write_file.h"
 
 #include <nlohmann/json.hpp>
-
-#include <fstream>
 
 namespace traction::bench_lab {
 
@@ -25,11 +24,10 @@ class Table {
     void write(const json &head, const std::string &file) const {
         json all = head;
         all["columns"] = list_;
-        std::ofstream out;
-        out.exceptions(std::ios::failbit | std::ios::badbit);
-        out.open(file, std::ios::binary);
-        out << all.dump() << '\n';
-        out.write(reinterpret_cast<const char *>(numbers_.data()), static_cast<std::streamsize>(numbers_.size() * sizeof(float)));
+        log::WholeFile out(file);
+        out.write(all.dump() + '\n');
+        out.write({reinterpret_cast<const char *>(numbers_.data()), numbers_.size() * sizeof(float)});
+        out.keep();
     }
 
   private:

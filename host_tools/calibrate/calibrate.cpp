@@ -4,11 +4,13 @@
 
 #include "firmware/core/rover_config.h"
 #include "host_tools/report/report.h"
+#include "host_tools/rover/rover.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <optional>
@@ -118,6 +120,8 @@ std::vector<double> speeds_of(const std::vector<Pair> &pairs) {
 
 } // namespace
 
+static constexpr double narrow_deg = 20, narrow_per_deg = 0.00635; // tan 20 deg per degree
+
 Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_radius_m) {
     const log::Signal *adc = log.find("radar.adc_count");
     if (adc == nullptr)
@@ -131,7 +135,9 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
         throw log::LogError(log.source, 0, 0, "no true speed",
                             "give camera.x_m and camera.y_m, or the four wheel speeds of a drive on firm ground");
 
-    control_config_t config = rover_config_default();
+    const rover_parameters_t rover = parameters_of_lines(log.header).rover;
+    control_config_t config;
+    control_config_build(&rover, &config);
     config.doppler.scale = 1;
     doppler_state_t state{};
     std::vector<Pair> pairs;
@@ -156,6 +162,13 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
     out.scale_std = std::sqrt(out.scale_std * (blocks - 1) / blocks); // jackknife: blocks are longer than a window's memory
     const std::vector<double> speeds = speeds_of(pairs);
     const double spread = std::hypot(out.scale_std, model_std);
+    if (rover.radar !=
+        ROVER_RADAR_MDU1130) { // of a narrow beam the angle goes with cos theta_d, whatever the ground: rover_parameters.h (7)
+        out.angle_deg = narrow_deg + (out.scale - 1) / narrow_per_deg;
+        out.angle_by_exponent_deg.fill(out.angle_deg);
+        out.angle_std_deg = out.angle_known_ground_std_deg = out.scale_std / narrow_per_deg;
+        return out;
+    }
     for (std::size_t n = 0; n < out.angle_by_exponent_deg.size(); n++) {
         const AngleTable table(*config.doppler.beam, static_cast<double>(n), speeds);
         out.angle_by_exponent_deg[n] = table.angle_deg(out.scale);
@@ -171,6 +184,8 @@ Calibration calibrate(const log::Log &log, CalibrationTruth truth, double wheel_
 void put_parameter(const std::string &path, const std::string &key, double value, const std::string &comment) {
     std::string text, line;
     std::ifstream file(path);
+    if (!file.is_open() && std::filesystem::exists(path)) // what stands in it would be lost
+        throw log::FileError(path, 0, 0, "cannot be read, so nothing is put into it", "check its permissions");
     bool format = false;
     while (std::getline(file, line)) {
         const std::string name = line.substr(0, line.find_first_of(" \t="));

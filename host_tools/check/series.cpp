@@ -184,6 +184,9 @@ void add_wheels(const log::Log &log, Grid &grid) {
         wheel.unsigned_current = flag != log.header.end() && flag->second != "0";
         const std::vector<double> count = get("encoder_count"), angle = get("angle_rad");
         if (!count.empty()) wheel.count_rate = slope(count, 2);
+        const auto sign = log.header.find("firmware.encoder_sign_" + std::to_string(wheel.index)); // an encoder that counts the other way
+        if (sign != log.header.end() && sign->second == "-1")
+            for (double &rate : wheel.count_rate) rate = -rate;
         if (!angle.empty()) wheel.angle_rate = slope(angle, 2);
         if (wheel.voltage.empty() && grid.battery.empty()) {
             wheel.voltage = wheel.duty;

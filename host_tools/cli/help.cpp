@@ -143,11 +143,9 @@ std::string help_text() {
     return out + '\n' + closing_text();
 }
 
-std::string version_text() { return std::string("traction ") + TRACTION_VERSION + '\n'; }
-
 const char *closing_text() {
     return "Exit codes: 0 done, 1 the answer is negative, 2 wrong command line, 3 bad input, 4 file error, 70 a bug.\n"
-           "./traction also knows: test (build and run every test), build, prove, fuzz, mutate, help.\n";
+           "The script ./traction of the sources also knows: test (build and run every test), build, prove, fuzz, mutate, help.\n";
 }
 
 } // namespace traction::cli

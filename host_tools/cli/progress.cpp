@@ -2,14 +2,22 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <utility>
 
 namespace traction::cli {
 
 using clock = std::chrono::steady_clock;
 
+namespace {
+std::atomic<bool> silent{false};
+}
+
+void Progress::silence() { silent = true; }
+
 Progress::Progress(std::string what, long total)
-    : what_(std::move(what)), total_(total > 0 ? total : 1), terminal_(isatty(STDERR_FILENO) == 1), start_(clock::now()), drawn_(start_) {}
+    : what_(std::move(what)), total_(total > 0 ? total : 1), terminal_(!silent && isatty(STDERR_FILENO) == 1), start_(clock::now()),
+      drawn_(start_) {}
 
 Progress::~Progress() {
     if (terminal_) std::fputs("\r\033[K", stderr);
@@ -25,11 +33,21 @@ void Progress::step(long count) {
     }
 }
 
+std::string Progress::text(const std::string &what, long done, long total, double spent_s) {
+    char line[80];
+    if (done > total)
+        std::snprintf(line, sizeof line, ": %ld done, %.0f s so far", done, spent_s);
+    else if (done <= 0)
+        std::snprintf(line, sizeof line, ": 0 of %ld", total);
+    else
+        std::snprintf(line, sizeof line, ": %ld of %ld, about %.0f s left", done, total,
+                      spent_s * static_cast<double>(total - done) / static_cast<double>(done));
+    return what + line;
+}
+
 void Progress::draw() {
     const double spent_s = std::chrono::duration<double>(clock::now() - start_).count();
-    const double fraction = static_cast<double>(done_) / static_cast<double>(total_);
-    const double left_s = fraction > 0 ? spent_s * (1 - fraction) / fraction : 0;
-    std::fprintf(stderr, "\r\033[K%s: %ld of %ld, about %.0f s left", what_.c_str(), done_, total_, left_s);
+    std::fprintf(stderr, "\r\033[K%s", text(what_, done_, total_, spent_s).c_str());
     std::fflush(stderr);
 }
 

@@ -19,6 +19,12 @@ class Progress {
 
     void step(long count = 1);
 
+    // How far, in words: "drive: 3 of 10, about 4 s left". When more is done than was announced the total is not believed any more:
+    // "drive: 12 done, 5 s so far".
+    static std::string text(const std::string &what, long done, long total, double spent_s);
+
+    static void silence(); // from now on nothing is shown (--quiet)
+
   private:
     void draw();
     std::string what_;

@@ -1,6 +1,9 @@
 #include "rows.h"
 
+#include "suggest.h"
+
 #include "host_tools/lab/session.h"
+#include "sim/physics/effects/catalogue.h"
 
 namespace traction::cli {
 
@@ -35,6 +38,19 @@ std::vector<Option> lab_rows(lab::Request &request) {
              .kind = Kind::log},
             {.name = "--from", .into = &request.from_s, .help = "use the log from this time [s]", .value = "S"},
             {.name = "--to", .into = &request.to_s, .help = "use the log up to this time [s]", .value = "S"}};
+}
+
+std::vector<std::string> effect_names() {
+    std::vector<std::string> names;
+    for (const sim::Effect &effect : sim::catalogue()) names.emplace_back(effect.name);
+    return names;
+}
+
+void need_effect(const std::string &option, const std::string &text, const char *end) {
+    const std::string name = text.substr(0, text.find_first_of(end));
+    if (sim::find_effect(name) == nullptr)
+        throw UsageError(option + ": there is no effect '" + name + "'" + did_you_mean(name, effect_names()) +
+                         " `traction effects` lists all");
 }
 
 std::vector<Option> rows(std::vector<Option> first, std::vector<Option> then) {

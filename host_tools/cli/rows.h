@@ -17,6 +17,12 @@ Option report_row(std::string &report);
 // LOG, --model, --map, --repeat, --from, --to: what the lab's verbs read.
 std::vector<Option> lab_rows(lab::Request &request);
 
+// Every effect of the catalogue.
+std::vector<std::string> effect_names();
+
+// Throws UsageError when the part of `text` before `end` is no effect, with the one most likely meant.
+void need_effect(const std::string &option, const std::string &text, const char *end);
+
 // The rows of `first`, then those of `then`.
 std::vector<Option> rows(std::vector<Option> first, std::vector<Option> then);
 

@@ -23,6 +23,7 @@ struct AddRequest {
 };
 
 void add_effect(const AddRequest &request, Outcome &outcome) {
+    if (request.from_file.empty()) need_effect("EFFECT", request.effect, ":");
     const lab::Session session = lab::open_session(request.input);
     if (std::filesystem::exists(request.out) && std::filesystem::equivalent(request.out, request.input.model))
         throw lab::ModelError(request.out, 0, "--out", "is the model that is read", "give another name: the old model stays as it is");

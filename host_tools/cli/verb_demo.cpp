@@ -1,6 +1,7 @@
 // verb_demo.cpp - traction demo: hides an effect by seed, simulates, lets the lab find it, opens the seal.
 //
 // The lab gets what any user's lab gets: the log file and the baseline model file. The seal is written first and read last, here.
+#include "data_files.h"
 #include "trial.h"
 #include "verbs.h"
 
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -30,12 +30,6 @@ struct DemoRequest {
     std::uint64_t seed = 1;
     std::string folder = "out/demo";
 };
-
-// Where scenarios/ and models/ lie: the entry script says so; without it the current folder must be the project's.
-fs::path project_root() {
-    const char *root = std::getenv("TRACTION_ROOT");
-    return root != nullptr && *root != '\0' ? fs::path(root) : fs::current_path();
-}
 
 void seal(const std::vector<sim::ActiveEffect> &hidden, const std::string &scenario, std::uint64_t seed, const fs::path &path) {
     report::write_text(sim::seal_text(hidden, scenario, seed), path.string());
@@ -93,7 +87,7 @@ void measured_run(const fs::path &root, Outcome &outcome) {
 }
 
 void demo(const DemoRequest &request, Outcome &outcome) {
-    const fs::path root = project_root(), folder = request.folder;
+    const fs::path root = need_data_root(), folder = request.folder;
     fs::create_directories(folder);
     const std::string log_file = (folder / "run.csv").string(), model_file = (root / "models/rover_sand.toml").string();
     const std::string better_file = (folder / "rover_better.toml").string(), report_file = (folder / "report.html").string();

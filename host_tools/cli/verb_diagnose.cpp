@@ -27,7 +27,7 @@ struct DiagnoseRequest {
 void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     lab::DiagnoseOptions options;
-    Progress progress("diagnose", 400);
+    Progress progress("diagnose", 500);
     options.progress = [&](int, int) { progress.step(); };
     lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, options);
     std::fputs(lab::diagnosis_text(diagnosis).c_str(), stdout);
@@ -42,6 +42,7 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
         outcome.json["next"] = lab::next_json(next);
     }
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
+    if (diagnosis.kind == "nothing") outcome.exit_code = exit_negative;
     if (!request.apply) return;
     if (diagnosis.accepted.empty()) {
         std::printf("nothing to add: no model is written\n");

@@ -1,4 +1,5 @@
 // traction effects [NAME]: the catalogue of physical effects: what each is, its law, its source, and what reveals it.
+#include "rows.h"
 #include "verbs.h"
 
 #include "sim/physics/effects/catalogue.h"
@@ -10,11 +11,6 @@
 namespace traction::cli {
 
 namespace {
-
-// An effect name that is not in the catalogue.
-struct UnknownEffect : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 const char *place_of(sim::ActsOn where) {
     switch (where) {
@@ -34,30 +30,6 @@ const char *place_of(sim::ActsOn where) {
         return "sensor";
     }
     return "";
-}
-
-std::size_t distance(std::string_view a, std::string_view b) { // Levenshtein
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t corner = std::exchange(row[0], i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = corner + (a[i - 1] != b[j - 1]);
-            corner = row[j];
-            row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-        }
-    }
-    return row[b.size()];
-}
-
-const sim::Effect &effect_or_mend(const std::string &name) {
-    if (const sim::Effect *effect = sim::find_effect(name)) return *effect;
-    const auto all = sim::catalogue();
-    const auto nearest = std::min_element(all.begin(), all.end(), [&](const sim::Effect &a, const sim::Effect &b) {
-        return distance(name, a.name) < distance(name, b.name);
-    });
-    throw UnknownEffect("there is no effect '" + name + "'; did you mean '" + std::string(nearest->name) +
-                        "'? `traction effects` lists all");
 }
 
 nlohmann::json effect_json(const sim::Effect &effect) {
@@ -129,7 +101,8 @@ void explain(const sim::Effect &effect) {
 void effects(const std::string &name, Outcome &outcome) {
     nlohmann::json list = nlohmann::json::array();
     if (!name.empty()) {
-        const sim::Effect &effect = effect_or_mend(name);
+        need_effect("NAME", name, "");
+        const sim::Effect &effect = *sim::find_effect(name);
         explain(effect);
         list.push_back(effect_json(effect));
     } else {

@@ -1,11 +1,10 @@
 // verb_game.cpp - traction game: guess the hidden effect of a sealed log, watch the error, open the seal, be scored.
+#include "data_files.h"
 #include "verbs.h"
 
 #include "host_tools/game/game.h"
 
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 
 namespace traction::cli {
@@ -21,9 +20,8 @@ struct GameRequest {
 
 game::Turn play(const GameRequest &request) {
     if (request.starts) {
-        const char *root = std::getenv("TRACTION_ROOT");
         game::NewGame fresh = request.fresh;
-        fresh.root = root != nullptr && *root != '\0' ? std::string(root) : std::filesystem::current_path().string();
+        fresh.root = need_data_root().string();
         fresh.folder = request.folder;
         return game::start(fresh);
     }

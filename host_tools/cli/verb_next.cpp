@@ -25,6 +25,7 @@ struct NextRequest {
 
 void next(const NextRequest &request, Outcome &outcome) {
     if (request.input.log.empty() && request.effects.empty()) throw UsageError("give --log LOG, or --effects NAME..., or both");
+    for (const std::string &name : request.effects) need_effect("--effects", name, ":");
     std::optional<lab::Session> session;
     if (!request.input.log.empty()) session = lab::open_session(request.input);
     lab::NextExperiment answer;

@@ -41,7 +41,7 @@ void plot(const PlotOptions &options, Outcome &outcome) {
 
 std::string check_ending(const std::string &path) {
     const std::string ending = std::filesystem::path(path).extension().string();
-    return ending == ".svg" || ending == ".png" ? "" : "must end in .svg or .png";
+    return path == "-" || ending == ".svg" || ending == ".png" ? "" : "must end in .svg or .png, or be - for SVG on standard output";
 }
 
 } // namespace

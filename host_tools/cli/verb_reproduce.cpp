@@ -1,4 +1,5 @@
 // verb_reproduce.cpp - traction reproduce: makes the paper's experiments and says where we differ.
+#include "data_files.h"
 #include "progress.h"
 #include "verbs.h"
 
@@ -19,6 +20,8 @@ struct Arguments {
 };
 
 void run(Arguments arguments, Outcome &outcome) {
+    if (arguments.settings.scenarios.empty()) arguments.settings.scenarios = (need_data_root() / "scenarios").string();
+    if (arguments.data.empty()) arguments.data = (need_data_root() / "../shared/data").string();
     const std::filesystem::path bench = std::filesystem::path(arguments.data) / "cmu_single_wheel/cmu_wheel_smooth_steady_state.csv";
     if (std::filesystem::exists(bench)) arguments.settings.bench_data = bench.string();
     Progress progress("reproduce", 9 + 6L * arguments.settings.seeds); // drives: 2 calibrations, 2 + 1 + 1 + 3, and table III
@@ -45,6 +48,7 @@ void run(Arguments arguments, Outcome &outcome) {
 
 Verb verb_reproduce() {
     const auto arguments = std::make_shared<Arguments>();
+    arguments->settings.scenarios.clear();
     return {
         .name = "reproduce",
         .summary = "make the paper's experiments again, figure by figure, with its numbers beside ours",
@@ -52,7 +56,7 @@ Verb verb_reproduce() {
             {{.name = "--out", .into = &arguments->out, .help = "report with every figure, HTML", .value = "FILE", .kind = Kind::output},
              {.name = "--scenarios",
               .into = &arguments->settings.scenarios,
-              .help = "folder of the scenario gallery",
+              .help = "folder of the scenario gallery; ours when left out",
               .value = "FOLDER",
               .kind = Kind::folder},
              {.name = "--data",

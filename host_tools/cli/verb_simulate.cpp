@@ -1,10 +1,12 @@
 // verb_simulate.cpp - traction simulate SCENARIO: drives the rover through a scenario and writes the log.
 #include "progress.h"
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
+#include "host_tools/rover/rover.h"
 #include "host_tools/simulate/batch.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
@@ -13,6 +15,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 namespace traction::cli {
@@ -20,7 +23,7 @@ namespace traction::cli {
 namespace {
 
 struct Arguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware, model;
+    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     std::vector<std::string> effects;
@@ -49,6 +52,18 @@ void keep(const Arguments &arguments, const sim::Scenario &scenario, const Simul
     if (!arguments.seal.empty()) report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed), name(arguments.seal));
 }
 
+// "stall, low battery": fault_t, firmware/core/signals.h.
+std::string fault_names(std::uint32_t faults) {
+    static const char *const name[] = {"emergency stop", "command timeout", "encoder lost",     "current lost", "accelerometer lost",
+                                       "radar lost",     "battery lost",    "low battery",      "over-current", "stall",
+                                       "missed ticks",   "speeds disagree", "over-temperature", "gyro lost",    "absurd sensor"};
+    std::string text;
+    for (std::size_t bit = 0; bit < 32; ++bit)
+        if ((faults >> bit & 1U) != 0)
+            text += (text.empty() ? "" : ", ") + (bit < std::size(name) ? std::string(name[bit]) : "fault " + std::to_string(bit));
+    return text;
+}
+
 nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
     char hash[20];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(result.trace_hash));
@@ -56,6 +71,7 @@ nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
             {"ticks", result.ticks},
             {"simulated_s", static_cast<double>(result.ticks) / 100},
             {"faults", result.faults},
+            {"fault_names", fault_names(result.faults)},
             {"trace_hash", hash}};
 }
 
@@ -67,16 +83,36 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     std::vector<std::string> notes;
     const sim::Scenario machine =
         sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
-    scenario.plant.rover = machine.plant.rover;
+    sim::RoverDescription really = scenario.rover; // the firmware goes on believing the scenario's rover
+    for (std::size_t i = 0; i < really.values.size(); i++)
+        if (machine.rover.values[i].given) really.values[i] = machine.rover.values[i];
+    sim::put_in_plant(really, scenario.plant.rover);
+    scenario.plant.rover.battery_voltage_V = machine.plant.rover.battery_voltage_V;
     scenario.plant.ground.soil = machine.plant.ground.soil;
     scenario.plant.ground.grip_noise = machine.plant.ground.grip_noise;
     scenario.effects = machine.effects;
     for (const std::string &note : notes) std::printf("note: %s\n", note.c_str());
 }
 
+// A run that ended with a latched fault is told, and is a negative answer: the rover stood still at its end.
+void tell_faults(Outcome &outcome) {
+    for (const nlohmann::json &run : outcome.json["runs"]) {
+        const std::string names = fault_names(run["faults"].get<std::uint32_t>());
+        if (names.empty()) continue;
+        std::printf("seed %s ended with a latched fault: %s (docs/firmware.md, faults)\n", run["seed"].dump().c_str(), names.c_str());
+        outcome.exit_code = exit_negative;
+    }
+}
+
 void run(const Arguments &arguments, Outcome &outcome) {
+    for (const std::string &text : arguments.effects) need_effect("--effect", text, ":");
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
+    if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
     if (!arguments.model.empty()) drive_as(arguments.model, scenario);
+    if (!arguments.believes.empty()) scenario.firmware.believes = sim::read_rover_file(arguments.believes);
+    if (!arguments.frames.empty() && !parameter_lines(firmware_parameters(believed(scenario))).empty())
+        throw UsageError(
+            "--frames: replays the reference rover's firmware; for another rover keep the log (--out), which `traction replay` reads");
     SimulateOptions options;
     options.truth = !arguments.truth.empty();
     options.realtime = arguments.realtime;
@@ -108,6 +144,9 @@ void run(const Arguments &arguments, Outcome &outcome) {
     std::printf("%s: %ld run%s, %.1f s simulated in %.2f s (%.0f x real time)%s%s\n", scenario.name.c_str(), count, count == 1 ? "" : "s",
                 simulated_s, spent_s, simulated_s / spent_s, arguments.out.empty() ? "" : ", log in ", arguments.out.c_str());
     outcome.json["spent_s"] = spent_s;
+    if (arguments.out.empty() && arguments.truth.empty() && arguments.frames.empty())
+        std::printf("the log was not kept; --out LOG keeps it\n");
+    tell_faults(outcome);
 }
 
 } // namespace
@@ -139,6 +178,16 @@ Verb verb_simulate() {
                   .help = "rover, ground and effects of a lab's model (TOML) instead of the scenario's",
                   .value = "FILE",
                   .kind = Kind::model},
+                 {.name = "--rover",
+                  .into = &arguments->rover,
+                  .help = "the rover that drives (rovers/*.toml) instead of the scenario's",
+                  .value = "FILE",
+                  .kind = Kind::input},
+                 {.name = "--believes",
+                  .into = &arguments->believes,
+                  .help = "the rover that the firmware takes itself for: another one is a firmware that is wrong about its rover",
+                  .value = "FILE",
+                  .kind = Kind::input},
                  {.name = "--hide",
                   .into = &arguments->hide,
                   .help = "hide an effect drawn by this seed",

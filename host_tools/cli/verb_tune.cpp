@@ -1,10 +1,10 @@
 // verb_tune.cpp - traction tune: gains of the wheel-speed loop from an experiment with torque and time limits, on the simulated rover.
 #include "verbs.h"
 
-#include "firmware/core/rover_config.h"
 #include "hal/sim/sim_rover.h"
 #include "host_tools/calibrate/calibrate.h"
 #include "host_tools/calibrate/tune.h"
+#include "host_tools/rover/rover.h"
 #include "sim/scenario/scenario.h"
 
 #include <cstdio>
@@ -27,7 +27,7 @@ void run_tune(const TuneOptions &options, Outcome &outcome) {
     scenario.wheel_blocks.clear();
     scenario.emergency_stops.clear();
     hal::SimRover rover(scenario, hal::effects_of(scenario), scenario.seed);
-    const TuneResult r = tune(rover.hal(), rover_config_default(), options.limits);
+    const TuneResult r = tune(rover.hal(), firmware_of(scenario), options.limits);
     std::printf("largest torque %.2f N m, %.1f s, motors stopped\n", r.largest_torque_Nm, r.used_s);
     for (std::size_t i = 0; i < r.pole_1_s.size(); i++)
         std::printf("wheel %zu: pole %.2f 1/s, %.0f rad/s^2 per duty at %.2f V\n", i, r.pole_1_s[i], r.gain_rad_s2[i], r.battery_V);

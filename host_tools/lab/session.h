@@ -18,7 +18,7 @@ struct Session {
     Dataset data;
 };
 
-// Throws ModelError, log::LogError, std::ios_base::failure.
+// Throws ModelError, log::LogError.
 Session open_session(const Request &request);
 
 } // namespace traction::lab

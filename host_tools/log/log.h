@@ -45,9 +45,8 @@ struct FileError : LogError {
 // Reads a CSV log. With map_path, a foreign CSV is read through that TOML map. Throws LogError.
 Log read_csv(const std::string &path, const std::string &map_path = "");
 
-// Writes a log as CSV: to a temporary beside `path`, then renamed, so that nothing half-written is left. Times of all signals
-// are merged into rows; an empty cell means "no sample then". Numbers are the shortest text that reads back to the same double.
-// Throws LogError.
+// Writes a log as CSV (write_file.h: whole or not at all). Times of all signals are merged into rows; an empty cell means "no sample then".
+// Numbers are the shortest text that reads back to the same double. Throws LogError.
 void write_csv(const Log &log, const std::string &path);
 
 } // namespace traction::log

@@ -1,55 +1,16 @@
 #include "log.h"
+#include "write_file.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <set>
-#include <unistd.h>
-#include <utility>
 
 namespace traction::log {
 
 namespace {
-
-// A file that appears under its name only when it is whole.
-class WholeFile {
-  public:
-    explicit WholeFile(const std::string &path) : path_(path), temporary_(path + ".part"), file_(std::fopen(temporary_.c_str(), "wb")) {
-        if (file_ == nullptr) fail("be written");
-    }
-    ~WholeFile() {
-        if (file_ != nullptr) std::fclose(file_);
-        if (!kept_) ::unlink(temporary_.c_str());
-    }
-    WholeFile(const WholeFile &) = delete;
-    WholeFile &operator=(const WholeFile &) = delete;
-
-    void write(const std::string &text) {
-        if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("be written");
-    }
-    void keep() {
-        std::FILE *const file = std::exchange(file_, nullptr);
-        if (std::fclose(file) != 0) fail("be written");
-        if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("be put in place");
-        kept_ = true;
-    }
-
-  private:
-    [[noreturn]] void fail(const char *what) {
-        const std::string why = std::strerror(errno);
-        if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
-        ::unlink(temporary_.c_str());
-        throw FileError(path_, 0, 0, std::string("cannot ") + what + ": " + why,
-                        "check that the folder exists, may be written to and has room");
-    }
-    std::string path_, temporary_;
-    std::FILE *file_;
-    bool kept_ = false;
-};
 
 void append_number(std::string &text, double value) {
     char buffer[32];

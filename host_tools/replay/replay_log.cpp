@@ -4,6 +4,7 @@
 #include "hal/replay/frames.h"
 #include "hal/replay/replay_hal.h"
 #include "host_tools/loop/loop.h"
+#include "host_tools/rover/rover.h"
 
 #include <cmath>
 
@@ -122,7 +123,15 @@ std::string frames_text(const std::vector<LoggedTick> &ticks) {
 
 control_config_t logged_config(const log::Log &log) {
     const auto firmware = log.header.find("firmware");
-    return firmware != log.header.end() && firmware->second == "paper" ? rover_config_paper() : rover_config_default();
+    control_config_t config;
+    try {
+        const parameters_t parameters = parameters_of_lines(log.header);
+        control_config_build(&parameters.rover, &config);
+    } catch (const std::invalid_argument &error) {
+        throw log::LogError(log.source, 0, 0, error.what(), "replay it with the firmware that drove it");
+    }
+    if (firmware != log.header.end() && firmware->second == "paper") control_config_make_paper(&config);
+    return config;
 }
 
 namespace {

@@ -24,7 +24,8 @@ std::vector<LoggedTick> logged_ticks(const log::Log &log);
 // The ticks as text (hal/replay/frames.h), for `tractiond --hal replay` on host and target alike.
 std::string frames_text(const std::vector<LoggedTick> &ticks);
 
-// The configuration that made the log: rover_config_default() or, where the header says `firmware: paper`, rover_config_paper().
+// The configuration that made the log, from its header: the reference rover's, with the lines `firmware.<key>` over it, the paper's where it
+// says `firmware: paper`.
 control_config_t logged_config(const log::Log &log);
 
 struct Comparison {

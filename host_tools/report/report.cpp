@@ -2,12 +2,10 @@
 
 #include "page.h"
 
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
+#include "host_tools/log/write_file.h"
+
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 
 namespace traction::report {
 
@@ -46,19 +44,6 @@ std::string to_html(const nlohmann::json &result) {
 
 void write_html(const nlohmann::json &result, const std::string &path) { write_text(to_html(result), path); }
 
-void write_text(const std::string &text, const std::string &path) {
-    const std::string part = path + ".part";
-    errno = 0;
-    std::ofstream file(part, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) {
-        const int cause = errno != 0 ? errno : EIO;
-        std::error_code ignored;
-        std::filesystem::remove(part, ignored);
-        throw std::filesystem::filesystem_error("cannot write", path, std::error_code(cause, std::generic_category()));
-    }
-    std::filesystem::rename(part, path);
-}
+void write_text(const std::string &text, const std::string &path) { log::write_file(text, path); }
 
 } // namespace traction::report

@@ -26,11 +26,10 @@ struct ReportError : std::runtime_error {
 // The page as text. Throws ReportError when the schema is unknown.
 std::string to_html(const nlohmann::json &result);
 
-// Writes the page to `path`: to a temporary beside it, then renamed. Throws ReportError, or std::filesystem::filesystem_error when
-// the file cannot be written.
+// Writes the page to `path`, whole or not at all (host_tools/log/write_file.h). Throws ReportError, log::FileError.
 void write_html(const nlohmann::json &result, const std::string &path);
 
-// Writes any text the same way (SVG, for one).
+// Writes any text the same way (SVG, for one). Throws log::FileError.
 void write_text(const std::string &text, const std::string &path);
 
 } // namespace traction::report

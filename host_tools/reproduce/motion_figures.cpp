@@ -16,7 +16,7 @@ namespace {
 SimulationResult run(const ReproduceSettings &settings, const std::string &name, std::uint64_t seed,
                      const std::string &firmware = "default", double doppler_scale = 0) {
     sim::Scenario scenario = sim::read_scenario(settings.scenarios + '/' + name + ".toml");
-    scenario.firmware = {.config = firmware, .doppler_scale = doppler_scale};
+    scenario.firmware = {.config = firmware, .doppler_scale = doppler_scale, .believes = {}};
     SimulateOptions options;
     options.seed = seed;
     options.truth = true;

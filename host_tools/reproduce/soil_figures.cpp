@@ -90,7 +90,7 @@ struct Identified {
 
 Identified identify(const ReproduceSettings &settings, const Ground &ground, bool paper, double scale) {
     sim::Scenario scenario = sim::read_scenario(settings.scenarios + "/sweep_" + ground.name + ".toml");
-    scenario.firmware = {.config = paper ? "paper" : "default", .doppler_scale = paper ? scale : 0};
+    scenario.firmware = {.config = paper ? "paper" : "default", .doppler_scale = paper ? scale : 0, .believes = {}};
     Identified all;
     simulate_batch(scenario, {}, 1, static_cast<std::uint64_t>(settings.seeds), settings.jobs,
                    [&](std::uint64_t seed, SimulationResult &&result) {

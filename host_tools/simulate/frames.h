@@ -4,8 +4,8 @@
 #pragma once
 
 #include "firmware/core/signals.h"
+#include "host_tools/log/write_file.h"
 
-#include <cstdio>
 #include <string>
 
 namespace traction {
@@ -14,16 +14,12 @@ class FrameWriter {
   public:
     // config: "default" or "paper", the firmware configuration of the run. Throws log::FileError.
     FrameWriter(const std::string &path, const std::string &config);
-    ~FrameWriter(); // unless kept, leaves nothing
-    FrameWriter(const FrameWriter &) = delete;
-    FrameWriter &operator=(const FrameWriter &) = delete;
 
     void add(const sensor_frame_t &frame, const command_t &command);
     void keep(); // gives the file its name
 
   private:
-    std::string path_;
-    std::FILE *file_;
+    log::WholeFile file_; // unless kept, leaves nothing
 };
 
 } // namespace traction

@@ -1,6 +1,7 @@
 #include "header.h"
 
 #include "hal/sim/counts.h"
+#include "host_tools/rover/rover.h"
 
 #include <cstdio>
 #include <string>
@@ -27,8 +28,11 @@ std::string text_hash(const std::string &text) {
 } // namespace
 
 // The noise stated is the scenario's sensors', not the run's: an effect that is hidden in the run must not show here.
-void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world, std::uint64_t seed, log::Log &log) {
+void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &log) {
     const sim::SensorConfig &sensors = scenario.sensors;
+    const sim::RoverDescription &rover = believed(scenario); // what its user takes it for
+    const hal::CountScale scale = hal::count_scale(rover);
+    const double rad_per_count = 6.283185307179586 / rover.encoder_counts_per_turn();
     log.header["scenario"] = scenario.name;
     log.header["seed"] = std::to_string(seed);
     log.header["config_hash"] = text_hash(scenario.text);
@@ -37,19 +41,19 @@ void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world,
     for (std::size_t i = 0; i < sim::wheel_count; i++) {
         const std::string wheel = "wheel" + std::to_string(i) + '.';
         log.header["noise." + wheel + "current_A"] = number(sensors.current[i].noise);
-        log.header["quantum." + wheel + "current_A"] = number(world.scale.current_A);
+        log.header["quantum." + wheel + "current_A"] = number(scale.current_A);
         log.header["quantum." + wheel + "encoder_count"] = "1";
         // rounding of one pulse at both ends of a 10 ms difference: q/(T sqrt 6)
-        log.header["noise." + wheel + "speed_rad_s"] = number(sim::encoder_rad_per_count / 0.01 * 0.40824829046386302);
-        log.header["quantum." + wheel + "speed_rad_s"] = number(sim::encoder_rad_per_count / 0.01);
+        log.header["noise." + wheel + "speed_rad_s"] = number(rad_per_count / 0.01 * 0.40824829046386302);
+        log.header["quantum." + wheel + "speed_rad_s"] = number(rad_per_count / 0.01);
     }
-    log.header["encoder.rad_per_count"] = number(sim::encoder_rad_per_count);
+    log.header["encoder.rad_per_count"] = number(rad_per_count);
     log.header["noise.battery.voltage_V"] = number(sensors.battery.noise);
-    log.header["quantum.battery.voltage_V"] = number(world.scale.battery_V);
+    log.header["quantum.battery.voltage_V"] = number(scale.battery_V);
     log.header["noise.imu.accel_x_m_s2"] = number(sensors.accel.noise);
-    log.header["quantum.imu.accel_x_m_s2"] = number(world.scale.accel_m_s2);
+    log.header["quantum.imu.accel_x_m_s2"] = number(scale.accel_m_s2);
     log.header["noise.imu.gyro_z_rad_s"] = number(sensors.gyro.noise);
-    log.header["quantum.imu.gyro_z_rad_s"] = number(world.scale.gyro_rad_s);
+    log.header["quantum.imu.gyro_z_rad_s"] = number(scale.gyro_rad_s);
     log.header["noise.camera.x_m"] = log.header["noise.camera.y_m"] = number(sensors.camera.noise_m);
     log.header["noise.camera.yaw_rad"] = number(sensors.camera.noise_rad);
     // the small sensors average over a tick (sim/sensors/analog.h)
@@ -60,8 +64,12 @@ void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world,
     log.header["noise.radar.speed_m_s"] = paper ? "0.02" : "0.008";
     log.header["noise.radar.speed_m_s.relative"] = paper ? "0.1" : "0.015";
     log.header["window.radar.speed_m_s"] = "0.5";
-    log.header["radar.model"] = std::string(sensors.radar.model);
-    log.header["radar.sample_rate_Hz"] = "512";
+    log.header["radar.model"] = rover.radar;
+    log.header["radar.sample_rate_Hz"] = number(rover.at("radar", "rate_Hz"));
+    parameters_t parameters = firmware_parameters(rover);
+    if (scenario.firmware.doppler_scale > 0)
+        parameters.rover.value[ROVER_doppler_scale] = static_cast<float>(scenario.firmware.doppler_scale);
+    for (const auto &[key, value] : parameter_lines(parameters)) log.header[key] = value; // none for the reference rover
 }
 
 } // namespace traction

@@ -3,7 +3,6 @@
 // What a user of the rover would know, and nothing of what is hidden in the run.
 #pragma once
 
-#include "hal/sim/sim_hal.h"
 #include "host_tools/log/log.h"
 #include "sim/scenario/scenario.h"
 
@@ -11,6 +10,6 @@
 
 namespace traction {
 
-void write_header(const sim::Scenario &scenario, const hal::SimHalConfig &world, std::uint64_t seed, log::Log &log);
+void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &log);
 
 } // namespace traction

@@ -4,11 +4,11 @@
 #include "header.h"
 #include "recorder.h"
 
-#include "firmware/core/rover_config.h"
 #include "hal/pace/pace_hal.h"
 #include "hal/sim/plan_operator.h"
 #include "hal/sim/sim_rover.h"
 #include "host_tools/loop/loop.h"
+#include "host_tools/rover/rover.h"
 
 #include <cstring>
 #include <memory>
@@ -16,13 +16,6 @@
 namespace traction {
 
 namespace {
-
-control_config_t firmware_config(const sim::FirmwareChoice &choice, const std::optional<std::string> &instead) {
-    const bool paper = instead.value_or(choice.config) == "paper";
-    control_config_t config = paper ? rover_config_paper() : rover_config_default();
-    if (choice.doppler_scale > 0) config.doppler.scale = static_cast<float>(choice.doppler_scale);
-    return config;
-}
 
 // Camera faults: the camera is no device of the rover, so no HAL carries it.
 class CameraFaults {
@@ -142,13 +135,13 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     pace_hal_t pace{};
     const hal_t world = rover.hal();
     const daemon_result_t run =
-        run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_config(scenario.firmware, options.firmware), session);
+        run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_of(scenario, options.firmware.value_or("")), session);
     result.ended_by = run.ended_by;
     result.ticks = run.ticks;
     result.faults = run.faults;
     session.take(result);
 
-    write_header(scenario, config, seed, result.log);
+    write_header(scenario, seed, result.log);
     if (options.truth) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
     return result;
 }

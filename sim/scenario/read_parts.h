@@ -20,9 +20,9 @@ std::vector<DriveSegment> read_drive(const toml::array &list, const std::string 
 ActiveEffect read_effect(const toml::table &table, const std::string &file, const std::string &path); // [[effect]]
 HiddenDraw read_hidden(const toml::table &table, const std::string &file);                            // [hidden]
 void read_sensors(const toml::table &table, const std::string &file, SensorConfig &config);           // [sensors]
-void read_radar(const toml::table &table, const std::string &file, RadarConfig &config);              // [radar]
+void read_radar(const toml::table &table, const std::string &file, Scenario &scenario);               // [radar]
 void read_ground(const toml::table &table, const std::string &file, Scenario &scenario);              // [ground]
-void read_rover(const toml::table &table, const std::string &file, Scenario &scenario);               // [rover]
+void read_rover(const toml::node &node, const std::string &file, Scenario &scenario);                 // rover = "FILE", [rover]
 void read_faults(const toml::array &list, const std::string &file, Scenario &scenario);               // [[fault]]
 
 } // namespace traction::sim

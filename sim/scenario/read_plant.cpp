@@ -63,29 +63,4 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
     keys.finish();
 }
 
-void read_rover(const toml::table &table, const std::string &file, Scenario &scenario) {
-    Keys keys(table, file, "rover");
-    RoverParameters &rover = scenario.plant.rover;
-    const auto read = [&keys](std::string_view key, double &value, Range range) { value = keys.number(key, value, range); };
-    read("mass_kg", rover.mass_kg, {0.5, 100});
-    read("half_wheelbase_m", rover.half_wheelbase_m, {0.02, 1});
-    read("half_track_m", rover.half_track_m, {0.02, 1});
-    read("wheel_radius_m", rover.wheel_radius_m, {0.02, 0.3});
-    read("wheel_mass_kg", rover.wheel_mass_kg, {0.01, 10});
-    read("centre_height_m", rover.centre_height_m, {0, 0.5});
-    read("relaxation_length_m", rover.relaxation_length_m, {0.0005, 0.3});
-    read("torque_constant_Nm_A", rover.drive.torque_constant_Nm_A, {0.01, 10});
-    read("resistance_ohm", rover.drive.resistance_ohm, {0.05, 100});
-    read("inertia_kg_m2", rover.drive.inertia_kg_m2, {1e-5, 1});
-    read("viscous_Nms", rover.drive.viscous_Nms, {0, 1});
-    read("coulomb_Nm", rover.drive.coulomb_Nm, {0, 5});
-    read("battery_voltage_V", rover.battery_voltage_V, {1, 60});
-    read("battery_resistance_ohm", rover.battery_resistance_ohm, {0, 5});
-    read("x_m", scenario.plant.x_m, {-1000, 1000});
-    read("y_m", scenario.plant.y_m, {-1000, 1000});
-    read("yaw_rad", scenario.plant.yaw_rad, {-10, 10});
-    read("speed_m_s", scenario.plant.speed_m_s, {-2, 2});
-    keys.finish();
-}
-
 } // namespace traction::sim

@@ -49,12 +49,14 @@ void read_sensors(const toml::table &table, const std::string &file, SensorConfi
     keys.finish();
 }
 
-void read_radar(const toml::table &table, const std::string &file, RadarConfig &config) {
+void read_radar(const toml::table &table, const std::string &file, Scenario &scenario) {
     Keys keys(table, file, "radar");
+    RadarConfig &config = scenario.sensors.radar;
     static const auto models = radar_models();
     std::array<std::string_view, models.size()> names;
     std::transform(models.begin(), models.end(), names.begin(), [](const RadarModel &model) { return model.name; });
     config.model = names[keys.word("model", config.model, names)];
+    scenario.rover.radar = config.model; // which radar is mounted is known to the firmware
     config.mounting_error_deg = keys.number("mounting_error_deg", config.mounting_error_deg, {-10, 10});
     config.height_m = keys.number("height_m", config.height_m, {0.1, 1});
     config.ground_exponent = keys.number("ground_exponent", config.ground_exponent, {0, 2});

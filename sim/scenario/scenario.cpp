@@ -33,6 +33,8 @@ void read_firmware(const toml::table &table, const std::string &file, FirmwareCh
     Keys keys(table, file, "firmware");
     choice.config = configs[keys.word("config", choice.config, configs)];
     choice.doppler_scale = keys.number("doppler_scale", 0, {0, 3});
+    const std::string believes = keys.text("believes", "");
+    if (!believes.empty()) choice.believes = read_rover_file(find_rover_file(believes, file));
     keys.finish();
 }
 
@@ -42,9 +44,9 @@ void read_all(Keys &top, const std::string &file, Scenario &scenario) {
     scenario.duration_s = top.need_number("duration_s", {0.01, 36000});
     scenario.seed = static_cast<std::uint64_t>(top.integer("seed", 1, 0, INT64_MAX));
     if (const toml::table *table = top.table("ground")) read_ground(*table, file, scenario);
-    if (const toml::table *table = top.table("rover")) read_rover(*table, file, scenario);
+    if (const toml::node *node = top.node("rover")) read_rover(*node, file, scenario);
     if (const toml::table *table = top.table("sensors")) read_sensors(*table, file, scenario.sensors);
-    if (const toml::table *table = top.table("radar")) read_radar(*table, file, scenario.sensors.radar);
+    if (const toml::table *table = top.table("radar")) read_radar(*table, file, scenario);
     if (const toml::table *table = top.table("firmware")) read_firmware(*table, file, scenario.firmware);
     if (const toml::table *table = top.table("hidden")) scenario.hidden = read_hidden(*table, file);
     if (const toml::array *list = top.tables("drive")) scenario.drive = read_drive(*list, file);

@@ -6,6 +6,7 @@
 
 #include "drive_plan.h"
 #include "hidden.h"
+#include "rover.h"
 #include "scenario_error.h"
 
 #include "sim/plant/plant.h"
@@ -26,8 +27,9 @@ struct WheelBlockSpan {
 };
 
 struct FirmwareChoice {
-    std::string config = "default"; // or "paper"
-    double doppler_scale = 0;       // calibration of the radar; 0: as the configuration has it
+    std::string config = "default";           // or "paper"
+    double doppler_scale = 0;                 // calibration of the radar; 0: as the configuration has it
+    std::optional<RoverDescription> believes; // the rover that the firmware takes itself for; none: the one it is
 };
 
 struct Scenario {
@@ -37,6 +39,7 @@ struct Scenario {
     std::string text; // the file, for its hash
     double duration_s = 0;
     std::uint64_t seed = 1;
+    RoverDescription rover;                   // what it is: plant and sensors below are made of it, and the firmware
     PlantConfig plant;                        // its effects are filled at run time
     std::optional<std::uint64_t> ground_seed; // of the grip's field; none: each run seed has its own field
     SensorConfig sensors = default_sensors();
@@ -48,6 +51,10 @@ struct Scenario {
     std::vector<ActiveEffect> effects;
     std::optional<HiddenDraw> hidden;
 };
+
+// Another rover drives: plant and sensors are made of it again. What [rover], [sensors] and [radar] say of the old one is gone; where it
+// starts stays.
+void set_rover(Scenario &scenario, RoverDescription rover);
 
 // Throws ScenarioError; std::filesystem::filesystem_error when the file cannot be read.
 Scenario read_scenario(const std::string &path);

@@ -1,6 +1,6 @@
-// encoder.h - incremental encoder on the motor shaft: 120 pulses per motor turn, gear 50:1 (docs/sources.md section 3), cumulative count.
+// encoder.h - incremental encoder on the motor shaft, cumulative count. The reference: 120 pulses per motor turn, gear 50:1.
 //
-// Error: rounding to whole pulses (1.05 mrad of the wheel) and, when `missed` is set, that share of the pulses lost.
+// Error: rounding to whole pulses (1.05 mrad of the wheel with the reference) and, when `missed` is set, that share of the pulses lost.
 #pragma once
 
 #include "sim/physics/effects/laws.h"
@@ -15,16 +15,17 @@ inline constexpr double encoder_rad_per_count = 6.283185307179586 / encoder_coun
 
 class Encoder {
   public:
-    explicit Encoder(double missed = 0) : keep_(law::encoder_missed(missed)) {}
+    explicit Encoder(double missed = 0, double counts_per_turn = encoder_counts_per_turn)
+        : keep_(law::encoder_missed(missed)), rad_per_count_(6.283185307179586 / counts_per_turn) {}
 
     // motor_angle_rad: motor side, divided by the gear ratio.
     std::int32_t count(double motor_angle_rad) const {
-        const double pulses = std::floor(motor_angle_rad * keep_ / encoder_rad_per_count);
+        const double pulses = std::floor(motor_angle_rad * keep_ / rad_per_count_);
         return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(pulses)));
     }
 
   private:
-    double keep_;
+    double keep_, rad_per_count_;
 };
 
 } // namespace traction::sim

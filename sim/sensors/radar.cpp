@@ -29,7 +29,7 @@ RadarBeam beam_of(const RadarConfig &config) {
     return {.frequency_Hz = model.frequency_Hz,
             .vertical_deg = model.vertical_deg,
             .horizontal_deg = model.horizontal_deg,
-            .depression_deg = 20 + config.mounting_error_deg, // theta_d, docs/sources.md section 4
+            .depression_deg = config.depression_deg + config.mounting_error_deg,
             .height_m = config.height_m,
             .ground_exponent = config.ground_exponent};
 }
@@ -98,7 +98,8 @@ std::uint16_t Radar::sample(double path_m) {
     if (!settled_) filter_.settle(echo);
     settled_ = true;
     const double volts = filter_.step(echo) + config_.noise_count * noise_.normal() + config_.flicker_count * flicker;
-    return static_cast<std::uint16_t>(std::clamp(std::floor(volts + config_.offset_count + 0.5), 0.0, double{count_max}));
+    return static_cast<std::uint16_t>(
+        std::clamp(std::floor(volts + config_.offset_count + 0.5), 0.0, static_cast<double>(config_.max_count)));
 }
 
 } // namespace traction::sim

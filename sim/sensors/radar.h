@@ -16,13 +16,15 @@ namespace traction::sim {
 
 struct RadarConfig {
     std::string_view model = "MDU1130"; // of radar_models()
-    double mounting_error_deg = 0;      // added to the depression angle
+    double depression_deg = 20;         // theta_d of (11), docs/sources.md section 4: where the description says that it is mounted
+    double mounting_error_deg = 0;      // added to it: where it really is
     double height_m = 0.3;              // docs/evidence.md section 2
     double ground_exponent = 1;         // n of sigma0 ~ sin^n
     double echo_count = 75;             // [ADC count] rms of the echo before the band-pass, assumed: 4 sigma inside 10 bits
     double noise_count = 1.0;           // [ADC count] rms white, assumed
     double flicker_count = 0.5;         // [ADC count] rms 1/f, assumed
     double offset_count = 512;          // [ADC count] mid-scale of 10 bits
+    int max_count = 1023;               // [ADC count] the converter's rail
     double dropout_per_s = 0;           // [1/s] how often the echo fades out altogether
     double dropout_s = 0.3;             // [s] for how long
 };

@@ -35,10 +35,21 @@ void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &c
     }
 }
 
+namespace {
+
+constexpr double tan_20_deg = 0.36397023426620234;
+
+double tangent_of(double angle_deg) {
+    const double angle = angle_deg * math::pi / 180;
+    return angle_deg == 20 ? tan_20_deg : math::sin(angle) / math::cos(angle);
+}
+
+} // namespace
+
 Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &start)
     : config_(config), radar_(config.radar, mix64(seed + 1)), camera_(config.camera, mix64(seed + 2)),
       battery_(config.battery, seed, "battery"), accel_(config.accel, seed, "imu.accel"), gyro_(config.gyro, seed, "imu.gyro"),
-      last_(start) {
+      last_(start), tan_depression_(tangent_of(config.radar.depression_deg)) {
     constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current", "wheel3.current"};
     for (std::size_t i = 0; i < wheel_count; i++) current_.emplace_back(config.current[i], seed, name[i]);
     if (const auto pose = camera_.step({start.t_s, start.position_m[0], start.position_m[1], start.yaw_rad}))
@@ -54,7 +65,7 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
         double ground_rad = 0;
         if (config_.ground_slope_rad != 0) ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
         const double pitch = config_.radar_mount_pitch * (truth.pitch_rad - ground_rad);
-        stretch *= 1 - 0.36397023426620234 * pitch - 0.5 * pitch * pitch; // tan 20 deg
+        stretch *= 1 - tan_depression_ * pitch - 0.5 * pitch * pitch;
     }
     const double step_m = (truth.path_m - last_.path_m) * stretch;
     const double step_s = truth.t_s - last_.t_s;
@@ -90,7 +101,8 @@ void Sensors::measure(Measurements &out) {
     pending_.radar_count.clear();
     pending_.camera.clear();
     for (std::size_t i = 0; i < wheel_count; i++) {
-        out.encoder_count[i] = Encoder(config_.effects.wheel[i].encoder_missed).count(last_.wheel[i].motor_angle_rad);
+        out.encoder_count[i] =
+            Encoder(config_.effects.wheel[i].encoder_missed, config_.encoder_counts_per_turn).count(last_.wheel[i].motor_angle_rad);
         out.current_A[i] = current_[i].measure(last_.t_s);
     }
     out.battery_V = battery_.measure(last_.t_s);

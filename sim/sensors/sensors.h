@@ -28,6 +28,7 @@ struct SensorConfig {
     double accel_vibration_1_s = sim::accel_vibration_1_s;
     AnalogConfig gyro;
     CameraConfig camera;
+    double encoder_counts_per_turn = sim::encoder_counts_per_turn; // of a wheel
     RoverEffects effects;         // those that act on every reading anew; the others are in gain, offset, drift, scale and delay
     double radar_mount_pitch = 1; // how much of the body's pitch turns the beam (1: rigid mount)
     double ground_slope_rad = 0;  // pitch is counted from the ground: rise along ground_direction_rad
@@ -67,6 +68,7 @@ class Sensors {
     AnalogSensor battery_, accel_, gyro_;
     Measurements pending_;
     Truth last_;
+    double tan_depression_;
     double radar_path_m_ = 0;
     std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
     double accel_m_s2_ = 0;          // along x, smoothed over 10 ms

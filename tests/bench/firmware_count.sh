@@ -10,10 +10,14 @@ for tool in arm-linux-gnueabi-gcc qemu-arm cc; do
 done
 cc -O2 -shared -fPIC -o "$out/libarm_count.so" "$root/tests/bench/arm_count/arm_count.c"
 cc -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
-"$out/template_gen" mdu1130 "$out/template.c"
+templates=
+for radar in mdu1130 dj_radar_2 dj_radar_3 drs1000; do
+  "$out/template_gen" $radar "$out/template_$radar.c"
+  templates="$templates $out/template_$radar.c"
+done
 flags="-std=gnu11 -march=armv5te -mtune=xscale -marm -msoft-float -ffp-contract=off -I$root"
 objects=
-for file in "$root"/firmware/core/*.c "$out/template.c"; do
+for file in "$root"/firmware/core/*.c $templates; do
   object=$out/$(basename "$file" .c).o
   level="-O3"; [ "$(basename "$file")" = fft.c ] && level="-O3 -fno-schedule-insns"
   arm-linux-gnueabi-gcc $flags $level -fstack-usage -c "$file" -o "$object"
@@ -43,8 +47,8 @@ awk 'NR == FNR { count[NR] = $1; next } { label[FNR] = $0 }
 echo
 qemu-arm -cpu pxa255 "$out/snr"
 echo
-arm-linux-gnueabi-size $objects | awk 'NR > 1 { all += $1; data += $2 + $3; if ($6 ~ /template\.o$/) beam = $1 }
-  END { print "code and constants " all - beam " bytes, one radar\047s template " beam " bytes, data " data " bytes" }'
+arm-linux-gnueabi-size $objects | awk 'NR > 1 { all += $1; data += $2 + $3; if ($6 ~ /template_/) { beams += $1; if ($6 ~ /mdu1130/) beam = $1 } }
+  END { print "code and constants " all - beams " bytes, four radars\047 templates " beams " bytes (the reference\047s " beam "), data " data " bytes" }'
 measured=$(tail -n 1 "$out/labels")
 bound=$(arm-linux-gnueabi-objdump -d --no-show-raw-insn "$out/count" | awk -v root=control_step -f "$root/tests/bench/stack_bound.awk")
 echo "stack of a tick: $measured bytes in the worst of the ticks above; on no path more than $bound"

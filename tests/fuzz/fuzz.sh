@@ -12,7 +12,11 @@ printf 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n);\nint LLVMFuz
   exit 0
 }
 cc -std=c11 -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
-"$out/template_gen" mdu1130 "$out/template.c"
+templates=
+for radar in mdu1130 dj_radar_2 dj_radar_3 drs1000; do
+  "$out/template_gen" $radar "$out/$radar.c"
+  templates="$templates $out/$radar.c"
+done
 "$clang" -std=c11 -O1 -g -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -I"$root" "$root"/firmware/core/*.c \
-  "$out/template.c" "$root/tests/fuzz/control_fuzz.c" -lm -o "$out/control_fuzz"
+  $templates "$root/tests/fuzz/control_fuzz.c" -lm -o "$out/control_fuzz"
 "$out/control_fuzz" -max_total_time="$seconds" -max_len=8192 -seed=1 -print_final_stats=1 -artifact_prefix="$out/" "$out/corpus" 2>&1 | tail -12

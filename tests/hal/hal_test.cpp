@@ -90,9 +90,9 @@ TEST(Counts, scales_are_those_that_the_firmware_assumes) {
     EXPECT_FLOAT_EQ(static_cast<float>(scale.accel_m_s2), firmware.sense.accel_m_s2_per_count);
     EXPECT_FLOAT_EQ(static_cast<float>(scale.gyro_rad_s), firmware.sense.gyro_rad_s_per_count);
     EXPECT_FLOAT_EQ(static_cast<float>(sim::encoder_rad_per_count), firmware.sense.encoder_rad_per_count);
-    EXPECT_EQ(scale.current_offset, firmware.sense.current_offset_count);
-    EXPECT_EQ(scale.converter_max, firmware.sense.current_max_count);
-    EXPECT_EQ(sim::Radar::count_max, firmware.sense.radar_max_count);
+    for (std::size_t i = 0; i < WHEEL_COUNT; i++) EXPECT_EQ(scale.current_offset[i], firmware.sense.current_offset_count[i]);
+    EXPECT_EQ(scale.current_max, firmware.sense.current_max_count);
+    EXPECT_EQ(sim::RadarConfig{}.max_count, firmware.sense.radar_max_count);
     EXPECT_EQ(sim::Radar::rate_Hz, static_cast<double>(firmware.doppler.beam->sample_rate_Hz));
 }
 

@@ -5,7 +5,9 @@ set -eu
 from=$1 work=$2
 rm -rf "$work/tree"
 mkdir -p "$work/tree"
-for part in CMakeLists.txt cmake firmware hal sim host_tools tests models scenarios docs; do cp -R "$from/$part" "$work/tree/"; done
+for part in "$from"/*; do
+    case ${part##*/} in build*) ;; *) cp -R "$part" "$work/tree/" ;; esac
+done
 cd "$work/tree"
 
 # Each block that follows "In `FILE`, before `TEXT`:" goes before the first line of FILE that holds TEXT.

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -141,6 +143,82 @@ TEST(Parameters, an_empty_list_changes_nothing) {
     ASSERT_TRUE(parameters_parse(format.data(), format.size(), "x", &config, message));
     EXPECT_EQ(config.motor.volt_per_speed_Vs, before.motor.volt_per_speed_Vs);
     EXPECT_EQ(config.soil_sweep.ramp_1_m, before.soil_sweep.ramp_1_m);
+}
+
+std::string config_bits(const control_config_t &c) {
+    std::string out;
+    const auto put = [&out](const auto &part) { out.append(reinterpret_cast<const char *>(&part), sizeof part); };
+    put(c.geometry), put(c.sense), put(c.slip), put(c.motor), put(c.wheel_pid), put(c.slip_pi), put(c.speed_control), put(c.soil_sweep);
+    put(c.safety), put(c.doppler.beam), put(c.doppler.offset_count), put(c.doppler.scale), put(c.doppler.quiet_power_count2);
+    put(c.ground_speed.window), put(c.ground_speed.still_m_s);
+    return out;
+}
+
+// Every key is read, and changes the configuration or is a number that only the check reads. No key is read and forgotten.
+TEST(Parameters, every_key_of_the_list_is_read_and_reaches_the_configuration) {
+    for (int32_t i = 0; i < ROVER_PARAMETER_COUNT; ++i) {
+        const std::string key = rover_parameter_name(i);
+        const float low = rover_parameter_low(i), high = rover_parameter_high(i);
+        rover_parameters_t reference;
+        rover_parameters_reference(&reference);
+        const float now = reference.value[i], other = key.starts_with("encoder_sign") ? -1.0f : now * 0.7f + (now == 0 ? 20.0f : 0.0f);
+        ASSERT_TRUE(other >= low && other <= high) << key;
+        char text[160];
+        (void)std::snprintf(text, sizeof text, "%s%s = %.9g\n", format.c_str(), key.c_str(), static_cast<double>(other));
+        parameters_t read;
+        char message[PARAMETERS_MESSAGE];
+        ASSERT_TRUE(parameters_parse_rover(text, std::strlen(text), "x", &read, message)) << message;
+        EXPECT_TRUE(read.given[i]);
+        EXPECT_EQ(read.rover.value[i], other);
+        control_config_t built, before;
+        control_config_build(&read.rover, &built);
+        control_config_build(&reference, &before);
+        const bool checked_only = key == "radar_rate_Hz"; // the template's: refused where it differs
+        EXPECT_EQ(config_bits(built) == config_bits(before), checked_only) << key;
+    }
+}
+
+// What is written gives the same bits when it is read: for the reference, and for a rover none of whose numbers is the reference's.
+TEST(Parameters, what_is_written_reads_back_bit_for_bit) {
+    uint32_t random = 7;
+    for (int repeat = 0; repeat < 200; ++repeat) {
+        parameters_t written{};
+        rover_parameters_reference(&written.rover);
+        written.rover.radar = repeat % ROVER_RADAR_COUNT;
+        for (int32_t i = 0; i < ROVER_PARAMETER_COUNT; ++i) {
+            random = random * 1664525u + 1013904223u;
+            written.given[i] = repeat > 0 && (random >> 20) % 3 != 0;
+            const float share = static_cast<float>(random >> 8) / 16777216.0f;
+            const float low = rover_parameter_low(i), high = rover_parameter_high(i);
+            if (written.given[i]) written.rover.value[i] = fminf(low + (high - low) * share * share, high);
+        }
+        rover_parameters_scale(&written.rover, written.given);
+        for (int32_t i = 0; i < ROVER_PARAMETER_COUNT; ++i) // a scaled number is not read, so it may be anything
+            if (!rover_parameter_scaled(i)) written.given[i] = true;
+        char text[PARAMETERS_TEXT], message[PARAMETERS_MESSAGE];
+        const size_t length = parameters_write(&written, "a rover", text);
+        ASSERT_LT(length, sizeof text);
+        parameters_t read;
+        ASSERT_TRUE(parameters_parse_rover(text, length, "x", &read, message)) << message;
+        EXPECT_EQ(std::memcmp(read.rover.value, written.rover.value, sizeof read.rover.value), 0) << text;
+        EXPECT_EQ(read.rover.radar, written.rover.radar);
+        EXPECT_EQ(std::memcmp(read.given, written.given, sizeof read.given), 0);
+    }
+}
+
+TEST(Parameters, a_rover_that_cannot_work_is_refused_with_the_line_of_its_key) {
+    EXPECT_EQ(refused(format + "mass_kg = 3\nstall_current_A = 5 # too much\n"),
+              "rover.txt:3: stall_current_A = 5: a stalled wheel takes V/Ra, which is less: a stall would never be seen; lower it");
+    const std::string weak = refused(format + "current_A_per_count = 0.0005\n"); // +-1 A
+    EXPECT_NE(weak.find("rover.txt: current_offset_count_0 = 2048 (not given: the reference rover's): the converter's rail"),
+              std::string::npos)
+        << weak;
+    const std::string made = refused(format + "wheel_max_rad_s = 3\nencoder_absurd_rad_s = 200\nencoder_counts_per_turn = 400000\n");
+    EXPECT_NE(made.find("rover.txt:4: encoder_counts_per_turn = 400000: more than 65535 pulses"), std::string::npos) << made;
+    EXPECT_NE(refused(format + "radar = \"X\"\n").find("rover.txt:2: radar = \"X\": no template is linked; use \"MDU1130\""),
+              std::string::npos);
+    EXPECT_NE(refused(format + "radar = \"DRS1000\"\nradar = \"DRS1000\"\n").find("given twice"), std::string::npos);
+    EXPECT_NE(refused(format + "radar_rate_Hz = 500\n").find("rover.txt:2: radar_rate_Hz = 500: the radar's template"), std::string::npos);
 }
 
 TEST(Parameters, a_mistake_is_told_with_file_line_key_value_and_mend) {

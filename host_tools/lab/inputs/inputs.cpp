@@ -63,7 +63,10 @@ void InputBuilder::header_of_log() {
 const log::Signal *InputBuilder::motion_signal(std::size_t i, double &angle_scale) const {
     angle_scale = 0;
     if (const log::Signal *count = wheel_signal(i, "encoder_count")) {
+        // an encoder that counts the other way says so in the header
+        const auto sign = log.header.find("firmware.encoder_sign_" + std::to_string(i));
         angle_scale = 2 * std::numbers::pi / parameter(model.sensors, "encoder.counts_per_turn");
+        if (sign != log.header.end() && sign->second == "-1") angle_scale = -angle_scale;
         return count;
     }
     if (const log::Signal *angle = wheel_signal(i, "angle_rad")) {
@@ -138,7 +141,7 @@ void InputBuilder::wheel_motion(std::size_t i) {
     }
     double half = data.independent_rows ? 0.1 * data.step_s : std::max(0.055, 2.6 * sample_period(*s));
     data.smoothing_half_s = half;
-    if (scale > 0) {
+    if (scale != 0) {
         std::vector<double> angle(s->value);
         for (double &a : angle) a *= scale;
         if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, standstill_rad_s); wide > 1.2 * half) {

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "host_tools/log/log.h"
 #include "model_keys.h"
 #include "sim/physics/effects/catalogue.h"
 #include "terms.h"
@@ -7,7 +8,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
@@ -422,12 +426,14 @@ Model parse_model(const std::string &text, const std::string &file) {
 }
 
 Model read_model(const std::string &path) {
-    std::ifstream stream;
-    stream.exceptions(std::ios::badbit);
-    stream.open(path, std::ios::binary);
-    if (!stream.is_open()) throw std::ios_base::failure("cannot open " + path, std::make_error_code(std::errc::no_such_file_or_directory));
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
     std::ostringstream text;
-    text << stream.rdbuf();
+    if (stream.is_open() && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+    if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(path))
+        throw log::FileError(
+            path, 0, 0, std::string("cannot read this model: ") + (errno != 0 ? std::strerror(errno) : "it is no file that can be read"),
+            "check its name; models/*.toml are examples");
     return parse_model(text.str(), path);
 }
 

@@ -87,7 +87,7 @@ struct Model {
     const EffectUse *find_effect(const std::string &effect, int wheel_index) const; // nullptr when absent
 };
 
-// Reads a model file. Throws ModelError; std::ios_base::failure when the file cannot be read.
+// Reads a model file. Throws ModelError; log::FileError when the file cannot be read.
 Model read_model(const std::string &path);
 
 // The same from text; `file` is for messages.
@@ -96,7 +96,7 @@ Model parse_model(const std::string &text, const std::string &file);
 // The model as a file's text, complete and readable. parse_model(model_text(m)) has the same numbers.
 std::string model_text(const Model &model);
 
-// Writes to a temporary beside `path`, then renames. Throws std::ios_base::failure.
+// Whole or not at all (host_tools/log/write_file.h). Throws log::FileError.
 void write_model(const Model &model, const std::string &path);
 
 } // namespace traction::lab

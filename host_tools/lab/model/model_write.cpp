@@ -1,10 +1,10 @@
 // Writes a model as TOML: shared [motor] and [soil] tables from the first wheel, overrides where a wheel differs.
 #include "model.h"
 
+#include "host_tools/log/write_file.h"
+
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 namespace traction::lab {
 
@@ -109,14 +109,6 @@ std::string model_text(const Model &model) {
     return out;
 }
 
-void write_model(const Model &model, const std::string &path) {
-    const std::string temporary = path + ".part";
-    std::ofstream stream;
-    stream.exceptions(std::ios::failbit | std::ios::badbit);
-    stream.open(temporary, std::ios::binary);
-    stream << model_text(model);
-    stream.close();
-    std::filesystem::rename(temporary, path);
-}
+void write_model(const Model &model, const std::string &path) { log::write_file(model_text(model), path); }
 
 } // namespace traction::lab

@@ -1,0 +1,183 @@
+#!/bin/sh
+# What the command line says and returns: names of what was mistyped, standard output, exit codes, data from any folder.
+# usage: command_line.sh CLI WORK_FOLDER PROJECT_ROOT
+set -u
+cli=$1 work=$2 root=$3
+rm -rf "$work"
+mkdir -p "$work/far away"
+cd "$work/far away" || exit 1
+unset TRACTION_ROOT
+failures=0
+bad() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+# says CODE PATTERN ARGUMENT...: exits so, and standard error holds the pattern
+says() {
+    want=$1 pattern=$2
+    shift 2
+    "$cli" "$@" >stdout.txt 2>stderr.txt </dev/null
+    code=$?
+    [ "$code" -eq "$want" ] || bad "traction $* exits $code, not $want: $(cat stderr.txt)"
+    grep -q -- "$pattern" stderr.txt || bad "traction $* does not say '$pattern': $(cat stderr.txt)"
+}
+
+# gives CODE PATTERN ARGUMENT...: exits so, and standard output holds the pattern
+gives() {
+    want=$1 pattern=$2
+    shift 2
+    "$cli" "$@" >stdout.txt 2>stderr.txt </dev/null
+    code=$?
+    [ "$code" -eq "$want" ] || bad "traction $* exits $code, not $want: $(cat stderr.txt)"
+    grep -q -- "$pattern" stdout.txt || bad "traction $* does not show '$pattern': $(head -n 20 stdout.txt)"
+}
+
+# mistyped
+says 2 "no verb 'simulte'; did you mean 'simulate'?" simulte
+says 2 "no option --ot; did you mean '--out'?" simulate cruise --ot x.csv
+says 2 "no option --lgo; did you mean '--log'?" compare --lgo x
+says 2 "no effect 'slip_sinkge'; did you mean 'slip_sinkage'?" simulate cruise --effect slip_sinkge:coefficient=0.2
+says 2 "no effect 'bcklash'; did you mean 'backlash'?" effects bcklash
+says 2 "no effect 'bcklash'; did you mean 'backlash'?" next --model rover_sand --effects bcklash
+says 2 "there is no 'lap'; did you mean 'lab'?" bench lap
+says 2 "needs LOG or --log LOG" compare --model rover_sand
+says 2 "give a whole number" simulate cruise --seed x
+says 2 "is given twice" check a.csv --log b.csv
+says 2 "one argument too many" effects backlash torque_ripple
+says 2 "name the same file" simulate cruise --out same.csv --truth ./same.csv
+says 2 "give one of default, paper; did you mean 'paper'?" simulate cruise --firmware papr
+says 2 "give a verb" # nothing at all
+[ -e same.csv ] && bad "a refused command line made a file"
+
+# missing files are named
+says 4 "no_model.toml" history --model no_model.toml
+says 4 "No such file or directory" compare --model no_model.toml --log x.csv
+says 4 "no_log.csv" check no_log.csv
+says 4 "no_scenario.toml" simulate no_scenario.toml
+says 4 "no/such/run.csv: cannot be written: No such file" simulate cruise --out no/such/run.csv
+
+# scenarios and models from any folder; what was not kept is told
+gives 0 "the log was not kept; --out LOG keeps it" simulate scenarios/cruise.toml
+gives 0 "log in run.csv" simulate cruise --out run.csv
+"$cli" simulate "$root/scenarios/cruise.toml" --out again.csv >/dev/null && cmp run.csv again.csv || bad "a short name drives another run"
+gives 0 "no history" history --model models/rover_sand.toml
+says 2 "there is no verb" ""
+
+# the log as argument and as --log
+for verb in check replay "compare --model rover_sand" "plot --out p.svg --signals estimate.speed_m_s" "convert --out c.csv"; do
+    "$cli" $verb run.csv >as_argument.txt 2>&1
+    one=$?
+    "$cli" $verb --log run.csv >as_option.txt 2>&1
+    [ $? -eq $one ] && [ $one -le 1 ] && cmp -s as_argument.txt as_option.txt || bad "$verb LOG and $verb --log LOG differ"
+done
+says 3 "nearest are estimate.speed_m_s" plot run.csv --signals estimat.speed_m_s --out p.svg
+
+# standard output
+"$cli" simulate cruise --out - 2>words.txt >out.csv || bad "--out - fails"
+cmp -s out.csv run.csv || bad "--out - gives another log"
+grep -q "simulated in" words.txt || bad "the words are lost when the log goes to standard output"
+"$cli" effects backlash --json - 2>/dev/null | head -n 1 | grep -qx '{' || bad "--json - is no JSON alone"
+[ -e ./- ] && bad "a file named - was made"
+"$cli" simulate cruise --out /dev/stdout 2>/dev/null | cmp -s - run.csv || bad "--out /dev/stdout gives another log"
+"$cli" check run.csv --quiet >quiet.txt 2>&1
+[ $? -le 1 ] && [ ! -s quiet.txt ] || bad "--quiet speaks: $(cat quiet.txt)"
+if [ -c /dev/full ]; then
+    "$cli" effects >/dev/full 2>stderr.txt
+    [ $? -eq 4 ] && grep -q "No space left" stderr.txt || bad "a full disk on standard output is no error"
+    "$cli" simulate cruise --out /dev/full >/dev/null 2>stderr.txt
+    [ $? -eq 4 ] && grep -q "/dev/full: cannot be written: No space left" stderr.txt || bad "--out /dev/full is no error"
+    [ -c /dev/full ] || bad "/dev/full was replaced"
+fi
+"$cli" effects >&- 2>/dev/null
+[ $? -eq 4 ] || bad "a closed standard output is no error"
+"$cli" --help >&- 2>/dev/null
+[ $? -eq 4 ] || bad "--help on a closed standard output is no error"
+mkfifo reader_gone
+(exec 3<reader_gone) & # opens, closes, reads nothing
+("$cli" effects --json - ; echo $? >code.txt) 2>/dev/null >reader_gone
+wait
+[ "$(cat code.txt)" -ne 0 ] || bad "a reader that goes away is no error"
+
+# two runs, one name: one of them is refused or comes later; what stands there is one whole log
+"$cli" simulate cruise --seed 1 --out both.csv >/dev/null 2>one.txt &
+first=$!
+"$cli" simulate cruise --seed 2 --out both.csv >/dev/null 2>two.txt
+second_code=$?
+wait $first
+first_code=$?
+for seed in 1 2; do "$cli" simulate cruise --seed $seed --out seed$seed.csv >/dev/null; done
+cmp -s both.csv seed1.csv || cmp -s both.csv seed2.csv || bad "two runs mixed their log"
+case "$first_code $second_code" in
+    "0 0") ;;
+    "4 0") grep -q "is being written by another run" one.txt || bad "refused without a word" ;;
+    "0 4") grep -q "is being written by another run" two.txt || bad "refused without a word" ;;
+    *) bad "two runs with one name exit $first_code and $second_code" ;;
+esac
+
+# a run that is ended by a signal leaves nothing
+"$cli" simulate cruise --realtime --out ended.csv >/dev/null 2>&1 &
+run=$!
+for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do [ -e .ended.csv.lock ] && break; sleep 0.2; done
+[ -e .ended.csv.lock ] || bad "a run does not lock its log"
+"$cli" simulate cruise --out ended.csv >/dev/null 2>stderr.txt
+[ $? -eq 4 ] && grep -q "is being written by another run" stderr.txt || bad "a second run is not refused: $(cat stderr.txt)"
+kill -TERM $run
+wait $run 2>/dev/null
+[ $? -eq 0 ] && bad "a killed run exits 0"
+ls -A | grep -q "ended.csv" && bad "a killed run leaves $(ls -A | grep ended.csv)"
+
+# a full disk: a small file system of its own, where the system lets us make one
+mkdir tiny
+if [ "$(id -u)" -eq 0 ] && unshare -m true 2>/dev/null; then
+    unshare -m sh -c 'mount -t tmpfs -o size=200k none tiny || exit 77
+        echo old >tiny/run.csv
+        "$1" simulate cruise --out tiny/run.csv >/dev/null 2>stderr.txt
+        code=$?
+        [ "$(ls -A tiny)" = run.csv ] && [ "$(cat tiny/run.csv)" = old ] || exit 5
+        exit $code' sh "$cli"
+    code=$?
+    case $code in
+        77) ;; # no mounts here
+        4) grep -q "tiny/run.csv: cannot be written: No space left on device" stderr.txt || bad "a full disk is told as $(cat stderr.txt)" ;;
+        *) bad "a full disk ends with $code" ;;
+    esac
+fi
+
+# answers
+"$cli" simulate "$root/scenarios/fig16_blocked_wheels.toml" --quiet --json fault.json
+code=$?
+if grep -q '"fault_names": ""' fault.json; then want=0; else want=1; fi
+[ $code -eq $want ] || bad "a run with $(grep fault_names fault.json) exits $code"
+sed 's/^name = .*/name = "cut off"/' "$root/scenarios/cruise.toml" >fault.toml
+printf '\n[[fault]]\nwhat = "emergency_stop"\nfrom_s = 2\nto_s = 60\n' >>fault.toml
+gives 1 "ended with a latched fault: emergency stop" simulate fault.toml
+
+# pages
+gives 0 "^traction [0-9.]* (commit " --version
+gives 0 "Usage: traction simulate SCENARIO" simulate --help
+gives 0 "Usage: traction bench lab" help bench lab
+"$cli" completion bash >completion.bash && bash -n completion.bash || bad "the completion is no bash"
+bash -c '. ./completion.bash; COMP_WORDS=(traction simulate cruise --effect slip_s); COMP_CWORD=4; _traction; [ "${COMPREPLY[*]}" = slip_sinkage ]' ||
+    bad "bash completes no effect"
+bash -c '. ./completion.bash; COMP_WORDS=(traction sim); COMP_CWORD=1; _traction; [ "${COMPREPLY[*]}" = simulate ]' || bad "bash completes no verb"
+bash -c '. ./completion.bash; COMP_WORDS=(traction bench lab --ge); COMP_CWORD=3; _traction; [ "${COMPREPLY[*]}" = --generator ]' ||
+    bad "bash completes no option"
+"$cli" completion zsh >_traction || bad "no zsh completion"
+if command -v zsh >/dev/null 2>&1; then zsh -n _traction || bad "the completion is no zsh"; fi
+for verb in $("$cli" --help | sed -n 's/^  \([a-z][a-z]*\) .*/\1/p'); do
+    [ "$verb" = bench ] && continue
+    grep -q "'$verb')" completion.bash && grep -q "'$verb')" _traction || bad "$verb is not completed"
+    "$cli" man "$verb" | grep -q '^\.SH OPTIONS' || bad "no manual page of $verb"
+    "$cli" "$verb" --help | grep -q -- "--json FILE" || bad "no --json in the help of $verb"
+done
+if command -v groff >/dev/null 2>&1; then
+    "$cli" man simulate | groff -man -Tascii -ww 2>groff.txt >/dev/null
+    [ ! -s groff.txt ] || bad "the manual page is no roff: $(head -n 3 groff.txt)"
+fi
+
+# one writer, one file that knows the parser
+grep -rnE 'ofstream|fopen\(' "$root/host_tools" "$root/sim" "$root/hal" --include='*.cpp' --include='*.c' --include='*.h' &&
+    bad "a file is written without host_tools/log/write_file.h"
+[ "$(grep -rl 'CLI/CLI.hpp' "$root/host_tools" | wc -l)" -eq 1 ] || bad "more than one file includes CLI11"
+
+ls -A | grep -E '\.part$|\.lock$' && bad "temporaries are left"
+[ "$failures" -eq 0 ] || { echo "$failures failed"; exit 1; }
+echo "the command line answers as written"

@@ -1,0 +1,77 @@
+// A rover of another size in the lab: its model comes from its description, a clean drive is explained, a hidden effect is named.
+#include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/model/model.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/rover/rover.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace traction::lab {
+namespace {
+
+log::Log driven(const sim::RoverDescription &rover, const std::string &effect) {
+    sim::Scenario scenario = sim::read_scenario("scenarios/identification.toml");
+    sim::set_rover(scenario, rover);
+    SimulateOptions options;
+    options.seed = 3;
+    if (!effect.empty()) options.effects.push_back(sim::parse_effect(effect));
+    return simulate(scenario, options).log;
+}
+
+const sim::RoverDescription &heavy() {
+    static const sim::RoverDescription rover = sim::read_rover_file("rovers/heavy.toml");
+    return rover;
+}
+
+Model heavy_on_sand() { return parse_model(traction::model_text(heavy(), "sand"), "heavy on sand"); }
+
+TEST(SecondRover, its_model_has_the_numbers_of_its_description) {
+    const Model model = heavy_on_sand();
+    EXPECT_EQ(model.rover.at("mass_kg").value, 60);
+    ASSERT_EQ(model.wheel.size(), 4U);
+    EXPECT_EQ(model.wheel[3].geometry.at("radius_m").value, 0.165);
+    EXPECT_EQ(model.wheel[3].geometry.at("y_m").value, -0.32);
+    EXPECT_EQ(model.wheel[0].motor.at("torque_constant_Nm_A").value, 2.7);
+    EXPECT_EQ(model.wheel[0].motor.at("torque_constant_Nm_A").source, "assumed");
+    EXPECT_THROW(traction::model_text(heavy(), "mud"), std::invalid_argument);
+}
+
+// The model of the reference that the verb writes says what the shipped one says.
+TEST(SecondRover, the_reference_model_is_the_shipped_one) {
+    const Model made = parse_model(traction::model_text(sim::read_rover_file("rovers/lhomme_desages.toml"), "sand"), "made");
+    const Model shipped = read_model("models/rover_sand.toml");
+    for (const auto &[key, parameter] : shipped.wheel[0].motor) EXPECT_EQ(made.wheel[0].motor.at(key).value, parameter.value) << key;
+    for (const auto &[key, parameter] : shipped.wheel[2].geometry) EXPECT_EQ(made.wheel[2].geometry.at(key).value, parameter.value) << key;
+    EXPECT_EQ(made.rover.at("mass_kg").value, shipped.rover.at("mass_kg").value);
+    EXPECT_NEAR(made.rover.at("yaw_inertia_kg_m2").value, shipped.rover.at("yaw_inertia_kg_m2").value, 1e-4);
+    EXPECT_NEAR(made.wheel[0].soil.at("mu").value, shipped.wheel[0].soil.at("mu").value, 1e-6); // the shipped one has six digits
+}
+
+TEST(SecondRover, a_clean_drive_is_explained) {
+    const Model model = heavy_on_sand();
+    const Diagnosis d = diagnose(model, make_dataset(model, driven(heavy(), "")), {});
+    EXPECT_TRUE(d.effects.empty()) << d.text;
+    // as well as the reference rover by its own model: a wheel whose encoder counts the other way would leave hundreds of times the noise
+    const Model reference = read_model("models/rover_sand.toml");
+    const double usual = compare(reference, make_dataset(reference, driven(sim::RoverDescription(), "")), true).adjusted;
+    EXPECT_LT(compare(model, make_dataset(model, driven(heavy(), "")), true).adjusted, 3 * usual);
+}
+
+TEST(SecondRover, a_hidden_effect_is_named) {
+    const Model model = heavy_on_sand();
+    const Diagnosis d = diagnose(model, make_dataset(model, driven(heavy(), "slip_sinkage:coefficient=0.2")), {});
+    ASSERT_EQ(d.effects.size(), 1U) << d.text;
+    EXPECT_EQ(d.effects[0], "slip_sinkage") << d.text;
+    ASSERT_FALSE(d.accepted.empty());
+    // a 95 % interval, and three of its half widths beside the truth at most
+    const double half = 0.5 * (d.accepted[0].high[0] - d.accepted[0].low[0]);
+    EXPECT_NEAR(d.accepted[0].value[0], 0.2, 1.5 * half + 0.01) << d.text;
+}
+
+} // namespace
+} // namespace traction::lab
