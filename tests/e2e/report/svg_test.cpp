@@ -1,3 +1,4 @@
+#include "host_tools/log/log.h"
 #include "host_tools/report/axis.h"
 #include "host_tools/report/log_figure.h"
 #include "host_tools/report/report.h"
@@ -258,7 +259,7 @@ TEST_F(Files, a_page_holds_its_result_whole_and_safely) {
 TEST_F(Files, an_unknown_schema_or_a_missing_folder_is_told) {
     EXPECT_THROW(to_html({{"schema", "traction.lab/9"}}), ReportError);
     EXPECT_THROW(to_html(nlohmann::json::array()), ReportError);
-    EXPECT_THROW(write_html({{"schema", "traction.lab/1"}}, (folder / "no" / "r.html").string()), log::FileError);
+    EXPECT_THROW(write_html({{"schema", "traction.lab/1"}}, (folder / "no" / "r.html").string()), traction::log::FileError);
     EXPECT_EQ(files(), 0u);
 }
 
