@@ -15,7 +15,7 @@ typedef struct {
 
 static const row_t rows[ROVER_PARAMETER_COUNT] = {
 #define ROVER_PARAMETER_ROW(key, kind_, value_, low_, high_)                                                                               \
-    [ROVER_##key] = {.name = #key, .reference = value_, .low = low_, .high = high_, .kind = kind_},
+    [ROVER_##key] = {.name = #key, .reference = (value_), .low = (low_), .high = (high_), .kind = (kind_)},
     ROVER_PARAMETER_LIST(ROVER_PARAMETER_ROW)
 #undef ROVER_PARAMETER_ROW
 };

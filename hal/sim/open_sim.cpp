@@ -93,23 +93,23 @@ hal_t guarded(Opened *opened) {
 } // namespace traction::hal
 
 hal_result_t hal_open_sim(int count, const char *const *argument, hal_opened_t *opened, char message[HAL_MESSAGE]) {
-    using namespace traction;
+    namespace world = traction::hal; // `hal` alone is the tag of hal_t
     const auto say = [message](const std::string &text) { std::snprintf(message, HAL_MESSAGE, "%s", text.c_str()); };
     message[0] = '\0';
     try {
-        auto made = std::make_unique<hal::Opened>(hal::request_of({argument, static_cast<std::size_t>(count)}));
-        if (const sim::FirmwareChoice &firmware = made->request.scenario.firmware;
+        auto made = std::make_unique<world::Opened>(world::request_of({argument, static_cast<std::size_t>(count)}));
+        if (const traction::sim::FirmwareChoice &firmware = made->request.scenario.firmware;
             firmware.config != "default" || firmware.doppler_scale > 0)
             say(made->request.scenario.file + ": its [firmware] is not used: the daemon has its own (--firmware, --parameters)");
-        opened->hal = hal::guarded(made.get());
+        opened->hal = world::guarded(made.get());
         opened->command = [](void *context, const sensor_frame_t *frame, command_t *command) {
-            *command = static_cast<hal::Opened *>(context)->plan.command_at(frame->tick);
+            *command = static_cast<world::Opened *>(context)->plan.command_at(frame->tick);
         };
-        opened->trouble = [](void *context) { return static_cast<hal::Opened *>(context)->trouble.c_str(); };
-        opened->close = [](void *context) { delete static_cast<hal::Opened *>(context); };
-        made.release();
+        opened->trouble = [](void *context) { return static_cast<world::Opened *>(context)->trouble.c_str(); };
+        opened->close = [](void *context) { delete static_cast<world::Opened *>(context); };
+        (void)made.release();
         return HAL_OK;
-    } catch (const hal::BadArgument &bad) {
+    } catch (const world::BadArgument &bad) {
         say(bad.message);
         return HAL_ERR_CONFIG;
     } catch (const std::filesystem::filesystem_error &error) {

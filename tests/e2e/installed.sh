@@ -26,7 +26,10 @@ call compare --model rover_sand run.csv
 call game --new 3 --soil sand
 [ $code -eq 0 ] && [ -s out/game/run.csv ] || { cat out.txt; exit 1; }
 [ ! -e /usr/share/traction ] && [ ! -e /usr/local/share/traction ] || { echo "installed, it runs from any folder"; exit 0; }
-mv "$usr/share/traction" "$usr/share/gone"
-call game --new 4
+# alone, where no folder above it holds data
+alone=$(mktemp -d)
+trap 'rm -rf "$alone"' EXIT
+mkdir "$alone/bin" && cp "$usr/bin/traction" "$alone/bin" && usr=$alone
+call game --new 4 --folder out/other
 [ $code -eq 3 ] && grep -q TRACTION_ROOT out.txt || { echo "without its data it says: $(cat out.txt)"; exit 1; }
 echo "installed, it runs from any folder"
