@@ -18,7 +18,8 @@ function(traction_own target)
   endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   if(TRACTION_SANITIZE)
-    target_compile_options(${target} PUBLIC -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PUBLIC -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>) # GCC's guess is wrong in the library's own headers once these are on
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()

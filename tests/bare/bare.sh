@@ -3,6 +3,7 @@
 # cloned into it, and README's commands. Says what each step took. Needs root, debootstrap and a package mirror; copies this machine's
 # way to the package index (apt's proxy and certificates, pip's and npm's settings), and ../shared where it exists.
 # TRACTION_BARE: the folder in which the system is made (default: a temporary one); --keep leaves it there.
+# TRACTION_BARE_CACHE: a folder of ccache's, for a run that is repeated: what it took to build is then not told, for it is not a first time.
 set -eu
 here=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd)
 suite=${1:?bare.sh: which suite, bookworm or trixie?}
@@ -64,6 +65,12 @@ for place in proc dev; do
     mount --make-rslave "$system/$place"
     mounted="$system/$place $mounted"
 done
+if [ -n "${TRACTION_BARE_CACHE-}" ]; then
+    mkdir -p "$system/root/.ccache" "$TRACTION_BARE_CACHE"
+    printf 'base_dir = /root\nhash_dir = false\nsloppiness = pch_defines,time_macros\nmax_size = 5G\n' >"$TRACTION_BARE_CACHE/ccache.conf"
+    mount --bind "$TRACTION_BARE_CACHE" "$system/root/.ccache"
+    mounted="$system/root/.ccache $mounted"
+fi
 git clone -q "$here" "$system/root/traction"
 if [ -d "$here/../shared" ]; then cp -r "$here/../shared" "$system/root/shared"; fi
 
@@ -91,9 +98,11 @@ tail -n 8 "$base/$suite.first_demo.log"
 timed second_demo "$inside" sh -c "${enter}./traction demo"
 ! grep '^traction: building' "$base/$suite.second_demo.log" || die "the second demo built again"
 say "compiler: $("$inside" sh -c 'c++ --version' | head -n 1)"
-# the build alone, from installed packages and without ccache: the figures of docs/performance.md
-"$inside" rm -rf /root/traction/build
-timed configure_and_build "$inside" sh -c "${enter}CCACHE_DISABLE=1 ./traction build"
+if [ -z "${TRACTION_BARE_CACHE-}" ]; then
+    # the build alone, from installed packages and without ccache: the figures of docs/performance.md
+    "$inside" rm -rf /root/traction/build
+    timed configure_and_build "$inside" sh -c "${enter}CCACHE_DISABLE=1 ./traction build"
+fi
 if grep -q 'warning:' "$system/root/traction/build/host/build.log"; then
     grep 'warning:' "$system/root/traction/build/host/build.log" | sort | uniq -c
     die "the build warns"
