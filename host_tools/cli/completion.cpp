@@ -51,6 +51,8 @@ std::string bash_offer(const Option &option) {
         return "_traction_files \"" + spaced(data_names("scenarios")) + '"';
     case Kind::model:
         return "_traction_files \"" + spaced(data_names("models")) + '"';
+    case Kind::rover:
+        return "_traction_files \"" + spaced(data_names("rovers")) + '"';
     case Kind::input:
     case Kind::log:
     case Kind::output:
@@ -97,6 +99,7 @@ std::string zsh_action(const Option &option) {
         return "_files -/";
     case Kind::scenario:
     case Kind::model:
+    case Kind::rover:
         return "_files -g \"*.toml\"";
     case Kind::input:
     case Kind::log:

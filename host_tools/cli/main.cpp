@@ -113,12 +113,20 @@ bool takes_standard_output(Parsed &parsed) {
     return taken;
 }
 
-// Scenarios and models are found from any folder.
+// The folder in which files of a kind lie; empty for what lies nowhere in particular.
+std::string folder_of(Kind kind) {
+    if (kind == Kind::scenario) return "scenarios";
+    if (kind == Kind::model) return "models";
+    if (kind == Kind::rover) return "rovers";
+    return kind == Kind::input ? "models/maps" : "";
+}
+
+// Scenarios, models and rovers are found from any folder.
 void find_data(const Verb &verb) {
     for (const Option &option : verb.options) {
-        if (option.kind != Kind::scenario && option.kind != Kind::model && option.kind != Kind::input) continue;
-        if (std::string *const *path = std::get_if<std::string *>(&option.into))
-            **path = data_file(**path, option.kind == Kind::scenario ? "scenarios" : option.kind == Kind::model ? "models" : "models/maps");
+        const std::string folder = folder_of(option.kind);
+        std::string *const *path = std::get_if<std::string *>(&option.into);
+        if (!folder.empty() && path != nullptr) **path = data_file(**path, folder);
     }
 }
 
@@ -139,7 +147,7 @@ int run(Parsed parsed) {
     } catch (const log::LogError &error) {
         return fail(exit_bad_input, error.what());
     } catch (const std::filesystem::filesystem_error &error) {
-        return fail(exit_io, error.path1().string() + ": " + error.what());
+        return fail(exit_io, error.path1().string() + ": cannot be read: " + error.code().message());
     } catch (const std::ios_base::failure &error) {
         return fail(exit_io, "cannot read or write a file: " + error.code().message());
     } catch (const std::logic_error &error) {

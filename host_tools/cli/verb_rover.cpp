@@ -56,7 +56,7 @@ Verb verb_rover() {
         .name = "rover",
         .summary = "check a rover's description; write the firmware's parameters and a model of it",
         .options =
-            {{.argument = "ROVER", .into = &options->rover, .help = "description (rovers/*.toml)", .kind = Kind::input, .required = true},
+            {{.argument = "ROVER", .into = &options->rover, .help = "description (rovers/*.toml)", .kind = Kind::rover, .required = true},
              {.name = "--firmware",
               .into = &options->firmware,
               .help = "write the firmware's parameters to this file",

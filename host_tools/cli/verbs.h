@@ -43,7 +43,7 @@ using Target =
     std::variant<std::monostate, bool *, int *, std::int64_t *, std::uint64_t *, double *, std::string *, std::vector<std::string> *>;
 
 // What a value is: tells the shell what to complete, and main which files will be written.
-enum class Kind { text, input, output, folder, scenario, model, log, effect, verb };
+enum class Kind { text, input, output, folder, scenario, model, rover, log, effect, verb };
 
 struct Range {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();

@@ -52,6 +52,7 @@ says 4 "no_model.toml" history --model no_model.toml
 says 4 "No such file or directory" compare --model no_model.toml --log x.csv
 says 4 "no_log.csv" check no_log.csv
 says 4 "no_scenario.toml" simulate no_scenario.toml
+says 4 "no_rover: cannot be read: No such file or directory" simulate cruise --believes no_rover
 says 4 "no/such/run.csv: cannot be written: No such file" simulate cruise --out no/such/run.csv
 
 # scenarios and models from any folder; what was not kept is told
@@ -59,6 +60,11 @@ gives 0 "the log was not kept; --out LOG keeps it" simulate scenarios/cruise.tom
 gives 0 "log in run.csv" simulate cruise --out run.csv
 "$cli" simulate "$root/scenarios/cruise.toml" --out again.csv >/dev/null && cmp run.csv again.csv || bad "a short name drives another run"
 gives 0 "no history" history --model models/rover_sand.toml
+gives 0 "wrote heavy_model.toml" rover heavy --soil gravel --model heavy_model.toml
+gives 0 "log in heavy.csv" simulate cruise --rover heavy --out heavy.csv
+sed 's/^radius_m = { value = 0.057/radius_m = { value = 0.063/' "$root/rovers/lhomme_desages.toml" >wrong.toml
+gives 0 "log in wrong.csv" simulate cruise --believes wrong.toml --out wrong.csv
+cmp -s wrong.csv run.csv && bad "a firmware that is wrong about its wheels drives as one that is right"
 says 2 "there is no verb" ""
 
 # the log as argument and as --log
