@@ -32,9 +32,8 @@ leave() {
 trap leave EXIT
 trap 'exit 130' INT TERM
 
-# the mirror that apt uses here; the archive's own name otherwise
+# the mirror that apt uses here; debootstrap's own choice otherwise
 mirror=$(sed -n 's/^URIs: *\([^ ]*\/debian\)\/* *$/\1/p; s/^deb  *\(\[[^]]*\] *\)*\([^ ]*\/debian\)\/* .*/\2/p' /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list 2>/dev/null | head -n 1)
-mirror=${mirror:-http://deb.debian.org/debian}
 
 # timed NAME COMMAND...: its wall and CPU seconds, its output to NAME.log
 timed() {
@@ -52,9 +51,9 @@ timed() {
     fi
 }
 
-say "$suite from $mirror, checkout $(git -C "$here" rev-parse --short HEAD)"
+say "$suite${mirror:+ from this machine's mirror}, checkout $(git -C "$here" rev-parse --short HEAD)"
 rm -rf "$system"
-timed debootstrap debootstrap --variant=minbase "$suite" "$system" "$mirror"
+timed debootstrap debootstrap --variant=minbase "$suite" "$system" ${mirror:+"$mirror"}
 for file in /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/*registry* /etc/ssl/certs/ca-certificates.crt /etc/pip.conf /etc/npmrc /root/.npmrc /root/.config/pip/pip.conf /etc/hosts /etc/resolv.conf; do
     [ -f "$file" ] || continue
     mkdir -p "$system$(dirname "$file")"

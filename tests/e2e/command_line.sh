@@ -67,6 +67,12 @@ gives 0 "log in wrong.csv" simulate cruise --believes wrong.toml --out wrong.csv
 cmp -s wrong.csv run.csv && bad "a firmware that is wrong about its wheels drives as one that is right"
 says 2 "there is no verb" ""
 
+# a search that finds nothing is a negative answer
+"$cli" simulate demo_sand --seed 5 --out clean.csv >/dev/null
+status=0
+"$cli" diagnose --model rover_sand clean.csv >out.txt 2>&1 || status=$?
+[ $status -eq 1 ] && grep -q "Nothing found" out.txt || bad "diagnose of a clean log ends with $status: $(tail -n 1 out.txt)"
+
 # the log as argument and as --log
 for verb in check replay "compare --model rover_sand" "plot --out p.svg --signals estimate.speed_m_s" "convert --out c.csv"; do
     "$cli" $verb run.csv >as_argument.txt 2>&1

@@ -3,7 +3,7 @@
 # root, debootstrap and a Debian mirror; run by hand, not by ctest:
 #   sh tests/e2e/deb_in_chroot.sh build/host WORK_FOLDER [SUITE [MIRROR]]
 set -eu
-build=$(cd "$1" && pwd) work=$2 suite=${3-bookworm} mirror=${4-http://deb.debian.org/debian}
+build=$(cd "$1" && pwd) work=$2 suite=${3-bookworm} mirror=${4-}
 [ "$(id -u)" -eq 0 ] || { echo "needs root, for a chroot"; exit 77; }
 command -v debootstrap >/dev/null 2>&1 || { echo "needs debootstrap"; exit 77; }
 mkdir -p "$work"
@@ -11,7 +11,7 @@ work=$(cd "$work" && pwd)
 (cd "$work" && cpack -G DEB --config "$build/CPackConfig.cmake" -B "$work") >"$work/cpack.log" 2>&1 || { tail -n 5 "$work/cpack.log"; exit 1; }
 deb=$(ls "$work"/traction_*.deb)
 dpkg-deb --field "$deb" Package Version Architecture Depends
-[ -d "$work/chroot/usr" ] || debootstrap --variant=minbase "$suite" "$work/chroot" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+[ -d "$work/chroot/usr" ] || debootstrap --variant=minbase "$suite" "$work/chroot" ${mirror:+"$mirror"} >"$work/debootstrap.log" 2>&1 ||
     { tail -n 5 "$work/debootstrap.log"; exit 1; }
 cp "$deb" "$work/chroot/tmp/traction.deb"
 [ ! -e /etc/apt/apt.conf.d ] || cp -n /etc/apt/apt.conf.d/*proxy* "$work/chroot/etc/apt/apt.conf.d/" 2>/dev/null || true
