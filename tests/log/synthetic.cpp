@@ -109,11 +109,11 @@ log::Log drive(const Drive &how) {
     return log;
 }
 
-log::Signal &at(log::Log &log, const std::string &name) {
+log::Signal &at(log::Log &log, std::string_view name) {
     for (log::Signal &signal : log.signals) {
         if (signal.name == name) return signal;
     }
-    throw std::out_of_range(name);
+    throw std::out_of_range(std::string(name));
 }
 
 void scale(log::Log &log, const std::string &name, double factor) {

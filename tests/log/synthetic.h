@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <string_view>
 
 namespace traction::test {
 
@@ -22,7 +24,7 @@ struct Drive {
 log::Log drive(const Drive &how);
 
 // Changes one signal of a log in place.
-log::Signal &at(log::Log &log, const std::string &name);
+log::Signal &at(log::Log &log, std::string_view name);
 void scale(log::Log &log, const std::string &name, double factor);
 void exchange(log::Log &log, const std::string &a, const std::string &b);
 

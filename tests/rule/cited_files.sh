@@ -7,7 +7,7 @@ list=$(mktemp)
 trap 'rm -f "$list"' EXIT
 cd "$root"
 if ! git ls-files >"$list" 2>/dev/null || [ ! -s "$list" ]; then # a checkout without git: what was not built
-    find . \( -path ./build -o -path ./.venv -o -path ./.git \) -prune -o -type f -print | sed 's#^\./##' >"$list"
+    find . \( -path ./build -o -path ./.venv -o -path ./.git \) -prune -o -type f -print | sed 's#^\./##' | sort >"$list"
 fi
 # trees that break a rule on purpose are read by their own tests alone; the changelog tells of files as they were
 grep -E '(\.(md|c|h|cpp|py|sh|cmake|toml|ts|awk)|CMakeLists\.txt|^traction)$' "$list" |
