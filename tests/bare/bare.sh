@@ -54,7 +54,7 @@ timed() {
 say "$suite${mirror:+ from this machine's mirror}, checkout $(git -C "$here" rev-parse --short HEAD)"
 rm -rf "$system"
 timed debootstrap debootstrap --variant=minbase "$suite" "$system" ${mirror:+"$mirror"}
-for file in /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/*registry* /etc/ssl/certs/ca-certificates.crt /etc/pip.conf /etc/npmrc /root/.npmrc /root/.config/pip/pip.conf /etc/hosts /etc/resolv.conf; do
+for file in /usr/local/share/ca-certificates/*.crt /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/*registry* /etc/ssl/certs/ca-certificates.crt /etc/pip.conf /etc/npmrc /root/.npmrc /root/.config/pip/pip.conf /etc/hosts /etc/resolv.conf; do
     [ -f "$file" ] || continue
     mkdir -p "$system$(dirname "$file")"
     cp -L "$file" "$system$file"
