@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace traction::lab {
 namespace {
@@ -37,16 +38,16 @@ bool reverses(const std::string &scenario) {
     return speed != nullptr && *std::min_element(speed->value.begin(), speed->value.end()) < -0.05;
 }
 
-const Question &question(const NextExperiment &next, const std::string &a, const std::string &b) {
+const Question &question(const NextExperiment &next, std::string_view a, std::string_view b) {
     for (const Question &q : next.questions)
         if (std::count(q.members.begin(), q.members.end(), a) + std::count(q.members.begin(), q.members.end(), b) == 2) return q;
-    throw std::runtime_error("no question about " + a + " and " + b);
+    throw std::runtime_error("no question about " + std::string(a) + " and " + std::string(b));
 }
 
-const Manoeuvre &titled(const std::string &part) {
+const Manoeuvre &titled(std::string_view part) {
     for (const Manoeuvre &m : manoeuvres())
         if (m.title.find(part) != std::string::npos) return m;
-    throw std::runtime_error("no manoeuvre " + part);
+    throw std::runtime_error("no manoeuvre " + std::string(part));
 }
 
 void expect_runs(const NextExperiment &next) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 using namespace traction;
 using namespace traction::generator;
@@ -24,10 +25,10 @@ double at_end(const log::Log &log, const std::string &name) {
     throw std::out_of_range(name);
 }
 
-const log::Signal &signal_of(const log::Log &log, const std::string &name) {
+const log::Signal &signal_of(const log::Log &log, std::string_view name) {
     for (const log::Signal &signal : log.signals)
         if (signal.name == name) return signal;
-    throw std::out_of_range(name);
+    throw std::out_of_range(std::string(name));
 }
 
 } // namespace
