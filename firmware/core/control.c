@@ -49,13 +49,15 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz : 0.0f,
-        .doppler_fresh = doppler.fresh,
+        .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,
+        .doppler_trust = doppler.trust,
+        .doppler_dead = doppler.dead,
         .wheel_m_s = rim_hint_m_s(config, sense),
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
     trace->radar_speed_m_s = state->doppler_m_s;
-    trace->radar_fresh = doppler.fresh && !doppler.quiet; // without an echo there is no value
+    trace->radar_fresh = doppler.fresh && !doppler.quiet && !doppler.beyond && !doppler.spoilt; // without an echo there is no value
     trace->speed_m_s = speed.speed_m_s;
     trace->speed_std_m_s = speed.std_m_s;
     trace->accel_bias_m_s2 = speed.bias_m_s2;

@@ -20,6 +20,9 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 
 // --- (2)
 
+static const uint64_t dead_power = 12288u * 64u / 10u; // a tenth of a count^2 in the band, assumed: rounding to whole counts alone makes 0.03
+enum { MADE_MAX = 80, RAILED_MAX = 128 };              // of 320 samples: a quarter, and two fifths (assumed)
+
 enum { COARSE = 4, POWER_SUM_MAX = 128 * 256 + DOPPLER_BINS_MAX * 256 };
 
 // J of one grid speed. It never wraps: J is linear in the powers, so its extremes have all power in one bin, and doppler_test
@@ -30,10 +33,52 @@ static int32_t cost(const doppler_template_t *beam, const int16_t *power, int32_
     return fixed_dot_product(total * beam->volume[speed], power, inverse, beam->bins);
 }
 
-// Powers of the template's bins, reduced so that each has at most 15 bits and their sum 16; returns the reduced sum. *energy is the sum of
-// the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of the transform, 2^10 of the gain,
-// 256 * 96 / 2 of the window).
-static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int16_t *reduced, uint64_t *energy)
+// Mean power of bins [from, to) over 2^28: 100 of it are one ADC count^2 of white noise.
+static uint32_t mean_power(const uint64_t *power, int32_t from, int32_t to)
+{
+    uint32_t sum = 0; // a full-scale line is 2^31 of it
+    for (int32_t k = from; k < to; k++) {
+        sum += (uint32_t)(power[k] >> 28);
+    }
+    return sum / (uint32_t)(to - from);
+}
+
+enum { SPARE_FROM = 96, BESIDE_LEAST = 32 };
+
+// What lies outside the template's bins: white noise, or an echo that is faster than they hold.
+typedef struct {
+    uint32_t in;     // mean power per bin of the band
+    uint32_t beside; // between the band and SPARE_FROM
+    uint32_t spare;  // from there on: the noise
+    bool known;      // the band leaves room for them
+} outside_t;
+
+static outside_t look_outside(const doppler_template_t *beam, const uint64_t *power)
+{
+    const int32_t end = beam->first_bin + beam->bins;
+    outside_t out = {0, 0, 0, end + BESIDE_LEAST <= SPARE_FROM};
+    if (out.known) {
+        out.in = mean_power(power, beam->first_bin, end);
+        out.beside = mean_power(power, end, SPARE_FROM);
+        out.spare = mean_power(power, SPARE_FROM, FFT_BINS);
+    }
+    return out;
+}
+
+// More than a sixth of the echo's power per bin beside the band, or more than in it beyond that.
+static bool is_beyond(const outside_t *outside)
+{
+    const uint32_t noise = outside->spare;
+    const bool fast = outside->beside > 2u * noise && outside->in > noise && 5u * (outside->beside - noise) > outside->in - noise;
+    const bool faster = outside->beside > 3u * outside->in && outside->beside > 200u;
+    const bool fastest = noise > 3u * outside->in && noise > 200u;
+    return outside->known && (fast || faster || fastest);
+}
+
+// Powers of the template's bins, less twice the noise (which leaves 0.14 of it), reduced so that each has at most 15 bits and their sum 16; returns the
+// reduced sum. *energy is the sum of the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of the transform, 2^10 of
+// the gain, 256 * 96 / 2 of the window).
+static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, uint64_t noise, int16_t *reduced, uint64_t *energy)
 {
     uint64_t sum = 0; // at most 120 * 2^63 / 2^8
     const uint64_t *in = power + beam->first_bin;
@@ -43,11 +88,13 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int
     }
     *energy = sum >> 14;
     const uint32_t shift = (57u - (uint32_t)__builtin_clzll(sum | 127u)) & 63u; // sum >> shift is 64..127, or 0..127 unshifted
+    const uint64_t floor = 2u * noise;
     uint32_t total = 0;
     //@ loop unroll 120;
     for (int32_t k = 0; k < beam->bins; k++) {
-        const uint32_t low = (uint32_t)in[k];
-        const uint32_t high = (uint32_t)(in[k] >> 32);
+        const uint64_t echo = in[k] > floor ? in[k] - floor : 0u;
+        const uint32_t low = (uint32_t)echo;
+        const uint32_t high = (uint32_t)(echo >> 32);
         const uint32_t whole = shift >= 32u ? high >> (shift - 32u) : shift == 0u ? low : (low >> shift) | high << (32u - shift);
         const uint32_t value = whole & 0x7fffu; // takes nothing away: sum < 128 * 2^shift, so whole < 128 * 2^8
         reduced[k] = (int16_t)value;
@@ -96,22 +143,43 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
     return beam->speed_m_s[low + fine] * exp_small(offset * beam->log_step);
 }
 
-static void measure(const doppler_config_t *config, const uint64_t *power, doppler_output_t *out)
+static const float made_trust = 0.05f; // [1] per filled sample of 320
+static const float railed_trust = 0.02f;
+static const float noise_trust = 4.0f; // [1] R = R0 (1 + this noise/echo), powers of the band
+
+static void measure(const doppler_config_t *config, const doppler_state_t *state, doppler_output_t *out)
 {
     int16_t reduced[DOPPLER_BINS_MAX] __attribute__((aligned(8)));
     uint64_t energy = 0;
     bool white = false;
-    const int32_t total = reduce(config->beam, power, reduced, &energy);
-    const float speed_m_s =
-        config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, reduced, total, &white) : argmax_speed(config->beam, power);
-    out->speed_m_s = config->scale * speed_m_s;
-    out->quiet = white || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
     out->fresh = true;
+    out->trust = 1.0f;
+    if (config->method == DOPPLER_ARGMAX) {
+        reduce(config->beam, state->power, 0, reduced, &energy);
+        out->speed_m_s = config->scale * argmax_speed(config->beam, state->power);
+        out->quiet = energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
+        return;
+    }
+    const outside_t outside = look_outside(config->beam, state->power);
+    const int32_t total = reduce(config->beam, state->power, (uint64_t)outside.spare << 28, reduced, &energy);
+    const float speed_m_s = likelihood_speed(config->beam, reduced, total, &white);
+    const bool noise = outside.known && outside.in < 2u * outside.spare;
+    out->speed_m_s = config->scale * speed_m_s;
+    out->beyond = is_beyond(&outside);
+    out->quiet = !out->beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->dead = out->quiet && energy < dead_power;
+    if (outside.known && !out->quiet && outside.in > outside.spare) {
+        const float share = (float)outside.spare / (float)(outside.in - outside.spare);
+        out->trust = 1.0f + noise_trust * share;
+    }
 }
 
 // Drops the oldest `hop` samples.
 static void slide(doppler_state_t *state, int32_t hop)
 {
+    for (int32_t j = 0; j < hop; j++) {
+        state->sum -= state->window.sample[j];
+    }
     if (hop % 4 == 0) {
         for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
             state->window.four[j - hop / 4] = state->window.four[j];
@@ -136,11 +204,8 @@ static void mirror(doppler_state_t *state)
 
 static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 {
-    if (halved) {
-        fft_power(state->twice, state->power);
-    } else {
-        fft_power(state->window.sample, state->power);
-    }
+    const int32_t mean = state->sum / (state->filled > 0 ? state->filled : 1);
+    fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
     state->pending = true;
     state->halved = halved;
     state->late_samples = late_samples;
@@ -161,35 +226,87 @@ static void transform_early(doppler_state_t *state, int32_t late_samples)
     transform(state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
 }
 
+// One sample into the window; `late_samples` more follow in this call.
+static void take(const doppler_config_t *config, doppler_state_t *state, int16_t value, bool made, bool railed, int32_t late_samples)
+{
+    if (state->in_block == DOPPLER_BLOCK) {
+        state->in_block = 0;
+        state->block = (state->block + 1) % DOPPLER_BLOCKS;
+        state->made[state->block] = 0;
+        state->railed[state->block] = 0;
+    }
+    state->in_block++;
+    state->made[state->block] += made ? 1 : 0;
+    state->railed[state->block] += railed ? 1 : 0;
+    state->last = value;
+    state->window.sample[state->filled] = value;
+    if (!state->full && state->filled < EARLY_TWICE) {
+        state->twice[2 * state->filled] = value;
+        state->twice[2 * state->filled + 1] = value;
+    }
+    state->filled++;
+    state->sum += value;
+    if (config->method == DOPPLER_LIKELIHOOD) {
+        transform_early(state, late_samples);
+    }
+    if (state->filled == FFT_LENGTH) {
+        transform(state, false, late_samples);
+        state->full = true;
+        slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
+    }
+}
+
+static int16_t value_of(const doppler_config_t *config, uint16_t sample)
+{
+    const int32_t limited = sample > 1023u ? 1023 : (int32_t)sample;
+    return (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
+}
+
+void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t missing, uint16_t next)
+{
+    if (missing <= 0) {
+        return;
+    }
+    if (missing > DOPPLER_GAP_MAX || (state->filled == 0 && !state->full)) {
+        const doppler_state_t zero = {0};
+        *state = zero;
+        return;
+    }
+    const int32_t from = state->last;
+    const int32_t change = value_of(config, next) - from;
+    for (int32_t j = 1; j <= missing; j++) {
+        take(config, state, (int16_t)(from + change * j / (missing + 1)), true, false, missing - j);
+    }
+}
+
+static int32_t total_of(const int32_t *block)
+{
+    int32_t sum = 0;
+    for (int32_t i = 0; i < DOPPLER_BLOCKS; i++) {
+        sum += block[i];
+    }
+    return sum;
+}
+
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
 {
-    doppler_output_t out = {false, false, 0.0f, 0};
+    doppler_output_t out = {0};
     if (state->pending) {
-        measure(config, state->power, &out);
+        const int32_t made = total_of(state->made);
+        const int32_t railed = total_of(state->railed);
+        measure(config, state, &out);
         if (state->halved) {
             out.speed_m_s *= 2.0f;
             out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
         }
+        out.trust += made_trust * (float)made + railed_trust * (float)railed;
+        out.spoilt = made > MADE_MAX || railed > RAILED_MAX;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->pending = false;
     }
     for (int32_t i = 0; i < count; i++) {
-        const int32_t limited = sample[i] > 1023u ? 1023 : (int32_t)sample[i];
-        const int16_t value = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
-        state->window.sample[state->filled] = value;
-        if (!state->full && state->filled < EARLY_TWICE) {
-            state->twice[2 * state->filled] = value;
-            state->twice[2 * state->filled + 1] = value;
-        }
-        state->filled++;
-        if (config->method == DOPPLER_LIKELIHOOD) {
-            transform_early(state, count - 1 - i);
-        }
-        if (state->filled == FFT_LENGTH) {
-            transform(state, false, count - 1 - i);
-            state->full = true;
-            slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
-        }
+        const bool railed = sample[i] == 0u || (int32_t)sample[i] >= config->max_count;
+        take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
     }
     return out;
 }

@@ -26,7 +26,7 @@ enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
 
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
-enum { DOPPLER_WINDOW_TICKS_MAX = 64 };
+enum { DOPPLER_WINDOW_TICKS_MAX = 64, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32 };
 
 // Which past a Doppler value tells of: the weight of each tick in the window's mean, newest first.
 typedef struct {
@@ -60,6 +60,7 @@ typedef struct {
     int32_t offset_count;        // ADC value of no signal
     int32_t hop;                 // samples between values, 1..256
     float scale;                 // calibrated speed over geometric speed [1]
+    int32_t max_count;           // the converter's rail
     uint32_t quiet_power_count2; // variance of the band below which there is no echo [ADC count^2]
 } doppler_config_t;
 
@@ -74,7 +75,11 @@ typedef struct {
     int32_t filled;            // valid samples so far
     uint64_t power[FFT_BINS];  // of the last full window
     int32_t late_samples;      // samples since that window's end
-    bool pending;              // its speed is not made yet
+    int32_t sum;               // of the samples in the window
+    int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
+    int32_t block, in_block;                              // the block that is being filled, and how much of it is
+    int16_t last;                                         // newest sample
+    bool pending;                                         // its speed is not made yet
     bool halved;               // that window is `twice`: it reads half the speed
     bool full;                 // the window has been filled once
 } doppler_state_t;             // zeroed = reset
@@ -82,11 +87,18 @@ typedef struct {
 typedef struct {
     bool fresh;           // a value was made in this call
     bool quiet;           // no echo above the noise: the speed means nothing
+    bool dead;            // quiet, and quieter than any front end that is alive
+    bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
+    bool spoilt;          // too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
+    float trust;          // by how much its variance exceeds that of a calm echo without noise [1], 1 or more
     int32_t late_samples; // samples that arrived after the window's end; less for the first two values, whose window is shorter
 } doppler_output_t;
 
 // The transform runs in the call that fills the window, the search for the speed in the next one, so that no tick pays for both.
+// Fills a gap of `missing` samples before `next`, in a straight line; a gap longer than DOPPLER_GAP_MAX empties the window.
+void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t missing, uint16_t next);
+
 // Any counts are accepted (limited to 0..1023); samples beyond `count` are not read.
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count);
 

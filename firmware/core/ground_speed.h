@@ -5,11 +5,16 @@
 //          z + sum_j w_j (V(t) - V(t - s_j)) = v + tau b + n,  tau = sum_j w_j s_j    (3)
 //
 //   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
-//   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has jumped: a slope
+//   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
 //   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
+//   refused twice: P += q [s^2, -s; -s, 1]                                             (7)  the bias has jumped s ago: a step of slope
+//   R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more than they should
+//   sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
+// (7): an error D of the bias for a time s is an error -D s of the speed. (9): a mixer tells |v| alone. Where one sign is not far more
+// likely than the other, both are followed, each with its own [v, b], until the values tell (derived here; docs/firmware.md).
 // (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
@@ -33,50 +38,83 @@ typedef struct {
     float tick_s;                   // T
     float speed_noise_m2_s2;        // Qv per tick, at least
     float speed_noise_max_m2_s2;    // and at most; at or below the other, (6) is off
+    float blind_noise_m2_s2;        // Qv per tick without an accelerometer
     float bias_noise_m2_s4;         // Qb per tick
     float bias_start_m_s2;          // standard deviation of the bias at reset
     float bias_max_m_s2;            // |b| limit
-    float doppler_noise_m2_s2;      // R, constant part
-    float doppler_noise_m_s;        // R per |v|
-    float doppler_accel_s2;         // R per a^2
-    float gate_sigma;               // values further than this from the prediction are refused
-    int32_t gate_patience;          // refusals in a row after which the next value is taken as the truth
-    float jump_share;               // c of (4)
-    float jump_limit;               // |m| of (4) that tells of a jump of the bias
-    float jump_m2_s4;               // by how much its variance grows then
-    int32_t quiet_needed;           // quiet Doppler values in a row that mean a speed too low to be heard
-    float quiet_noise_m2_s2;        // R of that speed, taken as 0
-    float still_m_s;                // rim speed below which the wheels are at rest
-    int32_t still_needed;           // ticks of rest before the rover can be standing
-    float standing_noise_m2_s2;     // R of speed 0 in each standing tick
-    float sign_hysteresis_m_s;      // |v| below which the wheels decide the sign, and standing needs no quiet echo
+    float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
+    float doppler_noise_m_s;
+    float doppler_accel_s2;
+    float gate_sigma;              // innovations beyond this many sigma are refused
+    int32_t gate_patience;         // refusals in a row after which (7) is believed
+    float jump_share;              // c of (4)
+    float jump_limit;              // |m| of (4) that tells of a jump of the bias
+    float jump_m2_s4;              // by how much its variance grows then
+    float step_m2_s4;              // q of (7)
+    float step_s;                  // s of (7)
+    float misfit_share;            // c of (8)
+    float misfit_max;              // limit of (8)
+    int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
+    float quiet_noise_m2_s2;       // R of that speed, taken as 0
+    float still_m_s;               // rim speed below which the wheels are at rest
+    int32_t still_needed;          // ticks of rest before the rover can be standing
+    int32_t loud_needed;           // loud Doppler values in a row that end a standing
+    float standing_noise_m2_s2;    // R of speed 0 in each standing tick
+    float slow_m_s;                // |v| below which standing needs no quiet echo
+    float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
+    float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
+    float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
+    float wheel_slip;
 } ground_speed_config_t;
+
+// One history of signs of the radar's values, and what follows from it.
+typedef struct {
+    float speed_m_s;
+    float bias_m_s2;
+    float p_vv, p_vb, p_bb;
+} ground_speed_track_t;
 
 typedef struct {
     float speed_m_s;
     float bias_m_s2;
     float p_vv, p_vb, p_bb;                     // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
-    float std_m_s;                              // of the speed, at the last measurement
+    float std_m_s;                              // of the speed
     float accel_noise_m2_s2;                    // mean of (6) per tick
     float speed_noise_m2_s2;                    // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
     float integral_rest_m_s; // part of V below one unit
     float one_sided;         // m of (4)
+    float misfit;            // of (8), 1 or more
     int32_t refused;
     int32_t quiet;
+    int32_t loud;
     int32_t still_ticks;
     bool standstill;
+    // the other sign, (9)
+    ground_speed_track_t other;
+    bool other_alive;
+    float odds;                // 2 ln of the odds against it
+    float doubt_m2_s2;         // what it adds to the variance
+    int32_t other_ticks;       // since it was last moved on
+    int32_t other_q20;         // V then
+    bool value_waits;          // a Doppler value that it has not seen
+    float value_m_s, value_noise_m2_s2;
+    float value_tau_s, value_change_m_s; // tau and the sum of (3)
+    float value_cost;                    // e^2/S of the best
+    float value_sign;
 } ground_speed_state_t;
 
 typedef struct {
     float accel_x_m_s2;
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
+    float doppler_trust;  // how much larger its variance is than a calm echo's [1]; 0 counts as 1
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;
+    bool doppler_dead; // quiet, and quieter than a front end that is alive
 } ground_speed_input_t;
 
 typedef struct {

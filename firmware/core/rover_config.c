@@ -61,6 +61,7 @@ static void build_doppler(const rover_parameters_t *parameters, doppler_config_t
     doppler->beam = beam != 0 ? beam : &doppler_template_mdu1130;
     doppler->method = DOPPLER_LIKELIHOOD;
     doppler->offset_count = whole(parameters->value[ROVER_radar_offset_count]);
+    doppler->max_count = whole(parameters->value[ROVER_radar_max_count]);
     doppler->hop = 64;
     doppler->scale = parameters->value[ROVER_doppler_scale];
     doppler->quiet_power_count2 = (uint32_t)whole(fixed_clamp(parameters->value[ROVER_radar_quiet_count2], 0.0f, 65535.0f));
@@ -76,22 +77,33 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
-        .bias_start_m_s2 = 0.1f,
-        .bias_max_m_s2 = 1.0f,
+        .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
+        .bias_start_m_s2 = 0.5f,        // 3 deg of slope, assumed; 10 deg are found by (7)
+        .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
         .doppler_accel_s2 = 0.0125f,
         .gate_sigma = 3.5f,
-        .gate_patience = 8,
+        .gate_patience = 2,
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
+        .step_m2_s4 = 1.0f, // [m^2/s^4] (1 m/s^2)^2: 6 deg of slope at once, assumed
+        .step_s = 0.4f,     // a step is felt in the second value after it at the latest: 0.3 to 0.5 s
+        .misfit_share = 0.06f,
+        .misfit_max = 30.0f,
         .quiet_needed = 3,
         .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
-        .sign_hysteresis_m_s = 0.12f,
+        .slow_m_s = 0.12f,
+        .loud_needed = 3,
+        .sign_sure = 18.0f,  // exp(9) to one
+        .wheel_odds = 4.0f,  // exp(2) to one, assumed
+        .wheel_match = 14.0f,
+        .wheel_noise_m_s = 0.1f, // assumed
+        .wheel_slip = 0.5f,
     };
     *ground_speed = method;
 }
