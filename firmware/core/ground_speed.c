@@ -198,23 +198,30 @@ static float wheel_odds(const ground_speed_config_t *config, float measured, flo
     return wheel_m_s < 0.0f ? -odds : odds;
 }
 
+static void split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track)
+{
+    side->at = *track;
+    side->ticks = 0;
+    side->q20 = state->integral_q20[state->head];
+}
+
 // (9): takes the likelier sign, and follows the other too where it may be the right one.
 static float choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track, float measured,
                          float middle, float spread, float wheel_m_s)
 {
     const float told = 4.0f * measured * middle / spread; // 2 ln of the odds of +
-    if (fabsf(told) >= config->sign_sure || (state->other_alive && state->odds < config->sign_sure)) {
+    if (fabsf(told) >= config->sign_sure || state->other_alive) {
         return middle < 0.0f ? -1.0f : 1.0f;
     }
     const float odds = told + wheel_odds(config, measured, wheel_m_s);
-    const float sign = odds < 0.0f ? -1.0f : 1.0f;
-    state->other = *track;
-    state->other_alive = true;
-    state->other_ticks = 0;
-    state->other_q20 = state->integral_q20[state->head];
+    split(state, &state->other, track);
     state->odds = fabsf(odds);
-    return sign;
+    state->other_alive = state->odds < config->sign_sure;
+    return odds < 0.0f ? -1.0f : 1.0f;
 }
+
+// ln x to within 0.06, x > 0: exponent, and mantissa as a straight line.
+static float ln_rough(float x) { return (float)((int32_t)fixed_bits(x) - 0x3f800000) * (0.693147f / 8388608.0f); }
 
 static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
@@ -235,48 +242,68 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     const float noise =
         trust * shorter * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured) + config->doppler_accel_s2 * accel2;
     float spread = spread_of(&track, window.tau_s) + noise;
-    const float nearest = measured - fabsf(middle);
-    const float cost = nearest * nearest / spread;
-    watch_misfit(config, state, cost);
-    if (cost > square(config->gate_sigma)) {
-        state->refused += state->refused < 1000 ? 1 : 0;
-        if (state->refused < config->gate_patience) {
-            return;
-        }
-        const float s = config->step_s;
-        track.p_vv += config->step_m2_s4 * s * s; // (7)
-        track.p_vb -= config->step_m2_s4 * s;
-        track.p_bb += config->step_m2_s4;
-        hold(config, &track);
-        spread = spread_of(&track, window.tau_s) + noise;
-        if (nearest * nearest > square(config->gate_sigma) * spread) {
-            track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
-            track.p_vb = 0.0f;
-            spread = spread_of(&track, window.tau_s) + noise;
-        }
-    }
-    state->refused = 0;
-    const float sign = choose_sign(config, state, &track, measured, middle, spread, input->wheel_m_s);
-    const float innovation = sign * measured - middle;
-    watch_bias(config, state, &track, innovation, spread);
-    correct(config, &track, innovation, window.tau_s, noise);
-    keep_best(state, &track);
-    state->value_waits = state->other_alive;
+    const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
+    const float cost = square(nearest) / spread;
+    state->waits = 2;
     state->value_m_s = measured;
     state->value_noise_m2_s2 = noise;
     state->value_tau_s = window.tau_s;
     state->value_change_m_s = window.change_m_s;
-    state->value_cost = square(innovation) / spread;
-    state->value_sign = sign;
+    state->value_cost = cost + ln_rough(spread);
+    state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
+    state->value_wheel_m_s = input->wheel_m_s;
+    watch_bias(config, state, &track, nearest, spread);
+    if (cost > square(config->gate_sigma)) {
+        if (state->refused < config->gate_patience) {
+            state->refused++;
+            return;
+        }
+        track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
+        track.p_vb = 0.0f;
+        spread = spread_of(&track, window.tau_s) + noise;
+    } else {
+        watch_misfit(config, state, cost);
+    }
+    state->refused = 0;
+    state->value_sign = choose_sign(config, state, &track, measured, middle, spread, input->wheel_m_s);
+    state->waits = 2;
+    correct(config, &track, state->value_sign * measured - middle, window.tau_s, noise);
+    keep_best(state, &track);
 }
 
-static void move_other(const ground_speed_config_t *config, ground_speed_state_t *state, int32_t until_q20, int32_t ticks)
+static void move_side(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, int32_t ticks_ago)
 {
-    const float change = (float)fixed_wrap_difference(until_q20, state->other_q20) * (1.0f / 1048576.0f);
-    const float n = (float)ticks;
-    move(config, &state->other, change, n * config->tick_s, n * state->speed_noise_m2_s2, n * config->bias_noise_m2_s4);
-    state->other_q20 = until_q20;
-    state->other_ticks = 0;
+    const int32_t until = state->integral_q20[((uint32_t)(state->head - ticks_ago)) % GROUND_SPEED_HISTORY];
+    const float change = (float)fixed_wrap_difference(until, side->q20) * (1.0f / 1048576.0f);
+    const float n = (float)(side->ticks - ticks_ago);
+    move(config, &side->at, change, n * config->tick_s, n * state->speed_noise_m2_s2, n * config->bias_noise_m2_s4);
+    side->q20 = until;
+    side->ticks = ticks_ago;
+}
+
+typedef struct {
+    float middle_m_s, spread_m2_s2;
+    float told; // 2 ln of the odds of +
+} expected_t;
+
+// What a side expects of the value that the best saw `ticks_ago`.
+static expected_t expect(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, int32_t ticks_ago)
+{
+    move_side(config, state, side, ticks_ago);
+    expected_t out;
+    out.middle_m_s = side->at.speed_m_s + state->value_tau_s * side->at.bias_m_s2 - state->value_change_m_s;
+    out.spread_m2_s2 = spread_of(&side->at, state->value_tau_s) + state->value_noise_m2_s2;
+    out.told = 4.0f * state->value_m_s * out.middle_m_s / out.spread_m2_s2;
+    return out;
+}
+
+// Corrects it with that sign; returns e^2/S + ln S.
+static float see(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, const expected_t *expected,
+                 float sign)
+{
+    const float innovation = sign * state->value_m_s - expected->middle_m_s;
+    correct(config, &side->at, innovation, state->value_tau_s, state->value_noise_m2_s2);
+    return square(innovation) / expected->spread_m2_s2 + ln_rough(expected->spread_m2_s2);
 }
 
 // 1/(1 + (1 + x/16)^8), x = 2 ln of the odds: at least 1/(1 + exp(x/2)), the probability of the less likely sign.
@@ -286,33 +313,120 @@ static float doubt_of(float odds)
     return 1.0f / (1.0f + square(square(square(a))));
 }
 
+static const float most_told = 12.0f; // [1] of one value about a sign: no single value decides (assumed)
+
 // The other sign sees the value one tick later, in a tick that has time.
 static void update_other(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
-    state->value_waits = false;
-    move_other(config, state, state->integral_q20[((uint32_t)state->head - 1u) % GROUND_SPEED_HISTORY], state->other_ticks - 1);
-    state->other_ticks = 1;
-    const float middle = state->other.speed_m_s + state->value_tau_s * state->other.bias_m_s2 - state->value_change_m_s;
-    const float spread = spread_of(&state->other, state->value_tau_s) + state->value_noise_m2_s2;
-    const bool sure = fabsf(4.0f * state->value_m_s * middle / spread) >= config->sign_sure;
-    const float sign = !sure ? -state->value_sign : middle < 0.0f ? -1.0f : 1.0f;
-    const float innovation = sign * state->value_m_s - middle;
-    const float gate2 = square(config->gate_sigma);
-    const float cost = fixed_clamp(square(innovation) / spread, 0.0f, gate2);
-    state->odds += cost - fixed_clamp(state->value_cost, 0.0f, gate2);
-    correct(config, &state->other, innovation, state->value_tau_s, state->value_noise_m2_s2);
+    const expected_t expected = expect(config, state, &state->other, 1);
+    const bool sure = fabsf(expected.told) >= config->sign_sure;
+    const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
+    const float cost = see(config, state, &state->other, &expected, sign);
+    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told);
     if (state->odds < 0.0f) {
         const ground_speed_track_t best = best_of(state);
-        move_other(config, state, state->integral_q20[state->head], state->other_ticks);
-        keep_best(state, &state->other);
-        state->other = best;
+        move_side(config, state, &state->other, 0);
+        keep_best(state, &state->other.at);
+        split(state, &state->other, &best);
         state->odds = -state->odds;
     }
-    const float apart = state->speed_m_s - state->other.speed_m_s;
-    const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.p_vv));
-    state->other_alive = !one && state->odds < 2.0f * config->sign_sure;
+    const float apart = state->speed_m_s - state->other.at.speed_m_s;
+    const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
+    state->other_alive = !one && state->odds < config->sign_sure;
     const float doubt = doubt_of(state->odds);
     state->doubt_m2_s2 = state->other_alive ? doubt * (1.0f - doubt) * apart * apart : 0.0f;
+}
+
+// (7), two ticks later. Its state is that of the window's middle, [v + tau b - change, b], which Doppler values see alone: a bias that jumps
+// within the window enters it as the window does.
+static const float most_told_of_slope = 7.0f;
+
+static ground_speed_track_t to_middle(const ground_speed_track_t *track, float tau, float change_m_s)
+{
+    const ground_speed_track_t out = {
+        .speed_m_s = track->speed_m_s + tau * track->bias_m_s2 - change_m_s,
+        .bias_m_s2 = track->bias_m_s2,
+        .p_vv = spread_of(track, tau),
+        .p_vb = track->p_vb + tau * track->p_bb,
+        .p_bb = track->p_bb,
+    };
+    return out;
+}
+
+// The window's middle of the value that waits: V there, as the mean over the window.
+static int32_t middle_q20(const ground_speed_state_t *state)
+{
+    const int32_t then = state->integral_q20[((uint32_t)state->head - 2u) % GROUND_SPEED_HISTORY];
+    return (int32_t)((uint32_t)then - (uint32_t)(int32_t)(state->value_change_m_s * 1048576.0f));
+}
+
+static void start_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    const float ago = 2.0f * config->tick_s;
+    const float change =
+        (float)fixed_wrap_difference(state->integral_q20[state->head], middle_q20(state)) * (1.0f / 1048576.0f); // up to now
+    const ground_speed_track_t best = best_of(state);
+    state->agile.at = to_middle(&best, state->value_tau_s + ago, change);
+    state->agile.at.p_bb += config->agile_m2_s4;
+    hold(config, &state->agile.at);
+    state->agile.q20 = middle_q20(state);
+    state->agile.ticks = 2;
+    state->agile_left = config->agile_values;
+}
+
+// The present from the middle of the window.
+static void take_agile(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *middle)
+{
+    const float ago = state->value_tau_s + 2.0f * config->tick_s;
+    const float change = (float)fixed_wrap_difference(state->integral_q20[state->head], middle_q20(state)) * (1.0f / 1048576.0f);
+    ground_speed_track_t track = to_middle(middle, -ago, -change);
+    hold(config, &track);
+    keep_best(state, &track);
+}
+
+static void update_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    if (state->agile_left <= 0) {
+        start_agile(config, state);
+        return;
+    }
+    state->agile_left--;
+    ground_speed_track_t *at = &state->agile.at;
+    const float ticks = (float)(state->agile.ticks - 2);
+    const int32_t q20 = middle_q20(state);
+    move(config, at, (float)fixed_wrap_difference(q20, state->agile.q20) * (1.0f / 1048576.0f), ticks * config->tick_s,
+         ticks * state->speed_noise_m2_s2, config->agile_m2_s4);
+    state->agile.q20 = q20;
+    state->agile.ticks = 2;
+    const float spread = at->p_vv + state->value_noise_m2_s2;
+    const float told = 4.0f * state->value_m_s * at->speed_m_s / spread;
+    const bool sure = fabsf(told) >= config->sign_sure;
+    const float odds = told + (sure ? 0.0f : wheel_odds(config, state->value_m_s, state->value_wheel_m_s));
+    const float sign = odds < 0.0f ? -1.0f : 1.0f;
+    const float innovation = sign * state->value_m_s - at->speed_m_s;
+    ground_speed_track_t mirrored = *at;
+    const float cost = square(innovation) / spread + ln_rough(spread);
+    correct(config, at, innovation, 0.0f, state->value_noise_m2_s2);
+    state->agile_sum = fixed_clamp(state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, most_told_of_slope), 0.0f, 1000.0f);
+    if (state->agile_sum > config->agile_limit) {
+        take_agile(config, state, at);
+        state->other_alive = fabsf(odds) < config->sign_sure;
+        if (state->other_alive) {
+            const ground_speed_track_t best = best_of(state);
+            correct(config, &mirrored, -sign * state->value_m_s - mirrored.speed_m_s, 0.0f, state->value_noise_m2_s2);
+            take_agile(config, state, &mirrored);
+            const ground_speed_track_t other = best_of(state);
+            split(state, &state->other, &other);
+            keep_best(state, &best);
+            state->odds = fabsf(odds);
+        }
+        state->agile_sum = 0.0f;
+        state->agile_left = 0;
+        state->refused = 0;
+        state->one_sided = 0.0f;
+    } else if (state->agile_sum > 0.0f && state->agile_left == 0) {
+        state->agile_left = 1; // not while it is about to win
+    }
 }
 
 // A quiet echo says that the window's mean speed was too low to be heard.
@@ -376,8 +490,14 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
     const uint32_t turn = (uint32_t)state->head % NOISE_EVERY;
     if (fresh) {
         count_values(config, state, input);
-    } else if (state->value_waits) {
-        update_other(config, state);
+    } else if (state->waits > 1) {
+        state->waits = 1;
+        if (state->other_alive) {
+            update_other(config, state);
+        }
+    } else if (state->waits > 0) {
+        state->waits = 0;
+        update_agile(config, state);
     } else if (turn == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
         watch_noise(config, state); // not in the tick of a value, which is the longest
     } else if (turn % 8u == 3u) {
@@ -389,7 +509,9 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         correct(config, &track, -track.speed_m_s, 0.0f, config->standing_noise_m2_s2);
         keep_best(state, &track);
         state->other_alive = false;
-        state->value_waits = false;
+        state->waits = 0;
+        state->agile_left = 0;
+        state->agile_sum = 0.0f;
     } else if (fresh && state->quiet >= config->quiet_needed) {
         update_quiet(config, state, input, accel);
     } else if (fresh && !input->doppler_quiet) {
@@ -404,7 +526,8 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     integrate(config, state, accel);
-    state->other_ticks += state->other_ticks < 1000 ? 1 : 0;
+    state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
+    state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
     ground_speed_track_t track = best_of(state);
     move(config, &track, accel * config->tick_s, config->tick_s, input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2,
          config->bias_noise_m2_s4);

@@ -7,13 +7,13 @@
 //   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
 //   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
 //   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
-//   refused twice: P += q [s^2, -s; -s, 1]                                             (7)  the bias has jumped s ago: a step of slope
+//   L = max(0, L + min(c_best - c_agile, 7)), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may jump: a steep slope
 //   R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more than they should
 //   sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
-// (7): an error D of the bias for a time s is an error -D s of the speed. (9): a mixer tells |v| alone. Where one sign is not far more
+// (7): the cumulative sum of Page for a change from one model to another. (9): a mixer tells |v| alone. Where one sign is not far more
 // likely than the other, both are followed, each with its own [v, b], until the values tell (derived here; docs/firmware.md).
 // (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
@@ -50,8 +50,9 @@ typedef struct {
     float jump_share;              // c of (4)
     float jump_limit;              // |m| of (4) that tells of a jump of the bias
     float jump_m2_s4;              // by how much its variance grows then
-    float step_m2_s4;              // q of (7)
-    float step_s;                  // s of (7)
+    float agile_m2_s4;             // by how much the bias's variance grows per value of (7)
+    float agile_limit;             // of (7)
+    int32_t agile_values;          // after which (7) starts from the best anew
     float misfit_share;            // c of (8)
     float misfit_max;              // limit of (8)
     int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
@@ -67,12 +68,18 @@ typedef struct {
     float wheel_slip;
 } ground_speed_config_t;
 
-// One history of signs of the radar's values, and what follows from it.
 typedef struct {
     float speed_m_s;
     float bias_m_s2;
     float p_vv, p_vb, p_bb;
 } ground_speed_track_t;
+
+// A track that moves on at Doppler values alone.
+typedef struct {
+    ground_speed_track_t at;
+    int32_t ticks; // since it was last moved on
+    int32_t q20;   // V then
+} ground_speed_side_t;
 
 typedef struct {
     float speed_m_s;
@@ -91,18 +98,18 @@ typedef struct {
     int32_t loud;
     int32_t still_ticks;
     bool standstill;
-    // the other sign, (9)
-    ground_speed_track_t other;
+    ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
     float odds;                // 2 ln of the odds against it
     float doubt_m2_s2;         // what it adds to the variance
-    int32_t other_ticks;       // since it was last moved on
-    int32_t other_q20;         // V then
-    bool value_waits;          // a Doppler value that it has not seen
+    ground_speed_side_t agile; // (7)
+    float agile_sum;           // of (7)
+    int32_t agile_left;        // values until it starts anew
+    int32_t waits;             // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
     float value_m_s, value_noise_m2_s2;
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
-    float value_cost;                    // e^2/S of the best
-    float value_sign;
+    float value_cost;                    // e^2/S + ln S of the best
+    float value_sign, value_wheel_m_s;
 } ground_speed_state_t;
 
 typedef struct {

@@ -66,7 +66,7 @@ struct Case {
 struct Step {
     double t, speed, estimate, std, wheel;
     std::uint32_t faults;
-    bool valid;
+    std::string note; // what the filter thinks, for the eye
 };
 
 struct Run {

@@ -226,6 +226,12 @@ int main(int argc, char **argv) {
         for (int seed = first; seed < first + seeds; ++seed) {
             const outdoors::Run run = outdoors::drive(row.what, static_cast<std::uint64_t>(seed), config);
             const outdoors::Score one = outdoors::score(row.what, run);
+            if (std::getenv("OUTDOORS_TRACE") != nullptr) { // every tick, for the eye
+                for (const outdoors::Step &step : run.steps) {
+                    std::printf("%.2f true %.3f estimate %.3f std %.3f wheel %.3f faults %x%s\n", step.t, step.speed, step.estimate, step.std,
+                                step.wheel, step.faults, step.note.c_str());
+                }
+            }
             sum.square += one.square, sum.nees_sum += one.nees_sum, sum.n += one.n, sum.faults |= one.faults;
             sum.wrong_sign_s = std::max(sum.wrong_sign_s, one.wrong_sign_s), sum.worst = std::max(sum.worst, one.worst);
             sum.first_fault_s = std::max(sum.first_fault_s, one.first_fault_s);
