@@ -1,4 +1,4 @@
-// daemon.h - the rover's main loop: open; while wait_tick: read, control_step, write, log; safe_stop.
+// daemon.h - the rover's main loop: open; while wait_tick: read, control_step, write, kick the watchdog, log; safe_stop; close.
 //
 // The world is a hal_t, the operator and the log are two function pointers, so the loop is the same on the rover (tractiond), in
 // simulate, tune and replay (through host_tools/loop) and in a test. It ends with the motors stopped, whatever ended it. It never
@@ -29,7 +29,8 @@ typedef struct {
 } daemon_result_t;
 
 // Runs until wait_tick says so or a device is lost. A device that did not answer in time (HAL_ERR_TIMEOUT) is what its bits in
-// `present` say, and safety decides; any other error stops the rover at once.
+// `present` say, and safety decides; orders that no bridge takes end the run when as many are lost in a row as the bridges forgive
+// (BRIDGE_RELEASE_MS); any other error stops the rover at once.
 daemon_result_t daemon_run(const hal_t *hal, const control_config_t *config, const daemon_link_t *link);
 
 #ifdef __cplusplus

@@ -8,6 +8,7 @@
 #include "trace_text.h"
 
 #include "firmware/core/rover_config.h"
+#include "hal/forward.h"
 #include "hal/open.h"
 #include "hal/pace/pace_hal.h"
 
@@ -91,7 +92,7 @@ static bool parse(int argc, char **argv, options_t *options)
 // --- the loop's hooks
 
 typedef struct {
-    hal_t inner;
+    hal_t inner; // first: hal/forward.h
 } stoppable_t;
 
 // The run is over once a signal has asked for it; so the loop ends where it always ends, with the motors stopped.
@@ -100,24 +101,6 @@ static hal_result_t wait_unless_stopped(void *context)
     const hal_t *inner = &((stoppable_t *)context)->inner;
     const hal_result_t result = asked_to_stop ? HAL_END : inner->wait_tick(inner->context);
     return asked_to_stop && result >= 0 ? HAL_END : result;
-}
-
-static hal_result_t read_inner(void *context, sensor_frame_t *frame)
-{
-    const hal_t *inner = &((stoppable_t *)context)->inner;
-    return inner->read(inner->context, frame);
-}
-
-static hal_result_t write_inner(void *context, const actuator_frame_t *actuator)
-{
-    const hal_t *inner = &((stoppable_t *)context)->inner;
-    return inner->write(inner->context, actuator);
-}
-
-static void stop_inner(void *context)
-{
-    const hal_t *inner = &((stoppable_t *)context)->inner;
-    inner->safe_stop(inner->context);
 }
 
 typedef struct {
@@ -150,8 +133,8 @@ static daemon_result_t run(const options_t *options, const control_config_t *con
 {
     pace_hal_t pace;
     stoppable_t stoppable = {.inner = options->realtime ? pace_hal(&pace, &world->hal) : world->hal};
-    const hal_t hal = {
-        .context = &stoppable, .wait_tick = wait_unless_stopped, .read = read_inner, .write = write_inner, .safe_stop = stop_inner};
+    hal_t hal = hal_forward(&stoppable);
+    hal.wait_tick = wait_unless_stopped;
     const bool logged = drive->trace != NULL || drive->hashed;
     const daemon_link_t link = {.context = drive, .command = ask_world, .log = logged ? log_tick : NULL};
     return daemon_run(&hal, config, &link);

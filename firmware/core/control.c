@@ -239,10 +239,13 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
         state->duty[i] = wheel->duty;
         state->saturated = state->saturated || wheel->saturated;
     }
-    trace->actuator.motor_enable = mode != MODE_STOP;
+    state->braking = mode == MODE_STOP && (safety->motors_off || state->braking);
+    trace->actuator.drive = mode != MODE_STOP ? DRIVE_ON : state->braking ? DRIVE_BRAKE : DRIVE_COAST;
+    trace->actuator.sequence = ++state->sequence;
     trace->actuator.status_led = safety->faults != 0u;
     trace->mode = mode;
     trace->faults = safety->faults;
+    trace->fault_wheels = safety->wheels;
     state->mode = mode;
 }
 

@@ -57,12 +57,15 @@ typedef struct {
     uint8_t slip_active;     // bit i: wheel i was driven by its slip loop in the last tick
     float duty[WHEEL_COUNT]; // written in the last tick
     bool saturated;          // a wheel had no duty left in the last tick
+    bool braking;            // a fault stopped the rover, and nothing has driven it since
+    uint32_t sequence;       // of the actuator frame written in the last tick
     float doppler_m_s;       // last Doppler value
 } control_state_t;
 
 void control_reset(const control_config_t *config, control_state_t *state);
 
-// Any frame and any command are accepted. Ensures |duty| <= 1, and duty 0 with the bridges released while a stopping fault is latched.
+// Any frame and any command are accepted. Ensures |duty| <= 1, and duty 0 with the wheels braked while a stopping
+// fault is latched, and after it until a mode drives again: a rover on a slope does not roll away.
 trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command, const sensor_frame_t *frame);
 
 #ifdef __cplusplus

@@ -162,7 +162,7 @@ static void build_safety(const float *v, safety_config_t *safety)
     const float continuous_A = v[ROVER_current_continuous_A];
     const safety_config_t built = {
         .tick_s = tick_s,
-        .required = 0xfffu,
+        .required = 0xfffu | FRAME_EMERGENCY_STOP,
         .patience_ticks = 7,         // off in the 8th bad tick: 80 ms, inside the 100 ms asked for
         .command_patience_ticks = 8, // 80 ms
         .missed_ticks_max = 5,       // 50 ms

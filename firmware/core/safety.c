@@ -21,21 +21,40 @@ static bool lasted(float *elapsed_s, bool cause, float tick_s, float limit_s)
     return fixed_greater(*elapsed_s, limit_s);
 }
 
-static uint32_t check_sensors(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
+// Counts up in a bad tick, to 0 in a good one; true once there were more than `patience` in a row.
+static bool too_many(uint32_t *ticks, bool bad, uint32_t patience)
+{
+    *ticks = !bad ? 0u : *ticks + (*ticks < UINT32_MAX ? 1u : 0u);
+    return *ticks > patience;
+}
+
+static uint32_t check_line(const safety_config_t *config, safety_state_t *state, const sensor_frame_t *frame)
+{
+    const bool unread = (config->required & FRAME_EMERGENCY_STOP) != 0u && (frame->present & FRAME_EMERGENCY_STOP) == 0u;
+    const bool deaf = too_many(&state->line_ticks, unread, config->patience_ticks);
+    return frame->emergency_stop || deaf ? (uint32_t)FAULT_EMERGENCY_STOP : 0u;
+}
+
+static uint32_t check_bridge(const safety_config_t *config, safety_state_t *state, const sensor_frame_t *frame, uint32_t wheel)
+{
+    const bool answers = (frame->present & ((uint32_t)FRAME_BRIDGE_0 << wheel)) != 0u;
+    state->bridges |= answers ? 1u << wheel : 0u;
+    const bool bad = answers ? frame->bridge_status[wheel] != 0u : (state->bridges & (1u << wheel)) != 0u;
+    return too_many(&state->bridge_ticks[wheel], bad, config->patience_ticks) ? (uint32_t)FAULT_BRIDGE : 0u;
+}
+
+static uint32_t check_sensors(const safety_config_t *config, safety_state_t *state, const safety_input_t *input, uint32_t *wheels)
 {
     uint32_t faults = 0;
     for (uint32_t i = 0; i < SAFETY_SENSORS; i++) {
         const uint32_t bit = 1u << i;
         const bool absurd = (input->absurd & bit) != 0u;
         const bool good = (input->usable & bit) != 0u;
-        state->bad_ticks[i] = good ? 0u : state->bad_ticks[i] + (state->bad_ticks[i] < UINT32_MAX ? 1u : 0u);
-        state->absurd_ticks[i] = !absurd ? 0u : state->absurd_ticks[i] + (state->absurd_ticks[i] < UINT32_MAX ? 1u : 0u);
-        if ((config->required & bit) != 0u && state->bad_ticks[i] > config->patience_ticks) {
-            faults |= lost_fault[i];
-        }
-        if (state->absurd_ticks[i] > config->patience_ticks) {
-            faults |= FAULT_ABSURD_SENSOR;
-        }
+        const bool lost = too_many(&state->bad_ticks[i], !good, config->patience_ticks) && (config->required & bit) != 0u;
+        const bool mad = too_many(&state->absurd_ticks[i], absurd, config->patience_ticks);
+        faults |= lost ? lost_fault[i] : 0u;
+        faults |= mad ? (uint32_t)FAULT_ABSURD_SENSOR : 0u;
+        *wheels |= (lost || mad) && i < 2u * WHEEL_COUNT ? 1u << (i % WHEEL_COUNT) : 0u;
     }
     return faults;
 }
@@ -123,11 +142,14 @@ static uint32_t check_agreement(const safety_config_t *config, safety_state_t *s
 safety_output_t safety_step(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
     uint32_t limit = 0;
-    uint32_t now = input->frame->emergency_stop ? (uint32_t)FAULT_EMERGENCY_STOP : 0u;
-    now |= check_sensors(config, state, input);
+    uint32_t wheels = 0;
+    uint32_t now = check_line(config, state, input->frame);
+    now |= check_sensors(config, state, input, &wheels);
     now |= check_time(config, state, input);
     for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
-        now |= check_wheel(config, state, input, wheel, &limit);
+        const uint32_t mine = check_wheel(config, state, input, wheel, &limit) | check_bridge(config, state, input->frame, (uint32_t)wheel);
+        wheels |= mine != 0u ? 1u << (uint32_t)wheel : 0u;
+        now |= mine;
     }
     state->turn = (state->turn + 1u) % WHEEL_COUNT;
     now |= check_battery(config, state, input);
@@ -135,10 +157,12 @@ safety_output_t safety_step(const safety_config_t *config, safety_state_t *state
 
     state->faults = input->command_stop ? now : (state->faults | now);
     state->limited = input->command_stop ? limit : (state->limited | limit);
+    state->wheels = input->command_stop ? wheels : (state->wheels | wheels);
     const safety_output_t out = {
         .faults = state->faults,
         .motors_off = (state->faults & ~(uint32_t)SAFETY_LIMITING) != 0u,
         .limited = state->limited,
+        .wheels = state->wheels,
     };
     return out;
 }

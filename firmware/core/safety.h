@@ -4,6 +4,7 @@
 //   h_i[k] = h_i[k-4] + 4T (I_i^2 Ra - h_i[k-4]/R_th)/C_th                                 (2)  winding above ambient; one wheel a tick
 //   A sensor is lost when it was silent or absurd for more than its patience; a count of bad ticks goes up by 1 in a bad tick
 //   and is cleared by a good one.
+//   The emergency stop counts as pressed when it was unread for more than that; a bridge that has answered once must go on answering.
 //
 // Table of faults, causes and reactions: docs/firmware.md. A latch clears in a tick that commands MODE_STOP while its cause is gone.
 #ifndef TRACTION_FIRMWARE_CORE_SAFETY_H
@@ -43,11 +44,15 @@ typedef struct {
     float disagree_s;
 } safety_config_t;
 
-enum { SAFETY_SENSORS = 12 }; // one per FRAME_* bit
+enum { SAFETY_SENSORS = 12 }; // one per FRAME_* bit up to the radar
 
 typedef struct {
-    uint32_t faults;  // latched
-    uint32_t limited; // bit i: wheel i is limited to the continuous current
+    uint32_t faults;                    // latched
+    uint32_t limited;                   // bit i: wheel i is limited to the continuous current
+    uint32_t wheels;                    // bit i: a latched fault is wheel i's
+    uint32_t line_ticks;                // ticks in a row in which nobody read the emergency stop
+    uint32_t bridges;                   // bit i: the bridge of wheel i has answered once
+    uint32_t bridge_ticks[WHEEL_COUNT]; // ticks in a row in which it did not answer, or not well
     uint32_t bad_ticks[SAFETY_SENSORS];
     uint32_t absurd_ticks[SAFETY_SENSORS];
     uint32_t last_tick;
@@ -82,6 +87,7 @@ typedef struct {
     uint32_t faults;
     bool motors_off;
     uint32_t limited; // bit i: wheel i only gets the continuous current
+    uint32_t wheels;  // bit i: a latched fault is wheel i's
 } safety_output_t;
 
 // Any value is accepted; a NaN counts as a cause where it is compared.

@@ -111,6 +111,8 @@ static void check_radar(const sense_config_t *config, const sensor_frame_t *fram
 sense_output_t sense_measure(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame)
 {
     sense_output_t out = {0};
+    out.elapsed_ticks = frame->elapsed_ticks != 0u ? frame->elapsed_ticks : frame->tick - state->last_tick;
+    state->last_tick = frame->tick;
     for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
         measure_wheel(config, state, frame, wheel, &out);
         measure_current(config, state, frame, wheel, &out);

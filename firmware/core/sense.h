@@ -45,7 +45,8 @@ typedef struct {
     float accel_x_m_s2;
     float gyro_z_rad_s;
     uint32_t encoder_seen; // bit i: wheel i has had a first count
-} sense_state_t;           // zeroed = reset
+    uint32_t last_tick;
+} sense_state_t; // zeroed = reset
 
 typedef struct {
     float speed_rad_s[WHEEL_COUNT];
@@ -54,8 +55,9 @@ typedef struct {
     float battery_V;
     float accel_x_m_s2;
     float gyro_z_rad_s;
-    uint32_t usable; // FRAME_* bits that are present and sane
-    uint32_t absurd; // FRAME_* bits that are present and impossible
+    uint32_t elapsed_ticks; // since the frame before: 1, and what was missed
+    uint32_t usable;        // FRAME_* bits that are present and sane
+    uint32_t absurd;        // FRAME_* bits that are present and impossible
 } sense_output_t;
 
 // Any frame is accepted. A part that is absent or absurd keeps its last value.

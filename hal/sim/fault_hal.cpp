@@ -1,5 +1,7 @@
 #include "fault_hal.h"
 
+#include "forwarding.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -27,9 +29,9 @@ std::uint32_t bits_of(const sim::SensorFault &fault) {
     case sim::FaultySensor::battery:
         return FRAME_BATTERY;
     case sim::FaultySensor::accel:
-        return FRAME_ACCEL;
+        return FRAME_ACCEL | FRAME_ACCEL_YZ;
     case sim::FaultySensor::gyro:
-        return FRAME_GYRO;
+        return FRAME_GYRO | FRAME_GYRO_XY;
     case sim::FaultySensor::radar:
         return FRAME_RADAR;
     case sim::FaultySensor::camera:
@@ -46,13 +48,19 @@ void copy_field(std::uint32_t bit, const sensor_frame_t &from, sensor_frame_t *t
     }
     if (bit == FRAME_BATTERY) to->battery_count = from.battery_count;
     if (bit == FRAME_ACCEL) to->accel_x_count = from.accel_x_count;
+    if (bit == FRAME_ACCEL_YZ) {
+        to->accel_y_count = from.accel_y_count;
+        to->accel_z_count = from.accel_z_count;
+    }
     if (bit == FRAME_GYRO) to->gyro_z_count = from.gyro_z_count;
+    if (bit == FRAME_GYRO_XY) {
+        to->gyro_x_count = from.gyro_x_count;
+        to->gyro_y_count = from.gyro_y_count;
+    }
     to->present = (to->present & ~bit) | (from.present & bit);
 }
 
 bool silent(sim::FaultKind kind) { return kind == sim::FaultKind::dropped || kind == sim::FaultKind::timeout; }
-
-hal_result_t wait_inner(hal_t *inner) { return inner->wait_tick(inner->context); }
 
 } // namespace
 
@@ -71,10 +79,17 @@ void FaultHal::add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame
     }
     if (bit == FRAME_BATTERY)
         frame->battery_count = static_cast<std::uint16_t>(noisy(frame->battery_count, scale_.battery_V, 0, scale_.battery_max));
-    if (bit == FRAME_ACCEL)
-        frame->accel_x_count = static_cast<std::int16_t>(noisy(frame->accel_x_count, scale_.accel_m_s2, INT16_MIN, INT16_MAX));
-    if (bit == FRAME_GYRO)
-        frame->gyro_z_count = static_cast<std::int16_t>(noisy(frame->gyro_z_count, scale_.gyro_rad_s, INT16_MIN, INT16_MAX));
+    const auto add = [&](std::int16_t &count, double unit) { count = static_cast<std::int16_t>(noisy(count, unit, INT16_MIN, INT16_MAX)); };
+    if (bit == FRAME_ACCEL) add(frame->accel_x_count, scale_.accel_m_s2);
+    if (bit == FRAME_GYRO) add(frame->gyro_z_count, scale_.gyro_rad_s);
+    if (bit == FRAME_ACCEL_YZ) {
+        add(frame->accel_y_count, scale_.accel_m_s2);
+        add(frame->accel_z_count, scale_.accel_m_s2);
+    }
+    if (bit == FRAME_GYRO_XY) {
+        add(frame->gyro_x_count, scale_.gyro_rad_s);
+        add(frame->gyro_y_count, scale_.gyro_rad_s);
+    }
 }
 
 void FaultHal::apply_radar(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame) {
@@ -123,9 +138,7 @@ void FaultHal::apply(std::size_t index, const sim::SensorFault &fault, sensor_fr
 }
 
 hal_t FaultHal::hal() {
-    hal_t wrapped{};
-    wrapped.context = this;
-    wrapped.wait_tick = [](void *context) { return wait_inner(&static_cast<FaultHal *>(context)->inner_); };
+    hal_t wrapped = forwarding(this);
     wrapped.read = [](void *context, sensor_frame_t *frame) {
         auto *self = static_cast<FaultHal *>(context);
         hal_result_t result = self->inner_.read(self->inner_.context, frame);
@@ -145,14 +158,6 @@ hal_t FaultHal::hal() {
         for (const auto &[from_s, to_s] : self->script_.emergency_stop_s)
             if (t_s >= from_s && t_s < to_s) frame->emergency_stop = true;
         return result;
-    };
-    wrapped.write = [](void *context, const actuator_frame_t *actuator) {
-        auto *self = static_cast<FaultHal *>(context);
-        return self->inner_.write(self->inner_.context, actuator);
-    };
-    wrapped.safe_stop = [](void *context) {
-        auto *self = static_cast<FaultHal *>(context);
-        self->inner_.safe_stop(self->inner_.context);
     };
     return wrapped;
 }

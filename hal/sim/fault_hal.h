@@ -28,6 +28,7 @@ class FaultHal {
     FaultHal &operator=(const FaultHal &) = delete;
 
     hal_t hal();
+    const hal_t &inner() const { return inner_; }
 
   private:
     static constexpr std::size_t memory_ticks = 201; // longest delay: 2 s

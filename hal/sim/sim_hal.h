@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,13 +53,18 @@ class SimHal {
     sim::Plant plant_;
     sim::Sensors sensors_;
     sim::Measurements measured_;
-    std::uint32_t done_ticks_ = 0;
+    std::uint32_t done_ticks_ = 0, read_ticks_ = 0;
+    std::int64_t heard_ms_ = 0;                  // when the bridges took their last order
+    std::optional<std::uint32_t> last_sequence_; // of that order
     std::int64_t now_ms_ = 0;
     struct Order {
         std::int64_t due_ms;
         std::array<double, sim::wheel_count> duty;
-        bool enable;
+        drive_state_t drive;
+        std::uint32_t sequence;
     };
+    void obey(const Order &order);
+    void tell(hal_status_t *status) const;
     std::deque<Order> orders_; // written, not yet in effect
 };
 

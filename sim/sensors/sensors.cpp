@@ -49,7 +49,9 @@ double tangent_of(double angle_deg) {
 Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &start)
     : config_(config), radar_(config.radar, mix64(seed + 1)), camera_(config.camera, mix64(seed + 2)),
       battery_(config.battery, seed, "battery"), accel_(config.accel, seed, "imu.accel"), gyro_(config.gyro, seed, "imu.gyro"),
-      last_(start), tan_depression_(tangent_of(config.radar.depression_deg)) {
+      accel_y_({.noise = config.accel.noise}, seed, "imu.accel_y"), accel_z_({.noise = config.accel.noise}, seed, "imu.accel_z"),
+      gyro_x_({.noise = config.gyro.noise}, seed, "imu.gyro_x"), gyro_y_({.noise = config.gyro.noise}, seed, "imu.gyro_y"), last_(start),
+      tan_depression_(tangent_of(config.radar.depression_deg)) {
     constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current", "wheel3.current"};
     for (std::size_t i = 0; i < wheel_count; i++) current_.emplace_back(config.current[i], seed, name[i]);
     if (const auto pose = camera_.step({start.t_s, start.position_m[0], start.position_m[1], start.yaw_rad}))
@@ -90,6 +92,10 @@ void Sensors::step(const Truth &truth) {
     for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A);
     battery_.add(truth.battery_voltage_V);
     accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_));
+    accel_y_.add(truth.specific_force_m_s2[1]);
+    accel_z_.add(truth.specific_force_m_s2[2]);
+    gyro_x_.add(truth.rate_body_rad_s[0]);
+    gyro_y_.add(truth.rate_body_rad_s[1]);
     gyro_.add(truth.rate_body_rad_s[2]);
     if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
         pending_.camera.push_back(*pose);
@@ -98,6 +104,7 @@ void Sensors::step(const Truth &truth) {
 
 void Sensors::measure(Measurements &out) {
     out = pending_;
+    out.radar_first = static_cast<std::uint32_t>(radar_samples_ - static_cast<std::int64_t>(out.radar_count.size()));
     pending_.radar_count.clear();
     pending_.camera.clear();
     for (std::size_t i = 0; i < wheel_count; i++) {
@@ -106,8 +113,9 @@ void Sensors::measure(Measurements &out) {
         out.current_A[i] = current_[i].measure(last_.t_s);
     }
     out.battery_V = battery_.measure(last_.t_s);
-    out.accel_x_m_s2 = accel_.measure(last_.t_s, config_.accel_vibration_1_s * std::fabs(last_.v_body_m_s[0]));
-    out.gyro_z_rad_s = gyro_.measure(last_.t_s);
+    const double vibration = config_.accel_vibration_1_s * std::fabs(last_.v_body_m_s[0]);
+    out.accel_m_s2 = {accel_.measure(last_.t_s, vibration), accel_y_.measure(last_.t_s, vibration), accel_z_.measure(last_.t_s, vibration)};
+    out.gyro_rad_s = {gyro_x_.measure(last_.t_s), gyro_y_.measure(last_.t_s), gyro_.measure(last_.t_s)};
 }
 
 } // namespace traction::sim

@@ -46,7 +46,10 @@ void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &c
 struct Measurements {
     std::array<std::int32_t, wheel_count> encoder_count{};
     std::array<double, wheel_count> current_A{};
-    double battery_V = 0, accel_x_m_s2 = 0, gyro_z_rad_s = 0;
+    double battery_V = 0;
+    std::array<double, 3> accel_m_s2{};     // specific force along body x, y, z
+    std::array<double, 3> gyro_rad_s{};     // about body x, y, z
+    std::uint32_t radar_first = 0;          // number of radar_count[0] among all samples; sample n is taken at n/512 s
     std::vector<std::uint16_t> radar_count; // since the last tick, oldest first
     std::vector<Pose> camera;               // since the last tick
 };
@@ -65,7 +68,8 @@ class Sensors {
     Radar radar_;
     Camera camera_;
     std::vector<AnalogSensor> current_;
-    AnalogSensor battery_, accel_, gyro_;
+    AnalogSensor battery_, accel_, gyro_; // of the last two: x and z, which the effects of the catalogue act on
+    AnalogSensor accel_y_, accel_z_, gyro_x_, gyro_y_;
     Measurements pending_;
     Truth last_;
     double tan_depression_;

@@ -41,6 +41,7 @@ static control_state_t any_state_in_order(void) {
     state.safety.turn = (uint32_t)Frama_C_interval(0, 3);
     state.safety.started = Frama_C_interval(0, 1) != 0;
     state.saturated = Frama_C_interval(0, 1) != 0;
+    state.braking = Frama_C_interval(0, 1) != 0;
     //@ check in_order(&state);
     return state;
 }
@@ -58,7 +59,7 @@ static int any_tick(const control_config_t *config) {
     const trace_t trace = control_step(config, &state, &command, &frame);
     //@ check in_order(&state);
     //@ check \forall integer i; 0 <= i < 4 ==> -1.0 <= trace.wheel[i].duty <= 1.0 && -32767 <= trace.actuator.duty_q15[i];
-    return trace.actuator.motor_enable;
+    return trace.actuator.drive == DRIVE_ON;
 }
 
 // Any 256 samples, in two cases by the sign of one: without them the interval of bin 13 is 0.1 % wider than 32 bits.

@@ -43,7 +43,7 @@ template <typename Condition> int ticks_until(const log::Log &log, const std::st
 }
 
 int ticks_until_off(const log::Log &log, double since_s = from_s) {
-    return ticks_until(log, "actuator.motor_enable", since_s, [](double enable) { return enable == 0; });
+    return ticks_until(log, "actuator.drive", since_s, [](double drive) { return drive != static_cast<double>(DRIVE_ON); });
 }
 
 int ticks_until_latched(const log::Log &log, std::uint32_t fault, double since_s = from_s) {
@@ -246,7 +246,12 @@ struct Sleeper {
                     [](void *c) {
                         const hal_t &inner = static_cast<Sleeper *>(c)->world;
                         inner.safe_stop(inner.context);
-                    }};
+                    },
+                .open = nullptr,
+                .self_test = nullptr,
+                .status = nullptr,
+                .kick_watchdog = nullptr,
+                .close = nullptr};
     }
 };
 
@@ -275,8 +280,8 @@ TEST(Fault, lost_ticks_turn_the_motors_off_in_the_first_tick_that_follows) {
         const trace_t &next = person.traces.at(200);
         EXPECT_EQ(next.tick, 200 + gap);
         EXPECT_EQ(next.faults, gap > 5 ? static_cast<std::uint32_t>(FAULT_MISSED_TICKS) : 0u) << gap; // 50 ms are forgiven
-        EXPECT_EQ(next.actuator.motor_enable, gap <= 5) << gap;
-        EXPECT_EQ(person.traces.back().actuator.motor_enable, gap <= 5) << gap;
+        EXPECT_EQ(next.actuator.drive == DRIVE_ON, gap <= 5) << gap;
+        EXPECT_EQ(person.traces.back().actuator.drive == DRIVE_ON, gap <= 5) << gap;
     }
 }
 

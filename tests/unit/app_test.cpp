@@ -16,7 +16,8 @@ namespace {
 // A rover on blocks: every device answers, nothing moves.
 struct Bench {
     int ticks = 50, fail_read_at = -1, fail_write_at = -1, done = 0, stops = 0, writes = 0, logged = 0;
-    hal_result_t failure = HAL_ERR_IO;
+    int fail_writes = 1, kicks = 0;
+    hal_result_t failure = HAL_ERR_IO, write_failure = HAL_ERR_IO;
     bool silent = false; // devices time out from tick 10 on
     std::vector<actuator_frame_t> written;
 
@@ -33,7 +34,7 @@ struct Bench {
                         frame->tick = static_cast<uint32_t>(b.done - 1);
                         if (b.done - 1 == b.fail_read_at) return b.failure;
                         if (b.silent && b.done > 10) return HAL_ERR_TIMEOUT;
-                        frame->present = 0xfffu;
+                        frame->present = FRAME_ALL;
                         for (auto &count : frame->current_count) count = 2048;
                         frame->battery_count = 1800; // 7.2 V
                         frame->radar_samples = 5;
@@ -44,9 +45,17 @@ struct Bench {
                     [](void *c, const actuator_frame_t *actuator) {
                         auto &b = *static_cast<Bench *>(c);
                         b.written.push_back(*actuator);
-                        return b.writes++ == b.fail_write_at ? HAL_ERR_IO : HAL_OK;
+                        const bool fails =
+                            b.fail_write_at >= 0 && b.writes >= b.fail_write_at && b.writes < b.fail_write_at + b.fail_writes;
+                        b.writes++;
+                        return fails ? b.write_failure : HAL_OK;
                     },
-                .safe_stop = [](void *c) { static_cast<Bench *>(c)->stops++; }};
+                .safe_stop = [](void *c) { static_cast<Bench *>(c)->stops++; },
+                .open = nullptr,
+                .self_test = nullptr,
+                .status = nullptr,
+                .kick_watchdog = [](void *c) { static_cast<Bench *>(c)->kicks++; },
+                .close = nullptr};
     }
     daemon_link_t link() {
         return {.context = this,
@@ -92,15 +101,28 @@ TEST(Daemon, stops_the_rover_when_a_device_is_lost) {
     EXPECT_EQ(bench.writes, 21);
 }
 
+TEST(Daemon, survives_lost_orders_until_the_bridges_release_themselves) {
+    for (const int lost : {1, 4, 5}) {
+        Bench bench;
+        bench.fail_write_at = 20;
+        bench.fail_writes = lost;
+        bench.write_failure = HAL_ERR_TIMEOUT;
+        const daemon_result_t result = bench.run();
+        EXPECT_EQ(result.ended_by, lost < 5 ? HAL_END : HAL_ERR_TIMEOUT) << lost; // 50 ms
+        EXPECT_EQ(bench.stops, 1);
+        EXPECT_EQ(bench.kicks, lost < 5 ? 50 : 24) << lost; // alive: the watchdog is kicked in every tick
+    }
+}
+
 TEST(Daemon, leaves_a_silent_device_to_safety) {
     Bench bench;
     bench.silent = true;
     const daemon_result_t result = bench.run();
     EXPECT_EQ(result.ended_by, HAL_END); // the loop never stalls
     EXPECT_NE(result.faults & FAULT_ENCODER_LOST, 0u);
-    EXPECT_FALSE(bench.written.back().motor_enable);
+    EXPECT_NE(bench.written.back().drive, DRIVE_ON);
     int off = 0;
-    while (bench.written[static_cast<std::size_t>(off)].motor_enable) ++off;
+    while (bench.written[static_cast<std::size_t>(off)].drive == DRIVE_ON) ++off;
     EXPECT_LE(off, 10 + 10); // 100 ms after the first silent tick
 }
 

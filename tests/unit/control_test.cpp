@@ -11,7 +11,7 @@ namespace {
 sensor_frame_t frame_at(uint32_t tick, int32_t pulses) {
     sensor_frame_t frame = {};
     frame.tick = tick;
-    frame.present = 0xfffu;
+    frame.present = FRAME_ALL;
     frame.battery_count = 1800;
     frame.radar_samples = 5;
     for (int n = 0; n < 5; ++n) {
@@ -84,7 +84,7 @@ TEST(Control, an_unknown_mode_stops) {
     command_t command = {};
     command.mode = static_cast<control_mode_t>(MODE_COUNT);
     const sensor_frame_t frame = frame_at(0, 0);
-    EXPECT_FALSE(control_step(&config, &state, &command, &frame).actuator.motor_enable);
+    EXPECT_NE(control_step(&config, &state, &command, &frame).actuator.drive, DRIVE_ON);
 }
 
 // 20,000 ticks of frames and commands made of random bits: every output bounded, nothing undefined (preset dev runs it under UBSan).
@@ -134,7 +134,7 @@ TEST(Control, is_bounded_for_arbitrary_frames_and_commands) {
             ASSERT_LE(std::abs(trace.actuator.duty_q15[i]), 32767);
             ASSERT_LE(std::fabs(trace.wheel[i].slip), 1.0f);
             ASSERT_TRUE(std::isfinite(trace.wheel[i].traction_N));
-            ASSERT_TRUE(trace.actuator.motor_enable || trace.actuator.duty_q15[i] == 0);
+            ASSERT_TRUE(trace.actuator.drive == DRIVE_ON || trace.actuator.duty_q15[i] == 0);
         }
     }
 }

@@ -92,7 +92,7 @@ static ground_speed_config_t ground_speed_default() {
 static safety_config_t safety_default() {
     const safety_config_t safety = {
         .tick_s = tick_s,
-        .required = 0xfffu,
+        .required = 0x1fffu,
         .patience_ticks = 7,          // off in the 8th bad tick: 80 ms, inside the 100 ms asked for
         .command_patience_ticks = 8,  // 80 ms
         .missed_ticks_max = 5,        // 50 ms

@@ -23,14 +23,14 @@ class DrivingRover : public ::testing::Test {
         for (float &speed : command.wheel_speed_rad_s) {
             speed = 3;
         }
-        frame.present = 0xfffu;
+        frame.present = FRAME_ALL;
         frame.battery_count = 1800;
         for (auto &count : frame.current_count) {
             count = 2048 + 150;
         }
         run(100);
         ASSERT_EQ(trace.faults, 0u);
-        ASSERT_TRUE(trace.actuator.motor_enable);
+        ASSERT_EQ(trace.actuator.drive, DRIVE_ON);
         ASSERT_NE(trace.actuator.duty_q15[0], 0);
     }
     // A change of the frame made before run() lasts.
@@ -53,7 +53,7 @@ class DrivingRover : public ::testing::Test {
     int ticks_until_off(int most) {
         for (int i = 1; i <= most; ++i) {
             run(1);
-            if (!trace.actuator.motor_enable) {
+            if (trace.actuator.drive != DRIVE_ON) {
                 for (const int16_t duty : trace.actuator.duty_q15) {
                     EXPECT_EQ(duty, 0);
                 }
@@ -79,13 +79,13 @@ TEST_F(DrivingRover, emergency_stop_stays_latched_until_stop_is_commanded_withou
     run(1);
     frame.emergency_stop = false;
     run(500);
-    EXPECT_FALSE(trace.actuator.motor_enable);
+    EXPECT_NE(trace.actuator.drive, DRIVE_ON);
     command.mode = MODE_STOP;
     run(1);
     EXPECT_EQ(trace.faults, 0u);
     command.mode = MODE_WHEEL_SPEED;
     run(1);
-    EXPECT_TRUE(trace.actuator.motor_enable);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_ON);
 }
 
 struct Loss {
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Safety, Losing,
 TEST_F(DrivingRover, one_silent_tick_of_every_sensor_is_forgiven) {
     frame.present = 0;
     run(1);
-    frame.present = 0xfffu;
+    frame.present = FRAME_ALL;
     run(50);
     EXPECT_EQ(trace.faults, 0u);
 }
@@ -137,7 +137,7 @@ TEST_F(DrivingRover, an_old_command_releases_the_motors_within_100_ms) {
         command.age_ticks = age;
         run(1);
     }
-    EXPECT_FALSE(trace.actuator.motor_enable);
+    EXPECT_NE(trace.actuator.drive, DRIVE_ON);
     EXPECT_EQ(trace.faults, FAULT_COMMAND_TIMEOUT);
 }
 
@@ -152,7 +152,7 @@ TEST_F(DrivingRover, missed_ticks_release_the_motors_and_a_single_one_does_not) 
     tick += 11;
     run(1);
     EXPECT_EQ(trace.faults, FAULT_MISSED_TICKS);
-    EXPECT_FALSE(trace.actuator.motor_enable);
+    EXPECT_NE(trace.actuator.drive, DRIVE_ON);
 }
 
 TEST_F(DrivingRover, a_clock_that_stands_still_releases_the_motors) {
@@ -180,7 +180,7 @@ TEST_F(DrivingRover, over_current_limits_that_wheel_alone_after_its_i2t) {
     EXPECT_EQ(trace.faults, 0u);
     run(15);
     EXPECT_EQ(trace.faults, FAULT_OVER_CURRENT);
-    EXPECT_TRUE(trace.actuator.motor_enable);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_ON);
     command.mode = MODE_OPEN_LOOP;
     for (float &duty : command.duty) {
         duty = 1;
@@ -199,7 +199,7 @@ TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second) {
     EXPECT_EQ(trace.faults, 0u);
     run(5);
     EXPECT_EQ(trace.faults, FAULT_STALL);
-    EXPECT_TRUE(trace.actuator.motor_enable);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_ON);
     EXPECT_LE(trace.wheel[0].duty, 1.5f * 3.24f / 7.2f + 1e-3f);
 }
 
@@ -211,7 +211,7 @@ TEST_F(DrivingRover, an_overheated_winding_releases_the_motors) {
     EXPECT_EQ(trace.faults & FAULT_OVER_TEMPERATURE, 0u);
     run(500);
     EXPECT_NE(trace.faults & FAULT_OVER_TEMPERATURE, 0u);
-    EXPECT_FALSE(trace.actuator.motor_enable);
+    EXPECT_NE(trace.actuator.drive, DRIVE_ON);
 }
 
 TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motors) {
@@ -228,7 +228,7 @@ TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motor
         run(1);
     }
     EXPECT_EQ(trace.faults, FAULT_SPEED_DISAGREE);
-    EXPECT_FALSE(trace.actuator.motor_enable);
+    EXPECT_NE(trace.actuator.drive, DRIVE_ON);
 }
 
 TEST_F(DrivingRover, a_radar_that_repeats_one_value_while_the_wheels_turn_is_lost) {
@@ -288,6 +288,73 @@ TEST_F(DrivingRover, a_radar_may_repeat_itself_while_one_wheel_hardly_turns) {
         run(130);
         EXPECT_EQ(trace.faults & FAULT_RADAR_LOST, 0u) << wheel;
     }
+}
+
+TEST_F(DrivingRover, an_emergency_stop_that_nobody_reads_counts_as_pressed) {
+    frame.present = FRAME_ALL & ~static_cast<uint32_t>(FRAME_EMERGENCY_STOP);
+    run(7); // the patience: the 8th unread tick is one too many
+    EXPECT_EQ(trace.faults, 0u);
+    run(1);
+    EXPECT_EQ(trace.faults, static_cast<uint32_t>(FAULT_EMERGENCY_STOP));
+    EXPECT_EQ(trace.actuator.drive, DRIVE_BRAKE);
+}
+
+TEST_F(DrivingRover, a_rover_without_that_line_drives) {
+    config.safety.required &= ~static_cast<uint32_t>(FRAME_EMERGENCY_STOP);
+    frame.present = FRAME_ALL & ~static_cast<uint32_t>(FRAME_EMERGENCY_STOP);
+    run(100);
+    EXPECT_EQ(trace.faults, 0u);
+}
+
+TEST_F(DrivingRover, a_bridge_that_falls_silent_or_complains_is_named_with_its_wheel) {
+    run(10);
+    frame.present = FRAME_ALL & ~(static_cast<uint32_t>(FRAME_BRIDGE_0) << 2u);
+    run(7);
+    EXPECT_EQ(trace.faults, 0u);
+    run(1);
+    EXPECT_EQ(trace.faults, static_cast<uint32_t>(FAULT_BRIDGE));
+    EXPECT_EQ(trace.fault_wheels, 4u);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_BRAKE);
+    command.mode = MODE_STOP;
+    frame.present = FRAME_ALL;
+    run(1);
+    EXPECT_EQ(trace.faults, 0u);
+    EXPECT_EQ(trace.fault_wheels, 0u);
+    frame.bridge_status[1] = BRIDGE_OVER_TEMPERATURE;
+    command.mode = MODE_WHEEL_SPEED;
+    run(8);
+    EXPECT_EQ(trace.faults, static_cast<uint32_t>(FAULT_BRIDGE));
+    EXPECT_EQ(trace.fault_wheels, 2u);
+}
+
+TEST_F(DrivingRover, bridges_that_never_spoke_are_not_missed) {
+    control_reset(&config, &state);
+    frame.present = FRAME_ALL & ~(0xfu * static_cast<uint32_t>(FRAME_BRIDGE_0));
+    run(100);
+    EXPECT_EQ(trace.faults & FAULT_BRIDGE, 0u);
+}
+
+TEST_F(DrivingRover, what_a_fault_stopped_stays_braked_until_something_drives_again) {
+    frame.emergency_stop = true;
+    run(1);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_BRAKE);
+    frame.emergency_stop = false;
+    command.mode = MODE_STOP;
+    run(1);
+    EXPECT_EQ(trace.faults, 0u); // the latch is cleared, but on a slope the rover would roll away
+    EXPECT_EQ(trace.actuator.drive, DRIVE_BRAKE);
+    command.mode = MODE_WHEEL_SPEED;
+    run(1);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_ON);
+    command.mode = MODE_STOP;
+    run(1);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_COAST); // a stop that was only asked for lets the wheels turn
+}
+
+TEST_F(DrivingRover, every_actuator_frame_has_a_number_of_its_own) {
+    const uint32_t first = trace.actuator.sequence;
+    run(5);
+    EXPECT_EQ(trace.actuator.sequence, first + 5u);
 }
 
 TEST_F(DrivingRover, the_lamp_is_lit_while_a_fault_is_latched) {
