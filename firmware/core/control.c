@@ -36,10 +36,14 @@ static float rim_hint_m_s(const control_config_t *config, const sense_output_t *
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
                                             const sensor_frame_t *frame, trace_t *trace)
 {
-    doppler_output_t doppler = {0};
-    if ((sense->usable & FRAME_RADAR) != 0u) {
-        const int32_t count = frame->radar_samples < RADAR_SAMPLES_PER_TICK_MAX ? frame->radar_samples : RADAR_SAMPLES_PER_TICK_MAX;
-        doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, count);
+    const bool radar = (sense->usable & FRAME_RADAR) != 0u;
+    const int32_t most = frame->radar_samples < RADAR_SAMPLES_PER_TICK_MAX ? frame->radar_samples : RADAR_SAMPLES_PER_TICK_MAX;
+    const doppler_arrival_t arrival = {frame->radar_sequence, sense->elapsed_ticks, radar ? most : 0};
+    const int32_t missing = doppler_missing(&config->doppler, &state->doppler, &arrival);
+    doppler_gap(&config->doppler, &state->doppler, missing, frame->radar_count[0]);
+    const doppler_output_t doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
+    if (doppler.fresh) {
+        state->beyond = !doppler.beyond ? 0 : state->beyond + (state->beyond < 2 ? 1 : 0);
     }
     if (doppler.fresh) {
         state->doppler_m_s = doppler.speed_m_s;
@@ -54,6 +58,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_trust = doppler.trust,
         .doppler_dead = doppler.dead,
         .wheel_m_s = rim_hint_m_s(config, sense),
+        .elapsed_ticks = sense->elapsed_ticks,
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
     trace->radar_speed_m_s = state->doppler_m_s;
@@ -205,6 +210,7 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
         .absurd = estimate->sense->absurd,
         .battery_V = estimate->sense->battery_V,
         .ground_speed_m_s = estimate->speed_m_s,
+        .estimator = state->beyond >= 2 ? (uint32_t)FAULT_SPEED_BEYOND : 0u,
     };
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const float turn = fabsf(estimate->sense->speed_rad_s[i]);

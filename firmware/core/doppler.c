@@ -20,7 +20,6 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 
 // --- (2)
 
-static const uint64_t dead_power = 12288u * 64u / 10u; // a tenth of a count^2 in the band, assumed: rounding to whole counts alone makes 0.03
 enum { MADE_MAX = 80, RAILED_MAX = 128 };              // of 320 samples: a quarter, and two fifths (assumed)
 
 enum { COARSE = 4, POWER_SUM_MAX = 128 * 256 + DOPPLER_BINS_MAX * 256 };
@@ -106,7 +105,7 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, uin
 // exp(x) for |x| <= 0.05: error below 3e-7.
 static float exp_small(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
 
-static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white)
+static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white, bool *top)
 {
     int32_t best = 0;
     int32_t least = INT32_MAX;
@@ -132,6 +131,7 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
         fine = around[j] < around[fine] ? j : fine;
     }
     *white = around[fine] >= total * beam->quiet[low + fine];
+    *top = low + fine == beam->speeds - 1;
     float offset = 0.0f;
     if (fine > 0 && fine < 2 * COARSE && around[fine - 1] != INT32_MAX && around[fine + 1] != INT32_MAX) {
         const float left = (float)around[fine - 1] - (float)around[fine];
@@ -152,6 +152,7 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     int16_t reduced[DOPPLER_BINS_MAX] __attribute__((aligned(8)));
     uint64_t energy = 0;
     bool white = false;
+    bool top = false;
     out->fresh = true;
     out->trust = 1.0f;
     if (config->method == DOPPLER_ARGMAX) {
@@ -162,12 +163,12 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     }
     const outside_t outside = look_outside(config->beam, state->power);
     const int32_t total = reduce(config->beam, state->power, (uint64_t)outside.spare << 28, reduced, &energy);
-    const float speed_m_s = likelihood_speed(config->beam, reduced, total, &white);
+    const float speed_m_s = likelihood_speed(config->beam, reduced, total, &white, &top);
     const bool noise = outside.known && outside.in < 2u * outside.spare;
     out->speed_m_s = config->scale * speed_m_s;
-    out->beyond = is_beyond(&outside);
-    out->quiet = !out->beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
-    out->dead = out->quiet && energy < dead_power;
+    const bool beyond = is_beyond(&outside);
+    out->quiet = !beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->beyond = beyond || (top && !out->quiet);
     if (outside.known && !out->quiet && outside.in > outside.spare) {
         const float share = (float)outside.spare / (float)(outside.in - outside.spare);
         out->trust = 1.0f + noise_trust * share;
@@ -226,6 +227,23 @@ static void transform_early(doppler_state_t *state, int32_t late_samples)
     transform(state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
 }
 
+// Noise of 1 count rms spans 5 counts in 64 samples, of 0.3 counts 2: below that the converter hears nothing that is alive (assumed).
+enum { DEAD_SPAN = 3 * DOPPLER_GAIN, DEAD_BLOCKS = 2 };
+
+static void watch_span(doppler_state_t *state, int16_t value)
+{
+    if (state->in_block == 0) {
+        state->low = value;
+        state->high = value;
+    }
+    state->low = value < state->low ? value : state->low;
+    state->high = value > state->high ? value : state->high;
+    if (state->in_block == DOPPLER_BLOCK - 1) {
+        const bool dead = state->high - state->low <= DEAD_SPAN;
+        state->dead_blocks = !dead ? 0 : state->dead_blocks + (state->dead_blocks < DEAD_BLOCKS ? 1 : 0);
+    }
+}
+
 // One sample into the window; `late_samples` more follow in this call.
 static void take(const doppler_config_t *config, doppler_state_t *state, int16_t value, bool made, bool railed, int32_t late_samples)
 {
@@ -235,6 +253,7 @@ static void take(const doppler_config_t *config, doppler_state_t *state, int16_t
         state->made[state->block] = 0;
         state->railed[state->block] = 0;
     }
+    watch_span(state, value);
     state->in_block++;
     state->made[state->block] += made ? 1 : 0;
     state->railed[state->block] += railed ? 1 : 0;
@@ -262,20 +281,63 @@ static int16_t value_of(const doppler_config_t *config, uint16_t sample)
     return (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
 }
 
+static void empty(doppler_state_t *state)
+{
+    const doppler_state_t zero = {0};
+    const uint32_t next = state->next_sequence;
+    *state = zero;
+    state->next_sequence = next;
+    state->started = true;
+}
+
+enum { OWED_MAX = 32 * 256, OWED_LEAST = 640, FORGET_BITS = 9 }; // Q8: 32 samples, 2.5 samples; 512 ticks: 1.2 % off the rate owes 32 samples
+
+int32_t doppler_missing(const doppler_config_t *config, doppler_state_t *state, const doppler_arrival_t *arrival)
+{
+    const int32_t count = arrival->count < 0 ? 0 : arrival->count > DOPPLER_SAMPLES_MAX ? DOPPLER_SAMPLES_MAX : arrival->count;
+    const int32_t ticks = arrival->elapsed_ticks < 1000u ? (int32_t)arrival->elapsed_ticks : 1000;
+    state->owed_q8 += ticks * config->per_tick_q8 - count * 256;
+    state->owed_q8 -= state->owed_q8 / (1 << FORGET_BITS);
+    state->owed_q8 = state->owed_q8 > 8 * OWED_MAX ? 8 * OWED_MAX : state->owed_q8 < -8 * OWED_MAX ? -8 * OWED_MAX : state->owed_q8;
+    if (count == 0) {
+        return 0;
+    }
+    const bool numbered = arrival->sequence != 0u;
+    const uint32_t gap = arrival->sequence - state->next_sequence;
+    int32_t missing = 0;
+    if (!state->started) {
+        state->owed_q8 = 0;
+    } else if (numbered) {
+        missing = gap > (uint32_t)DOPPLER_GAP_MAX ? DOPPLER_GAP_MAX + 1 : (int32_t)gap;
+    } else if (state->owed_q8 >= OWED_LEAST) {
+        missing = state->owed_q8 / 256;
+    }
+    state->owed_q8 = missing > DOPPLER_GAP_MAX ? 0 : state->owed_q8 - missing * 256;
+    state->next_sequence = arrival->sequence + (uint32_t)count;
+    state->started = true;
+    return missing;
+}
+
 void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t missing, uint16_t next)
 {
     if (missing <= 0) {
         return;
     }
     if (missing > DOPPLER_GAP_MAX || (state->filled == 0 && !state->full)) {
-        const doppler_state_t zero = {0};
-        *state = zero;
+        empty(state);
         return;
     }
+    const bool pending = state->pending;
     const int32_t from = state->last;
     const int32_t change = value_of(config, next) - from;
+    state->pending = false;
     for (int32_t j = 1; j <= missing; j++) {
         take(config, state, (int16_t)(from + change * j / (missing + 1)), true, false, missing - j);
+    }
+    state->hold = state->pending;
+    if (pending && !state->pending) {
+        state->pending = true;
+        state->late_samples += missing;
     }
 }
 
@@ -291,7 +353,10 @@ static int32_t total_of(const int32_t *block)
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
 {
     doppler_output_t out = {0};
-    if (state->pending) {
+    if (state->hold) { // no tick pays for a transform and a search
+        state->hold = false;
+        state->late_samples += count > 0 ? count : 0;
+    } else if (state->pending) {
         const int32_t made = total_of(state->made);
         const int32_t railed = total_of(state->railed);
         measure(config, state, &out);
@@ -300,7 +365,8 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
             out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
         }
         out.trust += made_trust * (float)made + railed_trust * (float)railed;
-        out.spoilt = made > MADE_MAX || railed > RAILED_MAX;
+        const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
+        out.spoilt = made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->pending = false;
     }
@@ -308,5 +374,6 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         const bool railed = sample[i] == 0u || (int32_t)sample[i] >= config->max_count;
         take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
     }
+    out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;
 }

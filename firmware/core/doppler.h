@@ -26,7 +26,7 @@ enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
 
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
-enum { DOPPLER_WINDOW_TICKS_MAX = 64, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32 };
+enum { DOPPLER_WINDOW_TICKS_MAX = 64, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32, DOPPLER_SAMPLES_MAX = 64 };
 
 // Which past a Doppler value tells of: the weight of each tick in the window's mean, newest first.
 typedef struct {
@@ -61,6 +61,7 @@ typedef struct {
     int32_t hop;                 // samples between values, 1..256
     float scale;                 // calibrated speed over geometric speed [1]
     int32_t max_count;           // the converter's rail
+    int32_t per_tick_q8;         // samples per tick, by the template's rate
     uint32_t quiet_power_count2; // variance of the band below which there is no echo [ADC count^2]
 } doppler_config_t;
 
@@ -79,6 +80,12 @@ typedef struct {
     int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
     int32_t block, in_block;                              // the block that is being filled, and how much of it is
     int16_t last;                                         // newest sample
+    int16_t low, high;                                    // of the block
+    int32_t dead_blocks;                                  // blocks in a row without any noise
+    uint32_t next_sequence;                               // of the sample after the newest one
+    int32_t owed_q8;                                      // samples that the clock says should have come, less those that came
+    bool started;
+    bool hold;                                            // that window was filled by doppler_gap in this tick
     bool pending;                                         // its speed is not made yet
     bool halved;               // that window is `twice`: it reads half the speed
     bool full;                 // the window has been filled once
@@ -87,7 +94,7 @@ typedef struct {
 typedef struct {
     bool fresh;           // a value was made in this call
     bool quiet;           // no echo above the noise: the speed means nothing
-    bool dead;            // quiet, and quieter than any front end that is alive
+    bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
     bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
     bool spoilt;          // too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
@@ -96,6 +103,15 @@ typedef struct {
 } doppler_output_t;
 
 // The transform runs in the call that fills the window, the search for the speed in the next one, so that no tick pays for both.
+// Which samples this is, before doppler_step: how many of the converter's were lost before the `count` that `sequence` numbers, told by their numbers
+// or, where a HAL does not number them (sequence 0), by the clock. To be called in every tick, with count 0 where there is none.
+typedef struct {
+    uint32_t sequence;      // of sample[0]
+    uint32_t elapsed_ticks; // since the call before
+    int32_t count;
+} doppler_arrival_t;
+int32_t doppler_missing(const doppler_config_t *config, doppler_state_t *state, const doppler_arrival_t *arrival);
+
 // Fills a gap of `missing` samples before `next`, in a straight line; a gap longer than DOPPLER_GAP_MAX empties the window.
 void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t missing, uint16_t next);
 

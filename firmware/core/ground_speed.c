@@ -519,19 +519,31 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
     }
 }
 
+enum { MISSED_MAX = 16 }; // ticks; longer gaps are for safety
+
+static void tick(const ground_speed_config_t *config, ground_speed_state_t *state, float accel, float noise)
+{
+    integrate(config, state, accel);
+    state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
+    state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
+    ground_speed_track_t track = best_of(state);
+    move(config, &track, accel * config->tick_s, config->tick_s, noise, config->bias_noise_m2_s4);
+    keep_best(state, &track);
+}
+
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
-    integrate(config, state, accel);
-    state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
-    state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
-    ground_speed_track_t track = best_of(state);
-    move(config, &track, accel * config->tick_s, config->tick_s, input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2,
-         config->bias_noise_m2_s4);
-    keep_best(state, &track);
+    const float noise = input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2;
+    uint32_t missed = input->elapsed_ticks > 1u ? input->elapsed_ticks - 1u : 0u;
+    missed = missed < MISSED_MAX ? missed : MISSED_MAX;
+    for (uint32_t i = 0; i < missed; i++) { // nothing is known of their acceleration: the newest one stands for them
+        tick(config, state, accel, config->blind_noise_m2_s2);
+    }
+    tick(config, state, accel, noise);
     if (config->method == GROUND_SPEED_PAPER) {
         state->standstill = false;
         if (fresh) {

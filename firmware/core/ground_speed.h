@@ -118,10 +118,11 @@ typedef struct {
     float doppler_late_s; // age of the window's end; negative for a shorter window
     float doppler_trust;  // how much larger its variance is than a calm echo's [1]; 0 counts as 1
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
+    uint32_t elapsed_ticks; // since the call before; 0 counts as 1
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;
-    bool doppler_dead; // quiet, and quieter than a front end that is alive
+    bool doppler_dead; // the front end makes no noise at all
 } ground_speed_input_t;
 
 typedef struct {

@@ -62,6 +62,7 @@ static void build_doppler(const rover_parameters_t *parameters, doppler_config_t
     doppler->method = DOPPLER_LIKELIHOOD;
     doppler->offset_count = whole(parameters->value[ROVER_radar_offset_count]);
     doppler->max_count = whole(parameters->value[ROVER_radar_max_count]);
+    doppler->per_tick_q8 = whole(doppler->beam->sample_rate_Hz * tick_s * 256.0f);
     doppler->hop = 64;
     doppler->scale = parameters->value[ROVER_doppler_scale];
     doppler->quiet_power_count2 = (uint32_t)whole(fixed_clamp(parameters->value[ROVER_radar_quiet_count2], 0.0f, 65535.0f));
@@ -89,7 +90,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
         .agile_m2_s4 = 0.25f, // [m^2/s^4] (0.5 m/s^2)^2: 3 deg of slope within 0.125 s, assumed
-        .agile_limit = 8.0f,  // exp(4) to one
+        .agile_limit = 14.0f, // exp(7) to one
         .agile_values = 4,    // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,

@@ -154,6 +154,7 @@ safety_output_t safety_step(const safety_config_t *config, safety_state_t *state
     state->turn = (state->turn + 1u) % WHEEL_COUNT;
     now |= check_battery(config, state, input);
     now |= check_agreement(config, state, input);
+    now |= input->estimator;
 
     state->faults = input->command_stop ? now : (state->faults | now);
     state->limited = input->command_stop ? limit : (state->limited | limit);

@@ -79,6 +79,7 @@ typedef struct {
     float current_A[WHEEL_COUNT];
     float battery_V;
     float ground_speed_m_s;
+    uint32_t estimator; // FAULT_* bits that the estimator raises
     float rim_max_m_s; // largest |R w| of the wheels
     float rim_min_m_s; // smallest |R w|
 } safety_input_t;

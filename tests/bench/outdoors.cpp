@@ -140,7 +140,12 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         const bool radar_lost = luck.uniform() < now.lost_ticks_share;
         sensor_frame_t frame = {};
         frame.tick = tick;
-        frame.present = 0xfffu;
+        frame.present = FRAME_ALL & ~static_cast<std::uint32_t>(FRAME_ACCEL_YZ | FRAME_GYRO_XY);
+        if (waiting.empty()) {
+            frame.present &= ~static_cast<std::uint32_t>(FRAME_RADAR);
+        }
+        frame.elapsed_ticks = static_cast<std::uint32_t>(since);
+        frame.time_us = 1000000u + tick * 10000u;
         for (int i = 0; i < WHEEL_COUNT; ++i) {
             frame.encoder_count[i] = static_cast<std::int32_t>(std::floor(angle * 6000 / (2 * pi)));
             const double current = now.closed ? rover.current : 0.3;
@@ -148,18 +153,21 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         }
         frame.battery_count = 1800;
         frame.accel_x_count = static_cast<std::int16_t>(std::floor(accel / 0.004 + 0.5));
-#ifdef OUTDOORS_NEW_FRAME
-        frame.time_us = 1000000u + static_cast<std::uint32_t>(tick * 10000u);
-#endif
         (void)heave_accel;
         if (radar_lost) {
             waiting.clear(), number.clear();
         }
+        std::size_t hole = 0; // a frame's samples are consecutive: what lies before a hole inside it is lost, too
+        for (std::size_t i = 1; now.sequence && i < number.size(); ++i) {
+            hole = number[i] != number[i - 1] + 1 ? i : hole;
+        }
+        waiting.erase(waiting.begin(), waiting.begin() + static_cast<long>(hole)), number.erase(number.begin(), number.begin() + static_cast<long>(hole));
         const std::size_t most = sizeof frame.radar_count / sizeof frame.radar_count[0];
         if (waiting.size() > most) {
             waiting.erase(waiting.begin(), waiting.end() - static_cast<long>(most));
             number.erase(number.begin(), number.end() - static_cast<long>(most));
         }
+        frame.radar_sequence = now.sequence && !number.empty() ? number[0] : 0;
         std::copy(waiting.begin(), waiting.end(), frame.radar_count);
         frame.radar_samples = static_cast<std::uint8_t>(waiting.size());
         waiting.clear(), number.clear();
