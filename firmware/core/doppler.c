@@ -42,36 +42,33 @@ static uint32_t mean_power(const uint64_t *power, int32_t from, int32_t to)
     return sum / (uint32_t)(to - from);
 }
 
-enum { SPARE_FROM = 96, BESIDE_LEAST = 32 };
+enum { SPARE_FROM = 96, BESIDE_LEAST = 32, LOUD = 400 }; // LOUD: 4 ADC count^2 of white noise, assumed
 
 // What lies outside the template's bins: white noise, or an echo that is faster than they hold.
 typedef struct {
     uint32_t in;     // mean power per bin of the band
     uint32_t beside; // between the band and SPARE_FROM
-    uint32_t spare;  // from there on: the noise
+    uint32_t spare;  // from there on
+    uint32_t noise;  // of both: the noise, unless an echo is there
     bool known;      // the band leaves room for them
+    bool beyond;     // an echo is there
 } outside_t;
 
+// A mean over 32 bins of noise spreads by a quarter, so three times another one is no chance.
 static outside_t look_outside(const doppler_template_t *beam, const uint64_t *power)
 {
     const int32_t end = beam->first_bin + beam->bins;
-    outside_t out = {0, 0, 0, end + BESIDE_LEAST <= SPARE_FROM};
+    outside_t out = {0};
+    out.known = end + BESIDE_LEAST <= SPARE_FROM;
     if (out.known) {
         out.in = mean_power(power, beam->first_bin, end);
         out.beside = mean_power(power, end, SPARE_FROM);
         out.spare = mean_power(power, SPARE_FROM, FFT_BINS);
+        out.noise = (out.beside + out.spare) / 2u;
+        const bool fast = out.beside > 3u * out.spare && 5u * (out.beside - out.spare) > out.in;
+        out.beyond = out.beside > LOUD && (fast || out.beside > 3u * out.in || out.spare > 3u * out.in);
     }
     return out;
-}
-
-// More than a sixth of the echo's power per bin beside the band, or more than in it beyond that.
-static bool is_beyond(const outside_t *outside)
-{
-    const uint32_t noise = outside->spare;
-    const bool fast = outside->beside > 2u * noise && outside->in > noise && 5u * (outside->beside - noise) > outside->in - noise;
-    const bool faster = outside->beside > 3u * outside->in && outside->beside > 200u;
-    const bool fastest = noise > 3u * outside->in && noise > 200u;
-    return outside->known && (fast || faster || fastest);
 }
 
 // Powers of the template's bins, less twice the noise (which leaves 0.14 of it), reduced so that each has at most 15 bits and their sum 16; returns the
@@ -161,16 +158,16 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
         out->quiet = energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
         return;
     }
-    const outside_t outside = look_outside(config->beam, state->power);
-    const int32_t total = reduce(config->beam, state->power, (uint64_t)outside.spare << 28, reduced, &energy);
+    const outside_t none = {0};
+    const outside_t outside = state->halved ? none : look_outside(config->beam, state->power); // twice each sample: images up there
+    const int32_t total = reduce(config->beam, state->power, (uint64_t)(outside.beyond ? 0u : outside.noise) << 28, reduced, &energy);
     const float speed_m_s = likelihood_speed(config->beam, reduced, total, &white, &top);
-    const bool noise = outside.known && outside.in < 2u * outside.spare;
+    const bool noise = outside.known && outside.in < 2u * outside.noise;
     out->speed_m_s = config->scale * speed_m_s;
-    const bool beyond = is_beyond(&outside);
-    out->quiet = !beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
-    out->beyond = beyond || (top && !out->quiet);
-    if (outside.known && !out->quiet && outside.in > outside.spare) {
-        const float share = (float)outside.spare / (float)(outside.in - outside.spare);
+    out->quiet = !outside.beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->beyond = outside.beyond || (top && !out->quiet && outside.in > 3u * outside.noise);
+    if (outside.known && !out->quiet && outside.in > outside.noise) {
+        const float share = (float)outside.noise / (float)(outside.in - outside.noise);
         out->trust = 1.0f + noise_trust * share;
     }
 }

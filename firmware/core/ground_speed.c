@@ -339,8 +339,6 @@ static void update_other(const ground_speed_config_t *config, ground_speed_state
 
 // (7), two ticks later. Its state is that of the window's middle, [v + tau b - change, b], which Doppler values see alone: a bias that jumps
 // within the window enters it as the window does.
-static const float most_told_of_slope = 7.0f;
-
 static ground_speed_track_t to_middle(const ground_speed_track_t *track, float tau, float change_m_s)
 {
     const ground_speed_track_t out = {
@@ -407,8 +405,9 @@ static void update_agile(const ground_speed_config_t *config, ground_speed_state
     ground_speed_track_t mirrored = *at;
     const float cost = square(innovation) / spread + ln_rough(spread);
     correct(config, at, innovation, 0.0f, state->value_noise_m2_s2);
-    state->agile_sum = fixed_clamp(state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, most_told_of_slope), 0.0f, 1000.0f);
-    if (state->agile_sum > config->agile_limit) {
+    state->agile_sum = fixed_clamp(state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, config->agile_most) - config->agile_drift, 0.0f, 1000.0f);
+    const bool apart = fabsf(state->apart_m_s) > config->apart_told_m_s;
+    if (state->agile_sum > (apart ? config->agile_sure : config->agile_limit)) {
         take_agile(config, state, at);
         state->other_alive = fabsf(odds) < config->sign_sure;
         if (state->other_alive) {
@@ -473,6 +472,15 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     }
 }
 
+// (10)
+static void watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float accel, float wheel_m_s, float ticks)
+{
+    const float wheel = fixed_clamp(fixed_finite(wheel_m_s), -speed_max_m_s, speed_max_m_s);
+    const float change = (accel - state->bias_m_s2) * config->tick_s * ticks - (wheel - state->wheel_m_s);
+    state->apart_m_s = config->apart_keep * fixed_clamp(state->apart_m_s + change, -speed_max_m_s, speed_max_m_s);
+    state->wheel_m_s = wheel;
+}
+
 enum { STD_EVERY = 8 };
 
 static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -480,7 +488,9 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
     const float unseen =
         config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
-    const float variance = state->p_vv + unseen + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
+    const float apart = fixed_clamp(fabsf(state->apart_m_s) - config->apart_least_m_s, 0.0f, speed_max_m_s);
+    const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart * apart;
+    const float variance = state->p_vv + unseen + slope + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }
 
@@ -544,6 +554,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         tick(config, state, accel, config->blind_noise_m2_s2);
     }
     tick(config, state, accel, noise);
+    watch_wheels(config, state, accel, input->wheel_m_s, 1.0f + (float)missed);
     if (config->method == GROUND_SPEED_PAPER) {
         state->standstill = false;
         if (fresh) {

@@ -7,14 +7,16 @@
 //   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
 //   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
 //   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
-//   L = max(0, L + min(c_best - c_agile, 7)), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may jump: a steep slope
+//   L = max(0, L + min(c_best - c_agile, most) - drift), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may jump: a steep slope
 //   R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more than they should
 //   sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9)
+//   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += (share X)^2                        (10)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
 // (7): the cumulative sum of Page for a change from one model to another. (9): a mixer tells |v| alone. Where one sign is not far more
 // likely than the other, both are followed, each with its own [v, b], until the values tell (derived here; docs/firmware.md).
+// (10): what the accelerometer lets the speed change and the wheels do not, within what no Doppler value tells yet, is slip or a slope.
 // (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
@@ -52,6 +54,13 @@ typedef struct {
     float jump_m2_s4;              // by how much its variance grows then
     float agile_m2_s4;             // by how much the bias's variance grows per value of (7)
     float agile_limit;             // of (7)
+    float agile_sure;              // of (7), where (10) tells of a slope, too
+    float apart_told_m_s;          // |X| beyond which it does
+    float agile_drift;             // what every value must tell more than
+    float agile_most;              // what one value tells at most
+    float apart_keep;              // of (10): 1 - T/0.25 s
+    float apart_share;             // of (10), squared
+    float apart_least_m_s;         // of (10): what slip and noise make
     int32_t agile_values;          // after which (7) starts from the best anew
     float misfit_share;            // c of (8)
     float misfit_max;              // limit of (8)
@@ -93,6 +102,8 @@ typedef struct {
     float integral_rest_m_s; // part of V below one unit
     float one_sided;         // m of (4)
     float misfit;            // of (8), 1 or more
+    float apart_m_s;         // X of (10)
+    float wheel_m_s;         // of the tick before
     int32_t refused;
     int32_t quiet;
     int32_t loud;

@@ -90,7 +90,14 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
         .agile_m2_s4 = 0.25f, // [m^2/s^4] (0.5 m/s^2)^2: 3 deg of slope within 0.125 s, assumed
-        .agile_limit = 14.0f, // exp(7) to one
+        .agile_limit = 20.0f, // exp(10) to one
+        .agile_sure = 5.0f,
+        .agile_drift = 0.0f,
+        .agile_most = 10.0f,
+        .apart_told_m_s = 0.06f,
+        .apart_keep = 0.96f,
+        .apart_share = 0.5f,
+        .apart_least_m_s = 0.03f,
         .agile_values = 4,    // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
