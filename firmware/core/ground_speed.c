@@ -226,7 +226,7 @@ static float ln_rough(float x) { return (float)((int32_t)fixed_bits(x) - 0x3f800
 static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
 {
     const window_t window = look_back(config->window, state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
-    const float measured = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
+    const float heard = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
     ground_speed_track_t track = best_of(state);
     const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
@@ -239,8 +239,11 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
               : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
     const float trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit;
     const float accel2 = fixed_clamp(own_accel * own_accel - track.p_bb, 0.0f, 100.0f);
+    const float heard2 = heard * heard;
+    const float less2 = fixed_clamp(square(config->doppler_spread_s) * accel2, 0.0f, 0.5f * heard2);
+    const float measured = fixed_greater(less2, 0.0f) ? sqrtf(heard2 - less2) : heard; // (11)
     const float noise =
-        trust * shorter * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * measured) + config->doppler_accel_s2 * accel2;
+        trust * shorter * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2;
     float spread = spread_of(&track, window.tau_s) + noise;
     const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
     const float cost = square(nearest) / spread;

@@ -11,11 +11,13 @@
 //   R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more than they should
 //   sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9)
 //   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += (share X)^2                        (10)
+//   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration            (11)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
 // (7): the cumulative sum of Page for a change from one model to another. (9): a mixer tells |v| alone. Where one sign is not far more
 // likely than the other, both are followed, each with its own [v, b], until the values tell (derived here; docs/firmware.md).
+// (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean is 0.
 // (10): what the accelerometer lets the speed change and the wheels do not, within what no Doppler value tells yet, is slip or a slope.
 // (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
@@ -47,6 +49,7 @@ typedef struct {
     float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
     float doppler_noise_m_s;
     float doppler_accel_s2;
+    float doppler_spread_s;        // k of (11)
     float gate_sigma;              // innovations beyond this many sigma are refused
     int32_t gate_patience;         // refusals in a row after which (7) is believed
     float jump_share;              // c of (4)

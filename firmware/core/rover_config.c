@@ -83,13 +83,14 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
-        .doppler_accel_s2 = 0.0125f,
+        .doppler_accel_s2 = 0.004f,
+        .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
         .gate_patience = 4,
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
-        .agile_m2_s4 = 0.25f, // [m^2/s^4] (0.5 m/s^2)^2: 3 deg of slope within 0.125 s, assumed
+        .agile_m2_s4 = 1.0f, // [m^2/s^4] (1 m/s^2)^2: 6 deg of slope within 0.125 s, assumed
         .agile_limit = 20.0f, // exp(10) to one
         .agile_sure = 5.0f,
         .agile_drift = 0.0f,
@@ -109,7 +110,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .slow_m_s = 0.12f,
         .loud_needed = 3,
         .sign_sure = 18.0f,  // exp(9) to one
-        .wheel_odds = 4.0f,  // exp(2) to one, assumed
+        .wheel_odds = 2.0f,  // e to one, assumed
         .wheel_match = 14.0f,
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
