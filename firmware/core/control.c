@@ -27,6 +27,8 @@ static float feed_forward(const control_config_t *config, float reference_rad_s,
 
 // --- estimate
 
+enum { BEYOND_VALUES = 3 }; // in a row: a quarter of a second
+
 static float rim_hint_m_s(const control_config_t *config, const sense_output_t *sense)
 {
     const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
@@ -41,11 +43,11 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     const doppler_arrival_t arrival = {frame->radar_sequence, sense->elapsed_ticks, radar ? most : 0};
     const int32_t missing = doppler_missing(&config->doppler, &state->doppler, &arrival);
     doppler_gap(&config->doppler, &state->doppler, missing, frame->radar_count[0]);
-    const doppler_output_t doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
+    doppler_output_t doppler = state->heard;
+    doppler.late_samples += missing + arrival.count;
+    state->heard = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
     if (doppler.fresh) {
-        state->beyond = !doppler.beyond ? 0 : state->beyond + (state->beyond < 2 ? 1 : 0);
-    }
-    if (doppler.fresh) {
+        state->beyond = !doppler.beyond ? 0 : state->beyond + (state->beyond < BEYOND_VALUES ? 1 : 0);
         state->doppler_m_s = doppler.speed_m_s;
     }
     const ground_speed_input_t input = {
@@ -210,7 +212,7 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
         .absurd = estimate->sense->absurd,
         .battery_V = estimate->sense->battery_V,
         .ground_speed_m_s = estimate->speed_m_s,
-        .estimator = state->beyond >= 2 ? (uint32_t)FAULT_SPEED_BEYOND : 0u,
+        .estimator = state->beyond >= BEYOND_VALUES ? (uint32_t)FAULT_SPEED_BEYOND : 0u,
     };
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const float turn = fabsf(estimate->sense->speed_rad_s[i]);

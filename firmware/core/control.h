@@ -60,6 +60,7 @@ typedef struct {
     bool braking;            // a fault stopped the rover, and nothing has driven it since
     uint32_t sequence;       // of the actuator frame written in the last tick
     float doppler_m_s;       // last Doppler value
+    doppler_output_t heard;  // by the tick before: no tick pays for a search and a correction
     int32_t beyond;          // Doppler values in a row that told of more speed than the radar's band holds
 } control_state_t;
 

@@ -54,7 +54,7 @@ typedef struct {
     bool beyond;     // an echo is there
 } outside_t;
 
-// A mean over 32 bins of noise spreads by a quarter, so three times another one is no chance.
+// A mean over 32 bins of noise spreads by a quarter, so four times another one, three times in a row, is no chance.
 static outside_t look_outside(const doppler_template_t *beam, const uint64_t *power)
 {
     const int32_t end = beam->first_bin + beam->bins;
@@ -65,7 +65,7 @@ static outside_t look_outside(const doppler_template_t *beam, const uint64_t *po
         out.beside = mean_power(power, end, SPARE_FROM);
         out.spare = mean_power(power, SPARE_FROM, FFT_BINS);
         out.noise = (out.beside + out.spare) / 2u;
-        const bool fast = out.beside > 3u * out.spare && 5u * (out.beside - out.spare) > out.in;
+        const bool fast = out.beside > 4u * out.spare && 5u * (out.beside - out.spare) > out.in;
         out.beyond = out.beside > LOUD && (fast || out.beside > 3u * out.in || out.spare > 3u * out.in);
     }
     return out;

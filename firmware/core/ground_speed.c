@@ -101,13 +101,14 @@ static void watch_noise(const ground_speed_config_t *config, ground_speed_state_
     state->speed_noise_m2_s2 = fixed_clamp(state->accel_noise_m2_s2, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
 }
 
-// sum_j w_j (V(t) - V(t - s_j)) of (3).
-static float window_change_m_s(const doppler_window_t *window, const ground_speed_state_t *state)
+// sum_j w_j (V(t) - V(t - s_j)) of (3), t `ago` ticks before now.
+static float window_change_m_s(const doppler_window_t *window, const ground_speed_state_t *state, uint32_t ago)
 {
-    const int32_t now = state->integral_q20[state->head];
+    const uint32_t head = (uint32_t)state->head - ago;
+    const int32_t now = state->integral_q20[head % GROUND_SPEED_HISTORY];
     int32_t sum = 0; // Q19, each product truncated: 2^-20 m/s a tick at most
     for (uint32_t j = 0; j < (uint32_t)window->ticks; j++) {
-        const int32_t then = state->integral_q20[((uint32_t)state->head - j) % GROUND_SPEED_HISTORY];
+        const int32_t then = state->integral_q20[(head - j) % GROUND_SPEED_HISTORY];
         sum += fixed_mul_low(fixed_wrap_difference(now, then), (uint32_t)window->weight_q15[j]);
     }
     return (float)sum * (1.0f / 524288.0f);
@@ -152,15 +153,19 @@ typedef struct {
     float accel_m_s2; // mean raw acceleration over the window
 } window_t;
 
-static window_t look_back(const doppler_window_t *window, const ground_speed_state_t *state, float accel, float late_s)
+static window_t look_back(const ground_speed_config_t *config, const ground_speed_state_t *state, float late)
 {
-    const int32_t oldest = (state->head - (window->ticks - 1) + GROUND_SPEED_HISTORY) % GROUND_SPEED_HISTORY;
-    const float span = (float)fixed_wrap_difference(state->integral_q20[state->head], state->integral_q20[oldest]) * (1.0f / 1048576.0f);
-    const window_t out = {
-        .tau_s = window->tau_s + late_s,
-        .change_m_s = window_change_m_s(window, state) + accel * late_s,
-        .accel_m_s2 = span * window->per_s,
-    };
+    const doppler_window_t *window = config->window;
+    const float late_s = fixed_clamp(fixed_finite(late), -0.25f, 0.12f);
+    const int32_t ago = late_s > 0.0f ? (int32_t)(late_s * config->per_tick_1_s) : 0; // whole ticks between the window's end and now: 12 at most
+    const uint32_t head = (uint32_t)(state->head - ago);
+    const uint32_t oldest = head - (uint32_t)(window->ticks - 1);
+    const int32_t then = state->integral_q20[head % GROUND_SPEED_HISTORY];
+    const int32_t span = fixed_wrap_difference(then, state->integral_q20[oldest % GROUND_SPEED_HISTORY]);
+    const int32_t since = fixed_wrap_difference(state->integral_q20[state->head], then);
+    window_t out = {.tau_s = window->tau_s + late_s, .accel_m_s2 = (float)span * (1.0f / 1048576.0f) * window->per_s};
+    out.change_m_s = window_change_m_s(window, state, (uint32_t)ago) + (float)since * (1.0f / 1048576.0f) +
+                     out.accel_m_s2 * (late_s - (float)ago * config->tick_s);
     return out;
 }
 
@@ -223,9 +228,9 @@ static float choose_sign(const ground_speed_config_t *config, ground_speed_state
 // ln x to within 0.06, x > 0: exponent, and mantissa as a straight line.
 static float ln_rough(float x) { return (float)((int32_t)fixed_bits(x) - 0x3f800000) * (0.693147f / 8388608.0f); }
 
-static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
+static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
-    const window_t window = look_back(config->window, state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
+    const window_t window = look_back(config, state, input->doppler_late_s);
     const float heard = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
     ground_speed_track_t track = best_of(state);
     const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s; // (3)
@@ -340,6 +345,12 @@ static void update_other(const ground_speed_config_t *config, ground_speed_state
     state->doubt_m2_s2 = state->other_alive ? doubt * (1.0f - doubt) * apart * apart : 0.0f;
 }
 
+// X^2 of (10) beyond `least` and twice what the accelerometer's noise makes of it: Qv T/(2 (T/0.25 s)) = 12.5 Qv.
+static float told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s)
+{
+    return square(state->apart_m_s) - square(least_m_s) - config->apart_noise * state->speed_noise_m2_s2;
+}
+
 // (7), two ticks later. Its state is that of the window's middle, [v + tau b - change, b], which Doppler values see alone: a bias that jumps
 // within the window enters it as the window does.
 static ground_speed_track_t to_middle(const ground_speed_track_t *track, float tau, float change_m_s)
@@ -409,7 +420,7 @@ static void update_agile(const ground_speed_config_t *config, ground_speed_state
     const float cost = square(innovation) / spread + ln_rough(spread);
     correct(config, at, innovation, 0.0f, state->value_noise_m2_s2);
     state->agile_sum = fixed_clamp(state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, config->agile_most) - config->agile_drift, 0.0f, 1000.0f);
-    const bool apart = fabsf(state->apart_m_s) > config->apart_told_m_s;
+    const bool apart = told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
     if (state->agile_sum > (apart ? config->agile_sure : config->agile_limit)) {
         take_agile(config, state, at);
         state->other_alive = fabsf(odds) < config->sign_sure;
@@ -432,9 +443,9 @@ static void update_agile(const ground_speed_config_t *config, ground_speed_state
 }
 
 // A quiet echo says that the window's mean speed was too low to be heard.
-static void update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel)
+static void update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
-    const window_t window = look_back(config->window, state, accel, fixed_clamp(fixed_finite(input->doppler_late_s), -0.25f, 1.0f));
+    const window_t window = look_back(config, state, input->doppler_late_s);
     ground_speed_track_t track = best_of(state);
     const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s;
     const float spread = spread_of(&track, window.tau_s) + config->quiet_noise_m2_s2;
@@ -467,7 +478,7 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
 static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
     const float noise = square(config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s));
-    if (fixed_greater(state->p_vv, 2.0f * noise)) {
+    if (fixed_greater(state->p_vv, 1.2f * noise)) {
         ground_speed_track_t track = best_of(state);
         correct(config, &track, wheel_m_s - track.speed_m_s, 0.0f, noise);
         keep_best(state, &track);
@@ -491,14 +502,13 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
     const float unseen =
         config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
-    const float apart = fixed_clamp(fabsf(state->apart_m_s) - config->apart_least_m_s, 0.0f, speed_max_m_s);
-    const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart * apart;
+    const float apart2 = fixed_clamp(told_by_wheels(config, state, config->apart_least_m_s), 0.0f, speed_max_m_s);
+    const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float variance = state->p_vv + unseen + slope + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }
 
-static void step_ours(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, float accel,
-                      bool fresh)
+static void step_ours(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, bool fresh)
 {
     const uint32_t turn = (uint32_t)state->head % NOISE_EVERY;
     if (fresh) {
@@ -526,9 +536,9 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         state->agile_left = 0;
         state->agile_sum = 0.0f;
     } else if (fresh && state->quiet >= config->quiet_needed) {
-        update_quiet(config, state, input, accel);
+        update_quiet(config, state, input);
     } else if (fresh && !input->doppler_quiet) {
-        update_doppler(config, state, input, accel);
+        update_doppler(config, state, input);
     }
 }
 
@@ -539,9 +549,17 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
     integrate(config, state, accel);
     state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
-    ground_speed_track_t track = best_of(state);
-    move(config, &track, accel * config->tick_s, config->tick_s, noise, config->bias_noise_m2_s4);
-    keep_best(state, &track);
+    const float T = config->tick_s; // (2) as in move; hold every eighth tick and after every correction
+    const float lost = T * state->p_bb;
+    state->speed_m_s += (accel - state->bias_m_s2) * T;
+    state->p_vv += T * (lost - 2.0f * state->p_vb) + noise;
+    state->p_vb -= lost;
+    state->p_bb += config->bias_noise_m2_s4;
+    if ((uint32_t)state->head % 8u == 6u) {
+        ground_speed_track_t track = best_of(state);
+        hold(config, &track);
+        keep_best(state, &track);
+    }
 }
 
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
@@ -564,7 +582,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
             update_paper(config, state, input->doppler_m_s, input->wheel_m_s);
         }
     } else {
-        step_ours(config, state, input, accel, fresh);
+        step_ours(config, state, input, fresh);
     }
     if (fresh || state->standstill || state->std_m_s == 0.0f || (uint32_t)state->head % STD_EVERY == 5u) { // a root is dear
         state_std(config, state);

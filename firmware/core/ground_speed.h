@@ -10,7 +10,7 @@
 //   L = max(0, L + min(c_best - c_agile, most) - drift), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may jump: a steep slope
 //   R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more than they should
 //   sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9)
-//   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += (share X)^2                        (10)
+//   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += share (X^2 - least^2)                        (10)
 //   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration            (11)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
@@ -32,7 +32,7 @@
 extern "C" {
 #endif
 
-enum { GROUND_SPEED_HISTORY = DOPPLER_WINDOW_TICKS_MAX };
+enum { GROUND_SPEED_HISTORY = 2 * DOPPLER_WINDOW_TICKS_MAX }; // a window, and what came since
 
 typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t;
 
@@ -40,6 +40,7 @@ typedef struct {
     ground_speed_method_t method;
     const doppler_window_t *window; // w_j and tau of (3): the radar's
     float tick_s;                   // T
+    float per_tick_1_s;             // 1/T
     float speed_noise_m2_s2;        // Qv per tick, at least
     float speed_noise_max_m2_s2;    // and at most; at or below the other, (6) is off
     float blind_noise_m2_s2;        // Qv per tick without an accelerometer
@@ -63,7 +64,8 @@ typedef struct {
     float agile_most;              // what one value tells at most
     float apart_keep;              // of (10): 1 - T/0.25 s
     float apart_share;             // of (10), squared
-    float apart_least_m_s;         // of (10): what slip and noise make
+    float apart_least_m_s;         // of (10): what slip makes
+    float apart_noise;             // of (10): Qv of its noise, nine times
     int32_t agile_values;          // after which (7) starts from the best anew
     float misfit_share;            // c of (8)
     float misfit_max;              // limit of (8)

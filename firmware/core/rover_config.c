@@ -75,11 +75,12 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .method = GROUND_SPEED_BIAS,
         .window = window,
         .tick_s = tick_s,
+        .per_tick_1_s = ticks_per_s,
         .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
-        .bias_start_m_s2 = 0.5f,        // 3 deg of slope, assumed; 10 deg are found by (7)
+        .bias_start_m_s2 = 1.0f,        // 6 deg of slope, assumed; 10 deg are 1.7 of it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
@@ -99,6 +100,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .apart_keep = 0.96f,
         .apart_share = 0.5f,
         .apart_least_m_s = 0.03f,
+        .apart_noise = 112.0f,
         .agile_values = 4,    // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
