@@ -58,6 +58,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,
         .doppler_trust = doppler.trust,
+        .doppler_misfit = doppler.misfit,
         .doppler_dead = doppler.dead,
         .wheel_m_s = rim_hint_m_s(config, sense),
         .elapsed_ticks = sense->elapsed_ticks,

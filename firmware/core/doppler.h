@@ -10,6 +10,10 @@
 // below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each
 // taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours
 // alone).
+// An interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
+//   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
+// The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should be,
+// is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to 0.9).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -51,6 +55,7 @@ typedef struct {
         __attribute__((aligned(8)));    // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
     int32_t volume[DOPPLER_SPEEDS_MAX]; // q * sum_k ln S_v[k]
     int32_t quiet[DOPPLER_SPEEDS_MAX];  // q * expected J/a of an echo of which half is white noise
+    int32_t exact;                      // q * bins: expected (J/a - q sum ln S_v) of an echo of the template's own spectrum
     doppler_window_t window;            // at sample_rate_Hz, for ground_speed
 } doppler_template_t;
 
@@ -76,6 +81,11 @@ typedef struct {
     int32_t filled;            // valid samples so far
     uint64_t power[FFT_BINS];  // of the last full window
     int32_t late_samples;      // samples since that window's end
+    int16_t level_q8[DOPPLER_BINS_MAX + 1]; // of (3), by bin
+    int16_t sway_q8[DOPPLER_BINS_MAX + 1];
+    uint32_t line[4]; // bit k % 32 of word k / 32: bin k is a line
+    int32_t due;      // calls until the lines are looked at
+    bool leveled;     // (3) has begun
     int32_t sum;               // of the samples in the window
     int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
     int32_t block, in_block;                              // the block that is being filled, and how much of it is
@@ -96,8 +106,10 @@ typedef struct {
     bool quiet;           // no echo above the noise: the speed means nothing
     bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
     bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
-    bool spoilt;          // too many samples were lost, or stood at a rail: the speed means nothing
+    bool strange;         // no speed's spectrum fits: interference, or no ground
+    bool spoilt;          // strange, or too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
+    float misfit;         // share of the speed that may be wrong because no spectrum fits [1]
     float trust;          // by how much its variance exceeds that of a calm echo without noise [1], 1 or more
     int32_t late_samples; // samples that arrived after the window's end; less for the first two values, whose window is shorter
 } doppler_output_t;

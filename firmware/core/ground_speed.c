@@ -242,6 +242,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     const float shorter =
         early ? 2.5f
               : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
+    state->alike_m_s += 0.25f * (fixed_clamp(fixed_finite(input->doppler_misfit), 0.0f, 10.0f) * heard - state->alike_m_s);
     const float trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit;
     const float accel2 = fixed_clamp(own_accel * own_accel - track.p_bb, 0.0f, 100.0f);
     const float heard2 = heard * heard;
@@ -504,7 +505,8 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
         config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
     const float apart2 = fixed_clamp(told_by_wheels(config, state, config->apart_least_m_s), 0.0f, speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
-    const float variance = state->p_vv + unseen + slope + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
+    const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : square(state->alike_m_s);
+    const float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }
 

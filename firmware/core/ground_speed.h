@@ -108,6 +108,7 @@ typedef struct {
     float one_sided;         // m of (4)
     float misfit;            // of (8), 1 or more
     float apart_m_s;         // X of (10)
+    float alike_m_s;         // error that values of a strange spectrum may share: their mean does not make it smaller
     float wheel_m_s;         // of the tick before
     int32_t refused;
     int32_t quiet;
@@ -133,6 +134,7 @@ typedef struct {
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
     float doppler_trust;  // how much larger its variance is than a calm echo's [1]; 0 counts as 1
+    float doppler_misfit; // share of it that may be wrong for all values alike [1]
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
     uint32_t elapsed_ticks; // since the call before; 0 counts as 1
     bool accel_valid;

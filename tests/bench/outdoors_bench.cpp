@@ -124,7 +124,7 @@ std::vector<Row> rows() {
             add("noise", "SNR " + std::to_string(static_cast<int>(snr)) + " dB at " + std::to_string(v).substr(0, 3), now);
         }
     }
-    for (const double v : {0.2, 0.3, 0.6}) {
+    for (const double v : {0.2, 0.3, 0.5, 0.6}) {
         for (const double tone : {50.0, 33.3}) {
             Case now;
             now.tone_Hz = tone, now.tone_count = now.echo_count * 1.41, now.speed = constant(v);
@@ -142,7 +142,7 @@ std::vector<Row> rows() {
             }
         }
     }
-    for (const double v : {0.2, 0.3, 0.6}) {
+    for (const double v : {0.2, 0.3, 0.5, 0.6}) {
         Case now;
         now.speed = constant(v), now.heave_m = 0.005;
         add("vibration", "heave 5 mm at 8 Hz, " + std::to_string(v).substr(0, 3), now);
