@@ -57,6 +57,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz : 0.0f,
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,
+        .busy = state->heard.busy || state->heard.fresh,
         .doppler_trust = doppler.trust,
         .doppler_misfit = doppler.misfit,
         .doppler_dead = doppler.dead,

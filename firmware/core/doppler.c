@@ -39,7 +39,7 @@ static uint32_t mean_power(const uint64_t *power, int32_t from, int32_t to)
     for (int32_t k = from; k < to; k++) {
         sum += (uint32_t)(power[k] >> 28);
     }
-    return sum / (uint32_t)(to - from);
+    return (uint32_t)((float)sum / (float)(to - from)); // no division of whole numbers: the target's library would stop at a divisor of 0
 }
 
 enum { SPARE_FROM = 96, BESIDE_LEAST = 32, LOUD = 400 }; // LOUD: 4 ADC count^2 of white noise, assumed
@@ -269,7 +269,8 @@ static void mirror(doppler_state_t *state)
 
 static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 {
-    const int32_t mean = state->sum / (state->filled > 0 ? state->filled : 1);
+    const int32_t sum = state->sum;
+    const int32_t mean = state->filled == EARLY_TWICE ? sum / EARLY_TWICE : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED : sum / FFT_LENGTH;
     fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
     state->pending = true;
     state->due = 0; // the powers of the window before are gone
@@ -394,10 +395,10 @@ void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t
     }
     const bool pending = state->pending;
     const int32_t from = state->last;
-    const int32_t change = value_of(config, next) - from;
+    const float step = (float)(value_of(config, next) - from) / (float)(missing + 1);
     state->pending = false;
     for (int32_t j = 1; j <= missing; j++) {
-        take(config, state, (int16_t)(from + change * j / (missing + 1)), true, false, missing - j);
+        take(config, state, (int16_t)(from + (int32_t)(step * (float)j)), true, false, missing - j);
     }
     state->hold = state->pending;
     if (pending && !state->pending) {
@@ -443,6 +444,7 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         const bool railed = sample[i] == 0u || (int32_t)sample[i] >= config->max_count;
         take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
     }
+    out.busy = state->pending;
     out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;
 }

@@ -103,6 +103,7 @@ typedef struct {
 
 typedef struct {
     bool fresh;           // a value was made in this call
+    bool busy;            // a transform was made in this call
     bool quiet;           // no echo above the noise: the speed means nothing
     bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
     bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound

@@ -78,7 +78,7 @@ static void integrate(const ground_speed_config_t *config, ground_speed_state_t 
     state->integral_q20[state->head] = (int32_t)((uint32_t)last + (uint32_t)whole);
 }
 
-enum { NOISE_TICKS = 32, NOISE_EVERY = 16, NOISE_LOST_BITS = 4, NOISE_LIMIT = 8191 };
+enum { NOISE_TICKS = 32, NOISE_LOST_BITS = 4, NOISE_LIMIT = 8191 };
 static const float noise_share = 0.125f; // [1] of a mean that enters the running one: 1.3 s of memory, 10 % of spread (assumed)
 
 // (6) from the second differences of V, each limited to 0.125 m/s per tick: the sum stays below 2^31.
@@ -496,8 +496,6 @@ static void watch_wheels(const ground_speed_config_t *config, ground_speed_state
     state->wheel_m_s = wheel;
 }
 
-enum { STD_EVERY = 8 };
-
 static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
@@ -510,9 +508,27 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }
 
+// What need not be done in every tick, one after the other in ticks that have time; all of it 8 times a second or more.
+enum { CHORES = 8 };
+
+static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
+{
+    state->chore = (state->chore + 1u) % (2u * CHORES);
+    if (state->chore == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
+        watch_noise(config, state);
+    } else if (state->chore % CHORES == 3u) {
+        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -speed_max_m_s, speed_max_m_s));
+    } else if (state->chore % CHORES == 5u) {
+        state_std(config, state);
+    } else if (state->chore % CHORES == 6u) {
+        ground_speed_track_t track = best_of(state);
+        hold(config, &track);
+        keep_best(state, &track);
+    }
+}
+
 static void step_ours(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input, bool fresh)
 {
-    const uint32_t turn = (uint32_t)state->head % NOISE_EVERY;
     if (fresh) {
         count_values(config, state, input);
     } else if (state->waits > 1) {
@@ -523,10 +539,8 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
     } else if (state->waits > 0) {
         state->waits = 0;
         update_agile(config, state);
-    } else if (turn == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
-        watch_noise(config, state); // not in the tick of a value, which is the longest
-    } else if (turn % 8u == 3u) {
-        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -speed_max_m_s, speed_max_m_s));
+    } else if (!input->busy) {
+        do_chore(config, state, input);
     }
     state->standstill = is_standing(config, state);
     if (state->standstill) {
@@ -551,17 +565,12 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
     integrate(config, state, accel);
     state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
-    const float T = config->tick_s; // (2) as in move; hold every eighth tick and after every correction
+    const float T = config->tick_s; // (2) as in move; hold is a chore, and after every correction
     const float lost = T * state->p_bb;
     state->speed_m_s += (accel - state->bias_m_s2) * T;
     state->p_vv += T * (lost - 2.0f * state->p_vb) + noise;
     state->p_vb -= lost;
     state->p_bb += config->bias_noise_m2_s4;
-    if ((uint32_t)state->head % 8u == 6u) {
-        ground_speed_track_t track = best_of(state);
-        hold(config, &track);
-        keep_best(state, &track);
-    }
 }
 
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
@@ -586,7 +595,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     } else {
         step_ours(config, state, input, fresh);
     }
-    if (fresh || state->standstill || state->std_m_s == 0.0f || (uint32_t)state->head % STD_EVERY == 5u) { // a root is dear
+    if (fresh || state->standstill || state->std_m_s == 0.0f) { // a root is dear
         state_std(config, state);
     }
     const ground_speed_output_t out = {

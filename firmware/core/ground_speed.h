@@ -111,6 +111,7 @@ typedef struct {
     float alike_m_s;         // error that values of a strange spectrum may share: their mean does not make it smaller
     float wheel_m_s;         // of the tick before
     int32_t refused;
+    uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
     int32_t still_ticks;
@@ -140,6 +141,7 @@ typedef struct {
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;
+    bool busy;         // this tick has a transform or a search: chores wait
     bool doppler_dead; // the front end makes no noise at all
 } ground_speed_input_t;
 
