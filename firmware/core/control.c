@@ -8,6 +8,8 @@
 typedef struct {
     const command_t *command;
     const sense_output_t *sense;
+    circuit_output_t circuit;
+    float speed_std_m_s;
     slip_output_t slip[WHEEL_COUNT];
     float speed_m_s;
     float per_supply_1_V;
@@ -86,6 +88,7 @@ static void estimate_wheels(const control_config_t *config, estimate_t *estimate
         wheel->traction_N = motor.traction_N;
         wheel->slip = estimate->slip[i].slip;
         wheel->slip_valid = estimate->slip[i].valid;
+        wheel->encoder_refused = (estimate->circuit.refused & (1u << (uint32_t)i)) != 0u;
     }
 }
 
@@ -197,6 +200,9 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
     float least_rad_s = 0.0f;
     safety_input_t input = {
         .frame = frame,
+        .contradict = estimate->circuit.contradict,
+        .open = estimate->circuit.open,
+        .ground_speed_std_m_s = estimate->speed_std_m_s,
         .command_age_ticks = estimate->command->age_ticks,
         .command_stop = estimate->command->mode == MODE_STOP,
         .usable = estimate->sense->usable,
@@ -229,8 +235,10 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
         if ((safety->limited & (1u << (uint32_t)i)) != 0u) {
-            wheel->duty = motor_duty_limited(&config->motor, wheel->duty, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
+            const float wanted = wheel->duty;
+            wheel->duty = motor_duty_limited(&config->motor, wanted, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
                                              config->safety.current_continuous_A);
+            wheel->saturated = wheel->saturated || fixed_bits(wheel->duty) != fixed_bits(wanted);
         }
         wheel->duty = mode == MODE_STOP ? 0.0f : fixed_clamp(fixed_finite(wheel->duty), -1.0f, 1.0f);
         trace->actuator.duty_q15[i] = fixed_q15_from_float(wheel->duty);
@@ -239,6 +247,7 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     }
     state->braking = mode == MODE_STOP && (safety->motors_off || state->braking);
     trace->actuator.drive = mode != MODE_STOP ? DRIVE_ON : state->braking ? DRIVE_BRAKE : DRIVE_COAST;
+    state->driven = mode != MODE_STOP || state->braking;
     trace->actuator.sequence = ++state->sequence;
     trace->actuator.status_led = safety->faults != 0u;
     trace->mode = mode;
@@ -250,7 +259,8 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
 trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command, const sensor_frame_t *frame)
 {
     trace_t trace = {0};
-    const sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    const circuit_input_t circuit = {.duty = state->duty, .driven = state->driven, .look = true};
     trace.tick = frame->tick;
     trace.present = frame->present;
     trace.battery_voltage_V = sense.battery_V;
@@ -258,7 +268,10 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
     trace.gyro_z_rad_s = sense.gyro_z_rad_s;
 
     estimate_t estimate = {.command = command, .sense = &sense, .per_supply_1_V = motor_per_supply(sense.battery_V)};
-    estimate.speed_m_s = estimate_speed(config, state, &sense, frame, &trace).speed_m_s;
+    estimate.circuit = circuit_step(&config->circuit, &state->circuit, &circuit, &config->sense, &state->sense, &sense);
+    const ground_speed_output_t speed = estimate_speed(config, state, &sense, frame, &trace);
+    estimate.speed_m_s = speed.speed_m_s;
+    estimate.speed_std_m_s = speed.std_m_s;
     estimate_wheels(config, &estimate, &trace);
 
     const safety_output_t safety = judge(config, state, &estimate, frame);
