@@ -260,7 +260,8 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
 {
     trace_t trace = {0};
     sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
-    const circuit_input_t circuit = {.duty = state->duty, .driven = state->driven, .look = true};
+    // a look waits in the tick that is dear already: the one that makes a speed of a spectrum
+    const circuit_input_t circuit = {.duty = state->duty, .driven = state->driven, .look = !state->doppler.pending};
     trace.tick = frame->tick;
     trace.present = frame->present;
     trace.battery_voltage_V = sense.battery_V;

@@ -161,8 +161,9 @@ static bool radar_dead(const safety_config_t *config, safety_state_t *state, con
 static uint32_t check_agreement(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
     const float explained = input->rim_max_m_s * config->disagree_ratio + config->disagree_m_s;
-    const float sure = fabsf(input->ground_speed_m_s) - config->sigmas * input->ground_speed_std_m_s;
-    const bool disagrees = lasted(&state->disagree_s, fixed_greater(sure, explained), config->tick_s, config->disagree_s);
+    const float passes = fabsf(input->ground_speed_m_s);
+    const bool beyond = fixed_greater(passes, explained) && fixed_greater(passes - config->sigmas * input->ground_speed_std_m_s, explained);
+    const bool disagrees = lasted(&state->disagree_s, beyond, config->tick_s, config->disagree_s);
     uint32_t faults = disagrees ? (uint32_t)FAULT_SPEED_DISAGREE : 0u;
     if ((input->usable & FRAME_RADAR) != 0u) {
         const bool turning = fixed_greater(input->rim_min_m_s, config->disagree_m_s);
