@@ -8,8 +8,10 @@
 typedef struct {
     const command_t *command;
     const sense_output_t *sense;
+    circuit_output_t circuit;
     slip_output_t slip[WHEEL_COUNT];
     float speed_m_s;
+    float speed_std_m_s;
     float per_supply_1_V;
 } estimate_t;
 
@@ -97,6 +99,7 @@ static void estimate_wheels(const control_config_t *config, estimate_t *estimate
         wheel->traction_N = motor.traction_N;
         wheel->slip = estimate->slip[i].slip;
         wheel->slip_valid = estimate->slip[i].valid;
+        wheel->encoder_refused = (estimate->circuit.refused & (1u << (uint32_t)i)) != 0u;
     }
 }
 
@@ -143,6 +146,20 @@ static float speed_for_slip(const control_config_t *config, float rolling_rad_s,
     return fixed_clamp(rolling_rad_s * ratio, -limit, limit);
 }
 
+// [m/s] assumed: twice what a calm estimate claims. Beyond it an error of the platform's speed counts less, by the square: what the estimate
+// doubts itself must not throw the wheels about.
+static const float sure_m_s = 0.03f;
+
+static float speed_to_steer_by(const estimate_t *estimate, float reference_m_s)
+{
+    const float std_m_s = fixed_clamp(estimate->speed_std_m_s, sure_m_s, 10.0f);
+    if (!fixed_greater(std_m_s, sure_m_s)) {
+        return estimate->speed_m_s;
+    }
+    const float ratio = sure_m_s / std_m_s;
+    return reference_m_s + ratio * ratio * (estimate->speed_m_s - reference_m_s);
+}
+
 static void drive_mode(const control_config_t *config, control_state_t *state, const estimate_t *estimate, control_mode_t mode,
                        trace_t *trace)
 {
@@ -159,7 +176,7 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
         const speed_control_input_t input = {
             .speed_ref_m_s = command->platform_speed_m_s,
             .yaw_rate_ref_rad_s = mode == MODE_SOIL_SWEEP ? 0.0f : command->yaw_rate_rad_s,
-            .speed_m_s = estimate->speed_m_s,
+            .speed_m_s = speed_to_steer_by(estimate, fixed_finite(command->platform_speed_m_s)),
             .saturated = state->saturated,
         };
         platform = speed_control_step(&config->speed_control, &state->speed_control, &input);
@@ -208,6 +225,9 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
     float least_rad_s = 0.0f;
     safety_input_t input = {
         .frame = frame,
+        .contradict = estimate->circuit.contradict,
+        .open = estimate->circuit.open,
+        .ground_speed_std_m_s = estimate->speed_std_m_s,
         .command_age_ticks = estimate->command->age_ticks,
         .command_stop = estimate->command->mode == MODE_STOP,
         .usable = estimate->sense->usable,
@@ -241,8 +261,10 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
         if ((safety->limited & (1u << (uint32_t)i)) != 0u) {
-            wheel->duty = motor_duty_limited(&config->motor, wheel->duty, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
+            const float wanted = wheel->duty;
+            wheel->duty = motor_duty_limited(&config->motor, wanted, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
                                              config->safety.current_continuous_A);
+            wheel->saturated = wheel->saturated || fixed_bits(wheel->duty) != fixed_bits(wanted);
         }
         wheel->duty = mode == MODE_STOP ? 0.0f : fixed_clamp(fixed_finite(wheel->duty), -1.0f, 1.0f);
         trace->actuator.duty_q15[i] = fixed_q15_from_float(wheel->duty);
@@ -251,6 +273,7 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     }
     state->braking = mode == MODE_STOP && (safety->motors_off || state->braking);
     trace->actuator.drive = mode != MODE_STOP ? DRIVE_ON : state->braking ? DRIVE_BRAKE : DRIVE_COAST;
+    state->driven = mode != MODE_STOP || state->braking;
     trace->actuator.sequence = ++state->sequence;
     trace->actuator.status_led = safety->faults != 0u;
     trace->mode = mode;
@@ -262,7 +285,10 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
 trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command, const sensor_frame_t *frame)
 {
     trace_t trace = {0};
-    const sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    // a look waits in the tick that is dear already: the one that fills a window and transforms it
+    const bool dear = state->doppler.filled + 6 >= FFT_LENGTH;
+    const circuit_input_t circuit = {.duty = state->duty, .driven = state->driven, .look = !dear};
     trace.tick = frame->tick;
     trace.present = frame->present;
     trace.battery_voltage_V = sense.battery_V;
@@ -270,7 +296,10 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
     trace.gyro_z_rad_s = sense.gyro_z_rad_s;
 
     estimate_t estimate = {.command = command, .sense = &sense, .per_supply_1_V = motor_per_supply(sense.battery_V)};
-    estimate.speed_m_s = estimate_speed(config, state, &sense, frame, &trace).speed_m_s;
+    estimate.circuit = circuit_step(&config->circuit, &state->circuit, &circuit, &config->sense, &state->sense, &sense);
+    const ground_speed_output_t speed = estimate_speed(config, state, &sense, frame, &trace);
+    estimate.speed_m_s = speed.speed_m_s;
+    estimate.speed_std_m_s = speed.std_m_s;
     estimate_wheels(config, &estimate, &trace);
 
     const safety_output_t safety = judge(config, state, &estimate, frame);

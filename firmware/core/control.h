@@ -1,10 +1,11 @@
 // control.h - one tick of the rover: sense, estimate, control, safety. The only function that composes the others.
 //
-// Data flow: frame (raw counts) -> sense -> doppler -> ground_speed -> slip, motor -> mode -> duty -> safety -> trace.
+// Data flow: frame (raw counts) -> sense -> circuit -> doppler -> ground_speed -> slip, motor -> mode -> duty -> safety -> trace.
 // control_step is a pure function of its arguments: same frames, same command, same state, same bits, on x86 and on ARM.
 #ifndef TRACTION_FIRMWARE_CORE_CONTROL_H
 #define TRACTION_FIRMWARE_CORE_CONTROL_H
 
+#include "circuit.h"
 #include "doppler.h"
 #include "ground_speed.h"
 #include "motor.h"
@@ -32,6 +33,7 @@ typedef struct {
 typedef struct {
     rover_geometry_t geometry;
     sense_config_t sense;
+    circuit_config_t circuit;
     doppler_config_t doppler;
     ground_speed_config_t ground_speed;
     slip_config_t slip;
@@ -46,6 +48,7 @@ typedef struct {
 
 typedef struct {
     sense_state_t sense;
+    circuit_state_t circuit;
     doppler_state_t doppler;
     ground_speed_state_t ground_speed;
     wheel_pid_state_t wheel_pid[WHEEL_COUNT];
@@ -56,6 +59,7 @@ typedef struct {
     control_mode_t mode;     // in force in the last tick
     uint8_t slip_active;     // bit i: wheel i was driven by its slip loop in the last tick
     float duty[WHEEL_COUNT]; // written in the last tick
+    bool driven;             // and the bridges were told to drive or to brake
     bool saturated;          // a wheel had no duty left in the last tick
     bool braking;            // a fault stopped the rover, and nothing has driven it since
     uint32_t sequence;       // of the actuator frame written in the last tick

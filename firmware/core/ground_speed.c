@@ -487,13 +487,19 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     }
 }
 
-// (10)
-static void watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float accel, float wheel_m_s, float ticks)
+// (10), over the ticks since the last time: it waits in ticks that are busy.
+static void watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
     const float wheel = fixed_clamp(fixed_finite(wheel_m_s), -speed_max_m_s, speed_max_m_s);
-    const float change = (accel - state->bias_m_s2) * config->tick_s * ticks - (wheel - state->wheel_m_s);
-    state->apart_m_s = config->apart_keep * fixed_clamp(state->apart_m_s + change, -speed_max_m_s, speed_max_m_s);
+    const int32_t now = state->integral_q20[state->head];
+    const float ticks = (float)state->wheel_ticks;
+    const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) - state->bias_m_s2 * config->tick_s * ticks -
+                         (wheel - state->wheel_m_s);
+    const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
+    state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -speed_max_m_s, speed_max_m_s);
     state->wheel_m_s = wheel;
+    state->wheel_q20 = now;
+    state->wheel_ticks = 0;
 }
 
 static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -565,6 +571,7 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
     integrate(config, state, accel);
     state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
+    state->wheel_ticks += state->wheel_ticks < 1000 ? 1 : 0;
     const float T = config->tick_s; // (2) as in move; hold is a chore, and after every correction
     const float lost = T * state->p_bb;
     state->speed_m_s += (accel - state->bias_m_s2) * T;
@@ -586,7 +593,9 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         tick(config, state, accel, config->blind_noise_m2_s2);
     }
     tick(config, state, accel, noise);
-    watch_wheels(config, state, accel, input->wheel_m_s, 1.0f + (float)missed);
+    if (!input->busy) {
+        watch_wheels(config, state, input->wheel_m_s);
+    }
     if (config->method == GROUND_SPEED_PAPER) {
         state->standstill = false;
         if (fresh) {

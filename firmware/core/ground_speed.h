@@ -62,7 +62,7 @@ typedef struct {
     float apart_told_m_s;          // |X| beyond which it does
     float agile_drift;             // what every value must tell more than
     float agile_most;              // what one value tells at most
-    float apart_keep;              // of (10): 1 - T/0.25 s
+    float apart_forget;            // of (10): T/0.25 s
     float apart_share;             // of (10), squared
     float apart_least_m_s;         // of (10): what slip makes
     float apart_noise;             // of (10): Qv of its noise, nine times
@@ -109,7 +109,9 @@ typedef struct {
     float misfit;            // of (8), 1 or more
     float apart_m_s;         // X of (10)
     float alike_m_s;         // error that values of a strange spectrum may share: their mean does not make it smaller
-    float wheel_m_s;         // of the tick before
+    float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
+    int32_t wheel_q20;
+    int32_t wheel_ticks;
     int32_t refused;
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;

@@ -55,6 +55,31 @@ static void build_sense(const float *v, sense_config_t *sense)
     sense->encoder_step_max = whole(v[ROVER_encoder_absurd_rad_s] / (rad_per_count * ticks_per_s));
 }
 
+// The circuit of a motor, and what it may be wrong by: docs/firmware.md.
+static void build_circuit(const float *v, circuit_config_t *circuit, sense_config_t *sense)
+{
+    const float V = v[ROVER_battery_voltage_V];
+    const float Ra = v[ROVER_resistance_ohm];
+    const circuit_config_t built = {
+        .resistance_ohm = Ra,
+        .back_emf_Vs = v[ROVER_back_emf_Vs_rad],
+        .per_back_emf_1_Vs = 1.0f / v[ROVER_back_emf_Vs_rad],
+        .contradict_V = 0.07f * V,   // half a volt of 7.2: drop of a bridge and of brushes, assumed
+        .contradict_current = 0.35f, // a winding of copper 95 K warmer: 37 %
+        .contradict_speed = 0.25f,   // a magnet as warm, a divider 10 % off, rounded up: assumed
+        .open_A = 0.02f * V / Ra,    // four sigma of the current sensor's noise, assumed
+        .open_V = 0.07f * V,
+        .open_speed = 0.1f, // a current of nothing has no winding to be wrong by
+        .jump_rad_s = tick_s * v[ROVER_torque_constant_Nm_A] * V / (Ra * v[ROVER_inertia_kg_m2]), // (4)
+        .hold_ticks = 3,
+        .refused_ticks = 30,
+        .contradict_looks = 8, // 0.32 s
+        .open_looks = 6,       // 0.24 s
+    };
+    *circuit = built;
+    sense->encoder_jump_max = 1 + whole(built.jump_rad_s / sense->speed_rad_s_per_count);
+}
+
 static void build_doppler(const rover_parameters_t *parameters, doppler_config_t *doppler)
 {
     const doppler_template_t *beam = doppler_template_of(parameters->radar);
@@ -91,13 +116,13 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
-        .agile_m2_s4 = 1.0f, // [m^2/s^4] (1 m/s^2)^2: 6 deg of slope within 0.125 s, assumed
+        .agile_m2_s4 = 0.5f, // [m^2/s^4] (0.7 m/s^2)^2: 4 deg of slope within 0.125 s, assumed
         .agile_limit = 20.0f, // exp(10) to one
         .agile_sure = 5.0f,
         .agile_drift = 0.0f,
         .agile_most = 10.0f,
         .apart_told_m_s = 0.06f,
-        .apart_keep = 0.96f,
+        .apart_forget = 0.04f,
         .apart_share = 0.5f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
@@ -189,6 +214,11 @@ static void build_safety(const float *v, safety_config_t *safety)
         .temperature_rise_max_K = v[ROVER_winding_rise_max_K],
         .battery_min_V = v[ROVER_battery_min_V],
         .battery_s = v[ROVER_battery_low_s],
+        .brown_out_V = 0.8f * v[ROVER_battery_min_V], // [V] assumed: what feeds the logic lets go
+        .brown_out_ticks = 2,
+        .radar_dead_count2 = (uint32_t)whole(0.4f * 1024.0f * fixed_clamp(v[ROVER_radar_quiet_count2], 0.0f, 100.0f)),
+        .radar_dead_blocks = 1u + (uint32_t)whole(0.3f * v[ROVER_radar_rate_Hz] / 32.0f), // 0.3 s and a block: within half a second
+        .sigmas = 3.0f,
         .disagree_m_s = v[ROVER_disagree_m_s],
         .disagree_ratio = v[ROVER_disagree_ratio],
         .disagree_s = v[ROVER_disagree_s],
@@ -204,6 +234,7 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     config->geometry.half_track_m = v[ROVER_half_track_m];
     config->geometry.mass_kg = v[ROVER_mass_kg];
     build_sense(v, &config->sense);
+    build_circuit(v, &config->circuit, &config->sense);
     build_doppler(parameters, &config->doppler);
     build_ground_speed(v, &config->doppler.beam->window, &config->ground_speed);
     config->slip.wheel_radius_m = v[ROVER_wheel_radius_m];

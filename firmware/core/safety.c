@@ -59,6 +59,14 @@ static uint32_t check_sensors(const safety_config_t *config, safety_state_t *sta
     return faults;
 }
 
+static uint32_t check_circuit(const safety_input_t *input, uint32_t wheel, uint32_t *limit)
+{
+    const uint32_t bit = 1u << wheel;
+    *limit |= input->open & bit;
+    return ((input->contradict & bit) != 0u ? (uint32_t)FAULT_ENCODER_CIRCUIT : 0u) |
+           ((input->open & bit) != 0u ? (uint32_t)FAULT_MOTOR_OPEN : 0u);
+}
+
 static uint32_t check_time(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
     uint32_t faults = 0;
@@ -113,30 +121,64 @@ static uint32_t check_wheel(const safety_config_t *config, safety_state_t *state
 
 static uint32_t check_battery(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
-    const bool low = (input->usable & FRAME_BATTERY) != 0u && !fixed_greater(input->battery_V, config->battery_min_V);
-    return lasted(&state->low_battery_s, low, config->tick_s, config->battery_s) ? FAULT_LOW_BATTERY : 0u;
+    const bool known = (input->usable & FRAME_BATTERY) != 0u;
+    const bool low = known && !fixed_greater(input->battery_V, config->battery_min_V);
+    const bool broken = known && !fixed_greater(input->battery_V, config->brown_out_V);
+    uint32_t faults = lasted(&state->low_battery_s, low, config->tick_s, config->battery_s) ? (uint32_t)FAULT_LOW_BATTERY : 0u;
+    faults |= too_many(&state->brown_out_ticks, broken, config->brown_out_ticks) ? (uint32_t)FAULT_BROWN_OUT : 0u;
+    return faults;
 }
 
-// The rover passes faster than any wheel explains, or the radar repeats one value while every wheel turns.
+// (3): true once the radar has been dead for its blocks in a row. Standing wheels forgive it: a quiet front end then tells nothing.
+static bool radar_dead(const safety_config_t *config, safety_state_t *state, const sensor_frame_t *frame, bool turning)
+{
+    enum { BLOCK = 32 };
+    if (!turning) {
+        state->radar_dead_blocks = 0;
+        state->radar_samples = 0;
+        return false;
+    }
+    for (uint32_t i = 0; i < frame->radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; i++) {
+        if (state->radar_samples == 0u) {
+            state->radar_first = frame->radar_count[i];
+            state->radar_sum = 0;
+            state->radar_square = 0;
+        }
+        const int32_t x = (int32_t)frame->radar_count[i] - (int32_t)state->radar_first; // within +-1023: sense calls more absurd
+        state->radar_sum += x;
+        state->radar_square += (uint32_t)(x * x);
+        if (++state->radar_samples == BLOCK) {
+            const uint32_t power = (uint32_t)BLOCK * state->radar_square - (uint32_t)(state->radar_sum * state->radar_sum);
+            const bool dead = power < config->radar_dead_count2;
+            state->radar_dead_blocks = dead ? state->radar_dead_blocks + (state->radar_dead_blocks < UINT32_MAX ? 1u : 0u) : 0u;
+            state->radar_samples = 0;
+        }
+    }
+    return state->radar_dead_blocks >= config->radar_dead_blocks;
+}
+
+// The rover passes faster than any wheel explains, beyond what the estimate knows it does not know; or the radar is dead while all turn.
 static uint32_t check_agreement(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
-    uint32_t faults = 0;
     const float explained = input->rim_max_m_s * config->disagree_ratio + config->disagree_m_s;
-    if (lasted(&state->disagree_s, fixed_greater(fabsf(input->ground_speed_m_s), explained), config->tick_s, config->disagree_s)) {
-        faults |= FAULT_SPEED_DISAGREE;
-    }
-    bool frozen = false;
+    const float passes = fabsf(input->ground_speed_m_s);
+    const bool beyond = fixed_greater(passes, explained) && fixed_greater(passes - config->sigmas * input->ground_speed_std_m_s, explained);
+    const bool disagrees = lasted(&state->disagree_s, beyond, config->tick_s, config->disagree_s);
+    uint32_t faults = disagrees ? (uint32_t)FAULT_SPEED_DISAGREE : 0u;
     if ((input->usable & FRAME_RADAR) != 0u) {
-        frozen = fixed_greater(input->rim_min_m_s, config->disagree_m_s);
-        for (uint32_t i = 0; i < input->frame->radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; i++) {
-            frozen = frozen && input->frame->radar_count[i] == state->radar_last_count;
-            state->radar_last_count = input->frame->radar_count[i];
-        }
-        if (lasted(&state->radar_frozen_s, frozen, config->tick_s, config->disagree_s)) {
-            faults |= FAULT_RADAR_LOST;
-        }
+        const bool turning = fixed_greater(input->rim_min_m_s, config->disagree_m_s);
+        faults |= radar_dead(config, state, input->frame, turning) ? (uint32_t)FAULT_RADAR_LOST : 0u;
     }
     return faults;
+}
+
+void safety_warm(const safety_config_t *config, safety_state_t *state, const float rise_K[WHEEL_COUNT])
+{
+    const float unknown_K = 0.8f * config->temperature_rise_max_K;
+    for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
+        const bool known = rise_K != 0 && fixed_is_finite(rise_K[wheel]);
+        state->rise_K[wheel] = known ? fixed_clamp(rise_K[wheel], 0.0f, 1000.0f) : unknown_K;
+    }
 }
 
 safety_output_t safety_step(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
@@ -147,7 +189,8 @@ safety_output_t safety_step(const safety_config_t *config, safety_state_t *state
     now |= check_sensors(config, state, input, &wheels);
     now |= check_time(config, state, input);
     for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
-        const uint32_t mine = check_wheel(config, state, input, wheel, &limit) | check_bridge(config, state, input->frame, (uint32_t)wheel);
+        const uint32_t mine = check_wheel(config, state, input, wheel, &limit) |
+                              check_bridge(config, state, input->frame, (uint32_t)wheel) | check_circuit(input, (uint32_t)wheel, &limit);
         wheels |= mine != 0u ? 1u << (uint32_t)wheel : 0u;
         now |= mine;
     }

@@ -31,11 +31,32 @@ void SimHal::advance() {
             if (t_s >= block.to_s && t_s < block.to_s + 1.5e-3) plant_.block_wheel(block.wheel, false);
             if (t_s >= block.from_s && t_s < block.to_s) plant_.block_wheel(block.wheel, true);
         }
+        fail_motors(t_s);
         plant_.step();
         now_ms_++;
         sensors_.step(plant_.truth());
     }
-    sensors_.measure(measured_);
+    // the radar's FIFO and the camera's poses wait for whoever reads
+    sim::Measurements now;
+    sensors_.measure(now);
+    if (read_ticks_ != done_ticks_) {
+        now.radar_first = measured_.radar_first;
+        now.radar_count.insert(now.radar_count.begin(), measured_.radar_count.begin(), measured_.radar_count.end());
+        now.camera.insert(now.camera.begin(), measured_.camera.begin(), measured_.camera.end());
+    }
+    std::swap(measured_, now);
+}
+
+void SimHal::fail_motors(double t_s) {
+    if (config_.open_motors.empty() && config_.supply_sags.empty()) return;
+    for (int wheel = 0; wheel < sim::wheel_count; wheel++) {
+        bool open = false;
+        for (const WheelBlock &span : config_.open_motors) open = open || (span.wheel == wheel && t_s >= span.from_s && t_s < span.to_s);
+        plant_.open_motor(wheel, open);
+    }
+    double sag_V = 0;
+    for (const sim::SupplySag &sag : config_.supply_sags) sag_V += t_s >= sag.from_s && t_s < sag.to_s ? sag.sag_V : 0;
+    plant_.sag_supply(sag_V);
 }
 
 hal_t SimHal::hal() {

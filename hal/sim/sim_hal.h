@@ -8,6 +8,7 @@
 
 #include "hal/hal.h"
 #include "sim/plant/plant.h"
+#include "sim/scenario/scenario.h"
 #include "sim/sensors/sensors.h"
 
 #include <array>
@@ -30,6 +31,8 @@ struct SimHalConfig {
     sim::SensorConfig sensors;
     CountScale scale;
     std::vector<WheelBlock> wheel_blocks;
+    std::vector<WheelBlock> open_motors; // no current flows in between
+    std::vector<sim::SupplySag> supply_sags;
     int bus_latency_ms = 0;  // 0..9: an order acts so long after it is written; whole ticks are delay_hal.h's
     std::uint32_t ticks = 0; // HAL_END after so many
     std::uint64_t seed = 1;
@@ -64,6 +67,7 @@ class SimHal {
         std::uint32_t sequence;
     };
     void obey(const Order &order);
+    void fail_motors(double t_s);
     void tell(hal_status_t *status) const;
     std::deque<Order> orders_; // written, not yet in effect
 };

@@ -58,8 +58,25 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &st
         pending_.camera.push_back(*pose);
 }
 
+// Two harmonic motions, grown with the speed up to 0.1 m/s: a standing rover does not shake.
+Sensors::Vibration Sensors::vibration(const Truth &truth) const {
+    Vibration shake;
+    const double share = std::fmin(1.0, std::fabs(truth.v_body_m_s[0]) / 0.1);
+    if (config_.heave_m > 0) {
+        const double rate = 2 * math::pi * config_.heave_Hz, phase = rate * truth.t_s;
+        shake.heave_m = share * config_.heave_m * math::sin(phase);
+        shake.lift_m_s2 = -rate * rate * shake.heave_m;
+    }
+    if (config_.pitch_vibration_rad > 0) {
+        const double rate = 2 * math::pi * config_.pitch_vibration_Hz, phase = rate * truth.t_s;
+        shake.pitch_rad = share * config_.pitch_vibration_rad * math::sin(phase);
+        shake.pitch_rate_rad_s = share * config_.pitch_vibration_rad * rate * math::cos(phase);
+    }
+    return shake;
+}
+
 // The path that the beam sees: the body's, stretched by scale errors and by the pitch that tips the beam.
-void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
+void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration &shake) {
     // nose down by p: cos(theta_d + p)/cos(theta_d) = cos p - tan(theta_d) sin p; up a rise the ground itself pitches the nose up
     const BodyEffects &b = config_.effects.body;
     double stretch = law::radar_scale(1, b.radar_scale) * law::radar_pitch(b.radar_pitch_s2_m, accel_m_s2);
@@ -69,7 +86,11 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
         const double pitch = config_.radar_mount_pitch * (truth.pitch_rad - ground_rad);
         stretch *= 1 - tan_depression_ * pitch - 0.5 * pitch * pitch;
     }
-    const double step_m = (truth.path_m - last_.path_m) * stretch;
+    stretch *= 1 - tan_depression_ * shake.pitch_rad;
+    // a hop lengthens the beam by sin(theta_d) of it, which looks like a path of tan(theta_d) of it, backwards
+    const double hop_m = -tan_depression_ * (shake.heave_m - heave_m_);
+    heave_m_ = shake.heave_m;
+    const double step_m = (truth.path_m - last_.path_m) * stretch + hop_m;
     const double step_s = truth.t_s - last_.t_s;
     for (;;) {
         const double due_s = static_cast<double>(radar_samples_) / Radar::rate_Hz;
@@ -88,14 +109,17 @@ void Sensors::step(const Truth &truth) {
         accel_m_s2_ += (rate - accel_m_s2_) * std::fmin(1.0, step_s / accel_smoothing_s);
         lagged_m_s2_ += (accel_m_s2_ - lagged_m_s2_) * std::fmin(1.0, step_s / law::accel_tilt_lag_s);
     }
-    step_radar(truth, accel_m_s2_);
+    const Vibration shake = vibration(truth);
+    step_radar(truth, accel_m_s2_, shake);
     for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A);
     battery_.add(truth.battery_voltage_V);
-    accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_));
+    // a nose that nods down by p turns -g p into the axis
+    accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_) -
+               gravity_m_s2 * shake.pitch_rad);
     accel_y_.add(truth.specific_force_m_s2[1]);
-    accel_z_.add(truth.specific_force_m_s2[2]);
+    accel_z_.add(truth.specific_force_m_s2[2] + shake.lift_m_s2);
     gyro_x_.add(truth.rate_body_rad_s[0]);
-    gyro_y_.add(truth.rate_body_rad_s[1]);
+    gyro_y_.add(truth.rate_body_rad_s[1] - truth.rise_rate_rad_s + shake.pitch_rate_rad_s);
     gyro_.add(truth.rate_body_rad_s[2]);
     if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
         pending_.camera.push_back(*pose);

@@ -14,7 +14,7 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
 /*@ predicate in_window(doppler_state_t *d) =
       0 <= d->filled < 256 && -64 <= d->late_samples <= 7 &&
       \forall integer n; 0 <= n < 256 ==> -16384 <= d->window.sample[n] <= 16352 && -16384 <= d->twice[n] <= 16352;
-    predicate in_order(control_state_t *s) = in_window(&s->doppler) && 0 <= s->sense.head < 8 && 0 <= s->ground_speed.head < 64 &&
+    predicate in_order(control_state_t *s) = in_window(&s->doppler) && 0 <= s->sense.head < 16 && 0 <= s->ground_speed.head < 64 &&
       0 <= s->ground_speed.refused <= 8 && 0 <= s->ground_speed.quiet <= 1000 && 0 <= s->ground_speed.still_ticks <= 1000 &&
       0 <= s->safety.turn < 4;
 */
@@ -32,7 +32,8 @@ static control_state_t any_state_in_order(void) {
     state.doppler.pending = Frama_C_interval(0, 1) != 0;
     state.doppler.full = Frama_C_interval(0, 1) != 0;
     state.doppler.halved = Frama_C_interval(0, 1) != 0;
-    state.sense.head = Frama_C_interval(0, 7);
+    state.sense.head = Frama_C_interval(0, 15);
+    state.sense.timed = Frama_C_interval(0, 1) != 0;
     state.ground_speed.head = Frama_C_interval(0, 63);
     state.ground_speed.refused = Frama_C_interval(0, 8);
     state.ground_speed.quiet = Frama_C_interval(0, 1000);

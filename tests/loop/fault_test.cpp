@@ -88,8 +88,8 @@ std::vector<Loss> losses() {
         {"current 3 absurd", sensor_fault("current", "noisy", "wheel = 3\nnoise = 10000\n"), FAULT_ABSURD_SENSOR | FAULT_CURRENT_LOST, 7,
          9},
         {"command lost", "[[fault]]\nwhat = \"command_lost\"\nfrom_s = 2.0\n", FAULT_COMMAND_TIMEOUT, 9, 9},
-        // one value for more than 1 s while every wheel turns: [100, 103] ticks
-        {"radar stuck", sensor_fault("radar", "stuck"), FAULT_RADAR_LOST, 98, 104},
+        // six blocks of 32 samples without noise while every wheel turns, 0.375 s, and what the block under way began with
+        {"radar stuck", sensor_fault("radar", "stuck"), FAULT_RADAR_LOST, 37, 50},
     };
 }
 
@@ -145,12 +145,12 @@ TEST(Fault, a_gap_shorter_than_the_patience_is_driven_through) {
     }
 }
 
-TEST(Fault, wheels_that_say_they_stand_while_the_radar_sees_ground_pass_disagree) {
+TEST(Fault, wheels_that_say_they_stand_while_their_motors_turn_contradict_their_circuits) {
     const auto result = run(drive_04 + sensor_fault("encoder", "stuck"));
-    EXPECT_NE(result.faults & FAULT_SPEED_DISAGREE, 0u);
+    EXPECT_EQ(result.faults & FAULT_ENCODER_CIRCUIT, static_cast<std::uint32_t>(FAULT_ENCODER_CIRCUIT));
     const int off = ticks_until_off(result.log);
-    EXPECT_GE(off, 100); // 1 s beyond 0.15 m/s
-    EXPECT_LE(off, 130); // and at most a Doppler window's settling more
+    EXPECT_GE(off, 30); // refused for 0.3 s
+    EXPECT_LE(off, 50); // and named within half a second
     expect_stays_off(result, from_s + 0.01 * (off + 1));
 }
 

@@ -34,7 +34,8 @@ int main(int argc, char **argv) {
     int32_t encoder[4] = {0, 0x7fffff00, -5, 1000};
     uint32_t phase = 0, sequence = 1;
     for (uint32_t tick = 0; tick < 3000; tick++) {
-        const uint32_t mode = tick < 100 ? 0 : 1 + (tick / 145) % 5;
+        // a stop of 60 ms in every 200: these wheels obey no motor, and longer than that would be called a contradiction
+        const uint32_t mode = tick < 100 || tick % 20 < 6 ? 0 : 1 + (tick / 145) % 5;
         const uint32_t drive = (tick / 300) % 3; // pulses a tick: 0, 25, 50 -> 0, 0.15, 0.30 m/s
         for (int i = 0; i < 4; i++) {
             encoder[i] = (int32_t)((uint32_t)encoder[i] + drive * 25 + draw(5) * (drive > 0));

@@ -162,6 +162,11 @@ class Rolling : public ::testing::Test {
         for (int k = 0; k < ticks; ++k) {
             for (int i = 0; i < WHEEL_COUNT; ++i) {
                 frame.encoder_count[i] += pulses[i];
+                // what the motor draws: a winding without current would be called open
+                const double emf_V = 0.265 * pulses[i] * 2 * clutter::pi / 60;
+                const bool driven = trace.actuator.drive >= DRIVE_BRAKE;
+                const double drop_V = driven ? 7.2 * static_cast<double>(trace.wheel[i].duty) - emf_V : 0;
+                frame.current_count[i] = static_cast<uint16_t>(2048 + std::lround(drop_V / 3.24 / 0.002));
             }
             trace = control_step(&config, &state, &command, &frame);
             frame.tick++;

@@ -45,6 +45,7 @@ static sense_config_t sense_default() {
         .battery_max_count = 4095,
         .radar_max_count = 1023,
         .encoder_step_max = 573, // [count/tick] 60 rad/s, twice the no-load speed 7.2 V/ke = 27 rad/s (assumed margin)
+        .encoder_jump_max = 12,  // [count/tick] 1.18 rad/s: stall torque 0.589 N m over 5e-3 kg m^2 for 10 ms, and a pulse
     };
     return sense;
 }
@@ -108,9 +109,14 @@ static safety_config_t safety_default() {
         .temperature_rise_max_K = 95.0f,                       // [K] assumed: class B winding at 35 C
         .battery_min_V = 5.4f,                                 // [V] assumed: 0.9 V per cell of 6
         .battery_s = 0.5f,                                     // [s] assumed
-        .disagree_m_s = 0.15f,                                 // [m/s] assumed
-        .disagree_ratio = 1.5f,                                // [1] assumed
-        .disagree_s = 1.0f,                                    // [s] assumed
+        .brown_out_V = 0.8f * 5.4f,
+        .brown_out_ticks = 2,
+        .radar_dead_count2 = 819, // 0.8 count^2 times 32^2
+        .radar_dead_blocks = 6,   // 0.375 s
+        .sigmas = 3.0f,
+        .disagree_m_s = 0.15f,  // [m/s] assumed
+        .disagree_ratio = 1.5f, // [1] assumed
+        .disagree_s = 1.0f,     // [s] assumed
     };
     return safety;
 }
@@ -122,6 +128,20 @@ control_config_t written_out() {
                      .half_track_m = half_track_m,
                      .mass_kg = mass_kg},
         .sense = sense_default(),
+        .circuit = {.resistance_ohm = resistance_ohm,
+                    .back_emf_Vs = torque_constant_Nm_A,
+                    .per_back_emf_1_Vs = 1.0f / torque_constant_Nm_A,
+                    .contradict_V = 0.07f * 7.2f,
+                    .contradict_current = 0.35f,
+                    .contradict_speed = 0.25f,
+                    .open_A = 0.02f * 7.2f / resistance_ohm,
+                    .open_V = 0.07f * 7.2f,
+                    .open_speed = 0.1f,
+                    .jump_rad_s = tick_s * torque_constant_Nm_A * 7.2f / (resistance_ohm * wheel_inertia_kg_m2),
+                    .hold_ticks = 3,
+                    .refused_ticks = 30,
+                    .contradict_looks = 8,
+                    .open_looks = 6},
         .doppler = doppler_default(),
         .ground_speed = ground_speed_default(),
         .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
@@ -166,6 +186,7 @@ TEST(ControlConfig, the_reference_rover_keeps_every_bit) {
     // these hold 32-bit numbers alone: no padding
     expect_same_bits(built.geometry, before.geometry, "geometry");
     expect_same_bits(built.sense, before.sense, "sense");
+    expect_same_bits(built.circuit, before.circuit, "circuit");
     expect_same_bits(built.slip, before.slip, "slip");
     expect_same_bits(built.motor, before.motor, "motor");
     expect_same_bits(built.wheel_pid, before.wheel_pid, "wheel_pid");
