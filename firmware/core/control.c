@@ -54,16 +54,16 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     }
     const ground_speed_input_t input = {
         .accel_x_m_s2 = sense->accel_x_m_s2,
-        .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_m_s = doppler.speed_m_s,
-        .doppler_late_s = doppler.fresh ? (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz : 0.0f,
+        .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
+        .wheel_m_s = rim_hint_m_s(config, sense),
+        .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,
+        .doppler_dead = doppler.dead,
         .busy = state->heard.busy || state->heard.fresh,
         .doppler_trust = doppler.trust,
         .doppler_misfit = doppler.misfit,
-        .doppler_dead = doppler.dead,
-        .wheel_m_s = rim_hint_m_s(config, sense),
         .elapsed_ticks = sense->elapsed_ticks,
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
@@ -146,8 +146,8 @@ static float speed_for_slip(const control_config_t *config, float rolling_rad_s,
     return fixed_clamp(rolling_rad_s * ratio, -limit, limit);
 }
 
-// [m/s] assumed: twice what a calm estimate claims. Beyond it an error of the platform's speed counts less, by the square: what the estimate
-// doubts itself must not throw the wheels about.
+// [m/s] assumed: twice what a calm estimate claims. Beyond it an error of the platform's speed counts less, by the square: what the
+// estimate doubts itself must not throw the wheels about.
 static const float sure_m_s = 0.03f;
 
 static float speed_to_steer_by(const estimate_t *estimate, float reference_m_s)

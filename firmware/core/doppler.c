@@ -20,7 +20,7 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 
 // --- (2)
 
-enum { MADE_MAX = 80, RAILED_MAX = 128 };              // of 320 samples: a quarter, and two fifths (assumed)
+enum { MADE_MAX = 80, RAILED_MAX = 128 }; // of 320 samples: a quarter, and two fifths (assumed)
 
 enum { COARSE = 4, POWER_SUM_MAX = 128 * 256 + DOPPLER_BINS_MAX * 256 };
 
@@ -71,9 +71,9 @@ static outside_t look_outside(const doppler_template_t *beam, const uint64_t *po
     return out;
 }
 
-// Powers of the template's bins, less twice the noise (which leaves 0.14 of it), reduced so that each has at most 15 bits and their sum 16; returns the
-// reduced sum. *energy is the sum of the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of the transform, 2^10 of
-// the gain, 256 * 96 / 2 of the window).
+// Powers of the template's bins, less twice the noise (which leaves 0.14 of it), reduced so that each has at most 15 bits and their sum 16;
+// returns the reduced sum. *energy is the sum of the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of
+// the transform, 2^10 of the gain, 256 * 96 / 2 of the window).
 static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, uint64_t noise, int16_t *reduced, uint64_t *energy)
 {
     uint64_t sum = 0; // at most 120 * 2^63 / 2^8
@@ -202,9 +202,9 @@ static const uint64_t *without_lines(const doppler_template_t *beam, const doppl
     return copy;
 }
 
-static const float misfit_calm = 0.8f;     // [1] of (3)'s comment
+static const float misfit_calm = 0.8f; // [1] of (3)'s comment
 static const float misfit_strange = 2.5f;
-static const float misfit_share = 0.3f;    // [1] of the speed per unit of misfit: heave of 5 mm at 8 Hz makes 0.16 to 0.39
+static const float misfit_share = 0.3f; // [1] of the speed per unit of misfit: heave of 5 mm at 8 Hz makes 0.16 to 0.39
 
 static void measure(const doppler_config_t *config, const doppler_state_t *state, doppler_output_t *out)
 {
@@ -270,7 +270,9 @@ static void mirror(doppler_state_t *state)
 static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 {
     const int32_t sum = state->sum;
-    const int32_t mean = state->filled == EARLY_TWICE ? sum / EARLY_TWICE : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED : sum / FFT_LENGTH;
+    const int32_t mean = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
+                         : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
+                                                           : sum / FFT_LENGTH;
     fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
     state->pending = true;
     state->due = 0; // the powers of the window before are gone
@@ -356,7 +358,11 @@ static void empty(doppler_state_t *state)
     state->started = true;
 }
 
-enum { OWED_MAX = 32 * 256, OWED_LEAST = 640, FORGET_BITS = 9 }; // Q8: 32 samples, 2.5 samples; 512 ticks: 1.2 % off the rate owes 32 samples
+enum {
+    OWED_MAX = 32 * 256,
+    OWED_LEAST = 640,
+    FORGET_BITS = 9
+}; // Q8: 32 samples, 2.5 samples; 512 ticks: 1.2 % off the rate owes 32 samples
 
 int32_t doppler_missing(const doppler_config_t *config, doppler_state_t *state, const doppler_arrival_t *arrival)
 {

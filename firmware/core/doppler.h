@@ -12,8 +12,9 @@
 // alone).
 // An interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
 //   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
-// The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should be,
-// is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to 0.9).
+// The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
+// be, is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to
+// 0.9).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -67,6 +68,7 @@ typedef struct {
     float scale;                 // calibrated speed over geometric speed [1]
     int32_t max_count;           // the converter's rail
     int32_t per_tick_q8;         // samples per tick, by the template's rate
+    float per_sample_s;          // 1/rate
     uint32_t quiet_power_count2; // variance of the band below which there is no echo [ADC count^2]
 } doppler_config_t;
 
@@ -77,16 +79,16 @@ typedef struct {
             int16_t sample[4];
         } __attribute__((aligned(8))) four[FFT_LENGTH / 4];
     } window;
-    int16_t twice[FFT_LENGTH]; // the first 128 samples, each twice
-    int32_t filled;            // valid samples so far
-    uint64_t power[FFT_BINS];  // of the last full window
-    int32_t late_samples;      // samples since that window's end
+    int16_t twice[FFT_LENGTH];              // the first 128 samples, each twice
+    int32_t filled;                         // valid samples so far
+    uint64_t power[FFT_BINS];               // of the last full window
+    int32_t late_samples;                   // samples since that window's end
     int16_t level_q8[DOPPLER_BINS_MAX + 1]; // of (3), by bin
     int16_t sway_q8[DOPPLER_BINS_MAX + 1];
-    uint32_t line[4]; // bit k % 32 of word k / 32: bin k is a line
-    int32_t due;      // calls until the lines are looked at
-    bool leveled;     // (3) has begun
-    int32_t sum;               // of the samples in the window
+    uint32_t line[4];                                     // bit k % 32 of word k / 32: bin k is a line
+    int32_t due;                                          // calls until the lines are looked at
+    bool leveled;                                         // (3) has begun
+    int32_t sum;                                          // of the samples in the window
     int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
     int32_t block, in_block;                              // the block that is being filled, and how much of it is
     int16_t last;                                         // newest sample
@@ -95,11 +97,11 @@ typedef struct {
     uint32_t next_sequence;                               // of the sample after the newest one
     int32_t owed_q8;                                      // samples that the clock says should have come, less those that came
     bool started;
-    bool hold;                                            // that window was filled by doppler_gap in this tick
-    bool pending;                                         // its speed is not made yet
-    bool halved;               // that window is `twice`: it reads half the speed
-    bool full;                 // the window has been filled once
-} doppler_state_t;             // zeroed = reset
+    bool hold;     // that window was filled by doppler_gap in this tick
+    bool pending;  // its speed is not made yet
+    bool halved;   // that window is `twice`: it reads half the speed
+    bool full;     // the window has been filled once
+} doppler_state_t; // zeroed = reset
 
 typedef struct {
     bool fresh;           // a value was made in this call
@@ -116,8 +118,9 @@ typedef struct {
 } doppler_output_t;
 
 // The transform runs in the call that fills the window, the search for the speed in the next one, so that no tick pays for both.
-// Which samples this is, before doppler_step: how many of the converter's were lost before the `count` that `sequence` numbers, told by their numbers
-// or, where a HAL does not number them (sequence 0), by the clock. To be called in every tick, with count 0 where there is none.
+// Which samples this is, before doppler_step: how many of the converter's were lost before the `count` that `sequence` numbers, told by
+// their numbers or, where a HAL does not number them (sequence 0), by the clock. To be called in every tick, with count 0 where there is
+// none.
 typedef struct {
     uint32_t sequence;      // of sample[0]
     uint32_t elapsed_ticks; // since the call before

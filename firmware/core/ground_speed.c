@@ -58,7 +58,8 @@ static void hold(const ground_speed_config_t *config, ground_speed_track_t *trac
 }
 
 // (2) over `time_s`, in which V changes by `change_m_s`.
-static void move(const ground_speed_config_t *config, ground_speed_track_t *track, float change_m_s, float time_s, float noise, float bias_noise)
+static void move(const ground_speed_config_t *config, ground_speed_track_t *track, float change_m_s, float time_s, float noise,
+                 float bias_noise)
 {
     track->speed_m_s += change_m_s - track->bias_m_s2 * time_s;
     track->p_vv += time_s * (time_s * track->p_bb - 2.0f * track->p_vb) + noise;
@@ -131,7 +132,10 @@ static void correct(const ground_speed_config_t *config, ground_speed_track_t *t
 }
 
 // Variance of what (3) expects.
-static float spread_of(const ground_speed_track_t *track, float tau) { return track->p_vv + tau * (2.0f * track->p_vb + tau * track->p_bb); }
+static float spread_of(const ground_speed_track_t *track, float tau)
+{
+    return track->p_vv + tau * (2.0f * track->p_vb + tau * track->p_bb);
+}
 
 static float square(float x) { return x * x; }
 
@@ -157,7 +161,8 @@ static window_t look_back(const ground_speed_config_t *config, const ground_spee
 {
     const doppler_window_t *window = config->window;
     const float late_s = fixed_clamp(fixed_finite(late), -0.25f, 0.12f);
-    const int32_t ago = late_s > 0.0f ? (int32_t)(late_s * config->per_tick_1_s) : 0; // whole ticks between the window's end and now: 12 at most
+    const int32_t ago =
+        late_s > 0.0f ? (int32_t)(late_s * config->per_tick_1_s) : 0; // whole ticks between the window's end and now: 12 at most
     const uint32_t head = (uint32_t)(state->head - ago);
     const uint32_t oldest = head - (uint32_t)(window->ticks - 1);
     const int32_t then = state->integral_q20[head % GROUND_SPEED_HISTORY];
@@ -211,8 +216,8 @@ static void split(ground_speed_state_t *state, ground_speed_side_t *side, const 
 }
 
 // (9): takes the likelier sign, and follows the other too where it may be the right one.
-static float choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track, float measured,
-                         float middle, float spread, float wheel_m_s)
+static float choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track,
+                         float measured, float middle, float spread, float wheel_m_s)
 {
     const float told = 4.0f * measured * middle / spread; // 2 ln of the odds of +
     if (fabsf(told) >= config->sign_sure || state->other_alive) {
@@ -296,7 +301,8 @@ typedef struct {
 } expected_t;
 
 // What a side expects of the value that the best saw `ticks_ago`.
-static expected_t expect(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, int32_t ticks_ago)
+static expected_t expect(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side,
+                         int32_t ticks_ago)
 {
     move_side(config, state, side, ticks_ago);
     expected_t out;
@@ -307,8 +313,8 @@ static expected_t expect(const ground_speed_config_t *config, const ground_speed
 }
 
 // Corrects it with that sign; returns e^2/S + ln S.
-static float see(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, const expected_t *expected,
-                 float sign)
+static float see(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side,
+                 const expected_t *expected, float sign)
 {
     const float innovation = sign * state->value_m_s - expected->middle_m_s;
     correct(config, &side->at, innovation, state->value_tau_s, state->value_noise_m2_s2);
@@ -352,8 +358,8 @@ static float told_by_wheels(const ground_speed_config_t *config, const ground_sp
     return square(state->apart_m_s) - square(least_m_s) - config->apart_noise * state->speed_noise_m2_s2;
 }
 
-// (7), two ticks later. Its state is that of the window's middle, [v + tau b - change, b], which Doppler values see alone: a bias that jumps
-// within the window enters it as the window does.
+// (7), two ticks later. Its state is that of the window's middle, [v + tau b - change, b], which Doppler values see alone: a bias that
+// jumps within the window enters it as the window does.
 static ground_speed_track_t to_middle(const ground_speed_track_t *track, float tau, float change_m_s)
 {
     const ground_speed_track_t out = {
@@ -420,7 +426,8 @@ static void update_agile(const ground_speed_config_t *config, ground_speed_state
     ground_speed_track_t mirrored = *at;
     const float cost = square(innovation) / spread + ln_rough(spread);
     correct(config, at, innovation, 0.0f, state->value_noise_m2_s2);
-    state->agile_sum = fixed_clamp(state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, config->agile_most) - config->agile_drift, 0.0f, 1000.0f);
+    state->agile_sum = fixed_clamp(
+        state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, config->agile_most) - config->agile_drift, 0.0f, 1000.0f);
     const bool apart = told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
     if (state->agile_sum > (apart ? config->agile_sure : config->agile_limit)) {
         take_agile(config, state, at);
@@ -493,8 +500,8 @@ static void watch_wheels(const ground_speed_config_t *config, ground_speed_state
     const float wheel = fixed_clamp(fixed_finite(wheel_m_s), -speed_max_m_s, speed_max_m_s);
     const int32_t now = state->integral_q20[state->head];
     const float ticks = (float)state->wheel_ticks;
-    const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) - state->bias_m_s2 * config->tick_s * ticks -
-                         (wheel - state->wheel_m_s);
+    const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) -
+                         state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
     state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -speed_max_m_s, speed_max_m_s);
     state->wheel_m_s = wheel;
@@ -587,7 +594,8 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     const float noise = input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2;
-    uint32_t missed = input->elapsed_ticks > 1u ? input->elapsed_ticks - 1u : 0u;
+    const bool first = state->std_m_s == 0.0f; // nothing was missed before
+    uint32_t missed = !first && input->elapsed_ticks > 1u ? input->elapsed_ticks - 1u : 0u;
     missed = missed < MISSED_MAX ? missed : MISSED_MAX;
     for (uint32_t i = 0; i < missed; i++) { // nothing is known of their acceleration: the newest one stands for them
         tick(config, state, accel, config->blind_noise_m2_s2);
@@ -604,6 +612,8 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     } else {
         step_ours(config, state, input, fresh);
     }
+    state->speed_m_s = fixed_clamp(state->speed_m_s, -speed_max_m_s, speed_max_m_s);
+    state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || state->std_m_s == 0.0f) { // a root is dear
         state_std(config, state);
     }

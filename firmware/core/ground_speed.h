@@ -7,11 +7,11 @@
 //   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
 //   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
 //   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
-//   L = max(0, L + min(c_best - c_agile, most) - drift), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may jump: a steep slope
-//   R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more than they should
-//   sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9)
-//   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += share (X^2 - least^2)                        (10)
-//   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration            (11)
+//   L = max(0, L + min(c_best - c_agile, most) - drift), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may
+//   jump: a steep slope R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more
+//   than they should sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9) X[k] =
+//   (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += share (X^2 - least^2)                        (10) z = sqrt(d^2 -
+//   min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration            (11)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
@@ -136,15 +136,15 @@ typedef struct {
     float accel_x_m_s2;
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
-    float doppler_trust;  // how much larger its variance is than a calm echo's [1]; 0 counts as 1
-    float doppler_misfit; // share of it that may be wrong for all values alike [1]
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
-    uint32_t elapsed_ticks; // since the call before; 0 counts as 1
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;
-    bool busy;         // this tick has a transform or a search: chores wait
-    bool doppler_dead; // the front end makes no noise at all
+    bool doppler_dead;      // the front end makes no noise at all
+    bool busy;              // this tick has a transform or a search: chores wait
+    float doppler_trust;    // how much larger its variance is than a calm echo's [1]; 0 counts as 1
+    float doppler_misfit;   // share of it that may be wrong for all values alike [1]
+    uint32_t elapsed_ticks; // since the call before; 0 counts as 1
 } ground_speed_input_t;
 
 typedef struct {

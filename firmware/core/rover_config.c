@@ -88,6 +88,7 @@ static void build_doppler(const rover_parameters_t *parameters, doppler_config_t
     doppler->offset_count = whole(parameters->value[ROVER_radar_offset_count]);
     doppler->max_count = whole(parameters->value[ROVER_radar_max_count]);
     doppler->per_tick_q8 = whole(doppler->beam->sample_rate_Hz * tick_s * 256.0f);
+    doppler->per_sample_s = 1.0f / doppler->beam->sample_rate_Hz;
     doppler->hop = 64;
     doppler->scale = parameters->value[ROVER_doppler_scale];
     doppler->quiet_power_count2 = (uint32_t)whole(fixed_clamp(parameters->value[ROVER_radar_quiet_count2], 0.0f, 65535.0f));
@@ -116,7 +117,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
-        .agile_m2_s4 = 0.5f, // [m^2/s^4] (0.7 m/s^2)^2: 4 deg of slope within 0.125 s, assumed
+        .agile_m2_s4 = 0.5f,  // [m^2/s^4] (0.7 m/s^2)^2: 4 deg of slope within 0.125 s, assumed
         .agile_limit = 20.0f, // exp(10) to one
         .agile_sure = 5.0f,
         .agile_drift = 0.0f,
@@ -126,7 +127,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .apart_share = 0.5f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
-        .agile_values = 4,    // half a second: a window's length
+        .agile_values = 4, // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
         .quiet_needed = 3,
@@ -136,8 +137,8 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
         .slow_m_s = 0.12f,
         .loud_needed = 3,
-        .sign_sure = 18.0f,  // exp(9) to one
-        .wheel_odds = 2.0f,  // e to one, assumed
+        .sign_sure = 18.0f, // exp(9) to one
+        .wheel_odds = 2.0f, // e to one, assumed
         .wheel_match = 14.0f,
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,

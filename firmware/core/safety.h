@@ -93,8 +93,8 @@ typedef struct {
     float ground_speed_m_s;
     float ground_speed_std_m_s;
     uint32_t estimator; // FAULT_* bits that the estimator raises
-    float rim_max_m_s; // largest |R w| of the wheels
-    float rim_min_m_s; // smallest |R w|
+    float rim_max_m_s;  // largest |R w| of the wheels
+    float rim_min_m_s;  // smallest |R w|
 } safety_input_t;
 
 typedef struct {

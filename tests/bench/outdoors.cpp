@@ -49,7 +49,8 @@ Echo::Echo(std::uint64_t seed) {
 }
 
 double Echo::at(double x_m, double z_m) const {
-    const double last = track_m - 4 * grid_m, there = std::fmod(std::fabs(x_m), 2 * last), x = (there < last ? there : 2 * last - there) / grid_m + 1;
+    const double last = track_m - 4 * grid_m, there = std::fmod(std::fabs(x_m), 2 * last),
+                 x = (there < last ? there : 2 * last - there) / grid_m + 1;
     const auto i = static_cast<std::size_t>(x);
     const double u = x - static_cast<double>(i), k2 = 4 * pi * 9.9e9 / 299792458.0;
     double sum = 0;
@@ -118,9 +119,9 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 const double z = now.heave_m * std::sin(2 * pi * now.heave_Hz * t), pitch = now.pitch_rad * std::sin(2 * pi * 5 * t);
                 const bool dead = now.radar_dead && now.radar_dead(t);
                 const double filtered = low.step(high.step(now.echo_count * echo.at(path + 0.3 * pitch, z)));
-                const double count = dead ? 512 + now.offset_count + 0.3 * noise.normal()
-                                          : 512 + now.offset_count + filtered + white * noise.normal() +
-                                                now.tone_count * std::sin(2 * pi * now.tone_Hz * t);
+                const double count =
+                    dead ? 512 + now.offset_count + 0.3 * noise.normal()
+                         : 512 + now.offset_count + filtered + white * noise.normal() + now.tone_count * std::sin(2 * pi * now.tone_Hz * t);
                 ++sequence;
                 const bool lost = luck.uniform() < now.lost_share;
                 if (!lost && !(now.radar_silent && now.radar_silent(t))) {
@@ -130,7 +131,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
             }
         }
         heave_accel = -now.heave_m * std::pow(2 * pi * now.heave_Hz, 2) * std::sin(2 * pi * now.heave_Hz * t);
-        const double accel = (speed - before) / tick_s + gravity * std::sin(now.slope(t)) + now.accel_bias + now.accel_noise * accel_noise.normal() +
+        const double accel = (speed - before) / tick_s + gravity * std::sin(now.slope(t)) + now.accel_bias +
+                             now.accel_noise * accel_noise.normal() +
                              0.3 * now.pitch_rad * std::pow(2 * pi * 5, 2) * -std::sin(2 * pi * 5 * t);
         last_speed = speed;
         ++since;
@@ -161,7 +163,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         for (std::size_t i = 1; now.sequence && i < number.size(); ++i) {
             hole = number[i] != number[i - 1] + 1 ? i : hole;
         }
-        waiting.erase(waiting.begin(), waiting.begin() + static_cast<long>(hole)), number.erase(number.begin(), number.begin() + static_cast<long>(hole));
+        waiting.erase(waiting.begin(), waiting.begin() + static_cast<long>(hole)),
+            number.erase(number.begin(), number.begin() + static_cast<long>(hole));
         const std::size_t most = sizeof frame.radar_count / sizeof frame.radar_count[0];
         if (waiting.size() > most) {
             waiting.erase(waiting.begin(), waiting.end() - static_cast<long>(most));
@@ -183,11 +186,15 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         char note[256] = "";
         if (std::getenv("OUTDOORS_TRACE") != nullptr) {
             const ground_speed_state_t &g = state.ground_speed;
-            std::snprintf(note, sizeof note, " b %.2f+-%.2f z %.3f%s refused %d misfit %.2f other %d %.2f odds %.1f quiet %d agile %.2f %.2f L %.1f", static_cast<double>(g.bias_m_s2),
-                          std::sqrt(static_cast<double>(g.p_bb)), static_cast<double>(trace.radar_speed_m_s), trace.radar_fresh ? "!" : "", g.refused, static_cast<double>(g.misfit), g.other_alive,
-                          static_cast<double>(g.other.at.speed_m_s), static_cast<double>(g.odds), g.quiet, static_cast<double>(g.agile.at.speed_m_s), static_cast<double>(g.agile.at.bias_m_s2), static_cast<double>(g.agile_sum));
+            std::snprintf(
+                note, sizeof note, " b %.2f+-%.2f z %.3f%s refused %d misfit %.2f other %d %.2f odds %.1f quiet %d agile %.2f %.2f L %.1f",
+                static_cast<double>(g.bias_m_s2), std::sqrt(static_cast<double>(g.p_bb)), static_cast<double>(trace.radar_speed_m_s),
+                trace.radar_fresh ? "!" : "", g.refused, static_cast<double>(g.misfit), g.other_alive,
+                static_cast<double>(g.other.at.speed_m_s), static_cast<double>(g.odds), g.quiet, static_cast<double>(g.agile.at.speed_m_s),
+                static_cast<double>(g.agile.at.bias_m_s2), static_cast<double>(g.agile_sum));
         }
-        run.steps.push_back({t, speed, static_cast<double>(trace.speed_m_s), static_cast<double>(trace.speed_std_m_s), wheel, trace.faults, note});
+        run.steps.push_back(
+            {t, speed, static_cast<double>(trace.speed_m_s), static_cast<double>(trace.speed_std_m_s), wheel, trace.faults, note});
     }
     return run;
 }

@@ -1,11 +1,11 @@
-// outdoors.h - what the first hour outdoors does to a rover's sensors: frames for the whole control_step, every 10 ms. Written for the tests
-// alone: it shares no code with the simulator's radar or with the firmware's template.
+// outdoors.h - what the first hour outdoors does to a rover's sensors: frames for the whole control_step, every 10 ms. Written for the
+// tests alone: it shares no code with the simulator's radar or with the firmware's template.
 //
 //   echo(x, z) = Re sum_b E_b(x) exp(i 4 pi/lambda z sin th_b),  E_b the scatterers of depression th_b        (1)
 //
 // x: path, z: heave. Scatterers lie at random on flat ground; two-way Gaussian beam, r^-4, sigma0 ~ sin th; pitch moves the radar by
-// its height, which is a path (2). Then band-pass, a converter with offset, noise, rails and an interfering line, lost samples; an accelerometer
-// with bias, noise, the slope's share of gravity and vibration; wheels with slip; a body on soil for closed loops.
+// its height, which is a path (2). Then band-pass, a converter with offset, noise, rails and an interfering line, lost samples; an
+// accelerometer with bias, noise, the slope's share of gravity and vibration; wheels with slip; a body on soil for closed loops.
 #pragma once
 
 #include "firmware/core/rover_config.h"
@@ -47,16 +47,16 @@ struct Case {
     double duration_s = 20;
     double settle_s = 4; // scored from here on
     std::function<double(double)> speed = [](double) { return 0.3; };
-    std::function<double(double)> wheel;                        // rim speed; empty: 1.1 times the speed
+    std::function<double(double)> wheel;                              // rim speed; empty: 1.1 times the speed
     std::function<double(double)> slope = [](double) { return 0.0; }; // [rad], nose up positive
-    double accel_bias = 0.05, accel_noise = 0.2;                // [m/s^2]
-    double echo_count = 75, snr_dB = 25, offset_count = 0;      // rms; of white noise over the whole band; of the converter, beyond 512
-    double tone_Hz = 0, tone_count = 0;                         // amplitude
-    double heave_m = 0, heave_Hz = 8, pitch_rad = 0;            // amplitudes
-    double lost_share = 0, lost_ticks_share = 0;                // radar samples lost at random; radar ticks lost whole
-    std::function<bool(double)> radar_dead, radar_silent;       // noise of 0.3 counts alone; no samples at all
-    double missed_share = 0;                                    // ticks missed at random
-    bool sequence = true;                                       // the frame numbers its samples
+    double accel_bias = 0.05, accel_noise = 0.2;                      // [m/s^2]
+    double echo_count = 75, snr_dB = 25, offset_count = 0; // rms; of white noise over the whole band; of the converter, beyond 512
+    double tone_Hz = 0, tone_count = 0;                    // amplitude
+    double heave_m = 0, heave_Hz = 8, pitch_rad = 0;       // amplitudes
+    double lost_share = 0, lost_ticks_share = 0;           // radar samples lost at random; radar ticks lost whole
+    std::function<bool(double)> radar_dead, radar_silent;  // noise of 0.3 counts alone; no samples at all
+    double missed_share = 0;                               // ticks missed at random
+    bool sequence = true;                                  // the frame numbers its samples
     // closed loop
     bool closed = false;
     double command_m_s = 0.3;

@@ -92,7 +92,8 @@ std::vector<Row> rows() {
         add("backwards", "slides back, wheels forward", now);
         now.speed = [](double t) { return 0.3 * std::cos(2 * outdoors::pi * t / 8); };
         add("backwards", "to and fro, wheels forward", now);
-        now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 5.7, 0.3, -0.4); }, now.slope = [deg](double t) { return t < 5 ? 0 : 6 * deg; };
+        now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 5.7, 0.3, -0.4); },
+        now.slope = [deg](double t) { return t < 5 ? 0 : 6 * deg; };
         add("backwards", "slope of 6 deg, slides back", now);
         Case reverse;
         reverse.speed = [](double t) { return -0.3 + 0.1 * std::sin(t); };
@@ -221,8 +222,14 @@ int main(int argc, char **argv) {
             const std::string k = one.substr(0, eq);
             const float v = std::strtof(one.substr(eq + 1).c_str(), nullptr);
             auto &g = config.ground_speed;
-#define S(x) if (k == #x) g.x = static_cast<decltype(g.x)>(v);
-            S(agile_limit) S(apart_noise) S(doppler_spread_s) S(agile_sure) S(apart_told_m_s) S(agile_drift) S(agile_most) S(apart_share) S(apart_least_m_s) S(agile_m2_s4) S(agile_values) S(doppler_noise_m_s) S(doppler_noise_m2_s2) S(doppler_accel_s2) S(bias_noise_m2_s4) S(jump_limit) S(jump_share) S(jump_m2_s4) S(misfit_share) S(bias_start_m_s2) S(gate_sigma) S(wheel_match) S(wheel_odds) S(sign_sure) S(speed_noise_m2_s2) S(wheel_slip) S(wheel_noise_m_s)
+#define S(x)                                                                                                                               \
+    if (k == #x) g.x = static_cast<decltype(g.x)>(v);
+            S(agile_limit)
+            S(apart_noise)
+            S(doppler_spread_s) S(agile_sure) S(apart_told_m_s) S(agile_drift) S(agile_most) S(apart_share) S(apart_least_m_s)
+                S(agile_m2_s4) S(agile_values) S(doppler_noise_m_s) S(doppler_noise_m2_s2) S(doppler_accel_s2) S(bias_noise_m2_s4)
+                    S(jump_limit) S(jump_share) S(jump_m2_s4) S(misfit_share) S(bias_start_m_s2) S(gate_sigma) S(wheel_match) S(wheel_odds)
+                        S(sign_sure) S(speed_noise_m2_s2) S(wheel_slip) S(wheel_noise_m_s)
         }
     }
     std::printf("%-10s %-38s | %6s %7s %6s %6s %6s | %s\n", "group", "row", "RMSE", "NEES", "sign s", "worst", "p95 %", "faults, first at");
@@ -242,8 +249,8 @@ int main(int argc, char **argv) {
             const outdoors::Score one = outdoors::score(row.what, run);
             if (std::getenv("OUTDOORS_TRACE") != nullptr) { // every tick, for the eye
                 for (const outdoors::Step &step : run.steps) {
-                    std::printf("%.2f true %.3f estimate %.3f std %.3f wheel %.3f faults %x%s\n", step.t, step.speed, step.estimate, step.std,
-                                step.wheel, step.faults, step.note.c_str());
+                    std::printf("%.2f true %.3f estimate %.3f std %.3f wheel %.3f faults %x%s\n", step.t, step.speed, step.estimate,
+                                step.std, step.wheel, step.faults, step.note.c_str());
                 }
             }
             sum.square += one.square, sum.nees_sum += one.nees_sum, sum.n += one.n, sum.faults |= one.faults;
@@ -262,7 +269,8 @@ int main(int argc, char **argv) {
         }
         std::sort(relative.begin(), relative.end()), std::sort(fix.begin(), fix.end());
         const double rmse = 100 * std::sqrt(sum.square / sum.n), nees = sum.nees_sum / sum.n;
-        bool met = (rmse <= 4 || nees <= 2 || (row.fault_by_s > 0 && faulted)) && (sum.wrong_sign_s <= 0.5 || (row.fault_by_s > 0 && faulted));
+        bool met =
+            (rmse <= 4 || nees <= 2 || (row.fault_by_s > 0 && faulted)) && (sum.wrong_sign_s <= 0.5 || (row.fault_by_s > 0 && faulted));
         if (row.what.closed) {
             met = !off && sum.faults == 0;
         }
@@ -275,9 +283,9 @@ int main(int argc, char **argv) {
         if (sum.faults == 0) {
             nees_sum += nees, ++nees_rows;
         }
-        std::printf("%-10s %-38s | %6.2f %7.2f %6.2f %6.2f %6.1f | %s %.2f fix %.2f %s", row.group.c_str(), row.what.name.c_str(), rmse, nees,
-                    sum.wrong_sign_s, sum.worst, 100 * relative[relative.size() * 95 / 100], names_of(sum.faults).c_str(), sum.first_fault_s,
-                    fix[fix.size() * 9 / 10 < fix.size() ? fix.size() * 9 / 10 : 0], met ? "" : "MISSED");
+        std::printf("%-10s %-38s | %6.2f %7.2f %6.2f %6.2f %6.1f | %s %.2f fix %.2f %s", row.group.c_str(), row.what.name.c_str(), rmse,
+                    nees, sum.wrong_sign_s, sum.worst, 100 * relative[relative.size() * 95 / 100], names_of(sum.faults).c_str(),
+                    sum.first_fault_s, fix[fix.size() * 9 / 10 < fix.size() ? fix.size() * 9 / 10 : 0], met ? "" : "MISSED");
         if (row.what.closed) {
             std::printf(" off %.3f", off_worst);
         }
@@ -288,6 +296,7 @@ int main(int argc, char **argv) {
     if (calm_rows > 0) {
         std::printf("calm: RMSE %.2f cm/s; ", std::sqrt(calm_square / calm_rows));
     }
-    std::printf("NEES over %d rows without a fault %.2f; goals %s\n", nees_rows, nees_sum / std::max(1, nees_rows), all_met ? "met" : "missed");
+    std::printf("NEES over %d rows without a fault %.2f; goals %s\n", nees_rows, nees_sum / std::max(1, nees_rows),
+                all_met ? "met" : "missed");
     return all_met ? 0 : 1;
 }

@@ -152,6 +152,7 @@ class Rolling : public ::testing::Test {
         config.safety.required = 0;
         control_reset(&config, &state);
         state.ground_speed.speed_m_s = 0.3f;
+        state.ground_speed.p_vv = state.ground_speed.p_bb = 1e-6f; // it is sure of that
         frame.battery_count = 1800;
         frame.present = 0xffu | FRAME_BATTERY;
         for (auto &count : frame.current_count) {
@@ -305,6 +306,7 @@ TEST_F(Rolling, accelerometer_and_radar_are_used_when_they_are_there_and_left_al
 TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
     frame.present |= FRAME_ACCEL | FRAME_RADAR;
     doppler_state_t doppler = {};
+    doppler_output_t heard = {};
     ground_speed_state_t filter = state.ground_speed;
     int fresh = 0;
     float last = 0;
@@ -315,14 +317,21 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
         }
         frame.accel_x_count = static_cast<int16_t>(tick < 150 ? 20 : -20);
         run(1);
-        const doppler_output_t value = doppler_step(&config.doppler, &doppler, frame.radar_count, frame.radar_samples);
+        doppler_output_t value = heard; // by the tick before
+        value.late_samples += frame.radar_samples;
+        heard = doppler_step(&config.doppler, &doppler, frame.radar_count, frame.radar_samples);
         const ground_speed_input_t input = {.accel_x_m_s2 = trace.accel_x_m_s2,
                                             .doppler_m_s = value.speed_m_s,
                                             .doppler_late_s = static_cast<float>(value.late_samples) / 512.0f,
                                             .wheel_m_s = 0.298f,
                                             .accel_valid = true,
-                                            .doppler_fresh = value.fresh,
-                                            .doppler_quiet = value.quiet};
+                                            .doppler_fresh = value.fresh && !value.beyond && !value.spoilt,
+                                            .doppler_quiet = value.quiet,
+                                            .doppler_dead = value.dead,
+                                            .busy = heard.busy || heard.fresh,
+                                            .doppler_trust = value.trust,
+                                            .doppler_misfit = value.misfit,
+                                            .elapsed_ticks = 1};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;
         last = value.fresh ? value.speed_m_s : last;

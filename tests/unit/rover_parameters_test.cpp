@@ -56,7 +56,10 @@ static doppler_config_t doppler_default() {
         .method = DOPPLER_LIKELIHOOD,
         .offset_count = 512, // [count] assumed: mid-scale of 10 bit
         .hop = 64,
-        .scale = 1.0f,           // until `traction calibrate` has measured it
+        .scale = 1.0f, // until `traction calibrate` has measured it
+        .max_count = 1023,
+        .per_tick_q8 = 1311, // 5.12 samples
+        .per_sample_s = 1.0f / 512.0f,
         .quiet_power_count2 = 2, // [count^2] assumed
     };
     return doppler;
@@ -67,25 +70,47 @@ static ground_speed_config_t ground_speed_default() {
         .method = GROUND_SPEED_BIAS,
         .window = &doppler_template_mdu1130.window,
         .tick_s = tick_s,
+        .per_tick_1_s = 100.0f,
         .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
+        .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
-        .bias_start_m_s2 = 0.1f,
-        .bias_max_m_s2 = 1.0f,
+        .bias_start_m_s2 = 1.0f,        // 6 deg of slope, assumed; 10 deg are 1.7 of it
+        .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
-        .doppler_accel_s2 = 0.0125f,
+        .doppler_accel_s2 = 0.004f,
+        .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
-        .gate_patience = 8,
+        .gate_patience = 4,
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
+        .agile_m2_s4 = 0.5f,  // [m^2/s^4] (0.7 m/s^2)^2: 4 deg of slope within 0.125 s, assumed
+        .agile_limit = 20.0f, // exp(10) to one
+        .agile_sure = 5.0f,
+        .apart_told_m_s = 0.06f,
+        .agile_drift = 0.0f,
+        .agile_most = 10.0f,
+        .apart_forget = 0.04f,
+        .apart_share = 0.5f,
+        .apart_least_m_s = 0.03f,
+        .apart_noise = 112.0f,
+        .agile_values = 4, // half a second: a window's length
+        .misfit_share = 0.02f,
+        .misfit_max = 30.0f,
         .quiet_needed = 3,
-        .quiet_noise_m2_s2 = 9e-4f,    // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
-        .still_m_s = 0.006f,           // one encoder pulse a tick
-        .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
+        .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
+        .still_m_s = 0.006f,        // one encoder pulse a tick
+        .still_needed = 25,         // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
+        .loud_needed = 3,
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
-        .sign_hysteresis_m_s = 0.12f,
+        .slow_m_s = 0.12f,
+        .sign_sure = 18.0f, // exp(9) to one
+        .wheel_odds = 2.0f, // e to one, assumed
+        .wheel_match = 14.0f,
+        .wheel_noise_m_s = 0.1f, // assumed
+        .wheel_slip = 0.5f,
     };
     return ground_speed;
 }
@@ -200,13 +225,16 @@ TEST(ControlConfig, the_reference_rover_keeps_every_bit) {
     EXPECT_EQ(built.doppler.offset_count, before.doppler.offset_count);
     EXPECT_EQ(built.doppler.hop, before.doppler.hop);
     EXPECT_EQ(built.doppler.scale, before.doppler.scale);
+    EXPECT_EQ(built.doppler.max_count, before.doppler.max_count);
+    EXPECT_EQ(built.doppler.per_tick_q8, before.doppler.per_tick_q8);
+    EXPECT_EQ(built.doppler.per_sample_s, before.doppler.per_sample_s);
     EXPECT_EQ(built.doppler.quiet_power_count2, before.doppler.quiet_power_count2);
     EXPECT_EQ(built.ground_speed.method, before.ground_speed.method);
     EXPECT_EQ(built.ground_speed.window, before.ground_speed.window);
     const auto rest = offsetof(ground_speed_config_t, tick_s);
     EXPECT_EQ(std::memcmp(reinterpret_cast<const char *>(&built.ground_speed) + rest,
                           reinterpret_cast<const char *>(&before.ground_speed) + rest,
-                          offsetof(ground_speed_config_t, sign_hysteresis_m_s) + sizeof(float) - rest),
+                          offsetof(ground_speed_config_t, wheel_slip) + sizeof(float) - rest),
               0);
 }
 

@@ -233,7 +233,10 @@ TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motor
         speed = 0;
     }
     config.safety.sigmas = 0; // as if the estimate were sure of it
+    config.ground_speed.gate_patience = 1000; // and believed nothing else
+    config.ground_speed.agile_sure = config.ground_speed.agile_limit = 1e9f;
     for (int k = 0; k < 150 && trace.faults == 0u; ++k) {
+        state.ground_speed.p_vv = state.ground_speed.p_bb = 1e-6f;
         state.ground_speed.speed_m_s = 0.8f; // as a radar that hears something else would make it
         run(1);
     }
@@ -382,6 +385,7 @@ TEST(Disagreement, is_measured_against_the_fastest_wheel) {
             control_config_t config = rover_config_default();
             config.safety.required = 0;
             config.safety.sigmas = 0; // as if the estimate were sure of it
+            config.ground_speed.wheel_noise_m_s = 100; // and the wheels told nothing
             control_state_t state;
             control_reset(&config, &state);
             state.ground_speed.speed_m_s = 0.5f;
