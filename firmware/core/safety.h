@@ -92,8 +92,9 @@ typedef struct {
     float battery_V;
     float ground_speed_m_s;
     float ground_speed_std_m_s;
-    float rim_max_m_s; // largest |R w| of the wheels
-    float rim_min_m_s; // smallest |R w|
+    float rim_high_m_s; // largest R w of the wheels, at least 0
+    float rim_low_m_s;  // smallest, at most 0
+    float rim_min_m_s;  // smallest |R w|
 } safety_input_t;
 
 typedef struct {
