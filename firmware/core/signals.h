@@ -127,7 +127,6 @@ typedef enum {
     FAULT_MOTOR_OPEN = 1u << 16,      // duty, but no current: a wire or a brush
     FAULT_ENCODER_CIRCUIT = 1u << 17, // an encoder contradicts its motor's circuit: frozen or slipping
     FAULT_BROWN_OUT = 1u << 18,       // the supply broke down
-    FAULT_SELF_TEST = 1u << 19,       // something failed before the motors were enabled
 } fault_t;
 
 typedef struct {
