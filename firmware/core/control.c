@@ -221,7 +221,8 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
 static safety_output_t judge(const control_config_t *config, control_state_t *state, const estimate_t *estimate,
                              const sensor_frame_t *frame)
 {
-    float most_rad_s = 0.0f;
+    float high_rad_s = 0.0f;
+    float low_rad_s = 0.0f;
     float least_rad_s = 0.0f;
     safety_input_t input = {
         .frame = frame,
@@ -237,13 +238,16 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
         .estimator = state->beyond >= BEYOND_VALUES ? (uint32_t)FAULT_SPEED_BEYOND : 0u,
     };
     for (int i = 0; i < WHEEL_COUNT; i++) {
-        const float turn = fabsf(estimate->sense->speed_rad_s[i]);
+        const float speed_rad_s = estimate->sense->speed_rad_s[i];
+        const float turn = fabsf(speed_rad_s);
         input.speed_rad_s[i] = estimate->sense->speed_rad_s[i];
         input.current_A[i] = estimate->sense->current_A[i];
-        most_rad_s = i == 0 || fixed_greater(turn, most_rad_s) ? turn : most_rad_s;
+        high_rad_s = fixed_greater(speed_rad_s, high_rad_s) ? speed_rad_s : high_rad_s;
+        low_rad_s = fixed_greater(low_rad_s, speed_rad_s) ? speed_rad_s : low_rad_s;
         least_rad_s = i == 0 || fixed_greater(least_rad_s, turn) ? turn : least_rad_s;
     }
-    input.rim_max_m_s = most_rad_s * config->slip.wheel_radius_m;
+    input.rim_high_m_s = high_rad_s * config->slip.wheel_radius_m;
+    input.rim_low_m_s = low_rad_s * config->slip.wheel_radius_m;
     input.rim_min_m_s = least_rad_s * config->slip.wheel_radius_m;
     return safety_step(&config->safety, &state->safety, &input);
 }

@@ -10,6 +10,7 @@
 #include "ground_speed.h"
 #include "motor.h"
 #include "safety.h"
+#include "self_test.h"
 #include "sense.h"
 #include "signals.h"
 #include "slip.h"
@@ -43,8 +44,9 @@ typedef struct {
     speed_control_config_t speed_control;
     soil_sweep_config_t soil_sweep;
     safety_config_t safety;
-    bool feed_forward; // the wheel loops know the motor; false is a plain PID
-} control_config_t;    // constant while running
+    self_test_config_t self_test; // of whoever runs it; control_step does not
+    bool feed_forward;            // the wheel loops know the motor; false is a plain PID
+} control_config_t;               // constant while running
 
 typedef struct {
     sense_state_t sense;

@@ -227,6 +227,36 @@ static void build_safety(const float *v, safety_config_t *safety)
     *safety = built;
 }
 
+static void build_self_test(const float *v, const safety_config_t *safety, self_test_config_t *self_test)
+{
+    const float stall_A = v[ROVER_battery_voltage_V] / v[ROVER_resistance_ohm];
+    const float pulses = v[ROVER_encoder_counts_per_turn] / 6.28318531f; // of a radian
+    const self_test_config_t built = {
+        .required = safety->required,
+        .rest_ticks = 100,
+        .pulse_ticks = 20,
+        .settle_ticks = 15,
+        .duty_max = 0.5f, // torque of the reference: 0.29 N m, 5.2 N at the rim: what starts one wheel up 5 deg, the others shorted
+        .enough_count = 4 + whole(0.025f * pulses), // 1.4 mm of the reference's rim
+        .least_count = 2 + whole(0.003f * pulses),
+        .still_count = 2 + whole(0.02f * pulses), // a touch, not a motion
+        .radar_offset_count = 10.0f,              // assumed: a hundredth of the converter
+        .radar_dead_count2 = 0.4f * v[ROVER_radar_quiet_count2],
+        .radar_noisy_count2 = 12.5f * v[ROVER_radar_quiet_count2], // 5 counts of the reference
+        .radar_rest_count = whole(v[ROVER_radar_offset_count]),
+        .gravity_m_s2 = 9.81f,
+        .gravity_slack_m_s2 = 0.5f, // 5 %: scale and bias of a small MEMS part
+        .accel_slope_m_s2 = 2.1f,   // 12 deg: steeper, no rover is tested
+        .accel_m_s2_per_count = v[ROVER_accel_m_s2_per_count],
+        .gyro_rad_s = 0.05f, // 3 deg/s
+        .battery_V = v[ROVER_battery_min_V],
+        .zero_A = 0.03f * stall_A,
+        .winding_1_ohm = 1.0f / v[ROVER_resistance_ohm],
+        .current_least = 0.3f, // 0.6 of it flows at least: the wheel hardly turns
+    };
+    *self_test = built;
+}
+
 void control_config_build(const rover_parameters_t *parameters, control_config_t *config)
 {
     const float *v = parameters->value;
@@ -243,6 +273,7 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     build_motor(v, &config->motor);
     build_control(v, config);
     build_safety(v, &config->safety);
+    build_self_test(v, &config->safety, &config->self_test);
 }
 
 // --- what cannot work

@@ -157,11 +157,14 @@ static bool radar_dead(const safety_config_t *config, safety_state_t *state, con
     return state->radar_dead_blocks >= config->radar_dead_blocks;
 }
 
-// The rover passes faster than any wheel explains, beyond what the estimate knows it does not know; or the radar is dead while all turn.
+// The rover passes faster than any wheel that turns this way explains, beyond what the estimate knows it does not know; or the radar is
+// dead while all turn.
 static uint32_t check_agreement(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)
 {
-    const float explained = input->rim_max_m_s * config->disagree_ratio + config->disagree_m_s;
-    const float passes = fabsf(input->ground_speed_m_s);
+    const bool backward = fixed_greater(0.0f, input->ground_speed_m_s);
+    const float passes = backward ? -input->ground_speed_m_s : input->ground_speed_m_s;
+    const float turns = backward ? -input->rim_low_m_s : input->rim_high_m_s; // of the wheel that turns most this way
+    const float explained = turns * config->disagree_ratio + config->disagree_m_s;
     const bool beyond = fixed_greater(passes, explained) && fixed_greater(passes - config->sigmas * input->ground_speed_std_m_s, explained);
     const bool disagrees = lasted(&state->disagree_s, beyond, config->tick_s, config->disagree_s);
     uint32_t faults = disagrees ? (uint32_t)FAULT_SPEED_DISAGREE : 0u;

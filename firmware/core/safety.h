@@ -93,7 +93,8 @@ typedef struct {
     float ground_speed_m_s;
     float ground_speed_std_m_s;
     uint32_t estimator; // FAULT_* bits that the estimator raises
-    float rim_max_m_s;  // largest |R w| of the wheels
+    float rim_high_m_s; // largest R w of the wheels, at least 0
+    float rim_low_m_s;  // smallest, at most 0
     float rim_min_m_s;  // smallest |R w|
 } safety_input_t;
 

@@ -127,8 +127,7 @@ typedef enum {
     FAULT_MOTOR_OPEN = 1u << 16,      // duty, but no current: a wire or a brush
     FAULT_ENCODER_CIRCUIT = 1u << 17, // an encoder contradicts its motor's circuit: frozen or slipping
     FAULT_BROWN_OUT = 1u << 18,       // the supply broke down
-    FAULT_SELF_TEST = 1u << 19,       // something failed before the motors were enabled
-    FAULT_SPEED_BEYOND = 1u << 20,    // faster than the radar's band holds: the estimate is not to be used
+    FAULT_SPEED_BEYOND = 1u << 19,    // faster than the radar's band holds: the estimate is not to be used
 } fault_t;
 
 typedef struct {

@@ -45,7 +45,7 @@ hal_t guarded(Guard &guard) {
 
 } // namespace
 
-daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link &link) {
+daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link &link, const daemon_start_t &start) {
     Guard guard{.world = hal, .link = link, .thrown = {}};
     const hal_t outer = guarded(guard);
     const daemon_link_t hooks{.context = &guard,
@@ -59,7 +59,7 @@ daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link 
                                       auto &g = *static_cast<Guard *>(context);
                                       g.call([&] { return g.link.log(*frame, *command, *trace), HAL_OK; });
                                   }};
-    const daemon_result_t result = daemon_run(&outer, &config, &hooks);
+    const daemon_result_t result = daemon_run_from(&outer, &config, &hooks, &start);
     if (guard.thrown) std::rethrow_exception(guard.thrown);
     return result;
 }

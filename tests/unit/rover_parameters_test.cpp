@@ -199,6 +199,7 @@ control_config_t written_out() {
                        .duration_ticks = 2000,
                        .wheel_max_rad_s = 25.0f},
         .safety = safety_default(),
+        .self_test = {}, // no part of a tick: self_test_test.cpp
         .feed_forward = true,
     };
     return config;
