@@ -150,14 +150,17 @@ static float speed_for_slip(const control_config_t *config, float rolling_rad_s,
 // estimate doubts itself must not throw the wheels about.
 static const float sure_m_s = 0.03f;
 
-static float speed_to_steer_by(const estimate_t *estimate, float reference_m_s)
+static float speed_to_steer_by(control_state_t *state, const estimate_t *estimate, float reference_m_s)
 {
-    const float std_m_s = fixed_clamp(estimate->speed_std_m_s, sure_m_s, 10.0f);
-    if (!fixed_greater(std_m_s, sure_m_s)) {
+    if (!fixed_greater(estimate->speed_std_m_s, sure_m_s)) {
         return estimate->speed_m_s;
     }
-    const float ratio = sure_m_s / std_m_s;
-    return reference_m_s + ratio * ratio * (estimate->speed_m_s - reference_m_s);
+    if (fixed_bits(estimate->speed_std_m_s) != fixed_bits(state->steer_std_m_s)) { // a division is dear: not in every tick
+        const float ratio = sure_m_s / fixed_clamp(estimate->speed_std_m_s, sure_m_s, 10.0f);
+        state->steer_std_m_s = estimate->speed_std_m_s;
+        state->steer_share = ratio * ratio;
+    }
+    return reference_m_s + state->steer_share * (estimate->speed_m_s - reference_m_s);
 }
 
 static void drive_mode(const control_config_t *config, control_state_t *state, const estimate_t *estimate, control_mode_t mode,
@@ -176,7 +179,7 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
         const speed_control_input_t input = {
             .speed_ref_m_s = command->platform_speed_m_s,
             .yaw_rate_ref_rad_s = mode == MODE_SOIL_SWEEP ? 0.0f : command->yaw_rate_rad_s,
-            .speed_m_s = speed_to_steer_by(estimate, fixed_finite(command->platform_speed_m_s)),
+            .speed_m_s = speed_to_steer_by(state, estimate, fixed_finite(command->platform_speed_m_s)),
             .saturated = state->saturated,
         };
         platform = speed_control_step(&config->speed_control, &state->speed_control, &input);

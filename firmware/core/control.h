@@ -66,6 +66,8 @@ typedef struct {
     bool braking;            // a fault stopped the rover, and nothing has driven it since
     uint32_t sequence;       // of the actuator frame written in the last tick
     float doppler_m_s;       // last Doppler value
+    float steer_std_m_s;     // standard deviation of the speed for which the next was made
+    float steer_share;       // of an error of the platform's speed that counts [1]
     doppler_output_t heard;  // by the tick before: no tick pays for a search and a correction
     int32_t beyond;          // Doppler values in a row that told of more speed than the radar's band holds
 } control_state_t;

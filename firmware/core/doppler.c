@@ -327,14 +327,18 @@ static void take(const doppler_config_t *config, doppler_state_t *state, int16_t
     state->railed[state->block] += railed ? 1 : 0;
     state->last = value;
     state->window.sample[state->filled] = value;
-    if (!state->full && state->filled < EARLY_TWICE) {
-        state->twice[2 * state->filled] = value;
-        state->twice[2 * state->filled + 1] = value;
-    }
-    state->filled++;
     state->sum += value;
-    if (config->method == DOPPLER_LIKELIHOOD) {
-        transform_early(state, late_samples);
+    if (state->full) {
+        state->filled++;
+    } else {
+        if (state->filled < EARLY_TWICE) {
+            state->twice[2 * state->filled] = value;
+            state->twice[2 * state->filled + 1] = value;
+        }
+        state->filled++;
+        if (config->method == DOPPLER_LIKELIHOOD) {
+            transform_early(state, late_samples);
+        }
     }
     if (state->filled == FFT_LENGTH) {
         transform(state, false, late_samples);

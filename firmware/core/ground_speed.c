@@ -71,7 +71,7 @@ static void move(const ground_speed_config_t *config, ground_speed_track_t *trac
 // Running integral of the raw accelerometer.
 static void integrate(const ground_speed_config_t *config, ground_speed_state_t *state, float accel_m_s2)
 {
-    const float step = fixed_clamp(accel_m_s2 * config->tick_s * 1048576.0f + state->integral_rest_m_s, -1e8f, 1e8f); // 95 m/s
+    const float step = fixed_clamp(accel_m_s2 * config->tick_q20_s + state->integral_rest_m_s, -1e8f, 1e8f); // 95 m/s
     const int32_t whole = (int32_t)step;
     state->integral_rest_m_s = step - (float)whole;
     const int32_t last = state->integral_q20[state->head];
@@ -467,9 +467,11 @@ static void update_quiet(const ground_speed_config_t *config, ground_speed_state
 // Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once.
 static bool is_standing(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
-    const bool wheels_rest = state->still_ticks >= config->still_needed && state->loud < config->loud_needed;
+    if (state->still_ticks < config->still_needed || state->loud >= config->loud_needed) {
+        return false;
+    }
     const bool slow = fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < square(config->slow_m_s);
-    return wheels_rest && (state->quiet >= config->quiet_needed || slow);
+    return slow || state->quiet >= config->quiet_needed;
 }
 
 static const float ears_open_m_s = 0.1f; // [m/s] rim speed above which a front end without any noise is dead, not a rover that stands
@@ -579,12 +581,21 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
     state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
     state->wheel_ticks += state->wheel_ticks < 1000 ? 1 : 0;
-    const float T = config->tick_s; // (2) as in move; hold is a chore, and after every correction
-    const float lost = T * state->p_bb;
-    state->speed_m_s += (accel - state->bias_m_s2) * T;
-    state->p_vv += T * (lost - 2.0f * state->p_vb) + noise;
+    state->speed_m_s += (accel - state->bias_m_s2) * config->tick_s; // (2)
+    state->behind_ticks++;
+    state->behind_noise_m2_s2 = noise;
+}
+
+// The covariance of (2), for the ticks since the last time. It waits in ticks that are busy; hold is a chore, and after every correction.
+static void catch_up(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    const float n = (float)state->behind_ticks;
+    const float time_s = n * config->tick_s;
+    const float lost = time_s * state->p_bb;
+    state->p_vv += time_s * (lost - 2.0f * state->p_vb) + n * state->behind_noise_m2_s2;
     state->p_vb -= lost;
-    state->p_bb += config->bias_noise_m2_s4;
+    state->p_bb += n * config->bias_noise_m2_s4;
+    state->behind_ticks = 0;
 }
 
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
@@ -594,14 +605,18 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     const float noise = input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2;
-    const bool first = state->std_m_s == 0.0f; // nothing was missed before
+    const bool first = fixed_bits(state->std_m_s) == 0u; // nothing was missed before
     uint32_t missed = !first && input->elapsed_ticks > 1u ? input->elapsed_ticks - 1u : 0u;
     missed = missed < MISSED_MAX ? missed : MISSED_MAX;
     for (uint32_t i = 0; i < missed; i++) { // nothing is known of their acceleration: the newest one stands for them
         tick(config, state, accel, config->blind_noise_m2_s2);
     }
+    if (missed > 0u) {
+        catch_up(config, state);
+    }
     tick(config, state, accel, noise);
-    if (!input->busy) {
+    if (!input->busy || fresh) {
+        catch_up(config, state);
         watch_wheels(config, state, input->wheel_m_s);
     }
     if (config->method == GROUND_SPEED_PAPER) {
@@ -614,7 +629,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     }
     state->speed_m_s = fixed_clamp(state->speed_m_s, -speed_max_m_s, speed_max_m_s);
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
-    if (fresh || state->standstill || state->std_m_s == 0.0f) { // a root is dear
+    if (fresh || state->standstill || fixed_bits(state->std_m_s) == 0u) { // a root is dear
         state_std(config, state);
     }
     const ground_speed_output_t out = {

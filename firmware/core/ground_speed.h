@@ -41,6 +41,7 @@ typedef struct {
     const doppler_window_t *window; // w_j and tau of (3): the radar's
     float tick_s;                   // T
     float per_tick_1_s;             // 1/T
+    float tick_q20_s;               // 2^20 T
     float speed_noise_m2_s2;        // Qv per tick, at least
     float speed_noise_max_m2_s2;    // and at most; at or below the other, (6) is off
     float blind_noise_m2_s2;        // Qv per tick without an accelerometer
@@ -104,6 +105,8 @@ typedef struct {
     float speed_noise_m2_s2;                    // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
+    int32_t behind_ticks; // that the covariance has not seen, and Qv in them
+    float behind_noise_m2_s2;
     float integral_rest_m_s; // part of V below one unit
     float one_sided;         // m of (4)
     float misfit;            // of (8), 1 or more
