@@ -249,9 +249,9 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
         low_rad_s = fixed_greater(low_rad_s, speed_rad_s) ? speed_rad_s : low_rad_s;
         least_rad_s = i == 0 || fixed_greater(least_rad_s, turn) ? turn : least_rad_s;
     }
-    input.rim_high_m_s = high_rad_s * config->slip.wheel_radius_m;
-    input.rim_low_m_s = low_rad_s * config->slip.wheel_radius_m;
-    input.rim_min_m_s = least_rad_s * config->slip.wheel_radius_m;
+    input.high_rad_s = high_rad_s;
+    input.low_rad_s = low_rad_s;
+    input.least_rad_s = least_rad_s;
     return safety_step(&config->safety, &state->safety, &input);
 }
 

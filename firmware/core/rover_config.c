@@ -222,7 +222,8 @@ static void build_safety(const float *v, safety_config_t *safety)
         .radar_dead_blocks = 1u + (uint32_t)whole(0.3f * v[ROVER_radar_rate_Hz] / 32.0f), // 0.3 s and a block: within half a second
         .sigmas = 3.0f,
         .disagree_m_s = v[ROVER_disagree_m_s],
-        .disagree_ratio = v[ROVER_disagree_ratio],
+        .disagree_ratio_m = v[ROVER_disagree_ratio] * v[ROVER_wheel_radius_m],
+        .turning_rad_s = v[ROVER_disagree_m_s] / v[ROVER_wheel_radius_m],
         .disagree_s = v[ROVER_disagree_s],
     };
     *safety = built;

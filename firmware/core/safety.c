@@ -35,16 +35,35 @@ static uint32_t check_line(const safety_config_t *config, safety_state_t *state,
     return frame->emergency_stop || deaf ? (uint32_t)FAULT_EMERGENCY_STOP : 0u;
 }
 
-static uint32_t check_bridge(const safety_config_t *config, safety_state_t *state, const sensor_frame_t *frame, uint32_t wheel)
+static uint32_t check_bridges(const safety_config_t *config, safety_state_t *state, const sensor_frame_t *frame, uint32_t *wheels)
 {
-    const bool answers = (frame->present & ((uint32_t)FRAME_BRIDGE_0 << wheel)) != 0u;
-    state->bridges |= answers ? 1u << wheel : 0u;
-    const bool bad = answers ? frame->bridge_status[wheel] != 0u : (state->bridges & (1u << wheel)) != 0u;
-    return too_many(&state->bridge_ticks[wheel], bad, config->patience_ticks) ? (uint32_t)FAULT_BRIDGE : 0u;
+    const uint32_t answers = (frame->present / FRAME_BRIDGE_0) & 0xfu;
+    const uint8_t *status = frame->bridge_status;
+    const bool well = answers == state->bridges && (status[0] | status[1] | status[2] | status[3]) == 0u;
+    if (well && !state->bridges_counting) {
+        return 0u;
+    }
+    state->bridges |= answers;
+    state->bridges_counting = !well;
+    uint32_t faults = 0;
+    for (uint32_t wheel = 0; wheel < WHEEL_COUNT; wheel++) {
+        const uint32_t bit = 1u << wheel;
+        const bool bad = (answers & bit) != 0u ? status[wheel] != 0u : (state->bridges & bit) != 0u;
+        if (too_many(&state->bridge_ticks[wheel], bad, config->patience_ticks)) {
+            faults |= (uint32_t)FAULT_BRIDGE;
+            *wheels |= bit;
+        }
+    }
+    return faults;
 }
 
 static uint32_t check_sensors(const safety_config_t *config, safety_state_t *state, const safety_input_t *input, uint32_t *wheels)
 {
+    const uint32_t all = (1u << SAFETY_SENSORS) - 1u;
+    if ((input->usable & all) == all && input->absurd == 0u && !state->counting) {
+        return 0u; // the tick of a rover that is well: every count is 0 and stays so
+    }
+    state->counting = (input->usable & all) != all || input->absurd != 0u; // else the counts are cleared in this tick
     uint32_t faults = 0;
     for (uint32_t i = 0; i < SAFETY_SENSORS; i++) {
         const uint32_t bit = 1u << i;
@@ -163,13 +182,13 @@ static uint32_t check_agreement(const safety_config_t *config, safety_state_t *s
 {
     const bool backward = fixed_greater(0.0f, input->ground_speed_m_s);
     const float passes = backward ? -input->ground_speed_m_s : input->ground_speed_m_s;
-    const float turns = backward ? -input->rim_low_m_s : input->rim_high_m_s; // of the wheel that turns most this way
-    const float explained = turns * config->disagree_ratio + config->disagree_m_s;
+    const float turns_rad_s = backward ? -input->low_rad_s : input->high_rad_s; // of the wheel that turns most this way
+    const float explained = turns_rad_s * config->disagree_ratio_m + config->disagree_m_s;
     const bool beyond = fixed_greater(passes, explained) && fixed_greater(passes - config->sigmas * input->ground_speed_std_m_s, explained);
     const bool disagrees = lasted(&state->disagree_s, beyond, config->tick_s, config->disagree_s);
     uint32_t faults = disagrees ? (uint32_t)FAULT_SPEED_DISAGREE : 0u;
     if ((input->usable & FRAME_RADAR) != 0u) {
-        const bool turning = fixed_greater(input->rim_min_m_s, config->disagree_m_s);
+        const bool turning = fixed_greater(input->least_rad_s, config->turning_rad_s);
         faults |= radar_dead(config, state, input->frame, turning) ? (uint32_t)FAULT_RADAR_LOST : 0u;
     }
     return faults;
@@ -190,10 +209,10 @@ safety_output_t safety_step(const safety_config_t *config, safety_state_t *state
     uint32_t wheels = 0;
     uint32_t now = check_line(config, state, input->frame);
     now |= check_sensors(config, state, input, &wheels);
+    now |= check_bridges(config, state, input->frame, &wheels);
     now |= check_time(config, state, input);
     for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) {
-        const uint32_t mine = check_wheel(config, state, input, wheel, &limit) |
-                              check_bridge(config, state, input->frame, (uint32_t)wheel) | check_circuit(input, (uint32_t)wheel, &limit);
+        const uint32_t mine = check_wheel(config, state, input, wheel, &limit) | check_circuit(input, (uint32_t)wheel, &limit);
         wheels |= mine != 0u ? 1u << (uint32_t)wheel : 0u;
         now |= mine;
     }

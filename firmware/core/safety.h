@@ -46,7 +46,8 @@ typedef struct {
     uint32_t radar_dead_blocks; // so many in a row while every wheel turns: the front end is dead
     float sigmas;               // of the ground speed that are its own uncertainty, no disagreement
     float disagree_m_s;         // ground speed beyond what the fastest wheel explains, absolute part
-    float disagree_ratio;       // and relative part
+    float disagree_ratio_m;     // and relative part, times the wheel radius
+    float turning_rad_s;        // a wheel faster than that is heard by a radar that works
     float disagree_s;
 } safety_config_t;
 
@@ -57,6 +58,8 @@ typedef struct {
     uint32_t limited;                   // bit i: wheel i is limited to the continuous current
     uint32_t wheels;                    // bit i: a latched fault is wheel i's
     uint32_t line_ticks;                // ticks in a row in which nobody read the emergency stop
+    bool counting;                      // a count of bad_ticks or absurd_ticks is not 0
+    bool bridges_counting;              // nor one of bridge_ticks
     uint32_t bridges;                   // bit i: the bridge of wheel i has answered once
     uint32_t bridge_ticks[WHEEL_COUNT]; // ticks in a row in which it did not answer, or not well
     uint32_t bad_ticks[SAFETY_SENSORS];
@@ -93,9 +96,9 @@ typedef struct {
     float ground_speed_m_s;
     float ground_speed_std_m_s;
     uint32_t estimator; // FAULT_* bits that the estimator raises
-    float rim_high_m_s; // largest R w of the wheels, at least 0
-    float rim_low_m_s;  // smallest, at most 0
-    float rim_min_m_s;  // smallest |R w|
+    float high_rad_s;   // largest speed of a wheel, at least 0
+    float low_rad_s;    // smallest, at most 0
+    float least_rad_s;  // smallest size of one
 } safety_input_t;
 
 typedef struct {

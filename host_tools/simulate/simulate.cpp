@@ -136,7 +136,7 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     const hal_t world = rover.hal();
     const daemon_result_t run =
         run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_of(scenario, options.firmware.value_or("")), session,
-                 {.self_test = options.self_test, .warm = false, .rise_K = nullptr, .rise_out_K = nullptr});
+                 {.self_test = options.self_test, .warm = options.warm, .rise_K = nullptr, .rise_out_K = nullptr});
     result.ended_by = run.ended_by;
     result.ticks = run.ticks;
     result.faults = run.faults;

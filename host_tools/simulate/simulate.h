@@ -25,6 +25,7 @@ struct SimulateOptions {
     bool record = true;                     // false: run only (benchmarks)
     bool truth = false;                     // fill SimulationResult::truth
     bool realtime = false;                  // keep pace with the wall clock
+    bool warm = false;                      // a restart: the windings are taken to be warm
     bool self_test = false;                 // before the drive plan; what fails ends the run
     std::string frames_path;                // replay text, one line a tick; empty: none
     std::function<void()> after_second;     // called after every simulated second

@@ -479,3 +479,59 @@ TEST(SimHal, a_dead_sensor_never_stalls_the_loop) {
         }
     }
 }
+
+// Five ticks that nobody reads: the FIFO keeps their radar samples, the frame says what was missed.
+TEST(FaultHal, missed_ticks_are_told_and_lose_no_radar_sample) {
+    hal::SimHal world(sand());
+    hal::FaultHal faulty(
+        world.hal(),
+        {.sensors = {}, .emergency_stop_s = {}, .missed_ticks = {{.ticks = 5, .every_s = 0.5, .from_s = 0.5, .to_s = never_s}}}, {}, 1);
+    const hal_t hal = faulty.hal();
+    sensor_frame_t frame{};
+    std::uint32_t next = 0, missed = 0, expected_tick = 0;
+    while (hal.wait_tick(hal.context) == HAL_OK) {
+        ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
+        expected_tick += frame.elapsed_ticks;
+        EXPECT_EQ(frame.tick + 1, expected_tick);
+        missed += frame.elapsed_ticks - 1;
+        EXPECT_TRUE(next == 0 || frame.radar_sequence == next);
+        next = frame.radar_sequence + frame.radar_samples;
+    }
+    EXPECT_EQ(missed, 25u); // five times in 3 s: at 0.5, 1.0, 1.5, 2.0 and 2.5 s
+}
+
+TEST(FaultHal, a_sensor_that_drifts_jumps_or_slips_does_so_by_its_amount) {
+    using enum sim::FaultySensor;
+    const auto with = [](sim::FaultySensor sensor, sim::FaultKind kind, double amount) {
+        return run({.sensors = {{.sensor = sensor, .wheel = 1, .kind = kind, .from_s = 0.1, .to_s = never_s, .amount = amount}},
+                    .emergency_stop_s = {}},
+                   30);
+    };
+    // the counting HAL: current 2048 + n, encoder 100 n + wheel, accelerometer n; frame n ends at (n + 1) 10 ms
+    EXPECT_EQ(with(current, sim::FaultKind::offset, 0.2)[20].current_count[1], 2048 + 20 + 100); // 2 mA a count
+    EXPECT_EQ(with(current, sim::FaultKind::drift, 1.0)[29].current_count[1], 2048 + 29 + 100);  // 0.2 s after it began
+    const auto spiked = with(accel, sim::FaultKind::spike, 0.4);
+    EXPECT_EQ(spiked[9].accel_x_count, 9 + 100); // 4 mm/s^2 a count, in one tick
+    EXPECT_EQ(spiked[10].accel_x_count, 10);
+    const auto slips = with(encoder, sim::FaultKind::slipping, 0.5);
+    EXPECT_EQ(slips[29].encoder_count[1] - slips[19].encoder_count[1], 500); // half of 100 a tick
+    EXPECT_EQ(slips[29].encoder_count[0] - slips[19].encoder_count[0], 1000);
+}
+
+TEST(FaultHal, lost_samples_leave_one_run_and_its_number_tells_what_is_missing) {
+    const auto frames =
+        run({.sensors = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::lost, .from_s = 0, .to_s = never_s, .amount = 0.05}},
+             .emergency_stop_s = {}},
+            500);
+    int lost = 0, sample = 0;
+    for (std::size_t n = 0; n < frames.size(); n++) {
+        const sensor_frame_t &frame = frames[n];
+        const int whole = n % 5 == 0 ? 6 : 5;
+        for (int i = 0; i < frame.radar_samples; i++) // the counting HAL numbers its samples; its frames begin at 0
+            EXPECT_EQ(frame.radar_count[i], (sample + static_cast<int>(frame.radar_sequence) + i) % 1024);
+        sample += whole;
+        lost += whole - frame.radar_samples;
+    }
+    EXPECT_GT(lost, 130 - 40); // 0.05 of 2600 at least, three sigma; more, as a run has no hole
+    EXPECT_LT(lost, 3 * 130);
+}

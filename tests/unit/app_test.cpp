@@ -1,6 +1,8 @@
 // The daemon's loop on a scripted HAL, and its parameter file: right, wrong and hostile.
 #include "firmware/app/daemon.h"
 #include "firmware/app/parameters.h"
+#include "firmware/app/store.h"
+#include "firmware/app/trace_queue.h"
 #include "firmware/core/rover_config.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +11,11 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include <time.h>
+#include <unistd.h>
 
 namespace {
 
@@ -125,6 +131,110 @@ TEST(Daemon, leaves_a_silent_device_to_safety) {
     int off = 0;
     while (bench.written[static_cast<std::size_t>(off)].drive == DRIVE_ON) ++off;
     EXPECT_LE(off, 10 + 10); // 100 ms after the first silent tick
+}
+
+std::string text_of(const std::string &path) {
+    std::string text;
+    if (FILE *file = std::fopen(path.c_str(), "r")) {
+        for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text += static_cast<char>(c);
+        std::fclose(file);
+    }
+    return text;
+}
+
+TEST(Store, comes_back_bit_for_bit_and_a_damaged_one_is_refused) {
+    const std::string path = ::testing::TempDir() + "store_test.txt";
+    std::remove(path.c_str());
+    const store_t given = {{12.5f, 0.1f, 94.0f, 1e-3f}};
+    store_t read = {};
+    char message[STORE_MESSAGE];
+    EXPECT_FALSE(store_read(path.c_str(), &read, message));
+    EXPECT_NE(std::string(message).find("cannot be read"), std::string::npos) << message;
+    ASSERT_TRUE(store_write(path.c_str(), &given, message)) << message;
+    ASSERT_TRUE(store_read(path.c_str(), &read, message)) << message;
+    EXPECT_EQ(std::memcmp(&given, &read, sizeof given), 0);
+    const std::string whole = text_of(path);
+    for (std::size_t at = 0; at < whole.size(); ++at) { // one wrong character anywhere, or a file cut there
+        for (const bool cut : {true, false}) {
+            std::string bad = cut ? whole.substr(0, at) : whole;
+            if (!cut) bad[at] = bad[at] == '0' ? '1' : '0';
+            FILE *file = std::fopen(path.c_str(), "w");
+            std::fputs(bad.c_str(), file);
+            std::fclose(file);
+            EXPECT_FALSE(store_read(path.c_str(), &read, message)) << at << (cut ? " cut" : " changed");
+        }
+    }
+    EXPECT_FALSE(store_write("/no/such/folder/store", &given, message));
+    EXPECT_NE(std::string(message).find("/no/such/folder/store: cannot be written"), std::string::npos) << message;
+    std::remove(path.c_str());
+}
+
+// A reader that takes nothing: the tick that logs does not wait for it, and every lost line is counted.
+TEST(TraceQueue, a_stalled_file_costs_lines_and_no_tick) {
+    int pipe_ends[2];
+    ASSERT_EQ(pipe(pipe_ends), 0);
+    static trace_queue_t queue;
+    queue = {};
+    queue.file = fdopen(pipe_ends[1], "w");
+    ASSERT_TRUE(trace_queue_start(&queue));
+    constexpr int lines = 2000;
+    const std::string line(500, 'x');
+    timespec before, after;
+    clock_gettime(CLOCK_MONOTONIC, &before);
+    for (int i = 0; i < lines; ++i) trace_queue_put(&queue, (line + "\n").c_str()); // a pipe holds 64 kB: 130 of them
+    clock_gettime(CLOCK_MONOTONIC, &after);
+    EXPECT_LT(static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec), 5.0);
+    std::size_t read_lines = 0;
+    std::thread reader([&] {
+        char buffer[4096];
+        for (ssize_t n = 1; n > 0;) {
+            n = read(pipe_ends[0], buffer, sizeof buffer);
+            for (ssize_t i = 0; i < n; ++i) read_lines += buffer[i] == '\n';
+        }
+    });
+    const unsigned long lost = trace_queue_finish(&queue);
+    std::fclose(queue.file);
+    reader.join();
+    EXPECT_GT(lost, 1000u);
+    EXPECT_EQ(read_lines + lost, static_cast<std::size_t>(lines));
+    close(pipe_ends[0]);
+}
+
+TEST(TraceQueue, a_patient_one_keeps_every_line) {
+    static trace_queue_t queue;
+    queue = {};
+    queue.file = std::tmpfile();
+    queue.patient = true;
+    ASSERT_TRUE(trace_queue_start(&queue));
+    for (int i = 0; i < 5000; ++i) trace_queue_put(&queue, (std::to_string(i) + "\n").c_str());
+    EXPECT_EQ(trace_queue_finish(&queue), 0u);
+    std::rewind(queue.file);
+    int line = -1, expected = 0;
+    while (std::fscanf(queue.file, "%d", &line) == 1) EXPECT_EQ(line, expected++);
+    EXPECT_EQ(expected, 5000);
+    std::fclose(queue.file);
+}
+
+TEST(Daemon, starts_with_the_windings_as_warm_as_it_is_told) {
+    Bench bench;
+    const control_config_t config = rover_config_default();
+    const hal_t world = bench.hal();
+    const daemon_link_t person = bench.link();
+    volatile float out_K[WHEEL_COUNT] = {};
+    const float kept_K[WHEEL_COUNT] = {10, 20, 30, 40};
+    daemon_start_t start = {};
+    start.rise_out_K = out_K;
+    daemon_run_from(&world, &config, &person, &start);
+    EXPECT_LT(out_K[3], 1.0f);
+    start.warm = true;
+    start.rise_K = kept_K;
+    bench.done = 0;
+    daemon_run_from(&world, &config, &person, &start);
+    EXPECT_NEAR(out_K[3], 40, 1); // 0.5 s of a minute's time constant
+    start.rise_K = nullptr;
+    bench.done = 0;
+    daemon_run_from(&world, &config, &person, &start);
+    EXPECT_NEAR(out_K[3], 76, 1); // 0.8 of 95 K
 }
 
 std::string refused(const std::string &text) {

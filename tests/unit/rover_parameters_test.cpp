@@ -140,9 +140,10 @@ static safety_config_t safety_default() {
         .radar_dead_count2 = 819, // 0.8 count^2 times 32^2
         .radar_dead_blocks = 6,   // 0.375 s
         .sigmas = 3.0f,
-        .disagree_m_s = 0.15f,  // [m/s] assumed
-        .disagree_ratio = 1.5f, // [1] assumed
-        .disagree_s = 1.0f,     // [s] assumed
+        .disagree_m_s = 0.15f,             // [m/s] assumed
+        .disagree_ratio_m = 1.5f * 0.057f, // [1] assumed, times the radius
+        .turning_rad_s = 0.15f / 0.057f,
+        .disagree_s = 1.0f, // [s] assumed
     };
     return safety;
 }
