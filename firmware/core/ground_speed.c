@@ -215,6 +215,28 @@ static void split(ground_speed_state_t *state, ground_speed_side_t *side, const 
     side->q20 = state->integral_q20[state->head];
 }
 
+// 1 where the wheels turn with the track at a speed that agrees with the radar's, -1 where they turn against it, else 0.
+static int32_t with_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float measured, float wheel_m_s)
+{
+    const bool match = fabsf(wheel_odds(config, measured, wheel_m_s)) >= config->wheel_match;
+    return !match ? 0 : (wheel_m_s < 0.0f) == (state->speed_m_s < 0.0f) ? 1 : -1;
+}
+
+// A sign that was lost at a restart is the same at constant speed as the right one; wheels that turn against it all the time ask anew.
+static void ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s)
+{
+    state->against = with_wheels(config, state, measured, wheel_m_s) < 0 ? state->against + 1 : 0;
+    if (state->against >= config->against_values && !state->other_alive) {
+        const ground_speed_track_t best = best_of(state);
+        split(state, &state->other, &best);
+        state->other.at.speed_m_s = -best.speed_m_s;
+        state->other.at.p_vb = 0.0f;
+        state->odds = config->against_odds;
+        state->other_alive = true;
+        state->against = 0;
+    }
+}
+
 // (9): takes the likelier sign, and follows the other too where it may be the right one.
 static float choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track,
                          float measured, float middle, float spread, float wheel_m_s)
@@ -283,6 +305,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     state->waits = 2;
     correct(config, &track, state->value_sign * measured - middle, window.tau_s, noise);
     keep_best(state, &track);
+    ask_again(config, state, measured, input->wheel_m_s);
 }
 
 static void move_side(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, int32_t ticks_ago)
@@ -337,7 +360,8 @@ static void update_other(const ground_speed_config_t *config, ground_speed_state
     const bool sure = fabsf(expected.told) >= config->sign_sure;
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const float cost = see(config, state, &state->other, &expected, sign);
-    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told);
+    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
+                   config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s);
     if (state->odds < 0.0f) {
         const ground_speed_track_t best = best_of(state);
         move_side(config, state, &state->other, 0);

@@ -79,6 +79,9 @@ typedef struct {
     float slow_m_s;                // |v| below which standing needs no quiet echo
     float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
     float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
+    float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
+    int32_t against_values;        // values against which they turn before the other sign is asked anew
+    float against_odds;            // and the odds that it then starts with
     float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
     float wheel_slip;
 } ground_speed_config_t;
@@ -119,6 +122,7 @@ typedef struct {
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
+    int32_t against;
     int32_t still_ticks;
     bool standstill;
     ground_speed_side_t other; // the other sign, (9)

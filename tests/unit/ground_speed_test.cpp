@@ -149,7 +149,7 @@ TEST(GroundSpeed, a_slope_of_one_degree_settles_within_two_and_a_half_seconds) {
 // With exact sensors the filter's delay compensation has nothing left to hide behind.
 TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag) {
     control_config_t config = rover_config_default();
-    config.ground_speed.doppler_spread_s = 0; // this radar gives the window's mean, not what the likelihood makes of its fastest part
+    config.ground_speed.doppler_spread_s = 0;   // this radar gives the window's mean, not what the likelihood makes of its fastest part
     config.ground_speed.bias_start_m_s2 = 0.1f; // and it knows that this accelerometer is good: the rest of its doubt would be 0.5 mm/s
     for (const double a : {0.2, -0.2, 1.0}) {
         ground_speed_state_t state;

@@ -110,6 +110,9 @@ static ground_speed_config_t ground_speed_default() {
         .sign_sure = 18.0f, // exp(9) to one
         .wheel_odds = 2.0f, // e to one, assumed
         .wheel_match = 14.0f,
+        .wheel_pull = 0.5f,
+        .against_values = 4,
+        .against_odds = 4.0f,
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
     };
