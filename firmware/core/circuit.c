@@ -65,20 +65,20 @@ static void look(const circuit_config_t *config, circuit_state_t *state, const c
     const uint32_t needed = ((uint32_t)FRAME_ENCODER_0 | (uint32_t)FRAME_CURRENT_0) << (uint32_t)i;
     const bool known = (sense->usable & needed) == needed && (sense->usable & FRAME_BATTERY) != 0u && input->driven && state->driven;
     bool contradicts = false;
-    bool open = false;
+    bool broken = false;
     if (known) {
         const float emf_V = config->back_emf_Vs * sense->speed_rad_s[i];
         const float drop_V = config->resistance_ohm * sense->current_A[i];
         const float across_V = fixed_finite(input->duty[i] * sense->battery_V - emf_V);
         const float about_V = config->contradict_speed * fabsf(emf_V);
-        open = fixed_greater(config->open_A, fabsf(sense->current_A[i])) &&
-               fixed_greater(fabsf(across_V), config->open_V + config->open_speed * fabsf(emf_V));
+        broken = fixed_greater(config->open_A, fabsf(sense->current_A[i])) &&
+                 fixed_greater(fabsf(across_V), config->open_V + config->open_speed * fabsf(emf_V));
         contradicts =
-            !open && fixed_greater(fabsf(across_V - drop_V), config->contradict_V + config->contradict_current * fabsf(drop_V) + about_V);
+            !broken && fixed_greater(fabsf(across_V - drop_V), config->contradict_V + config->contradict_current * fabsf(drop_V) + about_V);
     }
     const uint32_t bit = 1u << (uint32_t)i;
     out->contradict |= agreed(&state->contradict_looks[i], contradicts, config->contradict_looks) ? bit : 0u;
-    out->open |= agreed(&state->open_looks[i], open, config->open_looks) ? bit : 0u;
+    out->broken |= agreed(&state->open_looks[i], broken, config->open_looks) ? bit : 0u;
 }
 
 circuit_output_t circuit_step(const circuit_config_t *config, circuit_state_t *state, const circuit_input_t *input,

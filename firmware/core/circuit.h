@@ -59,7 +59,7 @@ typedef struct {
 typedef struct {
     uint32_t refused;    // bit i: sense_replace was given the circuit's speed for wheel i
     uint32_t contradict; // bit i: its encoder contradicts its circuit
-    uint32_t open;       // bit i: its winding is open
+    uint32_t broken;     // bit i: its winding is open
 } circuit_output_t;
 
 // Judges what sense_measure has just measured, and replaces what is impossible in *sense_state and *sense. Any value is accepted; NaN

@@ -230,7 +230,7 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
     safety_input_t input = {
         .frame = frame,
         .contradict = estimate->circuit.contradict,
-        .open = estimate->circuit.open,
+        .broken = estimate->circuit.broken,
         .ground_speed_std_m_s = estimate->speed_std_m_s,
         .command_age_ticks = estimate->command->age_ticks,
         .command_stop = estimate->command->mode == MODE_STOP,

@@ -81,9 +81,9 @@ static uint32_t check_sensors(const safety_config_t *config, safety_state_t *sta
 static uint32_t check_circuit(const safety_input_t *input, uint32_t wheel, uint32_t *limit)
 {
     const uint32_t bit = 1u << wheel;
-    *limit |= input->open & bit;
+    *limit |= input->broken & bit;
     return ((input->contradict & bit) != 0u ? (uint32_t)FAULT_ENCODER_CIRCUIT : 0u) |
-           ((input->open & bit) != 0u ? (uint32_t)FAULT_MOTOR_OPEN : 0u);
+           ((input->broken & bit) != 0u ? (uint32_t)FAULT_MOTOR_OPEN : 0u);
 }
 
 static uint32_t check_time(const safety_config_t *config, safety_state_t *state, const safety_input_t *input)

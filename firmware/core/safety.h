@@ -89,7 +89,7 @@ typedef struct {
     uint32_t usable;   // FRAME_* bits of sense_output_t
     uint32_t absurd;
     uint32_t contradict; // bits of circuit_output_t
-    uint32_t open;
+    uint32_t broken;
     float speed_rad_s[WHEEL_COUNT];
     float current_A[WHEEL_COUNT];
     float battery_V;

@@ -6,24 +6,40 @@
 
 const char *self_test_name(int32_t index)
 {
-    static const char *const names[SELF_TEST_FAILURES] = {
-        "a device does not answer",
-        "the rover is not at rest: put it on level ground",
-        "the radar's front end is dead: less noise than one count",
-        "the radar hears far more than its own noise at rest",
-        "the radar's converter rests elsewhere than described: radar.offset_count",
-        "the accelerometer does not feel gravity: bias, axis or scale",
-        "the gyro turns at rest",
-        "the battery is too low to drive",
-        "a current is measured though no motor is driven: current.offset_count",
-        "a current runs against its duty: swap the sensor's sign",
-        "a motor takes no current: wire, brush or bridge",
-        "a wheel turns against its duty: swap encoder_sign, or the motor's leads",
-        "an encoder does not move though its motor draws current: dead, or the wheel is held",
-        "another wheel answers a motor's pulse: the order of the wheels",
-        "safety stopped the rover during its self-test",
-    };
-    return index >= 0 && index < SELF_TEST_FAILURES ? names[index] : "";
+    switch (index >= 0 && index < SELF_TEST_FAILURES ? 1u << (uint32_t)index : 0u) {
+    case SELF_TEST_SILENT:
+        return "a device does not answer";
+    case SELF_TEST_MOVING:
+        return "the rover is not at rest: put it on level ground";
+    case SELF_TEST_RADAR_DEAD:
+        return "the radar's front end is dead: less noise than one count";
+    case SELF_TEST_RADAR_NOISY:
+        return "the radar hears far more than its own noise at rest";
+    case SELF_TEST_RADAR_OFFSET:
+        return "the radar's converter rests elsewhere than described: radar.offset_count";
+    case SELF_TEST_ACCEL:
+        return "the accelerometer does not feel gravity: bias, axis or scale";
+    case SELF_TEST_GYRO:
+        return "the gyro turns at rest";
+    case SELF_TEST_BATTERY:
+        return "the battery is too low to drive";
+    case SELF_TEST_CURRENT_ZERO:
+        return "a current is measured though no motor is driven: current.offset_count";
+    case SELF_TEST_CURRENT_SIGN:
+        return "a current runs against its duty: swap the sensor's sign";
+    case SELF_TEST_MOTOR_OPEN:
+        return "a motor takes no current: wire, brush or bridge";
+    case SELF_TEST_ENCODER_SIGN:
+        return "a wheel turns against its duty: swap encoder_sign, or the motor's leads";
+    case SELF_TEST_ENCODER_DEAD:
+        return "an encoder does not move though its motor draws current: dead, or the wheel is held";
+    case SELF_TEST_WHEEL_ORDER:
+        return "another wheel answers a motor's pulse: the order of the wheels";
+    case SELF_TEST_STOPPED:
+        return "safety stopped the rover during its self-test";
+    default:
+        return "";
+    }
 }
 
 void self_test_begin(self_test_state_t *state, self_test_result_t *result)
@@ -148,22 +164,38 @@ static void judge_pulse(const self_test_config_t *config, self_test_state_t *sta
             turns = turns && (k == i || 4 * size_of(moved(state, frame, k)) < other);
         }
         const bool draws = i != wheel && fixed_greater(fabsf(state->pulse_A[i] / n), least_A) && fixed_greater(least_A, fabsf(mine_A));
-        if (turns || draws) {
+        state->turned |= other > config->least_count ? 1u << (uint32_t)i : 0u;
+        if (draws) {
             failures |= (uint32_t)SELF_TEST_WHEEL_ORDER;
             result->wheels |= 1u << (uint32_t)i;
+        } else if (turns) { // or mine is dead, and the rover rolled: the pulses of the others will tell
+            state->instead[wheel] |= 1u << (uint32_t)i;
         }
     }
     if (failures == 0u) {
         const bool flows = fixed_greater(fabsf(mine_A), least_A);
         failures |= !flows ? (uint32_t)SELF_TEST_MOTOR_OPEN : mine_A < 0.0f ? (uint32_t)SELF_TEST_CURRENT_SIGN : 0u;
-        if (size_of(mine) <= config->least_count) {
-            failures |= flows ? (uint32_t)SELF_TEST_ENCODER_DEAD : 0u;
-        } else {
+        if (size_of(mine) > config->least_count) {
             failures |= mine < 0 ? (uint32_t)SELF_TEST_ENCODER_SIGN : 0u;
+        } else if (state->instead[wheel] == 0u) {
+            failures |= flows ? (uint32_t)SELF_TEST_ENCODER_DEAD : 0u;
         }
     }
     result->failures |= failures;
     result->wheels |= failures != 0u ? 1u << (uint32_t)wheel : 0u;
+}
+
+// Another encoder answered instead of a wheel's own: one that never moved at all is dead, one that answers to others is swapped.
+static void judge_order(const self_test_state_t *state, self_test_result_t *result)
+{
+    for (uint32_t wheel = 0; wheel < WHEEL_COUNT; wheel++) {
+        const uint32_t bit = 1u << wheel;
+        if (state->instead[wheel] != 0u) {
+            const bool swapped = (state->turned & bit) != 0u;
+            result->failures |= swapped ? (uint32_t)SELF_TEST_WHEEL_ORDER : (uint32_t)SELF_TEST_ENCODER_DEAD;
+            result->wheels |= bit | (swapped ? state->instead[wheel] : 0u);
+        }
+    }
 }
 
 // The rising edge of a pulse, and what it did. True when it is over.
@@ -225,6 +257,7 @@ command_t self_test_step(const self_test_config_t *config, const sense_config_t 
         begin_phase(state, frame, state->wheel + 1);
         return command;
     }
+    judge_order(state, result);
     result->done = true;
     command.mode = MODE_STOP;
     return command;

@@ -68,6 +68,8 @@ typedef struct {
     float accel_m_s2[3], gyro_rad_s, battery_V, current_A[WHEEL_COUNT]; // sums at rest
     float pulse_A[WHEEL_COUNT], pulse_V;                                // sums of a pulse
     int32_t pulse_n;
+    uint32_t turned;               // bit i: encoder i has moved in somebody's pulse
+    uint32_t instead[WHEEL_COUNT]; // who turned where wheel i should have
     bool seen;
 } self_test_state_t; // begin with self_test_begin
 
