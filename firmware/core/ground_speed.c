@@ -225,7 +225,7 @@ static int32_t with_wheels(const ground_speed_config_t *config, const ground_spe
 // A sign that was lost at a restart is the same at constant speed as the right one; wheels that turn against it all the time ask anew.
 static void ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s)
 {
-    state->against = with_wheels(config, state, measured, wheel_m_s) < 0 ? state->against + 1 : 0;
+    state->against = with_wheels(config, state, measured, wheel_m_s) >= 0 ? 0 : state->against + (state->against < 1000 ? 1 : 0);
     if (state->against >= config->against_values && !state->other_alive) {
         const ground_speed_track_t best = best_of(state);
         split(state, &state->other, &best);
@@ -400,7 +400,7 @@ static ground_speed_track_t to_middle(const ground_speed_track_t *track, float t
 static int32_t middle_q20(const ground_speed_state_t *state)
 {
     const int32_t then = state->integral_q20[((uint32_t)state->head - 2u) % GROUND_SPEED_HISTORY];
-    return (int32_t)((uint32_t)then - (uint32_t)(int32_t)(state->value_change_m_s * 1048576.0f));
+    return (int32_t)((uint32_t)then - (uint32_t)(int32_t)(fixed_clamp(state->value_change_m_s, -1000.0f, 1000.0f) * 1048576.0f));
 }
 
 static void start_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -606,7 +606,7 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
     state->wheel_ticks += state->wheel_ticks < 1000 ? 1 : 0;
     state->speed_m_s += (accel - state->bias_m_s2) * config->tick_s; // (2)
-    state->behind_ticks++;
+    state->behind_ticks += state->behind_ticks < 1000 ? 1 : 0;
     state->behind_noise_m2_s2 = noise;
 }
 
