@@ -203,7 +203,7 @@ static float wheel_odds(const ground_speed_config_t *config, float measured, flo
     if (!fixed_greater(rim, config->still_m_s)) {
         return 0.0f;
     }
-    const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.15f * rim, measured); // slip of -0.15 to 0.5
+    const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.5f * rim, measured); // slip of -0.33 to 0.5
     const float odds = match ? config->wheel_match : config->wheel_odds;
     return wheel_m_s < 0.0f ? -odds : odds;
 }
@@ -218,7 +218,8 @@ static void split(ground_speed_state_t *state, ground_speed_side_t *side, const 
 // 1 where the wheels turn with the track at a speed that agrees with the radar's, -1 where they turn against it, else 0.
 static int32_t with_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float measured, float wheel_m_s)
 {
-    const bool match = fabsf(wheel_odds(config, measured, wheel_m_s)) >= config->wheel_match;
+    const bool rolls = fixed_greater(1.15f * fabsf(wheel_m_s), measured); // what overtakes its wheels is not pushed by them
+    const bool match = rolls && fabsf(wheel_odds(config, measured, wheel_m_s)) >= config->wheel_match;
     return !match ? 0 : (wheel_m_s < 0.0f) == (state->speed_m_s < 0.0f) ? 1 : -1;
 }
 

@@ -363,8 +363,8 @@ TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels) {
             ground_speed_state_t state;
             ground_speed_reset(&config, &state);
             const ground_speed_input_t input = with_radar(0, 0.35, false, wheel);
-            // P = (1 m/s)^2, and a bias of +-1 m/s^2 makes 0.249 m/s of the window's age: the gain is 1/(1 + 0.249^2), less 4e-4
-            const double gain = paper ? 1 : 1 / (1 + 0.249 * 0.249);
+            // P = (1 m/s)^2, and a bias of +-0.3 m/s^2 makes 0.075 m/s of the window's age: the gain is 1/(1 + 0.075^2), less 4e-4
+            const double gain = paper ? 1 : 1 / (1 + 0.075 * 0.075);
             EXPECT_NEAR(ground_speed_step(&config, &state, &input).speed_m_s, (wheel < 0 ? -0.35 : 0.35) * gain, 0.35 * 0.01) << paper;
         }
     }
