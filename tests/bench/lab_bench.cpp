@@ -6,6 +6,7 @@
 #include "host_tools/bench_lab/campaign.h"
 #include "host_tools/bench_lab/peers.h"
 #include "host_tools/cli/progress.h"
+#include "host_tools/log/write_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,6 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <string>
@@ -106,7 +106,7 @@ int run(Request &request) {
         std::filesystem::remove_all(options.folder);
     else
         std::printf("\nlogs, seals and answers: %s\n", options.folder.c_str());
-    if (!request.json.empty()) std::ofstream(request.json) << json.dump(1) << '\n';
+    if (!request.json.empty()) log::write_file(json.dump(1) + "\n", request.json);
     return score.failures > 0 ? 1 : 0;
 }
 
