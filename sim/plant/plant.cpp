@@ -37,7 +37,7 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g) 
 
 } // namespace
 
-Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)) {
+Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
     start_ode();
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2);
     world = dWorldCreate();
@@ -271,8 +271,9 @@ std::uint64_t Plant::state_hash() const {
         }
     for (std::size_t i = 0; i < wheel_count; ++i) {
         const DriveState &d = world_->drive[i];
-        for (const double value : {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A, d.heat_K,
-                                   world_->contact[i].slip, world_->contact[i].side_slip})
+        for (const double value :
+             {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A, d.heat_K,
+              world_->contact[i].slip, world_->contact[i].side_slip, world_->contact[i].rolling, world_->contact[i].speed_m_s})
             mix(value);
     }
     for (const RutTrace &trace : world_->trace) mix(trace.found_m()), mix(trace.deepest_m());

@@ -35,7 +35,7 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Soil
     const RoverParameters &r = config.rover;
     Meeting out;
     out.sinkage_m = std::max(0.0, -point[2]);
-    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m, config.dt_s * in.along_m_s);
+    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m);
     const SlipChange change = slip_step(in, contact[n], config.dt_s);
     const double total = total_slip(contact[n]);
     const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, law::shear_stiffness(1, effects.body.shear_change)};
@@ -106,10 +106,10 @@ void Plant::World::step_wheel(int i, double supply_V) {
     double rolling = met.rolling_N;
     each_resistance(mine, b, slip_size, along, [&](double per_load) { rolling += per_load * load; });
     const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
-    // reversing resistance: never more than would stop a quarter of the rover within the step
-    const double width = std::max(reversal_m_s, 4 * (rolling + met.free_N) * config.dt_s / r.mass_kg);
-    const double pull = met.force.along_N + met.free_N * soft_sign(along, width);
-    const double ahead = pull - rolling * soft_sign(along, width);
+    // what rolling alone pulls (arc law) is part of what it takes: both turn with the direction of rolling
+    const double turned = rolling_step(contact[n], along, rolling - met.free_N, r.mass_kg / 4, config.dt_s);
+    const double pull = met.force.along_N + met.free_N * turned;
+    const double ahead = pull - rolling * turned;
     for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * out.heading[k] + sideways * left[k];
     out.force[2] = load;
     out.resist_N = pull - ahead;

@@ -20,7 +20,8 @@ using Vec3 = std::array<double, 3>;
 
 inline double dot(const Vec3 &a, const Vec3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-inline constexpr double reversal_m_s = 0.005; // resistances reverse over this speed: assumed, below any sensor's resolution
+inline constexpr double reversal_m_s =
+    0.005; // what rolling does to torque and load turns over this speed: assumed, below any sensor's resolution
 
 // -1..1, the sign of a speed made continuous over `width`.
 inline double soft_sign(double speed, double width) { return std::clamp(speed / width, -1.0, 1.0); }
