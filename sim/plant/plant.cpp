@@ -193,10 +193,10 @@ void Plant::World::step() {
         const double along = dot(after, a.heading);
         const double to_body = dot(a.force, after);
         const double vertical = a.force[2] * after[2];
-        const double rolling = a.resist_N * along;
+        const double rolling = a.resist_N * along, edge = a.edge_N * along;
         energy.rolling += rolling * dt;
-        energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling)) * dt;
-        energy.body -= vertical * dt;
+        energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling - edge)) * dt;
+        energy.body -= (vertical + edge) * dt;
     }
     const Vec3 velocity = mean_velocity();
     energy.body -= 0.5 * (dot(push, velocity) + dot(push, push_velocity)) * dt;
