@@ -216,6 +216,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     WheelTruth &w = truth.wheel[n];
     w.traction_N = pull;
     w.rolling_N = rolling;
+    w.rolling_share = turned;
     w.lateral_N = sideways;
     w.normal_N = load;
     w.slip = std::clamp(contact[n].slip, -1.0, 1.0); // beyond: wheels that turn against the motion, full sliding all the same

@@ -346,7 +346,8 @@ TEST(PlantEffects, a_slope_pulls_by_its_law_and_a_high_centre_then_loads_the_low
     settle(plant, 4);
     double along = 0, front = 0, rear = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        along += plant.truth().wheel[i].traction_N;
+        along +=
+            plant.truth().wheel[i].traction_N - plant.truth().wheel[i].rolling_share * plant.truth().wheel[i].rolling_N; // both hold it
         (i >= 2 ? front : rear) += plant.truth().wheel[i].normal_N / 2;
     }
     const double pull = 2.88 * law::grade_m_s2(9.81, 0.1, 0.7 - 0.2).along_m_s2;
