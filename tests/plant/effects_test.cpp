@@ -367,6 +367,22 @@ double push_N(Plant &plant) {
     return push;
 }
 
+TEST(PlantEffects, multi_pass_acts_on_the_wheels_that_follow_in_a_track_and_changes_ends_with_the_direction) {
+    for (const double duty : {0.5, -0.5}) {
+        Plant plant(on("sand", {with("multi_pass", {0.3})}));
+        for (int i = 0; i < 4; ++i) plant.set_duty(i, duty);
+        settle(plant, 3);
+        for (std::size_t i = 0; i < 4; ++i) { // (20): Ft = Fm f(s), Fm of the sand's own numbers but for the effect
+            const Soil &sand = *find_soil("sand");
+            const WheelTruth &w = plant.truth().wheel[i];
+            const double plain =
+                (sand.adhesion_N + sand.fm_per_fn * w.normal_N) * traction_share(sand.law, std::fabs(w.slip), sand.shear_slip);
+            const bool follows = (i < 2) == (duty > 0); // rear wheels when it drives ahead
+            EXPECT_NEAR(std::fabs(w.traction_N) / plain, follows ? 1.3 : 1.0, 1e-6) << i << " at duty " << duty;
+        }
+    }
+}
+
 TEST(PlantEffects, tether_and_drag_pull_by_their_laws) {
     for (const bool tether : {true, false}) {
         Plant plant(on("gravel", {tether ? with("tether_drag", {0.6}) : with("body_drag", {1.2})}));
