@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -28,6 +29,19 @@ static void print_all(const store_t *store, char text[TEXT])
     (void)snprintf(text + used, TEXT - used, "check %016" PRIx64 "\n", trace_text_hash(TRACE_HASH_BEGIN, text));
 }
 
+// The four numbers of the second line; false where there are none. What they are worth, the comparison of the whole text tells.
+static bool read_rises(const char *text, uint32_t bits[WHEEL_COUNT])
+{
+    const char *at = strchr(text, '\n');
+    at = at != NULL ? strchr(at, ' ') : NULL;
+    for (int i = 0; at != NULL && i < WHEEL_COUNT; i++) {
+        char *end = NULL;
+        bits[i] = (uint32_t)strtoul(at, &end, 16);
+        at = end != at ? end : NULL;
+    }
+    return at != NULL;
+}
+
 bool store_read(const char *path, store_t *store, char message[STORE_MESSAGE])
 {
     FILE *file = fopen(path, "r");
@@ -40,16 +54,15 @@ bool store_read(const char *path, store_t *store, char message[STORE_MESSAGE])
     const bool failed = ferror(file) != 0;
     (void)fclose(file);
     text[length] = '\0';
-    uint32_t bits[WHEEL_COUNT];
+    uint32_t bits[WHEEL_COUNT] = {0};
     store_t found = {{0}};
     char again[TEXT] = "";
-    const int fields =
-        sscanf(text, "traction-store 1\nrise_K %" SCNx32 " %" SCNx32 " %" SCNx32 " %" SCNx32, &bits[0], &bits[1], &bits[2], &bits[3]);
-    if (!failed && fields == WHEEL_COUNT) {
+    const bool known = !failed && read_rises(text, bits);
+    if (known) {
         memcpy(found.rise_K, bits, sizeof bits);
         print_all(&found, again); // what was read must be what these numbers are written as, checksum and all
     }
-    if (failed || fields != WHEEL_COUNT || strcmp(text, again) != 0) {
+    if (!known || strcmp(text, again) != 0) {
         (void)snprintf(message, STORE_MESSAGE, "%.160s: is damaged or of another format; it will be written anew", path);
         return false;
     }

@@ -1,6 +1,7 @@
 // false_alarms - hours of normal driving in which the firmware must name nothing: all soils, slopes to 10 degrees from the start, along the
 // path and as steps, tilted directions, modes, speeds, starts, stops, turns, restarts with warm motors, motors and sensors unlike their
-// description within what the catalogue calls usual. usage: false_alarms [HOURS [FIRST_SEED]]; a short run of it is a test.
+// description within what the catalogue calls usual. usage: false_alarms_run [HOURS [FIRST_SEED]], or scenario SEED for the file of one
+// drive; a short run of it is a test.
 //
 // Every drive is drawn from its own seed, printed when it fails. A drive that asks for what the rover cannot do (a wheel held by a slope it
 // cannot climb) would be a fault by right: demands stay within grip and power.
@@ -79,6 +80,10 @@ std::vector<sim::ActiveEffect> unlike(std::uint64_t seed) {
 } // namespace
 
 int main(int argc, char **argv) {
+    if (argc == 3 && std::string(argv[1]) == "scenario") {
+        std::fputs(draw(static_cast<std::uint64_t>(std::atoll(argv[2])), 60).c_str(), stdout);
+        return 0;
+    }
     const double hours = argc > 1 ? std::atof(argv[1]) : 10;
     const auto first = static_cast<std::uint64_t>(argc > 2 ? std::atoll(argv[2]) : 1);
     constexpr double drive_s = 60;
