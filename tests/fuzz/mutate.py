@@ -43,7 +43,8 @@ def build_judge(root, out, jobs):
         must([out / "template_gen", radar, out / f"{radar}.c"])
         commands.append(["cc", *C_FLAGS, f"-I{root}", "-c", out / f"{radar}.c", "-o", base / f"template_{radar}.o"])
     for source in sorted((root / "firmware/app").glob("*.c")):
-        commands.append(["cc", *C_FLAGS, f"-I{root}", "-c", source, "-o", base / f"app_{source.stem}.o"])
+        if source.stem != "tractiond": # the program itself: it has a main of its own
+            commands.append(["cc", *C_FLAGS, f"-I{root}", "-c", source, "-o", base / f"shell_{source.stem}.o"])
     tests = sorted((root / "tests/unit").glob("*_test.cpp"))
     for source in tests:
         commands.append(["c++", *CXX_FLAGS, f"-I{root}", "-c", source, "-o", base / f"{source.stem}.o"])
@@ -77,7 +78,7 @@ class Worker:
         must(["cc", "-shared", *SANITIZE, "-o", self.folder / "libcore.so", *objects, "-lm"])
 
     def link_judge(self, tests):
-        must(["c++", *SANITIZE, "-o", self.folder / "judge", *tests, *sorted(self.base.glob("app_*.o")), f"-L{self.folder}", "-lcore", "-lrapidcheck",
+        must(["c++", *SANITIZE, "-o", self.folder / "judge", *tests, *sorted(self.base.glob("shell_*.o")), f"-L{self.folder}", "-lcore", "-lrapidcheck",
               "-lgtest", "-lgtest_main", "-lpthread", "-lm"])
 
     def passes(self, program):

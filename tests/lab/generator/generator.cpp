@@ -284,7 +284,7 @@ Setting draw_setting(bool outside, Random &random, const std::string &not_this, 
 
 } // namespace
 
-BlindCase draw_case(std::uint64_t seed, double duration_s) {
+BlindCase draw_case(std::uint64_t seed, double duration_s, const std::string &wanted) {
     Random random(seed, 21);
     BlindCase blind;
     blind.config.seed = seed;
@@ -300,6 +300,7 @@ BlindCase draw_case(std::uint64_t seed, double duration_s) {
         blind.category = "two";
     else
         blind.category = "outside";
+    if (!wanted.empty()) blind.category = wanted;
     if (blind.category != "clean") blind.config.hidden.push_back(draw_setting(blind.category == "outside", random, ""));
     if (blind.category == "two") blind.config.hidden.push_back(draw_setting(false, random, blind.config.hidden.front().name));
     return blind;

@@ -55,12 +55,12 @@ std::string name_of(Soil soil);
 // way round, wheels in an order of their own; and the map that reads it. Without `foreign`: our CSV, and no map.
 void write_log(const log::Log &log, const GeneratorConfig &config, const std::string &csv, const std::string &map);
 
-// What a blind campaign hides under this seed: clean, one, two (of the catalogue) or outside; soil drawn too.
+// What a blind campaign hides under this seed: clean, one, two (of the catalogue) or outside; soil drawn too. category: that one instead.
 struct BlindCase {
     std::string category; // "clean", "one", "two", "outside"
     GeneratorConfig config;
 };
-BlindCase draw_case(std::uint64_t seed, double duration_s);
+BlindCase draw_case(std::uint64_t seed, double duration_s, const std::string &category = "");
 
 // The fleet: wheels apart, three sizes, five soils, sensor chains, plans and lengths (60 to 300 s) of their own, laws on single wheels.
 // category: one of the four, or empty to draw it.

@@ -105,7 +105,7 @@ int run(int argc, char **argv) {
     app.add_flag("--truth", blind.config.truth, "add truth.* columns");
     app.add_flag("--blind", is_blind, "draw soil and what is hidden by the seed");
     app.add_flag("--fleet", is_fleet, "draw size, soil, sensors, plan, length and what is hidden by the seed");
-    app.add_option("--category", category, "with --fleet: clean, one, two or outside instead of drawing it")
+    app.add_option("--category", category, "with --blind or --fleet: clean, one, two or outside instead of drawing it")
         ->check(CLI::IsMember({"clean", "one", "two", "outside"}));
     app.add_option("--map", map, "write the map of a foreign log here (default: OUT.map.toml)");
     app.add_option("--runs", runs, "that many drives of the machine: OUT, OUT.2.csv, ...")->check(CLI::Range(1, 9));
@@ -122,7 +122,7 @@ int run(int argc, char **argv) {
         blind.config.noise_seed = asked.noise_seed, blind.config.run = asked.run;
     } else if (is_blind) {
         const GeneratorConfig asked = blind.config;
-        blind = draw_case(asked.seed, asked.duration_s);
+        blind = draw_case(asked.seed, asked.duration_s, category);
         blind.config.noise_seed = asked.noise_seed;
         blind.config.apart = asked.apart;
     } else {
