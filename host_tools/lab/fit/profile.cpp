@@ -15,7 +15,6 @@ constexpr double limit = 3.841459; // chi^2, one degree of freedom, 95 %
 constexpr int most_steps = 24;     // a side
 constexpr int chords = 8;
 
-
 // The best fit without one of its parameters, which is held where it is put.
 class Held {
   public:

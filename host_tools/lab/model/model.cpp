@@ -80,7 +80,8 @@ struct Reader {
                 else if (name == "unit")
                     check_unit(item, path, p);
                 else
-                    fail(item, path, "is not known", "a parameter may have value, unit, min, max, prior, each_wheel, fixed, source, low, high");
+                    fail(item, path, "is not known",
+                         "a parameter may have value, unit, min, max, prior, each_wheel, fixed, source, low, high");
             }
             if (!has_value) fail(node, key, "has no value", "add value = NUMBER to the table");
         }

@@ -21,6 +21,6 @@ std::span<const ModelKey> wheel_keys();
 std::span<const ModelKey> motor_keys();
 std::span<const ModelKey> soil_keys();
 double default_each_wheel(std::string_view key); // of [wheels] and [motor]; 0 for others
-std::span<const ModelKey> sensor_keys(); // "current.noise_A" stands for noise_A in [sensors.current]
+std::span<const ModelKey> sensor_keys();         // "current.noise_A" stands for noise_A in [sensors.current]
 
 } // namespace traction::lab

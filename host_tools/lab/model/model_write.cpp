@@ -44,7 +44,9 @@ std::string parameter_text(const Parameter &p, bool with_prior, const std::strin
     return out + " }";
 }
 
-bool same(const Parameter &a, const Parameter &b) { return a.value == b.value && a.prior == b.prior && a.each_wheel == b.each_wheel && a.fixed == b.fixed; }
+bool same(const Parameter &a, const Parameter &b) {
+    return a.value == b.value && a.prior == b.prior && a.each_wheel == b.each_wheel && a.fixed == b.fixed;
+}
 
 void write_table(std::string &out, const Parameters &table) {
     for (const auto &[key, p] : table)
