@@ -2,7 +2,9 @@
 
 #include "classes.h"
 #include "host_tools/lab/fit/screen.h"
+#include "host_tools/lab/fit/heldout.h"
 #include "shapes.h"
+#include "tolerance.h"
 #include "trial.h"
 
 #include "sim/physics/effects/catalogue.h"
@@ -38,8 +40,9 @@ class Search {
         const Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
-            d_.ladder.push_back({d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem),
-                                 overall_heldout(problem), 1});
+            held_ = held_out(problem);
+            d_.ladder.push_back(
+                {d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem), held_.error, 1});
             refresh(problem, screen);
             if (round == options_.most_effects) break;
             std::optional<Problem> next = forward_step(problem, screen, round == 0);
@@ -64,7 +67,7 @@ class Search {
         for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
             for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
                 const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];
-                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.base == b.base)
+                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
                     problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
             }
         problem.fit({});
@@ -134,19 +137,17 @@ class Search {
             if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
         std::stable_sort(trials.begin(), trials.end(),
                          [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
-        std::optional<Problem> next;
+        std::optional<Next> next;
         std::size_t winner = trials.size();
         for (std::size_t i = 0; i < trials.size() && !next; ++i) {
             if (trials[i].verdict != "passes") continue;
             next = with(trials[i], problem);
-            if (next)
-                winner = i;
-            else
-                trials[i].verdict = "not_significant";
+            if (next) winner = i;
         }
         if (is_first) note_not_excited(trials);
-        record(trials, winner, base_error, screen, is_first);
-        return next;
+        record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
+        if (!next) return std::nullopt;
+        return std::move(next->problem);
     }
 
     // A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range.
@@ -228,22 +229,43 @@ class Search {
         return true;
     }
 
-    // Held-out error; where it lies below that of the fit, the linear step that left a block out went where a bound would have stopped it.
-    static double larger_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
+    struct Next {
+        Problem problem;
+        std::string rival; // a tolerance that explains as much; empty: none does
+    };
 
-    // The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
-    // candidate must keep its size.
-    std::optional<Problem> with(const Trial &t, const Problem &before) const {
+    // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks left
+    // out must fall. A data sheet that is wrong by more than it states is asked first.
+    std::optional<Next> with(Trial &t, const Problem &before) {
         Model model = d_.model;
         model.effects.push_back(effect_of(t.candidate, t.value));
         Problem problem = fitted(model, &before);
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) ||
-            larger_error(problem) > 1.03 * larger_error(before))
+        t.verdict = "not_significant";
+        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
+        const HeldOut held = held_out(problem);
+        if (held.error > 1.03 * held_.error) return std::nullopt;
+        Problem compared = problem; // on the scales of the model without it
+        compared.keep_scales(before);
+        compared.jacobian.resize(0, 0);
+        compared.gauss_newton(2);
+        const HeldOut compared_held = held_out(compared);
+        const Fall scaled = fall_between(held_, compared_held, before.row_scale.cwiseAbs2()),
+                   noise = fall_between(held_, compared_held, noise_weight(before));
+        const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, compared_held);
+        if (getenv("DBG"))
+            fprintf(stderr, "WITH %s scaled %.1f +- %.1f noise %.4f +- %.4f err %.4f->%.4f (own %.4f) rival %s dev %.2f lead %.1f +- %.1f\n",
+                    t.candidate.label().c_str(), scaled.sum, scaled.error, noise.sum, noise.error, held_.error, compared_held.error, held.error,
+                    rival ? rival->name.c_str() : "-", rival ? rival->deviations : 0, rival ? rival->lead : 0, rival ? rival->error : 0);
+        if (rival && rival->explains_more()) {
+            t.verdict = "tolerance";
             return std::nullopt;
-        return problem;
+        }
+        const bool falls = scaled.sure() && noise.sum > 0;
+        if (!falls && !rival) return std::nullopt;
+        return Next{std::move(problem), rival && (!falls || rival->explains_as_much()) ? rival->name : ""};
     }
 
     // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
@@ -268,19 +290,20 @@ class Search {
         }
     }
 
-    void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first) {
+    void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first,
+                const std::string &rival) {
         const bool found = winner < trials.size();
         const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error, options_) : std::vector<std::size_t>();
         for (std::size_t i = 0; i < trials.size(); ++i) {
             CandidateResult r = result_of(trials[i], base_error, screen);
             const bool member = std::find(members.begin(), members.end(), i) != members.end();
             if (i == winner)
-                r.verdict = members.empty() ? "named" : "class";
+                r.verdict = members.empty() && rival.empty() ? "named" : "class";
             else if (member)
                 r.verdict = "class";
             else if (r.verdict == "passes")
                 r.verdict = "not_significant";
-            if ((i == winner || member) && !members.empty()) r.class_index = static_cast<int>(d_.classes.size());
+            if ((i == winner || member) && r.verdict == "class") r.class_index = static_cast<int>(d_.classes.size());
             for (const auto &[effect, why] : d_.not_excited)
                 if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
             if (is_first) d_.ranking.push_back(r);
@@ -288,10 +311,11 @@ class Search {
         }
         if (!found) return;
         const Trial &w = trials[winner];
-        if (!members.empty()) {
+        if (!members.empty() || !rival.empty()) {
             ConfoundedClass c;
             c.members.push_back(w.candidate.label());
             for (const std::size_t i : members) c.members.push_back(trials[i].candidate.label());
+            if (!rival.empty()) c.members.push_back(rival);
             if (const sim::Effect *effect = sim::find_effect(w.candidate.effect)) c.separate_by = effect->reveals;
             d_.classes.push_back(std::move(c));
         }
@@ -329,7 +353,7 @@ class Search {
         const std::string label = d_.accepted[i].candidate.label();
         std::erase_if(d_.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
         remove_class(d_, label);
-        if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = overall_heldout(problem);
+        if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
         d_.model = std::move(without);
         d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
         refresh(problem, Screen(problem));
@@ -389,6 +413,7 @@ class Search {
     const DiagnoseOptions &options_;
     Diagnosis d_;
     Columns::Cache cache_;
+    HeldOut held_; // of the model as it stands
     int done_ = 0;
 };
 
