@@ -121,7 +121,8 @@ Reading read_case(const json &seal, const json &result) {
     const json verdict = result.value("verdict", json::object());
     const std::string kind = text(verdict, "kind");
     const auto unknown = result.find("unknown");
-    r.flagged_unknown = kind == "unknown" || kind == "partial" || (unknown != result.end() && unknown->is_object() && !unknown->empty());
+    r.flagged_unknown = kind == "unknown" || kind == "partial" || kind == "wrong_model" ||
+                        (unknown != result.end() && unknown->is_object() && !unknown->empty());
     std::set<std::string> found;
     int wheel_said = -1;
     const std::string law = hidden.empty() ? "" : text(hidden[0], "law"); // outside: the catalogue's own name, where it has learnt it

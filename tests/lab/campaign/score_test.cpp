@@ -89,6 +89,8 @@ TEST(Judge, accepts_a_class_that_holds_the_truth_once) {
 TEST(Judge, a_clean_log_must_stay_silent) {
     const Score named = judge({{"a", seal("clean", ""), answer("named", {"grade"}), 0.5}});
     EXPECT_EQ(line(named, "clean_named").value, 1);
+    const Score wrong = judge({{"a", seal("clean", ""), answer("wrong_model", {}), 0.5}});
+    EXPECT_EQ(line(wrong, "clean_named").value, 1); // a false alarm, too
     const Score silent = judge({{"a", seal("clean", ""), answer("nothing", {}), 0.5}});
     EXPECT_EQ(line(silent, "clean_named").value, 0);
 }
