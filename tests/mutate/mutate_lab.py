@@ -145,8 +145,11 @@ class Source:
         self.lines = path.read_text().splitlines()
         self.mutants = {}  # number: (line, old, new)
         self.plan = {}     # line: (used, text, [(low, high, [(number, new)])], number that leaves it out or 0)
-        number = first_number
+        number, in_table = first_number, False
         for at, used, text in statements(self.lines):
+            if in_table or re.search(r"\] = \{", text):  # a table of numbers: data, and constant
+                in_table = not text.rstrip().endswith("};")
+                continue
             places, may_go = expressions(text)
             entries = []
             for low, high, condition in places:
@@ -212,6 +215,9 @@ def compile_mutated(source, command, target):
         bad |= {int(match.group(1)) for match in re.finditer(re.escape(source.name) + r":(\d+):\d+:   required from", done.stdout)}
         before = len(source.plan)
         source.drop(bad)
+        if len(source.plan) == before:  # said of a line that bears no fault: the nearest above it
+            above = [at for at in source.plan if any(at < line for line in bad)]
+            source.drop({max(above) + 1} if above else set())
         if len(source.plan) == before:
             sys.exit(f"mutate_lab: {source.name} does not compile:\n{done.stdout[:3000]}")
     sys.exit(f"mutate_lab: {source.name} does not come to compile")
