@@ -48,6 +48,37 @@ double times_median(double freedom, double p) {
     return std::pow((1 - a + low * std::sqrt(a)) / (1 - a), 3);
 }
 
+// A parameter; of one that wheels share and differ in, the mean over the wheels: the shared part and theirs only add up.
+struct Mean {
+    std::string name;
+    Eigen::VectorXd weight; // of the living parameters
+    double value = 0, prior_variance = 0;
+};
+
+std::vector<Mean> means_of(const Problem &problem, const std::vector<Eigen::Index> &alive) {
+    std::vector<Mean> list;
+    const FreeParameter *shared = nullptr;
+    for (std::size_t i = 0; i < alive.size(); ++i) {
+        const FreeParameter &p = problem.parameters[static_cast<std::size_t>(alive[i])];
+        const double theta = problem.theta[alive[i]];
+        if (p.own && shared != nullptr && shared->owner == p.owner && shared->key == p.key) { // they follow what they share
+            const double wheels = static_cast<double>(std::count_if(alive.begin(), alive.end(), [&](Eigen::Index j) {
+                const FreeParameter &q = problem.parameters[static_cast<std::size_t>(j)];
+                return q.own && q.owner == p.owner && q.key == p.key;
+            }));
+            list.back().weight[static_cast<Eigen::Index>(i)] = 1 / wheels;
+            list.back().value += theta / wheels, list.back().prior_variance += p.prior * p.prior / (wheels * wheels);
+            continue;
+        }
+        if (p.own) continue;
+        shared = &p;
+        Mean mean{name_of(p), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(alive.size())), p.base + theta, p.prior * p.prior};
+        mean.weight[static_cast<Eigen::Index>(i)] = 1;
+        list.push_back(std::move(mean));
+    }
+    return list;
+}
+
 } // namespace
 
 std::vector<Limit> limits_of(const Problem &problem) {
@@ -58,7 +89,8 @@ std::vector<Limit> limits_of(const Problem &problem) {
         const double increment = problem.theta[static_cast<Eigen::Index>(i)], value = p.base + increment;
         const double slack = 1e-6 * (p.maximum - p.minimum);
         const bool own_bound = value < p.minimum + slack || value > p.maximum - slack;
-        if (own_bound && p.prior == 0 && p.minimum == 0 && value < slack) continue; // an effect that is not there
+        const bool may_be_absent = p.prior == 0 || p.prior > 0.5 * std::fabs(p.base);
+        if (own_bound && p.minimum == 0 && value < slack && may_be_absent) continue; // what is not there
         list.push_back({name_of(p), p.unit, p.own ? increment : value, !own_bound});
     }
     return list;
@@ -95,17 +127,18 @@ Identifiability identifiability(const Problem &problem) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
     const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1e-15);
     out.condition = values.maxCoeff() / values.minCoeff();
-    const Eigen::MatrixXd C = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-    for (Eigen::Index i = 0; i < C.rows(); ++i) {
-        const FreeParameter &p = problem.parameters[static_cast<std::size_t>(alive[static_cast<std::size_t>(i)])];
-        const double variance = C(i, i) * unit[i] * unit[i], value = p.base + problem.theta[alive[static_cast<std::size_t>(i)]];
-        if (p.prior > 0 && variance > of_prior * p.prior * p.prior) out.prior_alone.push_back(name_of(p));
-        if (!(p.prior > 0) && variance > value * value) out.flat.push_back(name_of(p));
-        for (Eigen::Index j = 0; j < i; ++j) {
-            const double r = C(i, j) / std::sqrt(C(i, i) * C(j, j));
-            if (std::fabs(r) > alike)
-                out.correlated.push_back(
-                    {name_of(problem.parameters[static_cast<std::size_t>(alive[static_cast<std::size_t>(j)])]), name_of(p), r});
+    const Eigen::MatrixXd C = unit.asDiagonal() *
+                              (eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose()) *
+                              unit.asDiagonal();
+    const std::vector<Mean> means = means_of(problem, alive);
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        const double variance = means[i].weight.dot(C * means[i].weight);
+        if (means[i].prior_variance > 0 && variance > of_prior * means[i].prior_variance) out.prior_alone.push_back(means[i].name);
+        if (!(means[i].prior_variance > 0) && variance > means[i].value * means[i].value) out.flat.push_back(means[i].name);
+        for (std::size_t j = 0; j < i; ++j) {
+            const double other = means[j].weight.dot(C * means[j].weight),
+                         r = means[i].weight.dot(C * means[j].weight) / std::sqrt(variance * other);
+            if (std::fabs(r) > alike) out.correlated.push_back({means[j].name, means[i].name, r});
         }
     }
     return out;

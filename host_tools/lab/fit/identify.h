@@ -3,7 +3,8 @@
 //   A = J'J + P (P: of the priors), in units in which A has a diagonal of ones; C = A^-1                                         (1)
 // dead: moving the parameter by its prior's deviation (by its own size, or one unit, where it has none) changes all rows together by less
 // than a tenth of a standard deviation. prior alone: its variance is more than 0.9 of the prior's. flat: no prior, and an error larger than
-// the value. correlated: |C_ij| / sqrt(C_ii C_jj) > 0.95. condition: largest over least eigenvalue of (1).
+// the value. What wheels share and differ in counts by its mean over the wheels. correlated: |C_ij| / sqrt(C_ii C_jj) > 0.95. condition:
+// largest over least eigenvalue of (1).
 #pragma once
 
 #include "problem.h"
