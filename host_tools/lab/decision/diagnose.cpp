@@ -348,6 +348,8 @@ class Search {
 
     void remove(std::size_t i, Model without, const Problem &problem) {
         const std::string label = d_.accepted[i].candidate.label();
+        for (CandidateResult &r : d_.ranking)
+            if (r.candidate.label() == label && (r.verdict == "named" || r.verdict == "class")) r.verdict = "not_needed";
         std::erase_if(d_.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
         remove_class(d_, label);
         if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
@@ -377,6 +379,8 @@ class Search {
                 again = true;
             }
             again = again && !d_.accepted.empty();
+            if (d_.accepted.empty() && !named.empty()) // a shape that took the last name's place must be worth a word by itself
+                d_.unknown = find_unknown(first, last, {}, options_).shape;
         }
     }
 

@@ -199,9 +199,11 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
     return list;
 }
 
-// Every ground's strength wanders along the way: that alone is not worth a word.
+// Every ground's strength wanders along the way: that alone is not worth a word. Nor is it over slip, which grows where the ground is weak:
+// at a steady pull the one follows from the other.
 bool uneven(const Candidate &c) {
-    return c.target == TermTarget::soil_strength && c.order == 0 && (c.axis == Axis::time || c.axis == Axis::place || c.axis == Axis::path);
+    return c.target == TermTarget::soil_strength && c.order == 0 &&
+           (c.axis == Axis::time || c.axis == Axis::place || c.axis == Axis::path || c.axis == Axis::slip);
 }
 
 UnknownShape describe(const ShapeScore &s, double base_error) {
