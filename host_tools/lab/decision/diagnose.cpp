@@ -1,8 +1,8 @@
 #include "diagnose.h"
 
 #include "classes.h"
-#include "host_tools/lab/fit/screen.h"
 #include "host_tools/lab/fit/heldout.h"
+#include "host_tools/lab/fit/screen.h"
 #include "shapes.h"
 #include "tolerance.h"
 #include "trial.h"
@@ -36,11 +36,11 @@ class Search {
     Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), options_(options) { d_.model = model; }
 
     Diagnosis run() {
-        Problem problem = fitted(d_.model);
+        Problem problem = fitted_problem(d_.model, data_);
         const Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
-            held_ = held_out(problem);
+            if (round == 0) held_ = held_out(problem);
             d_.ladder.push_back(
                 {d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem), held_.error, 1});
             refresh(problem, screen);
@@ -51,6 +51,8 @@ class Search {
         }
         eliminate_backward(problem);
         if (options_.shapes) test_shapes(first, problem);
+        settle_last(problem);
+        d_.limits = limits_of(problem);
         conclude();
         return std::move(d_);
     }
@@ -133,20 +135,19 @@ class Search {
         refit_likely(trials, problem, screen);
         if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
         judge_beyond_range(trials, base_error);
-        for (Trial &t : trials)
-            if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
         std::stable_sort(trials.begin(), trials.end(),
                          [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
         std::optional<Next> next;
         std::size_t winner = trials.size();
         for (std::size_t i = 0; i < trials.size() && !next; ++i) {
-            if (trials[i].verdict != "passes") continue;
+            if (trials[i].verdict != "passes" || !trials[i].refitted) continue; // behind others that explain more
             next = with(trials[i], problem);
             if (next) winner = i;
         }
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
         if (!next) return std::nullopt;
+        held_ = std::move(next->held);
         return std::move(next->problem);
     }
 
@@ -156,7 +157,7 @@ class Search {
         Trial *best = nullptr;
         for (Trial &t : trials) {
             if (t.verdict == "passes" && t.refitted) most = std::max(most, t.gain);
-            if (t.verdict == "beyond_range" && (best == nullptr || t.gain > best->gain)) best = &t;
+            if (t.verdict == "beyond_range" && !t.candidate.bounded && (best == nullptr || t.gain > best->gain)) best = &t;
         }
         if (best == nullptr || !(best->gain > most)) return;
         const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
@@ -231,11 +232,12 @@ class Search {
 
     struct Next {
         Problem problem;
+        HeldOut held;
         std::string rival; // a tolerance that explains as much; empty: none does
     };
 
-    // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks left
-    // out must fall. A data sheet that is wrong by more than it states is asked first.
+    // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks
+    // left out must fall. A data sheet that is wrong by more than it states is asked first.
     std::optional<Next> with(Trial &t, const Problem &before) {
         Model model = d_.model;
         model.effects.push_back(effect_of(t.candidate, t.value));
@@ -243,29 +245,24 @@ class Search {
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        t.verdict = "not_significant";
+        t.verdict = "not_held_out";
         if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
-        const HeldOut held = held_out(problem);
-        if (held.error > 1.03 * held_.error) return std::nullopt;
         Problem compared = problem; // on the scales of the model without it
         compared.keep_scales(before);
         compared.jacobian.resize(0, 0);
         compared.gauss_newton(2);
-        const HeldOut compared_held = held_out(compared);
-        const Fall scaled = fall_between(held_, compared_held, before.row_scale.cwiseAbs2()),
-                   noise = fall_between(held_, compared_held, noise_weight(before));
-        const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, compared_held);
-        if (getenv("DBG"))
-            fprintf(stderr, "WITH %s scaled %.1f +- %.1f noise %.4f +- %.4f err %.4f->%.4f (own %.4f) rival %s dev %.2f lead %.1f +- %.1f\n",
-                    t.candidate.label().c_str(), scaled.sum, scaled.error, noise.sum, noise.error, held_.error, compared_held.error, held.error,
-                    rival ? rival->name.c_str() : "-", rival ? rival->deviations : 0, rival ? rival->lead : 0, rival ? rival->error : 0);
-        if (rival && rival->explains_more()) {
-            t.verdict = "tolerance";
-            return std::nullopt;
-        }
-        const bool falls = scaled.sure() && noise.sum > 0;
-        if (!falls && !rival) return std::nullopt;
-        return Next{std::move(problem), rival && (!falls || rival->explains_as_much()) ? rival->name : ""};
+        HeldOut held = held_out(compared);
+        const Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()),
+                   noise = fall_between(held_, held, noise_weight(before));
+        const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
+        const bool falls = scaled.sure() && noise.sure(), as_much = rival && rival->explains_as_much();
+        if (!falls && !as_much) return std::nullopt;
+        if (HeldOut own = held_out(problem); own.error < held_.error)
+            held = std::move(own);
+        else
+            problem = std::move(compared); // what its own scales weigh predicts worse: they stay
+        problem.linearise();
+        return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
 
     // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
@@ -301,8 +298,8 @@ class Search {
                 r.verdict = members.empty() && rival.empty() ? "named" : "class";
             else if (member)
                 r.verdict = "class";
-            else if (r.verdict == "passes")
-                r.verdict = "not_significant";
+            else if (r.verdict == "passes" || (found && r.verdict == "not_held_out"))
+                r.verdict = found ? "not_needed" : "not_held_out";
             if ((i == winner || member) && r.verdict == "class") r.class_index = static_cast<int>(d_.classes.size());
             for (const auto &[effect, why] : d_.not_excited)
                 if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
@@ -351,6 +348,8 @@ class Search {
 
     void remove(std::size_t i, Model without, const Problem &problem) {
         const std::string label = d_.accepted[i].candidate.label();
+        for (CandidateResult &r : d_.ranking)
+            if (r.candidate.label() == label && (r.verdict == "named" || r.verdict == "class")) r.verdict = "not_needed";
         std::erase_if(d_.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
         remove_class(d_, label);
         if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
@@ -380,6 +379,8 @@ class Search {
                 again = true;
             }
             again = again && !d_.accepted.empty();
+            if (d_.accepted.empty() && !named.empty()) // a shape that took the last name's place must be worth a word by itself
+                d_.unknown = find_unknown(first, last, {}, options_).shape;
         }
     }
 
@@ -398,8 +399,31 @@ class Search {
         remove(i, std::move(without), last);
     }
 
+    // `fit` begins where the model's file stands, this search where the last round ended: the better of the two is what both tell.
+    void settle_last(Problem &last) {
+        if (d_.accepted.empty()) return;
+        Problem anew = fitted_problem(d_.model, data_);
+        if (!(overall_error(anew) < overall_error(last))) return;
+        last = std::move(anew);
+        d_.ladder.back().train = overall_error(last), d_.ladder.back().heldout = held_out(last).error;
+        refresh(last, Screen(last));
+    }
+
+    // What was found, or may be meant, can be seen in this log.
+    bool was_seen(const std::string &effect) const {
+        const auto is = [&](const std::string &label) { return label == effect || label.starts_with(effect + " on wheel"); };
+        for (const ConfoundedClass &c : d_.classes)
+            if (std::any_of(c.members.begin(), c.members.end(), is)) return true;
+        return std::any_of(d_.nearest.begin(), d_.nearest.end(), is) ||
+               std::any_of(d_.accepted.begin(), d_.accepted.end(), [&](const CandidateResult &a) { return a.candidate.effect == effect; });
+    }
+
     void conclude() {
         separate_accepted(d_);
+        std::erase_if(d_.not_excited, [&](const auto &one) { return was_seen(one.first); });
+        if (d_.accepted.empty() && !d_.unknown)
+            for (CandidateResult &r : d_.ranking)
+                if (r.verdict == "not_needed") r.verdict = "not_held_out";
         for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
         if (d_.accepted.empty())
             d_.kind = d_.unknown ? "unknown" : "nothing";

@@ -17,7 +17,12 @@ struct LadderStep {
 // fitted; that of blocks left out: heldout.h. 0 without balances.
 double overall_error(const Problem &problem);
 
-// Fits a model to the data (Ceres, to its own convergence) and writes the values with their 95 % intervals into it.
+// The model's problem at its optimum, linearised there. A strength whose slope at zero says little (what remembers: play, relaxation) is
+// started from several places over its range as well; the least squares on the first start's scales are kept.
+Problem fitted_problem(const Model &model, const Dataset &data);
+
+// The optimum of fitted_problem(); writes the values with their 95 % intervals into it.
 LadderStep fit_model(Model &model, const Dataset &data, const std::string &label);
+LadderStep store_fit(Model &model, const Problem &fitted, const std::string &label); // the same of a problem at its optimum
 
 } // namespace traction::lab

@@ -392,6 +392,26 @@ void Problem::fit(const FitOptions &options) {
         gauss_newton(options.iterations);
 }
 
+void Problem::settle() {
+    fit({.iterations = 3});
+    settle_from_here();
+}
+
+void Problem::settle_from_here() {
+    constexpr int most = 4;
+    constexpr double still = 1e-3; // of the error
+    if (data_->count < 3 || measured_.size() == 0) return;
+    update_residual();
+    const auto error = [&] { return residual.cwiseQuotient(noise_rows()).norm(); };
+    for (int i = 0; i < most; ++i) {
+        const double before = error();
+        set_scales();
+        gauss_newton(2);
+        if (std::fabs(error() - before) < still * before) break;
+    }
+    linearise();
+}
+
 double Problem::balance_rms(std::size_t b, bool in_noise) const {
     const std::size_t first = forward_.first_row(b), n = data_->balance[b].measured.size();
     const Eigen::VectorXd noise = noise_rows();

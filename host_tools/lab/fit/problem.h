@@ -26,7 +26,9 @@ class Problem {
     Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> parameters);
 
     void fit(const FitOptions &options);
-    void linearise(); // prediction, residual and Jacobian at the present increments
+    void settle();           // fit() until its scales no longer move the error: the optimum of `fit`, `add`, `compare` and `diagnose` alike
+    void settle_from_here(); // the same without the first steps
+    void linearise();        // prediction, residual and Jacobian at the present increments
 
     const Dataset &data() const { return *data_; }
     Forward &forward() { return forward_; }
