@@ -208,7 +208,7 @@ def compile_mutated(source, command, target):
     for _ in range(40):
         source.write(target)
         words = [word for word in command if not word.endswith("ccache")]
-        done = run(words + ["-fmax-errors=0", "-w", "-c", str(target), "-o", str(object_file)])
+        done = run(words + ["-O1", "-fmax-errors=0", "-w", "-c", str(target), "-o", str(object_file)])
         if done.returncode == 0:
             return object_file
         bad = {int(match.group(1)) for match in re.finditer(re.escape(source.name) + r":(\d+):\d+: (?:fatal )?error", done.stdout)}
