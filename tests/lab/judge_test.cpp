@@ -310,7 +310,10 @@ TEST(Screening, states_intervals_of_95_percent_by_students_t) {
             EXPECT_GE(t.half_width[j], 1.9599 * t.error[j]) << c.label(); // never narrower than the normal's
             EXPECT_NEAR(t.half_width[j] / t.error[j], t_quantile(0.05, std::max(1.0, t.assessment.freedom)), 1e-9) << c.label();
         }
+        EXPECT_EQ(t.gain_error, t.assessment.gain_error) << c.label();
+        EXPECT_EQ(t.block_gain, t.assessment.block_gain) << c.label();
         const CandidateResult r = result_of(t, screen.heldout_error(), screen);
+        EXPECT_EQ(r.candidate.label(), c.label());
         for (std::size_t j = 0; j < t.value.size(); ++j) {
             EXPECT_DOUBLE_EQ(r.low[j], t.value[j] - t.half_width[j]);
             EXPECT_DOUBLE_EQ(r.high[j], t.value[j] + t.half_width[j]);
@@ -351,6 +354,8 @@ TEST(Refit, finds_the_hidden_size_and_its_gain_is_the_fall_of_the_held_out_error
         Trial t = screen_candidate(c, screen, columns);
         refit(t, base, screen, short_log().model, short_log().data);
         EXPECT_TRUE(t.refitted);
+        EXPECT_EQ(t.value.size(), c.strengths.size());
+        EXPECT_LE(t.error_reduction, screen.error()); // a fall of the error, never more than the error
         EXPECT_EQ(t.baseline.size(), base.theta.size());
         EXPECT_NEAR(t.block_gain.sum(), t.gain - t.assessment.prior_reduction, 1e-6 * screen.heldout_error() + 1e-6);
         EXPECT_NEAR(t.gain_error, sum_error(t.block_gain), 1e-9);

@@ -238,6 +238,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--folders", nargs="+", default=FOLDERS)
+    parser.add_argument("--only", default="", help="files whose name holds this (a regular expression)")
     options = parser.parse_args()
     root, out, build = options.root.resolve(), options.out.resolve(), options.build.resolve()
     began = time.monotonic()
@@ -303,7 +304,7 @@ def main():
         known = {int(line.split("\t")[0]): line.split("\t")[1] for line in kept.read_text().splitlines()[1:]}
     else:
         kept.write_text(stamp + "\n")
-    order = sorted(mutants)
+    order = sorted(number for number in mutants if re.search(options.only, mutants[number][0]))
     random.Random(options.seed).shuffle(order)
     chosen, judged = order[:options.mutants], {}
     print(f"mutate_lab: {len(mutants)} faults of {len(objects)} files; a sample of {len(chosen)}, seed {options.seed}", flush=True)
