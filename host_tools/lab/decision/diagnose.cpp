@@ -274,7 +274,7 @@ class Search {
     void note_not_excited(const std::vector<Trial> &trials) {
         for (const Trial &t : trials) {
             const Candidate &c = t.candidate;
-            if (c.wheel >= 0 || c.of_interest.empty()) continue;
+            if (c.wheel >= 0 || c.of_interest.empty() || t.p_value < 0.05) continue; // what the log says something of can be seen in it
             bool alone = false, beside = false;
             for (std::size_t j = 0; j < t.error.size(); ++j) {
                 const double size = 3 * c.of_interest[j];
@@ -285,7 +285,7 @@ class Search {
                 d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
                                                           one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) +
                                                           " standard deviations");
-            else if (!beside && t.p_value > 0.05)
+            else if (!beside)
                 d_.not_excited.emplace_back(
                     c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
                                   one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
