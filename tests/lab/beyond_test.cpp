@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace traction::lab {
 namespace {
@@ -85,13 +86,15 @@ TEST(Shapes, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
     EXPECT_NE(d.unknown->variable.find("wheel speed"), std::string::npos) << d.text;
 }
 
-TEST(Shapes, a_slow_drift_of_the_grip_shows_as_a_straight_line_over_time) {
+TEST(Shapes, a_slow_drift_of_the_grip_shows_over_time) {
     const Diagnosis d = ask(Soil::gravel, "grip_drift:change=-0.4", 37);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_EQ(d.unknown->variable, "time");
     EXPECT_EQ(d.unknown->target, "soil_strength");
-    EXPECT_LT(d.unknown->y.back(), d.unknown->y.front());
+    const std::vector<double> &y = d.unknown->y; // a straight line or a curve: it falls
+    const auto half = static_cast<std::ptrdiff_t>(y.size() / 2);
+    EXPECT_LT(std::accumulate(y.end() - half, y.end(), 0.0), std::accumulate(y.begin(), y.begin() + half, 0.0));
 }
 
 TEST(Shapes, a_shape_takes_no_name_that_is_about_something_else) {
