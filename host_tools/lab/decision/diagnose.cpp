@@ -255,8 +255,13 @@ class Search {
         const Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()),
                    noise = fall_between(held_, held, noise_weight(before));
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
-        const bool falls = scaled.sure() && noise.sure(), as_much = rival && rival->explains_as_much();
-        if (!falls && !as_much) return std::nullopt;
+        const bool falls = scaled.sure() && noise.sure();
+        // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
+        const double spared =
+            before.theta.cwiseAbs2().dot(before.prior_precision()) - compared.theta.cwiseAbs2().dot(compared.prior_precision());
+        const bool by_priors = rival && scaled.sum + spared > options_.least_prior_reduction + scaled.error && noise.sum > -noise.error;
+        const bool as_much = rival && (rival->explains_as_much() || !falls);
+        if (!falls && !by_priors) return std::nullopt;
         if (HeldOut own = held_out(problem); own.error < held_.error)
             held = std::move(own);
         else
@@ -269,7 +274,7 @@ class Search {
     void note_not_excited(const std::vector<Trial> &trials) {
         for (const Trial &t : trials) {
             const Candidate &c = t.candidate;
-            if (c.wheel >= 0 || c.of_interest.empty()) continue;
+            if (c.wheel >= 0 || c.of_interest.empty() || t.p_value < 0.05) continue; // what the log says something of can be seen in it
             bool alone = false, beside = false;
             for (std::size_t j = 0; j < t.error.size(); ++j) {
                 const double size = 3 * c.of_interest[j];
@@ -280,7 +285,7 @@ class Search {
                 d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
                                                           one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) +
                                                           " standard deviations");
-            else if (!beside && t.p_value > 0.05)
+            else if (!beside)
                 d_.not_excited.emplace_back(
                     c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
                                   one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
@@ -340,10 +345,19 @@ class Search {
             refit(t, problem, screen, without, data_);
             judge(t, screen.heldout_error(), options_);
             if ((t.verdict == "passes" || t.verdict == "beyond_range") && solid) continue; // accepted as a least size, it stays one
+            if (solid && predicts_better(problem, last)) continue;
             d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");
             remove(i, std::move(without), problem);
             last = std::move(problem);
+            i = d_.accepted.size(); // what was needed beside it may not be now
         }
+    }
+
+    // Does it predict blocks left out better, surely, by either's scales?
+    static bool predicts_better(const Problem &before, const Problem &after) {
+        const HeldOut left_before = held_out(before), left_after = held_out(after);
+        return fall_between(left_before, left_after, noise_weight(before)).sure() &&
+               fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
     }
 
     void remove(std::size_t i, Model without, const Problem &problem) {

@@ -25,8 +25,16 @@ std::vector<Group> groups_of(const Problem &problem) {
     Group soil{"tolerance of the soil", {}, 0, 0};
     for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
         if (!(problem.parameters[i].prior > 0)) continue;
-        list.push_back({"tolerance of " + name_of(problem.parameters[i]), {i}, 0, 0});
-        if (problem.parameters[i].owner == "soil") soil.member.push_back(i);
+        const FreeParameter &p = problem.parameters[i];
+        list.push_back({"tolerance of " + name_of(p), {i}, 0, 0});
+        if (p.own) { // all wheels' own together, and apart
+            Group every{"tolerance of " + p.owner + "." + p.key + " on every wheel", {}, 0, 0};
+            for (std::size_t j = 0; j < problem.parameters.size(); ++j)
+                if (problem.parameters[j].own && problem.parameters[j].owner == p.owner && problem.parameters[j].key == p.key)
+                    every.member.push_back(j);
+            if (every.member.front() == i) list.push_back(every);
+        }
+        if (p.owner == "soil") soil.member.push_back(i);
     }
     if (soil.member.size() > 1) list.push_back(soil);
     return list;
