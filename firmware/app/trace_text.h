@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-enum { TRACE_TEXT = 640 }; // [byte] the longest line has 488
+enum { TRACE_TEXT = 640 }; // [byte] the longest line has 494
 
 // Writes the line with its newline and a final 0.
 void trace_text(const trace_t *trace, char line[TRACE_TEXT]);

@@ -1,13 +1,16 @@
 // tractiond - the rover's daemon: opens a HAL by its name and runs daemon_run over it until it ends or is asked to stop.
 //
-// Exit codes: 0 the run ended or was asked to stop (SIGINT, SIGTERM); 1 a device was lost, the motors are stopped; 2 wrong command line;
-// 3 bad input (parameters, scenario, frames); 4 the trace could not be written.
+// Exit codes: 0 the run ended or was asked to stop (SIGINT, SIGTERM); 1 a device was lost or the self-test failed, the motors are stopped;
+// 2 wrong command line; 3 bad input (parameters, scenario, frames); 4 the trace could not be written.
 #define _POSIX_C_SOURCE 200809L // sigaction, getopt_long's unistd
 #include "daemon.h"
 #include "parameters.h"
+#include "store.h"
+#include "trace_queue.h"
 #include "trace_text.h"
 
 #include "firmware/core/rover_config.h"
+#include "hal/forward.h"
 #include "hal/open.h"
 #include "hal/pace/pace_hal.h"
 
@@ -29,8 +32,8 @@ static void ask_to_stop(int signal)
 }
 
 typedef struct {
-    const char *hal, *parameters, *firmware, *trace;
-    bool hash, realtime, help;
+    const char *hal, *parameters, *firmware, *trace, *store;
+    bool hash, realtime, self_test, help;
 } options_t;
 
 static void print_help(void)
@@ -44,6 +47,8 @@ static void print_help(void)
         "  --firmware NAME     default, or paper: the paper's own estimator and gains\n"
         "  --trace FILE        every trace, one line a tick, floats as their bits; - is standard output\n"
         "  --hash              print the FNV-1a hash over all trace lines at the end\n"
+        "  --store FILE        what must survive a restart (how warm the motors are); read first, kept while driving\n"
+        "  --self-test         radar, accelerometer, battery at rest, a small pulse of every wheel, before anything drives\n"
         "  --realtime          a tick of 10 ms takes 10 ms\n"
         "  --help              this\n"
         "\nHALs:");
@@ -52,7 +57,8 @@ static void print_help(void)
     for (size_t i = 0; i < count; i++) {
         (void)printf("  %s %s\n      %s\n", list[i].name, list[i].arguments, list[i].about);
     }
-    (void)puts("\nExit codes: 0 ended or asked to stop, 1 a device was lost, 2 wrong command line, 3 bad input, 4 the trace could not be "
+    (void)puts("\nExit codes: 0 ended or asked to stop, 1 a device was lost or the self-test failed, 2 wrong command line, 3 bad input, 4 "
+               "the trace could not be "
                "written.");
 }
 
@@ -63,6 +69,7 @@ static bool parse(int argc, char **argv, options_t *options)
         {"hal", required_argument, NULL, 'H'},      {"parameters", required_argument, NULL, 'p'},
         {"firmware", required_argument, NULL, 'f'}, {"trace", required_argument, NULL, 't'},
         {"hash", no_argument, NULL, 'x'},           {"realtime", no_argument, NULL, 'r'},
+        {"store", required_argument, NULL, 's'},    {"self-test", no_argument, NULL, 'e'},
         {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
     };
     for (int letter = 0; (letter = getopt_long(argc, argv, "h", known, NULL)) != -1;) {
@@ -70,6 +77,8 @@ static bool parse(int argc, char **argv, options_t *options)
         options->parameters = letter == 'p' ? optarg : options->parameters;
         options->firmware = letter == 'f' ? optarg : options->firmware;
         options->trace = letter == 't' ? optarg : options->trace;
+        options->store = letter == 's' ? optarg : options->store;
+        options->self_test = options->self_test || letter == 'e';
         options->hash = options->hash || letter == 'x';
         options->realtime = options->realtime || letter == 'r';
         options->help = options->help || letter == 'h';
@@ -91,7 +100,7 @@ static bool parse(int argc, char **argv, options_t *options)
 // --- the loop's hooks
 
 typedef struct {
-    hal_t inner;
+    hal_t inner; // first: hal/forward.h
 } stoppable_t;
 
 // The run is over once a signal has asked for it; so the loop ends where it always ends, with the motors stopped.
@@ -102,29 +111,15 @@ static hal_result_t wait_unless_stopped(void *context)
     return asked_to_stop && result >= 0 ? HAL_END : result;
 }
 
-static hal_result_t read_inner(void *context, sensor_frame_t *frame)
-{
-    const hal_t *inner = &((stoppable_t *)context)->inner;
-    return inner->read(inner->context, frame);
-}
-
-static hal_result_t write_inner(void *context, const actuator_frame_t *actuator)
-{
-    const hal_t *inner = &((stoppable_t *)context)->inner;
-    return inner->write(inner->context, actuator);
-}
-
-static void stop_inner(void *context)
-{
-    const hal_t *inner = &((stoppable_t *)context)->inner;
-    inner->safe_stop(inner->context);
-}
-
 typedef struct {
     const hal_opened_t *world;
-    FILE *trace; // null: none
+    trace_queue_t queue; // what writes the trace and the store beside the ticks
     uint64_t hash;
     bool hashed;
+    volatile float rise_K[WHEEL_COUNT];
+    const char *store; // null: none
+    bool store_failed;
+    char message[STORE_MESSAGE];
 } drive_t;
 
 static void ask_world(void *context, const sensor_frame_t *frame, command_t *command)
@@ -141,8 +136,23 @@ static void log_tick(void *context, const sensor_frame_t *frame, const command_t
     char line[TRACE_TEXT];
     trace_text(trace, line);
     drive->hash = drive->hashed ? trace_text_hash(drive->hash, line) : 0u;
-    if (drive->trace != NULL) {
-        (void)fputs(line, drive->trace); // a log that cannot be written does not stop the rover: told at the end
+    if (drive->queue.file != NULL) {
+        trace_queue_put(&drive->queue, line);
+    }
+}
+
+// Called by the writing thread, about once a second and at the end.
+static void keep_store(void *context)
+{
+    drive_t *drive = context;
+    store_t store;
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        store.rise_K[i] = drive->rise_K[i];
+    }
+    char message[STORE_MESSAGE];
+    if (drive->store != NULL && !store_write(drive->store, &store, message)) {
+        drive->store_failed = true;
+        (void)snprintf(drive->message, sizeof drive->message, "%s", message);
     }
 }
 
@@ -150,11 +160,19 @@ static daemon_result_t run(const options_t *options, const control_config_t *con
 {
     pace_hal_t pace;
     stoppable_t stoppable = {.inner = options->realtime ? pace_hal(&pace, &world->hal) : world->hal};
-    const hal_t hal = {
-        .context = &stoppable, .wait_tick = wait_unless_stopped, .read = read_inner, .write = write_inner, .safe_stop = stop_inner};
-    const bool logged = drive->trace != NULL || drive->hashed;
+    hal_t hal = hal_forward(&stoppable);
+    hal.wait_tick = wait_unless_stopped;
+    const bool logged = drive->queue.file != NULL || drive->hashed;
     const daemon_link_t link = {.context = drive, .command = ask_world, .log = logged ? log_tick : NULL};
-    return daemon_run(&hal, config, &link);
+    store_t kept;
+    char message[STORE_MESSAGE];
+    const bool known = options->store != NULL && store_read(options->store, &kept, message);
+    if (options->store != NULL && !known) {
+        (void)fprintf(stderr, "tractiond: %s; the motors are taken to be warm\n", message);
+    }
+    const daemon_start_t start = {
+        .self_test = options->self_test, .warm = options->store != NULL, .rise_K = known ? kept.rise_K : NULL, .rise_out_K = drive->rise_K};
+    return daemon_run_from(&hal, config, &link, &start);
 }
 
 // Says how it ended; returns the exit code.
@@ -165,6 +183,14 @@ static int report(const options_t *options, const hal_opened_t *world, const dae
         (void)fprintf(stderr, "tractiond: %s; motors stopped after %" PRIu32 " ticks\n", *trouble != '\0' ? trouble : "a device was lost",
                       result->ticks);
         return *trouble != '\0' ? EXIT_INPUT : EXIT_DEVICE_LOST;
+    }
+    if (result->self_test.failures != 0u) {
+        for (int32_t i = 0; i < SELF_TEST_FAILURES; i++) {
+            if ((result->self_test.failures & (1u << (uint32_t)i)) != 0u) {
+                (void)fprintf(stderr, "tractiond: self-test: %s (wheels %" PRIx32 ")\n", self_test_name(i), result->self_test.wheels);
+            }
+        }
+        return EXIT_DEVICE_LOST;
     }
     (void)fprintf(stderr, "tractiond: %s, %" PRIu32 " ticks, motors stopped; faults seen %08" PRIx32 "\n",
                   asked_to_stop ? "asked to stop" : options->hal, result->ticks, result->faults);
@@ -180,21 +206,49 @@ static FILE *open_trace(const char *path)
     return file;
 }
 
+// The trace's file closed; false after telling what of it is missing.
+static bool close_trace(const options_t *options, FILE *file, unsigned long lost)
+{
+    const bool kept = file == NULL || ferror(file) == 0;
+    const bool closed = file == NULL || file == stdout || fclose(file) == 0;
+    const bool whole = kept && closed && fflush(stdout) == 0;
+    if (!whole) {
+        (void)fprintf(stderr, "tractiond: %s: the trace could not be written whole\n", options->trace != NULL ? options->trace : "-");
+    }
+    if (lost > 0u) {
+        (void)fprintf(stderr, "tractiond: %s: %lu lines of the trace were lost, the file was too slow\n", options->trace, lost);
+    }
+    return whole && lost == 0u;
+}
+
 static int drive_world(const options_t *options, const control_config_t *config, const hal_opened_t *world)
 {
-    drive_t drive = {.world = world, .trace = NULL, .hash = TRACE_HASH_BEGIN, .hashed = options->hash};
-    if (options->trace != NULL && (drive.trace = open_trace(options->trace)) == NULL) {
+    static drive_t drive; // 160 kB of queue: not on the stack
+    drive.world = world;
+    drive.hash = TRACE_HASH_BEGIN;
+    drive.hashed = options->hash;
+    drive.store = options->store;
+    drive.queue.patient = !options->realtime; // the world waits: every line is kept
+    drive.queue.spare = keep_store;
+    drive.queue.spare_context = &drive;
+    if (options->trace != NULL && (drive.queue.file = open_trace(options->trace)) == NULL) {
+        return EXIT_FILE;
+    }
+    if ((options->trace != NULL || options->store != NULL) && !trace_queue_start(&drive.queue)) {
+        (void)fputs("tractiond: no thread for the trace could be started\n", stderr);
         return EXIT_FILE;
     }
     const daemon_result_t result = run(options, config, world, &drive);
+    const unsigned long lines_lost = trace_queue_finish(&drive.queue);
     int code = report(options, world, &result);
     if (options->hash && code == EXIT_DONE) {
         (void)printf("%016" PRIx64 "\n", drive.hash);
     }
-    const bool kept = drive.trace == NULL || ferror(drive.trace) == 0;
-    const bool closed = drive.trace == NULL || drive.trace == stdout || fclose(drive.trace) == 0;
-    if (!kept || !closed || fflush(stdout) != 0) {
-        (void)fprintf(stderr, "tractiond: %s: the trace could not be written whole\n", options->trace != NULL ? options->trace : "-");
+    if (!close_trace(options, drive.queue.file, lines_lost)) {
+        code = code == EXIT_DONE ? EXIT_FILE : code;
+    }
+    if (drive.store_failed) {
+        (void)fprintf(stderr, "tractiond: %s\n", drive.message);
         code = code == EXIT_DONE ? EXIT_FILE : code;
     }
     return code;

@@ -8,8 +8,10 @@
 typedef struct {
     const command_t *command;
     const sense_output_t *sense;
+    circuit_output_t circuit;
     slip_output_t slip[WHEEL_COUNT];
     float speed_m_s;
+    float speed_std_m_s;
     float per_supply_1_V;
 } estimate_t;
 
@@ -27,6 +29,8 @@ static float feed_forward(const control_config_t *config, float reference_rad_s,
 
 // --- estimate
 
+enum { BEYOND_VALUES = 3 }; // in a row: a quarter of a second
+
 static float rim_hint_m_s(const control_config_t *config, const sense_output_t *sense)
 {
     const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
@@ -36,26 +40,35 @@ static float rim_hint_m_s(const control_config_t *config, const sense_output_t *
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
                                             const sensor_frame_t *frame, trace_t *trace)
 {
-    doppler_output_t doppler = {0};
-    if ((sense->usable & FRAME_RADAR) != 0u) {
-        const int32_t count = frame->radar_samples < RADAR_SAMPLES_PER_TICK_MAX ? frame->radar_samples : RADAR_SAMPLES_PER_TICK_MAX;
-        doppler = doppler_step(&config->doppler, &state->doppler, frame->radar_count, count);
-    }
+    const bool radar = (sense->usable & FRAME_RADAR) != 0u;
+    const int32_t most = frame->radar_samples < RADAR_SAMPLES_PER_TICK_MAX ? frame->radar_samples : RADAR_SAMPLES_PER_TICK_MAX;
+    const doppler_arrival_t arrival = {frame->radar_sequence, sense->elapsed_ticks, radar ? most : 0};
+    const int32_t missing = doppler_missing(&config->doppler, &state->doppler, &arrival);
+    doppler_gap(&config->doppler, &state->doppler, missing, frame->radar_count[0]);
+    doppler_output_t doppler = state->heard;
+    doppler.late_samples += missing + arrival.count;
+    state->heard = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
     if (doppler.fresh) {
+        state->beyond = !doppler.beyond ? 0 : state->beyond + (state->beyond < BEYOND_VALUES ? 1 : 0);
         state->doppler_m_s = doppler.speed_m_s;
     }
     const ground_speed_input_t input = {
         .accel_x_m_s2 = sense->accel_x_m_s2,
-        .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_m_s = doppler.speed_m_s,
-        .doppler_late_s = doppler.fresh ? (float)doppler.late_samples / config->doppler.beam->sample_rate_Hz : 0.0f,
-        .doppler_fresh = doppler.fresh,
-        .doppler_quiet = doppler.quiet,
+        .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
         .wheel_m_s = rim_hint_m_s(config, sense),
+        .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
+        .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
+        .doppler_quiet = doppler.quiet,
+        .doppler_dead = doppler.dead,
+        .busy = state->heard.busy || state->heard.fresh,
+        .doppler_trust = doppler.trust,
+        .doppler_misfit = doppler.misfit,
+        .elapsed_ticks = sense->elapsed_ticks,
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
     trace->radar_speed_m_s = state->doppler_m_s;
-    trace->radar_fresh = doppler.fresh && !doppler.quiet; // without an echo there is no value
+    trace->radar_fresh = doppler.fresh && !doppler.quiet && !doppler.beyond && !doppler.spoilt; // without an echo there is no value
     trace->speed_m_s = speed.speed_m_s;
     trace->speed_std_m_s = speed.std_m_s;
     trace->accel_bias_m_s2 = speed.bias_m_s2;
@@ -86,6 +99,7 @@ static void estimate_wheels(const control_config_t *config, estimate_t *estimate
         wheel->traction_N = motor.traction_N;
         wheel->slip = estimate->slip[i].slip;
         wheel->slip_valid = estimate->slip[i].valid;
+        wheel->encoder_refused = (estimate->circuit.refused & (1u << (uint32_t)i)) != 0u;
     }
 }
 
@@ -132,6 +146,23 @@ static float speed_for_slip(const control_config_t *config, float rolling_rad_s,
     return fixed_clamp(rolling_rad_s * ratio, -limit, limit);
 }
 
+// [m/s] assumed: twice what a calm estimate claims. Beyond it an error of the platform's speed counts less, by the square: what the
+// estimate doubts itself must not throw the wheels about.
+static const float sure_m_s = 0.03f;
+
+static float speed_to_steer_by(control_state_t *state, const estimate_t *estimate, float reference_m_s)
+{
+    if (!fixed_greater(estimate->speed_std_m_s, sure_m_s)) {
+        return estimate->speed_m_s;
+    }
+    if (fixed_bits(estimate->speed_std_m_s) != fixed_bits(state->steer_std_m_s)) { // a division is dear: not in every tick
+        const float ratio = sure_m_s / fixed_clamp(estimate->speed_std_m_s, sure_m_s, 10.0f);
+        state->steer_std_m_s = estimate->speed_std_m_s;
+        state->steer_share = ratio * ratio;
+    }
+    return reference_m_s + state->steer_share * (estimate->speed_m_s - reference_m_s);
+}
+
 static void drive_mode(const control_config_t *config, control_state_t *state, const estimate_t *estimate, control_mode_t mode,
                        trace_t *trace)
 {
@@ -148,7 +179,7 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
         const speed_control_input_t input = {
             .speed_ref_m_s = command->platform_speed_m_s,
             .yaw_rate_ref_rad_s = mode == MODE_SOIL_SWEEP ? 0.0f : command->yaw_rate_rad_s,
-            .speed_m_s = estimate->speed_m_s,
+            .speed_m_s = speed_to_steer_by(state, estimate, fixed_finite(command->platform_speed_m_s)),
             .saturated = state->saturated,
         };
         platform = speed_control_step(&config->speed_control, &state->speed_control, &input);
@@ -193,26 +224,34 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
 static safety_output_t judge(const control_config_t *config, control_state_t *state, const estimate_t *estimate,
                              const sensor_frame_t *frame)
 {
-    float most_rad_s = 0.0f;
+    float high_rad_s = 0.0f;
+    float low_rad_s = 0.0f;
     float least_rad_s = 0.0f;
     safety_input_t input = {
         .frame = frame,
+        .contradict = estimate->circuit.contradict,
+        .broken = estimate->circuit.broken,
+        .ground_speed_std_m_s = estimate->speed_std_m_s,
         .command_age_ticks = estimate->command->age_ticks,
         .command_stop = estimate->command->mode == MODE_STOP,
         .usable = estimate->sense->usable,
         .absurd = estimate->sense->absurd,
         .battery_V = estimate->sense->battery_V,
         .ground_speed_m_s = estimate->speed_m_s,
+        .estimator = state->beyond >= BEYOND_VALUES ? (uint32_t)FAULT_SPEED_BEYOND : 0u,
     };
     for (int i = 0; i < WHEEL_COUNT; i++) {
-        const float turn = fabsf(estimate->sense->speed_rad_s[i]);
+        const float speed_rad_s = estimate->sense->speed_rad_s[i];
+        const float turn = fabsf(speed_rad_s);
         input.speed_rad_s[i] = estimate->sense->speed_rad_s[i];
         input.current_A[i] = estimate->sense->current_A[i];
-        most_rad_s = i == 0 || fixed_greater(turn, most_rad_s) ? turn : most_rad_s;
+        high_rad_s = fixed_greater(speed_rad_s, high_rad_s) ? speed_rad_s : high_rad_s;
+        low_rad_s = fixed_greater(low_rad_s, speed_rad_s) ? speed_rad_s : low_rad_s;
         least_rad_s = i == 0 || fixed_greater(least_rad_s, turn) ? turn : least_rad_s;
     }
-    input.rim_max_m_s = most_rad_s * config->slip.wheel_radius_m;
-    input.rim_min_m_s = least_rad_s * config->slip.wheel_radius_m;
+    input.high_rad_s = high_rad_s;
+    input.low_rad_s = low_rad_s;
+    input.least_rad_s = least_rad_s;
     return safety_step(&config->safety, &state->safety, &input);
 }
 
@@ -229,25 +268,34 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
         if ((safety->limited & (1u << (uint32_t)i)) != 0u) {
-            wheel->duty = motor_duty_limited(&config->motor, wheel->duty, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
+            const float wanted = wheel->duty;
+            wheel->duty = motor_duty_limited(&config->motor, wanted, estimate->sense->speed_rad_s[i], estimate->per_supply_1_V,
                                              config->safety.current_continuous_A);
+            wheel->saturated = wheel->saturated || fixed_bits(wheel->duty) != fixed_bits(wanted);
         }
         wheel->duty = mode == MODE_STOP ? 0.0f : fixed_clamp(fixed_finite(wheel->duty), -1.0f, 1.0f);
         trace->actuator.duty_q15[i] = fixed_q15_from_float(wheel->duty);
         state->duty[i] = wheel->duty;
         state->saturated = state->saturated || wheel->saturated;
     }
-    trace->actuator.motor_enable = mode != MODE_STOP;
+    state->braking = mode == MODE_STOP && (safety->motors_off || state->braking);
+    trace->actuator.drive = mode != MODE_STOP ? DRIVE_ON : state->braking ? DRIVE_BRAKE : DRIVE_COAST;
+    state->driven = mode != MODE_STOP || state->braking;
+    trace->actuator.sequence = ++state->sequence;
     trace->actuator.status_led = safety->faults != 0u;
     trace->mode = mode;
     trace->faults = safety->faults;
+    trace->fault_wheels = safety->wheels;
     state->mode = mode;
 }
 
 trace_t control_step(const control_config_t *config, control_state_t *state, const command_t *command, const sensor_frame_t *frame)
 {
     trace_t trace = {0};
-    const sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    sense_output_t sense = sense_measure(&config->sense, &state->sense, frame);
+    // a look waits in the tick that is dear already: the one that fills a window and transforms it
+    const bool dear = state->doppler.filled + 6 >= FFT_LENGTH;
+    const circuit_input_t circuit = {.duty = state->duty, .driven = state->driven, .look = !dear};
     trace.tick = frame->tick;
     trace.present = frame->present;
     trace.battery_voltage_V = sense.battery_V;
@@ -255,7 +303,10 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
     trace.gyro_z_rad_s = sense.gyro_z_rad_s;
 
     estimate_t estimate = {.command = command, .sense = &sense, .per_supply_1_V = motor_per_supply(sense.battery_V)};
-    estimate.speed_m_s = estimate_speed(config, state, &sense, frame, &trace).speed_m_s;
+    estimate.circuit = circuit_step(&config->circuit, &state->circuit, &circuit, &config->sense, &state->sense, &sense);
+    const ground_speed_output_t speed = estimate_speed(config, state, &sense, frame, &trace);
+    estimate.speed_m_s = speed.speed_m_s;
+    estimate.speed_std_m_s = speed.std_m_s;
     estimate_wheels(config, &estimate, &trace);
 
     const safety_output_t safety = judge(config, state, &estimate, frame);

@@ -20,6 +20,8 @@ static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 
 // --- (2)
 
+enum { MADE_MAX = 80, RAILED_MAX = 128 }; // of 320 samples: a quarter, and two fifths (assumed)
+
 enum { COARSE = 4, POWER_SUM_MAX = 128 * 256 + DOPPLER_BINS_MAX * 256 };
 
 // J of one grid speed. It never wraps: J is linear in the powers, so its extremes have all power in one bin, and doppler_test
@@ -30,10 +32,49 @@ static int32_t cost(const doppler_template_t *beam, const int16_t *power, int32_
     return fixed_dot_product(total * beam->volume[speed], power, inverse, beam->bins);
 }
 
-// Powers of the template's bins, reduced so that each has at most 15 bits and their sum 16; returns the reduced sum. *energy is the sum of
-// the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of the transform, 2^10 of the gain,
-// 256 * 96 / 2 of the window).
-static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int16_t *reduced, uint64_t *energy)
+// Mean power of bins [from, to) over 2^28: 100 of it are one ADC count^2 of white noise.
+static uint32_t mean_power(const uint64_t *power, int32_t from, int32_t to)
+{
+    uint32_t sum = 0; // a full-scale line is 2^31 of it
+    for (int32_t k = from; k < to; k++) {
+        sum += (uint32_t)(power[k] >> 28);
+    }
+    return (uint32_t)((float)sum / (float)(to - from)); // no division of whole numbers: the target's library would stop at a divisor of 0
+}
+
+enum { SPARE_FROM = 96, BESIDE_LEAST = 32, LOUD = 400 }; // LOUD: 4 ADC count^2 of white noise, assumed
+
+// What lies outside the template's bins: white noise, or an echo that is faster than they hold.
+typedef struct {
+    uint32_t in;     // mean power per bin of the band
+    uint32_t beside; // between the band and SPARE_FROM
+    uint32_t spare;  // from there on
+    uint32_t noise;  // of both: the noise, unless an echo is there
+    bool known;      // the band leaves room for them
+    bool beyond;     // an echo is there
+} outside_t;
+
+// A mean over 32 bins of noise spreads by a quarter, so four times another one, three times in a row, is no chance.
+static outside_t look_outside(const doppler_template_t *beam, const uint64_t *power)
+{
+    const int32_t end = beam->first_bin + beam->bins;
+    outside_t out = {0};
+    out.known = end + BESIDE_LEAST <= SPARE_FROM;
+    if (out.known) {
+        out.in = mean_power(power, beam->first_bin, end);
+        out.beside = mean_power(power, end, SPARE_FROM);
+        out.spare = mean_power(power, SPARE_FROM, FFT_BINS);
+        out.noise = (out.beside + out.spare) / 2u;
+        const bool fast = out.beside > 4u * out.spare && 5u * (out.beside - out.spare) > out.in;
+        out.beyond = out.beside > LOUD && (fast || out.beside > 3u * out.in || out.spare > 3u * out.in);
+    }
+    return out;
+}
+
+// Powers of the template's bins, less twice the noise (which leaves 0.14 of it), reduced so that each has at most 15 bits and their sum 16;
+// returns the reduced sum. *energy is the sum of the powers over 2^22 (one ADC count^2 of variance is 12288 * 2^28 / 2^22 of it: 2^18 of
+// the transform, 2^10 of the gain, 256 * 96 / 2 of the window).
+static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, uint64_t noise, int16_t *reduced, uint64_t *energy)
 {
     uint64_t sum = 0; // at most 120 * 2^63 / 2^8
     const uint64_t *in = power + beam->first_bin;
@@ -43,11 +84,13 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int
     }
     *energy = sum >> 14;
     const uint32_t shift = (57u - (uint32_t)__builtin_clzll(sum | 127u)) & 63u; // sum >> shift is 64..127, or 0..127 unshifted
+    const uint64_t floor = 2u * noise;
     uint32_t total = 0;
     //@ loop unroll 120;
     for (int32_t k = 0; k < beam->bins; k++) {
-        const uint32_t low = (uint32_t)in[k];
-        const uint32_t high = (uint32_t)(in[k] >> 32);
+        const uint64_t echo = in[k] > floor ? in[k] - floor : 0u;
+        const uint32_t low = (uint32_t)echo;
+        const uint32_t high = (uint32_t)(echo >> 32);
         const uint32_t whole = shift >= 32u ? high >> (shift - 32u) : shift == 0u ? low : (low >> shift) | high << (32u - shift);
         const uint32_t value = whole & 0x7fffu; // takes nothing away: sum < 128 * 2^shift, so whole < 128 * 2^8
         reduced[k] = (int16_t)value;
@@ -59,7 +102,7 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, int
 // exp(x) for |x| <= 0.05: error below 3e-7.
 static float exp_small(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
 
-static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white)
+static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white, bool *top, float *fit)
 {
     int32_t best = 0;
     int32_t least = INT32_MAX;
@@ -85,6 +128,8 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
         fine = around[j] < around[fine] ? j : fine;
     }
     *white = around[fine] >= total * beam->quiet[low + fine];
+    *top = low + fine == beam->speeds - 1;
+    *fit = ((float)around[fine] / (float)(total > 0 ? total : 1) - (float)beam->volume[low + fine]) / (float)beam->exact;
     float offset = 0.0f;
     if (fine > 0 && fine < 2 * COARSE && around[fine - 1] != INT32_MAX && around[fine + 1] != INT32_MAX) {
         const float left = (float)around[fine - 1] - (float)around[fine];
@@ -96,22 +141,119 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
     return beam->speed_m_s[low + fine] * exp_small(offset * beam->log_step);
 }
 
-static void measure(const doppler_config_t *config, const uint64_t *power, doppler_output_t *out)
+static const float made_trust = 0.05f; // [1] per filled sample of 320
+static const float railed_trust = 0.02f;
+static const float noise_trust = 4.0f; // [1] R = R0 (1 + this noise/echo), powers of the band
+
+// --- (3)
+
+enum { LINE_FROM = 8, LINE_SIDE = 4, LINE_SWAY_Q8 = 90, LINE_ABOVE_Q8 = 512, LEVEL_SHARE = 8, SWAY_START_Q8 = 512, LINE_DUE = 5 };
+
+// log2 of a power, Q8, its mantissa as a straight line: within 0.09.
+static int32_t log2_q8(uint64_t power)
+{
+    const uint64_t one = power | 1u;
+    const int32_t exponent = 63 - __builtin_clzll(one);
+    const uint64_t mantissa = exponent >= 8 ? one >> (exponent - 8) : one << (8 - exponent);
+    return exponent * 256 + (int32_t)(mantissa & 255u);
+}
+
+static bool is_line(const doppler_state_t *state, int32_t k) { return (state->line[(uint32_t)k / 32u] >> ((uint32_t)k % 32u) & 1u) != 0u; }
+
+static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
+{
+    const int32_t end = beam->first_bin + beam->bins;
+    for (int32_t k = LINE_FROM - LINE_SIDE; k < end; k++) {
+        const int32_t level = log2_q8(state->power[k]);
+        const int32_t away = level - (state->leveled ? state->level_q8[k] : level);
+        const int32_t sway = state->leveled ? state->sway_q8[k] : SWAY_START_Q8;
+        state->level_q8[k] = (int16_t)(level - away + away / LEVEL_SHARE);
+        state->sway_q8[k] = (int16_t)(sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
+    }
+    state->leveled = true;
+    for (int32_t i = 0; i < 4; i++) {
+        state->line[i] = 0;
+    }
+    for (int32_t k = LINE_FROM; k < end - LINE_SIDE; k++) {
+        const int32_t above = state->level_q8[k] - LINE_ABOVE_Q8;
+        if (state->sway_q8[k] < LINE_SWAY_Q8 && above > state->level_q8[k - LINE_SIDE] && above > state->level_q8[k + LINE_SIDE]) {
+            state->line[(uint32_t)k / 32u] |= 1u << ((uint32_t)k % 32u);
+        }
+    }
+}
+
+// The window's powers without the lines. Returns `copy`, or the powers themselves where there is no line.
+static const uint64_t *without_lines(const doppler_template_t *beam, const doppler_state_t *state, uint64_t *copy)
+{
+    if ((state->line[0] | state->line[1] | state->line[2] | state->line[3]) == 0u) {
+        return state->power;
+    }
+    for (int32_t k = 0; k < FFT_BINS; k++) {
+        copy[k] = state->power[k];
+    }
+    for (int32_t k = LINE_FROM; k < beam->first_bin + beam->bins - LINE_SIDE; k++) {
+        if (is_line(state, k)) {
+            const uint64_t beside = copy[k - 3] / 2u + state->power[k + 3] / 2u; // below, a line next to this one is gone already
+            for (int32_t j = k - 2; j <= k + 2; j++) {
+                copy[j] = beside;
+            }
+        }
+    }
+    return copy;
+}
+
+static const float misfit_calm = 0.8f; // [1] of (3)'s comment
+static const float misfit_strange = 2.5f;
+static const float misfit_share = 0.3f; // [1] of the speed per unit of misfit: heave of 5 mm at 8 Hz makes 0.16 to 0.39
+
+static void measure(const doppler_config_t *config, const doppler_state_t *state, doppler_output_t *out)
 {
     int16_t reduced[DOPPLER_BINS_MAX] __attribute__((aligned(8)));
     uint64_t energy = 0;
     bool white = false;
-    const int32_t total = reduce(config->beam, power, reduced, &energy);
-    const float speed_m_s =
-        config->method == DOPPLER_LIKELIHOOD ? likelihood_speed(config->beam, reduced, total, &white) : argmax_speed(config->beam, power);
-    out->speed_m_s = config->scale * speed_m_s;
-    out->quiet = white || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
+    bool top = false;
+    float fit = 0.0f;
     out->fresh = true;
+    out->trust = 1.0f;
+    if (config->method == DOPPLER_ARGMAX) {
+        reduce(config->beam, state->power, 0, reduced, &energy);
+        out->speed_m_s = config->scale * argmax_speed(config->beam, state->power);
+        out->quiet = energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u);
+        return;
+    }
+    const outside_t none = {0};
+    uint64_t copy[FFT_BINS];
+    const uint64_t *const power = without_lines(config->beam, state, copy);
+    const outside_t outside = state->halved ? none : look_outside(config->beam, power); // twice each sample: images up there
+    const int32_t total = reduce(config->beam, power, (uint64_t)(outside.beyond ? 0u : outside.noise) << 28, reduced, &energy);
+    const float speed_m_s = likelihood_speed(config->beam, reduced, total, &white, &top, &fit);
+    out->misfit = misfit_share * fixed_clamp(fit - misfit_calm, 0.0f, 10.0f);
+    out->strange = fit > misfit_strange;
+    const bool noise = outside.known && outside.in < 2u * outside.noise;
+    out->speed_m_s = config->scale * speed_m_s;
+    out->quiet = !outside.beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->beyond = outside.beyond || (top && !out->quiet && outside.in > 3u * outside.noise);
+    if (outside.known && !out->quiet && outside.in > outside.noise) {
+        const float share = (float)outside.noise / (float)(outside.in - outside.noise);
+        out->trust = 1.0f + noise_trust * share;
+    }
+}
+
+// What the sum of a window can be. It is that anyway: a bound that needs no relation between the sum and the samples.
+static int32_t held_sum(int32_t sum)
+{
+    const int32_t most = FFT_LENGTH * 32767;
+    return sum > most ? most : sum < -most ? -most : sum;
 }
 
 // Drops the oldest `hop` samples.
 static void slide(doppler_state_t *state, int32_t hop)
 {
+    int32_t gone = 0;
+    for (int32_t j = 0; j < hop; j++) {
+        gone += state->window.sample[j];
+    }
+    state->sum = held_sum(state->sum - gone);
     if (hop % 4 == 0) {
         for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
             state->window.four[j - hop / 4] = state->window.four[j];
@@ -136,12 +278,13 @@ static void mirror(doppler_state_t *state)
 
 static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 {
-    if (halved) {
-        fft_power(state->twice, state->power);
-    } else {
-        fft_power(state->window.sample, state->power);
-    }
+    const int32_t sum = state->sum;
+    const int32_t mean = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
+                         : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
+                                                           : sum / FFT_LENGTH;
+    fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
     state->pending = true;
+    state->due = 0; // the powers of the window before are gone
     state->halved = halved;
     state->late_samples = late_samples;
 }
@@ -161,35 +304,166 @@ static void transform_early(doppler_state_t *state, int32_t late_samples)
     transform(state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
 }
 
-doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
+// Noise of 1 count rms spans 5 counts in 64 samples, of 0.3 counts 2: below that the converter hears nothing that is alive (assumed).
+enum { DEAD_SPAN = 3 * DOPPLER_GAIN, DEAD_BLOCKS = 2 };
+
+static void watch_span(doppler_state_t *state, int16_t value)
 {
-    doppler_output_t out = {false, false, 0.0f, 0};
-    if (state->pending) {
-        measure(config, state->power, &out);
-        if (state->halved) {
-            out.speed_m_s *= 2.0f;
-            out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
-        }
-        out.late_samples = state->late_samples + (count > 0 ? count : 0);
-        state->pending = false;
+    if (state->in_block == 0) {
+        state->low = value;
+        state->high = value;
     }
-    for (int32_t i = 0; i < count; i++) {
-        const int32_t limited = sample[i] > 1023u ? 1023 : (int32_t)sample[i];
-        const int16_t value = (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
-        state->window.sample[state->filled] = value;
-        if (!state->full && state->filled < EARLY_TWICE) {
+    state->low = value < state->low ? value : state->low;
+    state->high = value > state->high ? value : state->high;
+    if (state->in_block == DOPPLER_BLOCK - 1) {
+        const bool dead = state->high - state->low <= DEAD_SPAN;
+        state->dead_blocks = !dead ? 0 : state->dead_blocks + (state->dead_blocks < DEAD_BLOCKS ? 1 : 0);
+    }
+}
+
+// One sample into the window; `late_samples` more follow in this call.
+static void take(const doppler_config_t *config, doppler_state_t *state, int16_t value, bool made, bool railed, int32_t late_samples)
+{
+    if (state->in_block == DOPPLER_BLOCK) {
+        state->in_block = 0;
+        state->block = (state->block + 1) % DOPPLER_BLOCKS;
+        state->made[state->block] = 0;
+        state->railed[state->block] = 0;
+    }
+    watch_span(state, value);
+    state->in_block++;
+    state->made[state->block] += made ? 1 : 0;
+    state->railed[state->block] += railed ? 1 : 0;
+    state->last = value;
+    state->window.sample[state->filled] = value;
+    state->sum = held_sum(state->sum + value);
+    if (state->full) {
+        state->filled++;
+    } else {
+        if (state->filled < EARLY_TWICE) {
             state->twice[2 * state->filled] = value;
             state->twice[2 * state->filled + 1] = value;
         }
         state->filled++;
         if (config->method == DOPPLER_LIKELIHOOD) {
-            transform_early(state, count - 1 - i);
-        }
-        if (state->filled == FFT_LENGTH) {
-            transform(state, false, count - 1 - i);
-            state->full = true;
-            slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
+            transform_early(state, late_samples);
         }
     }
+    if (state->filled == FFT_LENGTH) {
+        transform(state, false, late_samples);
+        state->full = true;
+        slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
+    }
+}
+
+static int16_t value_of(const doppler_config_t *config, uint16_t sample)
+{
+    const int32_t limited = sample > 1023u ? 1023 : (int32_t)sample;
+    return (int16_t)((limited - config->offset_count) * DOPPLER_GAIN);
+}
+
+static void empty(doppler_state_t *state)
+{
+    const doppler_state_t zero = {0};
+    const uint32_t next = state->next_sequence;
+    *state = zero;
+    state->next_sequence = next;
+    state->started = true;
+}
+
+enum {
+    OWED_MAX = 32 * 256,
+    OWED_LEAST = 640,
+    FORGET_BITS = 9
+}; // Q8: 32 samples, 2.5 samples; 512 ticks: 1.2 % off the rate owes 32 samples
+
+int32_t doppler_missing(const doppler_config_t *config, doppler_state_t *state, const doppler_arrival_t *arrival)
+{
+    const int32_t count = arrival->count < 0 ? 0 : arrival->count > DOPPLER_SAMPLES_MAX ? DOPPLER_SAMPLES_MAX : arrival->count;
+    const int32_t ticks = arrival->elapsed_ticks < 1000u ? (int32_t)arrival->elapsed_ticks : 1000;
+    state->owed_q8 += ticks * config->per_tick_q8 - count * 256;
+    state->owed_q8 -= state->owed_q8 / (1 << FORGET_BITS);
+    state->owed_q8 = state->owed_q8 > 8 * OWED_MAX ? 8 * OWED_MAX : state->owed_q8 < -8 * OWED_MAX ? -8 * OWED_MAX : state->owed_q8;
+    if (count == 0) {
+        return 0;
+    }
+    const bool numbered = arrival->sequence != 0u;
+    const uint32_t gap = arrival->sequence - state->next_sequence;
+    int32_t missing = 0;
+    if (!state->started) {
+        state->owed_q8 = 0;
+    } else if (numbered) {
+        missing = gap > (uint32_t)DOPPLER_GAP_MAX ? DOPPLER_GAP_MAX + 1 : (int32_t)gap;
+    } else if (state->owed_q8 >= OWED_LEAST) {
+        missing = state->owed_q8 / 256;
+    }
+    state->owed_q8 = missing > DOPPLER_GAP_MAX ? 0 : state->owed_q8 - missing * 256;
+    state->next_sequence = arrival->sequence + (uint32_t)count;
+    state->started = true;
+    return missing;
+}
+
+void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t missing, uint16_t next)
+{
+    if (missing <= 0) {
+        return;
+    }
+    if (missing > DOPPLER_GAP_MAX || (state->filled == 0 && !state->full)) {
+        empty(state);
+        return;
+    }
+    const bool pending = state->pending;
+    const int32_t from = state->last;
+    const float step = (float)(value_of(config, next) - from) / (float)(missing + 1);
+    state->pending = false;
+    for (int32_t j = 1; j <= missing; j++) {
+        take(config, state, (int16_t)(from + (int32_t)(step * (float)j)), true, false, missing - j);
+    }
+    state->hold = state->pending;
+    if (pending && !state->pending) {
+        state->pending = true;
+        state->late_samples += missing;
+    }
+}
+
+static int32_t total_of(const int32_t *block)
+{
+    int32_t sum = 0;
+    for (int32_t i = 0; i < DOPPLER_BLOCKS; i++) {
+        sum += block[i];
+    }
+    return sum;
+}
+
+doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
+{
+    doppler_output_t out = {0};
+    if (state->hold) { // no tick pays for a transform and a search
+        state->hold = false;
+        state->late_samples += count > 0 ? count : 0;
+    } else if (state->pending) {
+        const int32_t made = total_of(state->made);
+        const int32_t railed = total_of(state->railed);
+        measure(config, state, &out);
+        if (state->halved) {
+            out.speed_m_s *= 2.0f;
+            out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
+        }
+        out.trust += made_trust * (float)made + railed_trust * (float)railed;
+        const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
+        out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
+        out.late_samples = state->late_samples + (count > 0 ? count : 0);
+        state->due = state->halved || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
+        state->pending = false;
+    }
+    if (state->due > 0 && --state->due == 0) {
+        watch_lines(config->beam, state);
+    }
+    for (int32_t i = 0; i < count; i++) {
+        const bool railed = sample[i] == 0u || (int32_t)sample[i] >= config->max_count;
+        take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
+    }
+    out.busy = state->pending;
+    out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;
 }

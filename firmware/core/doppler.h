@@ -10,6 +10,11 @@
 // below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each
 // taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours
 // alone).
+// An interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
+//   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
+// The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
+// be, is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to
+// 0.9).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
@@ -26,7 +31,7 @@ enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
 
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
-enum { DOPPLER_WINDOW_TICKS_MAX = 64 };
+enum { DOPPLER_WINDOW_TICKS_MAX = 64, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32, DOPPLER_SAMPLES_MAX = 64 };
 
 // Which past a Doppler value tells of: the weight of each tick in the window's mean, newest first.
 typedef struct {
@@ -51,6 +56,7 @@ typedef struct {
         __attribute__((aligned(8)));    // [speeds][bins] q / S_v[k], 0..32767, q the scale that makes the largest 32767
     int32_t volume[DOPPLER_SPEEDS_MAX]; // q * sum_k ln S_v[k]
     int32_t quiet[DOPPLER_SPEEDS_MAX];  // q * expected J/a of an echo of which half is white noise
+    int32_t exact;                      // q * bins: expected (J/a - q sum ln S_v) of an echo of the template's own spectrum
     doppler_window_t window;            // at sample_rate_Hz, for ground_speed
 } doppler_template_t;
 
@@ -60,6 +66,9 @@ typedef struct {
     int32_t offset_count;        // ADC value of no signal
     int32_t hop;                 // samples between values, 1..256
     float scale;                 // calibrated speed over geometric speed [1]
+    int32_t max_count;           // the converter's rail
+    int32_t per_tick_q8;         // samples per tick, by the template's rate
+    float per_sample_s;          // 1/rate
     uint32_t quiet_power_count2; // variance of the band below which there is no echo [ADC count^2]
 } doppler_config_t;
 
@@ -70,23 +79,58 @@ typedef struct {
             int16_t sample[4];
         } __attribute__((aligned(8))) four[FFT_LENGTH / 4];
     } window;
-    int16_t twice[FFT_LENGTH]; // the first 128 samples, each twice
-    int32_t filled;            // valid samples so far
-    uint64_t power[FFT_BINS];  // of the last full window
-    int32_t late_samples;      // samples since that window's end
-    bool pending;              // its speed is not made yet
-    bool halved;               // that window is `twice`: it reads half the speed
-    bool full;                 // the window has been filled once
-} doppler_state_t;             // zeroed = reset
+    int16_t twice[FFT_LENGTH];              // the first 128 samples, each twice
+    int32_t filled;                         // valid samples so far
+    uint64_t power[FFT_BINS];               // of the last full window
+    int32_t late_samples;                   // samples since that window's end
+    int16_t level_q8[DOPPLER_BINS_MAX + 1]; // of (3), by bin
+    int16_t sway_q8[DOPPLER_BINS_MAX + 1];
+    uint32_t line[4];                                     // bit k % 32 of word k / 32: bin k is a line
+    int32_t due;                                          // calls until the lines are looked at
+    bool leveled;                                         // (3) has begun
+    int32_t sum;                                          // of the samples in the window
+    int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
+    int32_t block, in_block;                              // the block that is being filled, and how much of it is
+    int16_t last;                                         // newest sample
+    int16_t low, high;                                    // of the block
+    int32_t dead_blocks;                                  // blocks in a row without any noise
+    uint32_t next_sequence;                               // of the sample after the newest one
+    int32_t owed_q8;                                      // samples that the clock says should have come, less those that came
+    bool started;
+    bool hold;     // that window was filled by doppler_gap in this tick
+    bool pending;  // its speed is not made yet
+    bool halved;   // that window is `twice`: it reads half the speed
+    bool full;     // the window has been filled once
+} doppler_state_t; // zeroed = reset
 
 typedef struct {
     bool fresh;           // a value was made in this call
+    bool busy;            // a transform was made in this call
     bool quiet;           // no echo above the noise: the speed means nothing
+    bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
+    bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
+    bool strange;         // no speed's spectrum fits: interference, or no ground
+    bool spoilt;          // strange, or too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
+    float misfit;         // share of the speed that may be wrong because no spectrum fits [1]
+    float trust;          // by how much its variance exceeds that of a calm echo without noise [1], 1 or more
     int32_t late_samples; // samples that arrived after the window's end; less for the first two values, whose window is shorter
 } doppler_output_t;
 
 // The transform runs in the call that fills the window, the search for the speed in the next one, so that no tick pays for both.
+// Which samples this is, before doppler_step: how many of the converter's were lost before the `count` that `sequence` numbers, told by
+// their numbers or, where a HAL does not number them (sequence 0), by the clock. To be called in every tick, with count 0 where there is
+// none.
+typedef struct {
+    uint32_t sequence;      // of sample[0]
+    uint32_t elapsed_ticks; // since the call before
+    int32_t count;
+} doppler_arrival_t;
+int32_t doppler_missing(const doppler_config_t *config, doppler_state_t *state, const doppler_arrival_t *arrival);
+
+// Fills a gap of `missing` samples before `next`, in a straight line; a gap longer than DOPPLER_GAP_MAX empties the window.
+void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t missing, uint16_t next);
+
 // Any counts are accepted (limited to 0..1023); samples beyond `count` are not read.
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count);
 

@@ -59,7 +59,7 @@ static inline uint64_t square_sum(int32_t re, int32_t im) { return (uint64_t)((i
 #endif
 
 // Stage 1: window, and 64 transforms of length 4 over x[n], x[n + 64], x[n + 128], x[n + 192]. h[n + 128] = 1 - h[n].
-static void window_and_first_stage(const int16_t *sample, word_t *out)
+static void window_and_first_stage(const int16_t *sample, int32_t mean, word_t *out)
 {
     const int32_t one_q28 = 1 << 28;
     const int32_t *hann = fft_hann_q28;
@@ -67,10 +67,10 @@ static void window_and_first_stage(const int16_t *sample, word_t *out)
     for (const int16_t *end = sample + 64; sample != end; sample++, out += 2, hann += 2) {
         const int32_t h0 = hann[0];
         const int32_t h1 = hann[1];
-        const int32_t x0 = fixed_mul(h0, sample[0]);
-        const int32_t x1 = fixed_mul(h1, sample[64]);
-        const int32_t x2 = fixed_mul(one_q28 - h0, sample[128]);
-        const int32_t x3 = fixed_mul(one_q28 - h1, sample[192]);
+        const int32_t x0 = fixed_mul(h0, (int16_t)(sample[0] - mean));
+        const int32_t x1 = fixed_mul(h1, (int16_t)(sample[64] - mean));
+        const int32_t x2 = fixed_mul(one_q28 - h0, (int16_t)(sample[128] - mean));
+        const int32_t x3 = fixed_mul(one_q28 - h1, (int16_t)(sample[192] - mean));
         const int32_t a = x0 + x2;
         const int32_t c = x1 + x3;
         store(out, add_sub(a, c, a, c));
@@ -191,11 +191,13 @@ static void combine_to_power(const word_t *in, uint64_t *power)
     } while (up != down);
 }
 
-void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS])
+void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]) { fft_power_about(sample, 0, power); }
+
+void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
 {
     word_t even[FFT_LENGTH / 2];
     word_t odd[FFT_LENGTH / 2];
-    window_and_first_stage(sample, even);
+    window_and_first_stage(sample, mean, even);
     //@ loop unroll 16;
     for (int group = 0; group < 16; group++) {
         combine(even + 2 * group, odd + 8 * group, 4, fft_twiddle_4_q15);

@@ -18,6 +18,9 @@ enum { FFT_LENGTH = 256, FFT_BINS = 128 };
 // power[1..127] by (2); power[0] = 0, as zero frequency is never used. Any samples are accepted; nothing saturates or wraps.
 void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]);
 
+// The same of x[n] - mean. Requires that no difference leaves 16 bits, else it wraps.
+void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -4,13 +4,26 @@
 //   ours:  v[k+1] = v[k] + (a - b) T,  b[k+1] = b[k]                                  (2)
 //          z + sum_j w_j (V(t) - V(t - s_j)) = v + tau b + n,  tau = sum_j w_j s_j    (3)
 //
-//   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
-//   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has jumped: a slope
+//   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance      (4)
+//   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
 //   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
+//   L = max(0, L + min(c_best - c_agile, most) - drift),  c = e^2/S + ln S              (7)
+//   R = f R0,  f *= 1 + share (min(e^2/S, gate^2) - 1)                                  (8)
+//   odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S)                   (9)  m: the speed that (3) expects
+//   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s)                     (10)
+//   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration      (11)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
 // (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
+// (7): Page's cumulative sum for a change from one model to another. The other is a second filter whose bias may jump, as it does where a
+// slope begins; when L passes its limit, it is taken.
+// (8): values that scatter more than they should are trusted less.
+// (9): a mixer tells |v| alone. Where one sign is not far more likely than the other, both are followed, each with its own [v, b], until
+// the values tell; the wheels' sign is a weak witness. While both live, the standard deviation holds both. (10): what the accelerometer
+// lets the speed change and the wheels do not, as long as no Doppler value tells of it, is slip or a slope: the variance grows by a share
+// of X^2 - least^2, and (7) needs less. (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean
+// is 0.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -23,7 +36,7 @@
 extern "C" {
 #endif
 
-enum { GROUND_SPEED_HISTORY = DOPPLER_WINDOW_TICKS_MAX };
+enum { GROUND_SPEED_HISTORY = 2 * DOPPLER_WINDOW_TICKS_MAX }; // a window, and what came since
 
 typedef enum { GROUND_SPEED_PAPER = 0, GROUND_SPEED_BIAS } ground_speed_method_t;
 
@@ -31,42 +44,103 @@ typedef struct {
     ground_speed_method_t method;
     const doppler_window_t *window; // w_j and tau of (3): the radar's
     float tick_s;                   // T
+    float per_tick_1_s;             // 1/T
+    float tick_q20_s;               // 2^20 T
     float speed_noise_m2_s2;        // Qv per tick, at least
     float speed_noise_max_m2_s2;    // and at most; at or below the other, (6) is off
+    float blind_noise_m2_s2;        // Qv per tick without an accelerometer
     float bias_noise_m2_s4;         // Qb per tick
     float bias_start_m_s2;          // standard deviation of the bias at reset
     float bias_max_m_s2;            // |b| limit
-    float doppler_noise_m2_s2;      // R, constant part
-    float doppler_noise_m_s;        // R per |v|
-    float doppler_accel_s2;         // R per a^2
-    float gate_sigma;               // values further than this from the prediction are refused
-    int32_t gate_patience;          // refusals in a row after which the next value is taken as the truth
-    float jump_share;               // c of (4)
-    float jump_limit;               // |m| of (4) that tells of a jump of the bias
-    float jump_m2_s4;               // by how much its variance grows then
-    int32_t quiet_needed;           // quiet Doppler values in a row that mean a speed too low to be heard
-    float quiet_noise_m2_s2;        // R of that speed, taken as 0
-    float still_m_s;                // rim speed below which the wheels are at rest
-    int32_t still_needed;           // ticks of rest before the rover can be standing
-    float standing_noise_m2_s2;     // R of speed 0 in each standing tick
-    float sign_hysteresis_m_s;      // |v| below which the wheels decide the sign, and standing needs no quiet echo
+    float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
+    float doppler_noise_m_s;
+    float doppler_accel_s2;
+    float doppler_spread_s;        // k of (11)
+    float gate_sigma;              // innovations beyond this many sigma are refused
+    int32_t gate_patience;         // refusals in a row after which (7) is believed
+    float jump_share;              // c of (4)
+    float jump_limit;              // |m| of (4) that tells of a jump of the bias
+    float jump_m2_s4;              // by how much its variance grows then
+    float agile_m2_s4;             // by how much the bias's variance grows per value of (7)
+    float agile_limit;             // of (7)
+    float agile_sure;              // of (7), where (10) tells of a slope, too
+    float apart_told_m_s;          // |X| beyond which it does
+    float agile_drift;             // what every value must tell more than
+    float agile_most;              // what one value tells at most
+    float apart_forget;            // of (10): T/0.25 s
+    float apart_share;             // of (10), squared
+    float apart_least_m_s;         // of (10): what slip makes
+    float apart_noise;             // of (10): Qv of its noise, nine times
+    int32_t agile_values;          // after which (7) starts from the best anew
+    float misfit_share;            // c of (8)
+    float misfit_max;              // limit of (8)
+    int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
+    float quiet_noise_m2_s2;       // R of that speed, taken as 0
+    float still_m_s;               // rim speed below which the wheels are at rest
+    int32_t still_needed;          // ticks of rest before the rover can be standing
+    int32_t loud_needed;           // loud Doppler values in a row that end a standing
+    float standing_noise_m2_s2;    // R of speed 0 in each standing tick
+    float slow_m_s;                // |v| below which standing needs no quiet echo
+    float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
+    float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
+    float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
+    int32_t against_values;        // values against which they turn before the other sign is asked anew
+    float against_odds;            // and the odds that it then starts with
+    float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
+    float wheel_slip;
 } ground_speed_config_t;
 
 typedef struct {
     float speed_m_s;
     float bias_m_s2;
+    float p_vv, p_vb, p_bb;
+} ground_speed_track_t;
+
+// A track that moves on at Doppler values alone.
+typedef struct {
+    ground_speed_track_t at;
+    int32_t ticks; // since it was last moved on
+    int32_t q20;   // V then
+} ground_speed_side_t;
+
+typedef struct {
+    float speed_m_s;
+    float bias_m_s2;
     float p_vv, p_vb, p_bb;                     // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
-    float std_m_s;                              // of the speed, at the last measurement
+    float std_m_s;                              // of the speed
     float accel_noise_m2_s2;                    // mean of (6) per tick
     float speed_noise_m2_s2;                    // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
+    int32_t behind_ticks; // that the covariance has not seen, and Qv in them
+    float behind_noise_m2_s2;
     float integral_rest_m_s; // part of V below one unit
     float one_sided;         // m of (4)
+    float misfit;            // of (8), 1 or more
+    float apart_m_s;         // X of (10)
+    float alike_m_s;         // error that values of a strange spectrum may share: their mean does not make it smaller
+    float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
+    int32_t wheel_q20;
+    int32_t wheel_ticks;
     int32_t refused;
+    uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
+    int32_t loud;
+    int32_t against;
     int32_t still_ticks;
     bool standstill;
+    ground_speed_side_t other; // the other sign, (9)
+    bool other_alive;
+    float odds;                // 2 ln of the odds against it
+    float doubt_m2_s2;         // what it adds to the variance
+    ground_speed_side_t agile; // (7)
+    float agile_sum;           // of (7)
+    int32_t agile_left;        // values until it starts anew
+    int32_t waits;             // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
+    float value_m_s, value_noise_m2_s2;
+    float value_tau_s, value_change_m_s; // tau and the sum of (3)
+    float value_cost;                    // e^2/S + ln S of the best
+    float value_sign, value_wheel_m_s;
 } ground_speed_state_t;
 
 typedef struct {
@@ -77,6 +151,11 @@ typedef struct {
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;
+    bool doppler_dead;      // the front end makes no noise at all
+    bool busy;              // this tick has a transform or a search: chores wait
+    float doppler_trust;    // how much larger its variance is than a calm echo's [1]; 0 counts as 1
+    float doppler_misfit;   // share of it that may be wrong for all values alike [1]
+    uint32_t elapsed_ticks; // since the call before; 0 counts as 1
 } ground_speed_input_t;
 
 typedef struct {

@@ -55,12 +55,40 @@ static void build_sense(const float *v, sense_config_t *sense)
     sense->encoder_step_max = whole(v[ROVER_encoder_absurd_rad_s] / (rad_per_count * ticks_per_s));
 }
 
+// The circuit of a motor, and what it may be wrong by: docs/firmware.md.
+static void build_circuit(const float *v, circuit_config_t *circuit, sense_config_t *sense)
+{
+    const float V = v[ROVER_battery_voltage_V];
+    const float Ra = v[ROVER_resistance_ohm];
+    const circuit_config_t built = {
+        .resistance_ohm = Ra,
+        .back_emf_Vs = v[ROVER_back_emf_Vs_rad],
+        .per_back_emf_1_Vs = 1.0f / v[ROVER_back_emf_Vs_rad],
+        .contradict_V = 0.07f * V,   // half a volt of 7.2: drop of a bridge and of brushes, assumed
+        .contradict_current = 0.35f, // a winding of copper 95 K warmer: 37 %
+        .contradict_speed = 0.25f,   // a magnet as warm, a divider 10 % off, rounded up: assumed
+        .open_A = 0.02f * V / Ra,    // four sigma of the current sensor's noise, assumed
+        .open_V = 0.07f * V,
+        .open_speed = 0.1f, // a current of nothing has no winding to be wrong by
+        .jump_rad_s = tick_s * v[ROVER_torque_constant_Nm_A] * V / (Ra * v[ROVER_inertia_kg_m2]), // (4)
+        .hold_ticks = 3,
+        .refused_ticks = 30,
+        .contradict_looks = 8, // 0.32 s
+        .open_looks = 6,       // 0.24 s
+    };
+    *circuit = built;
+    sense->encoder_jump_max = 1 + whole(built.jump_rad_s / sense->speed_rad_s_per_count);
+}
+
 static void build_doppler(const rover_parameters_t *parameters, doppler_config_t *doppler)
 {
     const doppler_template_t *beam = doppler_template_of(parameters->radar);
     doppler->beam = beam != 0 ? beam : &doppler_template_mdu1130;
     doppler->method = DOPPLER_LIKELIHOOD;
     doppler->offset_count = whole(parameters->value[ROVER_radar_offset_count]);
+    doppler->max_count = whole(parameters->value[ROVER_radar_max_count]);
+    doppler->per_tick_q8 = whole(doppler->beam->sample_rate_Hz * tick_s * 256.0f);
+    doppler->per_sample_s = 1.0f / doppler->beam->sample_rate_Hz;
     doppler->hop = 64;
     doppler->scale = parameters->value[ROVER_doppler_scale];
     doppler->quiet_power_count2 = (uint32_t)whole(fixed_clamp(parameters->value[ROVER_radar_quiet_count2], 0.0f, 65535.0f));
@@ -73,25 +101,51 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .method = GROUND_SPEED_BIAS,
         .window = window,
         .tick_s = tick_s,
+        .per_tick_1_s = ticks_per_s,
+        .tick_q20_s = tick_s * 1048576.0f,
         .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
-        .bias_start_m_s2 = 0.1f,
-        .bias_max_m_s2 = 1.0f,
+        .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
+        .bias_start_m_s2 = 0.3f,        // assumed: 3 deg of slope at the start; what is steeper is found by (7)
+        .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
-        .doppler_accel_s2 = 0.0125f,
+        .doppler_accel_s2 = 0.004f,
+        .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
-        .gate_patience = 8,
+        .gate_patience = 4,
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
+        .agile_m2_s4 = 0.5f,  // [m^2/s^4] (0.7 m/s^2)^2: 4 deg of slope within 0.125 s, assumed
+        .agile_limit = 20.0f, // exp(10) to one
+        .agile_sure = 5.0f,
+        .agile_drift = 0.0f,
+        .agile_most = 10.0f,
+        .apart_told_m_s = 0.06f,
+        .apart_forget = 0.04f,
+        .apart_share = 0.5f,
+        .apart_least_m_s = 0.03f,
+        .apart_noise = 112.0f,
+        .agile_values = 4, // half a second: a window's length
+        .misfit_share = 0.02f,
+        .misfit_max = 30.0f,
         .quiet_needed = 3,
         .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
-        .sign_hysteresis_m_s = 0.12f,
+        .slow_m_s = 0.12f,
+        .loud_needed = 3,
+        .sign_sure = 18.0f, // exp(9) to one
+        .wheel_odds = 2.0f, // e to one, assumed
+        .wheel_match = 14.0f,
+        .wheel_pull = 0.5f,
+        .against_values = 4, // half a second
+        .against_odds = 4.0f,
+        .wheel_noise_m_s = 0.1f, // assumed
+        .wheel_slip = 0.5f,
     };
     *ground_speed = method;
 }
@@ -149,7 +203,7 @@ static void build_safety(const float *v, safety_config_t *safety)
     const float continuous_A = v[ROVER_current_continuous_A];
     const safety_config_t built = {
         .tick_s = tick_s,
-        .required = 0xfffu,
+        .required = 0xfffu | FRAME_EMERGENCY_STOP,
         .patience_ticks = 7,         // off in the 8th bad tick: 80 ms, inside the 100 ms asked for
         .command_patience_ticks = 8, // 80 ms
         .missed_ticks_max = 5,       // 50 ms
@@ -165,11 +219,47 @@ static void build_safety(const float *v, safety_config_t *safety)
         .temperature_rise_max_K = v[ROVER_winding_rise_max_K],
         .battery_min_V = v[ROVER_battery_min_V],
         .battery_s = v[ROVER_battery_low_s],
+        .brown_out_V = 0.8f * v[ROVER_battery_min_V], // [V] assumed: what feeds the logic lets go
+        .brown_out_ticks = 2,
+        .radar_dead_count2 = (uint32_t)whole(0.4f * 1024.0f * fixed_clamp(v[ROVER_radar_quiet_count2], 0.0f, 100.0f)),
+        .radar_dead_blocks = 1u + (uint32_t)whole(0.3f * v[ROVER_radar_rate_Hz] / 32.0f), // 0.3 s and a block: within half a second
+        .sigmas = 3.0f,
         .disagree_m_s = v[ROVER_disagree_m_s],
-        .disagree_ratio = v[ROVER_disagree_ratio],
+        .disagree_ratio_m = v[ROVER_disagree_ratio] * v[ROVER_wheel_radius_m],
+        .turning_rad_s = v[ROVER_disagree_m_s] / v[ROVER_wheel_radius_m],
         .disagree_s = v[ROVER_disagree_s],
     };
     *safety = built;
+}
+
+static void build_self_test(const float *v, const safety_config_t *safety, self_test_config_t *self_test)
+{
+    const float stall_A = v[ROVER_battery_voltage_V] / v[ROVER_resistance_ohm];
+    const float pulses = v[ROVER_encoder_counts_per_turn] / 6.28318531f; // of a radian
+    const self_test_config_t built = {
+        .required = safety->required,
+        .rest_ticks = 100,
+        .pulse_ticks = 20,
+        .settle_ticks = 15,
+        .duty_max = 0.5f, // torque of the reference: 0.29 N m, 5.2 N at the rim: what starts one wheel up 5 deg, the others shorted
+        .enough_count = 4 + whole(0.025f * pulses), // 1.4 mm of the reference's rim
+        .least_count = 2 + whole(0.003f * pulses),
+        .still_count = 2 + whole(0.02f * pulses), // a touch, not a motion
+        .radar_offset_count = 10.0f,              // assumed: a hundredth of the converter
+        .radar_dead_count2 = 0.4f * v[ROVER_radar_quiet_count2],
+        .radar_noisy_count2 = 12.5f * v[ROVER_radar_quiet_count2], // 5 counts of the reference
+        .radar_rest_count = whole(v[ROVER_radar_offset_count]),
+        .gravity_m_s2 = 9.81f,
+        .gravity_slack_m_s2 = 0.5f, // 5 %: scale and bias of a small MEMS part
+        .accel_slope_m_s2 = 2.1f,   // 12 deg: steeper, no rover is tested
+        .accel_m_s2_per_count = v[ROVER_accel_m_s2_per_count],
+        .gyro_rad_s = 0.05f, // 3 deg/s
+        .battery_V = v[ROVER_battery_min_V],
+        .zero_A = 0.03f * stall_A,
+        .winding_1_ohm = 1.0f / v[ROVER_resistance_ohm],
+        .current_least = 0.3f, // 0.6 of it flows at least: the wheel hardly turns
+    };
+    *self_test = built;
 }
 
 void control_config_build(const rover_parameters_t *parameters, control_config_t *config)
@@ -180,6 +270,7 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     config->geometry.half_track_m = v[ROVER_half_track_m];
     config->geometry.mass_kg = v[ROVER_mass_kg];
     build_sense(v, &config->sense);
+    build_circuit(v, &config->circuit, &config->sense);
     build_doppler(parameters, &config->doppler);
     build_ground_speed(v, &config->doppler.beam->window, &config->ground_speed);
     config->slip.wheel_radius_m = v[ROVER_wheel_radius_m];
@@ -187,6 +278,7 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     build_motor(v, &config->motor);
     build_control(v, config);
     build_safety(v, &config->safety);
+    build_self_test(v, &config->safety, &config->self_test);
 }
 
 // --- what cannot work

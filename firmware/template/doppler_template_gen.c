@@ -366,7 +366,7 @@ static int write_template(const radar_t *radar, FILE *out)
         }
         fprintf(out, "%d, ", (int)floor(scale * mean + 0.5));
     }
-    fprintf(out, "},\n");
+    fprintf(out, "},\n    .exact = %d,\n", (int)floor(scale * bins + 0.5));
     write_window(radar, out);
     fprintf(out, "};\n");
     return ferror(out) ? 4 : 0;

@@ -9,8 +9,9 @@ extern "C" {
 #endif
 
 typedef struct {
-    hal_t inner;
-    int64_t due_ns; // on CLOCK_MONOTONIC: the next tick is not given before
+    hal_t inner;       // first: hal/forward.h
+    int64_t due_ns;    // on CLOCK_MONOTONIC: the next tick is not given before
+    uint32_t overruns; // ticks asked for more than a whole tick after they were due
 } pace_hal_t;
 
 // Fills *pace and returns its HAL. `pace` and what `inner` points to must outlive it. The first tick is given at once, tick n not before

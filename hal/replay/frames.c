@@ -24,6 +24,8 @@ size_t frames_print(const sensor_frame_t *frame, const command_t *command, char 
     pen_t pen = {line};
     const int samples = frame->radar_samples < RADAR_SAMPLES_PER_TICK_MAX ? frame->radar_samples : RADAR_SAMPLES_PER_TICK_MAX;
     decimal(&pen, frame->tick);
+    decimal(&pen, frame->elapsed_ticks);
+    decimal(&pen, frame->time_us);
     pen.at += sprintf(pen.at, "%" PRIx32 " ", frame->present);
     for (int i = 0; i < WHEEL_COUNT; i++) {
         decimal(&pen, frame->encoder_count[i]);
@@ -32,9 +34,16 @@ size_t frames_print(const sensor_frame_t *frame, const command_t *command, char 
         decimal(&pen, frame->current_count[i]);
     }
     decimal(&pen, frame->battery_count);
-    decimal(&pen, frame->accel_x_count);
-    decimal(&pen, frame->gyro_z_count);
+    const int16_t body[] = {frame->accel_x_count, frame->accel_y_count, frame->accel_z_count,
+                            frame->gyro_x_count,  frame->gyro_y_count,  frame->gyro_z_count};
+    for (size_t i = 0; i < sizeof body / sizeof *body; i++) {
+        decimal(&pen, body[i]);
+    }
     decimal(&pen, frame->emergency_stop ? 1 : 0);
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        decimal(&pen, frame->bridge_status[i]);
+    }
+    decimal(&pen, frame->radar_sequence);
     decimal(&pen, samples);
     for (int i = 0; i < samples; i++) {
         decimal(&pen, frame->radar_count[i]);
@@ -114,6 +123,8 @@ static float real_field(reader_t *reader, const char *name) {
 
 static void parse_frame(reader_t *reader, sensor_frame_t *frame) {
     frame->tick = (uint32_t)field(reader, "tick", 10, 0, UINT32_MAX, false);
+    frame->elapsed_ticks = (uint32_t)field(reader, "elapsed", 10, 0, UINT32_MAX, false);
+    frame->time_us = (uint32_t)field(reader, "time_us", 10, 0, UINT32_MAX, false);
     frame->present = (uint32_t)field(reader, "present", 16, 0, UINT32_MAX, false);
     for (int i = 0; i < WHEEL_COUNT; i++) {
         frame->encoder_count[i] = (int32_t)field(reader, "enc", 10, INT32_MIN, INT32_MAX, false);
@@ -122,9 +133,16 @@ static void parse_frame(reader_t *reader, sensor_frame_t *frame) {
         frame->current_count[i] = (uint16_t)field(reader, "cur", 10, 0, UINT16_MAX, false);
     }
     frame->battery_count = (uint16_t)field(reader, "battery", 10, 0, UINT16_MAX, false);
-    frame->accel_x_count = (int16_t)field(reader, "accel", 10, INT16_MIN, INT16_MAX, false);
-    frame->gyro_z_count = (int16_t)field(reader, "gyro", 10, INT16_MIN, INT16_MAX, false);
+    int16_t *const body[] = {&frame->accel_x_count, &frame->accel_y_count, &frame->accel_z_count,
+                             &frame->gyro_x_count,  &frame->gyro_y_count,  &frame->gyro_z_count};
+    for (size_t i = 0; i < sizeof body / sizeof *body; i++) {
+        *body[i] = (int16_t)field(reader, i < 3 ? "accel" : "gyro", 10, INT16_MIN, INT16_MAX, false);
+    }
     frame->emergency_stop = field(reader, "estop", 10, 0, 1, false) != 0;
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        frame->bridge_status[i] = (uint8_t)field(reader, "bridge", 10, 0, UINT8_MAX, false);
+    }
+    frame->radar_sequence = (uint32_t)field(reader, "radar_sequence", 10, 0, UINT32_MAX, false);
     frame->radar_samples = (uint8_t)field(reader, "n", 10, 0, RADAR_SAMPLES_PER_TICK_MAX, false);
     for (int i = 0; i < frame->radar_samples; i++) {
         frame->radar_count[i] = (uint16_t)field(reader, "radar", 10, 0, UINT16_MAX, false);

@@ -42,15 +42,22 @@ void to_counts(const CountScale &scale, const sim::Measurements &measured, senso
     }
     frame->battery_count =
         static_cast<std::uint16_t>(round_count(measured.battery_V / scale.battery_V + scale.battery_offset, 0, scale.battery_max));
-    frame->accel_x_count =
-        static_cast<std::int16_t>(round_count(measured.accel_x_m_s2 / scale.accel_m_s2 + scale.accel_offset, INT16_MIN, INT16_MAX));
-    frame->gyro_z_count =
-        static_cast<std::int16_t>(round_count(measured.gyro_z_rad_s / scale.gyro_rad_s + scale.gyro_offset, INT16_MIN, INT16_MAX));
-    const std::size_t samples = std::min<std::size_t>(measured.radar_count.size(), RADAR_SAMPLES_PER_TICK_MAX);
-    std::copy_n(measured.radar_count.begin(), samples, frame->radar_count);
+    const auto signed_count = [](double value, double unit, int offset) {
+        return static_cast<std::int16_t>(round_count(value / unit + offset, INT16_MIN, INT16_MAX));
+    };
+    frame->accel_x_count = signed_count(measured.accel_m_s2[0], scale.accel_m_s2, scale.accel_offset);
+    frame->accel_y_count = signed_count(measured.accel_m_s2[1], scale.accel_m_s2, 0);
+    frame->accel_z_count = signed_count(measured.accel_m_s2[2], scale.accel_m_s2, 0);
+    frame->gyro_x_count = signed_count(measured.gyro_rad_s[0], scale.gyro_rad_s, 0);
+    frame->gyro_y_count = signed_count(measured.gyro_rad_s[1], scale.gyro_rad_s, 0);
+    frame->gyro_z_count = signed_count(measured.gyro_rad_s[2], scale.gyro_rad_s, scale.gyro_offset);
+    const std::size_t taken = measured.radar_count.size();
+    const std::size_t samples = std::min<std::size_t>(taken, RADAR_SAMPLES_PER_TICK_MAX);
+    std::copy_n(measured.radar_count.end() - static_cast<std::ptrdiff_t>(samples), samples, frame->radar_count);
     std::fill(frame->radar_count + samples, frame->radar_count + RADAR_SAMPLES_PER_TICK_MAX, std::uint16_t{0});
     frame->radar_samples = static_cast<std::uint8_t>(samples);
-    frame->present = 0xfffu; // every FRAME_* bit
+    frame->radar_sequence = measured.radar_first + static_cast<std::uint32_t>(taken - samples);
+    frame->present = FRAME_ALL;
 }
 
 } // namespace traction::hal

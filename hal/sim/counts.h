@@ -26,8 +26,8 @@ struct CountScale {
 // The converters of a rover.
 CountScale count_scale(const sim::RoverDescription &rover);
 
-// Fills every field of the frame but tick and emergency_stop; all of it present. Radar samples beyond the frame's 8 are lost
-// (512 Hz makes 5 or 6 a tick).
+// Fills every field of the frame but its times and the emergency stop; all of it present. Radar samples beyond the frame's 64 are
+// lost, the oldest first (512 Hz makes 5 or 6 a tick).
 void to_counts(const CountScale &scale, const sim::Measurements &measured, sensor_frame_t *frame);
 
 // Nearest count, held in low..high.

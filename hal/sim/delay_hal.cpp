@@ -1,35 +1,34 @@
 #include "delay_hal.h"
 
+#include "forwarding.h"
+
 namespace traction::hal {
 
-// Hands on what is due now. A bridge that does not answer is lost: what it does is not known (hal.h).
+// Hands on what is due now. A bridge that does not answer is told to whoever writes next, as it would be without the delay.
 hal_result_t DelayHal::pass_on() {
+    hal_result_t result = HAL_OK;
     while (!under_way_.empty() && under_way_.front().due <= now_) {
         const actuator_frame_t actuator = under_way_.front().actuator;
         under_way_.pop_front();
-        if (inner_.write(inner_.context, &actuator) < 0) return HAL_ERR_IO;
+        if (const hal_result_t written = inner_.write(inner_.context, &actuator); written < 0) result = written;
     }
-    return HAL_OK;
+    return result;
 }
 
 hal_t DelayHal::hal() {
-    hal_t wrapped{};
-    wrapped.context = this;
+    hal_t wrapped = forwarding(this);
     wrapped.wait_tick = [](void *context) {
         auto *self = static_cast<DelayHal *>(context);
-        if (const hal_result_t written = self->pass_on(); written < 0) return written;
+        self->answer_ = self->pass_on();
+        if (self->answer_ < 0 && self->answer_ != HAL_ERR_TIMEOUT) return self->answer_;
         self->now_++;
         return self->inner_.wait_tick(self->inner_.context);
-    };
-    wrapped.read = [](void *context, sensor_frame_t *frame) {
-        auto *self = static_cast<DelayHal *>(context);
-        return self->inner_.read(self->inner_.context, frame);
     };
     wrapped.write = [](void *context, const actuator_frame_t *actuator) {
         auto *self = static_cast<DelayHal *>(context);
         if (self->ticks_ == 0) return self->inner_.write(self->inner_.context, actuator);
         self->under_way_.push_back({.due = self->now_ + self->ticks_, .actuator = *actuator});
-        return HAL_OK;
+        return self->answer_;
     };
     wrapped.safe_stop = [](void *context) {
         auto *self = static_cast<DelayHal *>(context);

@@ -19,6 +19,7 @@ class DelayHal {
     DelayHal &operator=(const DelayHal &) = delete;
 
     hal_t hal();
+    const hal_t &inner() const { return inner_; }
 
   private:
     struct Order {
@@ -31,6 +32,7 @@ class DelayHal {
     std::uint32_t ticks_;
     std::uint64_t now_ = 0; // wait_tick calls so far
     std::deque<Order> under_way_;
+    hal_result_t answer_ = HAL_OK; // to the order that was handed on last
 };
 
 } // namespace traction::hal

@@ -1,5 +1,6 @@
 #include "open_sim.h"
 
+#include "forwarding.h"
 #include "plan_operator.h"
 #include "sim_rover.h"
 
@@ -53,8 +54,9 @@ struct Opened {
     Request request;
     SimRover rover;
     PlanOperator plan;
-    hal_t inner = rover.hal();
+    hal_t world = rover.hal();
     std::string trouble;
+    const hal_t &inner() const { return world; }
 
     template <typename Call> hal_result_t guard(Call call) {
         try {
@@ -67,23 +69,18 @@ struct Opened {
 };
 
 hal_t guarded(Opened *opened) {
-    hal_t hal{};
-    hal.context = opened;
+    hal_t hal = forwarding(opened);
     hal.wait_tick = [](void *context) {
         auto *self = static_cast<Opened *>(context);
-        return self->guard([self] { return self->inner.wait_tick(self->inner.context); });
+        return self->guard([self] { return self->world.wait_tick(self->world.context); });
     };
     hal.read = [](void *context, sensor_frame_t *frame) {
         auto *self = static_cast<Opened *>(context);
-        return self->guard([self, frame] { return self->inner.read(self->inner.context, frame); });
+        return self->guard([self, frame] { return self->world.read(self->world.context, frame); });
     };
     hal.write = [](void *context, const actuator_frame_t *actuator) {
         auto *self = static_cast<Opened *>(context);
-        return self->guard([self, actuator] { return self->inner.write(self->inner.context, actuator); });
-    };
-    hal.safe_stop = [](void *context) {
-        auto *self = static_cast<Opened *>(context);
-        self->inner.safe_stop(self->inner.context);
+        return self->guard([self, actuator] { return self->world.write(self->world.context, actuator); });
     };
     return hal;
 }

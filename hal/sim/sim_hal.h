@@ -8,12 +8,14 @@
 
 #include "hal/hal.h"
 #include "sim/plant/plant.h"
+#include "sim/scenario/scenario.h"
 #include "sim/sensors/sensors.h"
 
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +31,8 @@ struct SimHalConfig {
     sim::SensorConfig sensors;
     CountScale scale;
     std::vector<WheelBlock> wheel_blocks;
+    std::vector<WheelBlock> open_motors; // no current flows in between
+    std::vector<sim::SupplySag> supply_sags;
     int bus_latency_ms = 0;  // 0..9: an order acts so long after it is written; whole ticks are delay_hal.h's
     std::uint32_t ticks = 0; // HAL_END after so many
     std::uint64_t seed = 1;
@@ -52,13 +56,19 @@ class SimHal {
     sim::Plant plant_;
     sim::Sensors sensors_;
     sim::Measurements measured_;
-    std::uint32_t done_ticks_ = 0;
+    std::uint32_t done_ticks_ = 0, read_ticks_ = 0;
+    std::int64_t heard_ms_ = 0;                  // when the bridges took their last order
+    std::optional<std::uint32_t> last_sequence_; // of that order
     std::int64_t now_ms_ = 0;
     struct Order {
         std::int64_t due_ms;
         std::array<double, sim::wheel_count> duty;
-        bool enable;
+        drive_state_t drive;
+        std::uint32_t sequence;
     };
+    void obey(const Order &order);
+    void fail_motors(double t_s);
+    void tell(hal_status_t *status) const;
     std::deque<Order> orders_; // written, not yet in effect
 };
 

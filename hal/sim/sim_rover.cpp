@@ -28,6 +28,8 @@ SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::Active
                        .sensors = scenario.sensors,
                        .scale = count_scale(scenario.rover),
                        .wheel_blocks = {},
+                       .open_motors = {},
+                       .supply_sags = {},
                        .bus_latency_ms = static_cast<int>(actuation_delay_ms(effects) % tick_ms),
                        .ticks = static_cast<std::uint32_t>(scenario.duration_s * 100 + 0.5),
                        .seed = seed};
@@ -37,6 +39,13 @@ SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::Active
     world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
     sim::apply_sensor_effects(effects, world.sensors);
     for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
+    for (const sim::WheelBlockSpan &open : scenario.open_motors) world.open_motors.push_back({open.wheel, open.from_s, open.to_s});
+    // a bridge that cannot be reached lets its motor go after its time (signals.h)
+    for (const sim::SensorFault &fault : scenario.sensor_faults)
+        for (int wheel = 0; fault.sensor == sim::FaultySensor::bridge && wheel < sim::wheel_count; wheel++)
+            if (fault.wheel < 0 || fault.wheel == wheel)
+                world.open_motors.push_back({wheel, fault.from_s + static_cast<double>(BRIDGE_RELEASE_MS) * 1e-3, fault.to_s});
+    world.supply_sags = scenario.supply_sags;
     return world;
 }
 
@@ -45,6 +54,8 @@ SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEff
 
 SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, const SimHalConfig &world)
     : world_(world), delay_(world_.hal(), static_cast<std::uint32_t>(actuation_delay_ms(effects) / tick_ms)),
-      faults_(delay_.hal(), {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops}, world.scale, world.seed) {}
+      faults_(delay_.hal(),
+              {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops, .missed_ticks = scenario.missed_ticks},
+              world.scale, world.seed) {}
 
 } // namespace traction::hal

@@ -27,7 +27,7 @@ struct Arguments {
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     std::vector<std::string> effects;
-    bool realtime = false;
+    bool realtime = false, self_test = false;
 };
 
 // "log.csv" for seed 7 is "log.7.csv".
@@ -54,14 +54,28 @@ void keep(const Arguments &arguments, const sim::Scenario &scenario, const Simul
 
 // "stall, low battery": fault_t, firmware/core/signals.h.
 std::string fault_names(std::uint32_t faults) {
-    static const char *const name[] = {"emergency stop", "command timeout", "encoder lost",     "current lost", "accelerometer lost",
-                                       "radar lost",     "battery lost",    "low battery",      "over-current", "stall",
-                                       "missed ticks",   "speeds disagree", "over-temperature", "gyro lost",    "absurd sensor"};
+    static const char *const name[] = {
+        "emergency stop",   "command timeout", "encoder lost",  "current lost", "accelerometer lost", "radar lost",
+        "battery lost",     "low battery",     "over-current",  "stall",        "missed ticks",       "speeds disagree",
+        "over-temperature", "gyro lost",       "absurd sensor", "bridge",       "motor open",         "encoder against its motor",
+        "brown-out"};
     std::string text;
     for (std::size_t bit = 0; bit < 32; ++bit)
         if ((faults >> bit & 1U) != 0)
             text += (text.empty() ? "" : ", ") + (bit < std::size(name) ? std::string(name[bit]) : "fault " + std::to_string(bit));
     return text;
+}
+
+// What the self-test found, a sentence each, the wheels beside it.
+std::vector<std::string> self_test_names(const self_test_result_t &result) {
+    std::vector<std::string> names;
+    std::string wheels;
+    for (unsigned i = 0; i < WHEEL_COUNT; i++)
+        if ((result.wheels >> i & 1U) != 0) wheels += (wheels.empty() ? " (wheels " : ", ") + std::to_string(i);
+    for (std::int32_t i = 0; i < SELF_TEST_FAILURES; i++)
+        if ((result.failures >> static_cast<unsigned>(i) & 1U) != 0)
+            names.push_back(self_test_name(i) + (wheels.empty() ? wheels : wheels + ")"));
+    return names;
 }
 
 nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
@@ -72,6 +86,7 @@ nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
             {"simulated_s", static_cast<double>(result.ticks) / 100},
             {"faults", result.faults},
             {"fault_names", fault_names(result.faults)},
+            {"self_test_failures", self_test_names(result.self_test)},
             {"trace_hash", hash}};
 }
 
@@ -97,6 +112,10 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
 // A run that ended with a latched fault is told, and is a negative answer: the rover stood still at its end.
 void tell_faults(Outcome &outcome) {
     for (const nlohmann::json &run : outcome.json["runs"]) {
+        for (const auto &failure : run["self_test_failures"]) {
+            std::printf("seed %s failed its self-test: %s\n", run["seed"].dump().c_str(), failure.get<std::string>().c_str());
+            outcome.exit_code = exit_negative;
+        }
         const std::string names = fault_names(run["faults"].get<std::uint32_t>());
         if (names.empty()) continue;
         std::printf("seed %s ended with a latched fault: %s (docs/firmware.md, faults)\n", run["seed"].dump().c_str(), names.c_str());
@@ -116,6 +135,7 @@ void run(const Arguments &arguments, Outcome &outcome) {
     SimulateOptions options;
     options.truth = !arguments.truth.empty();
     options.realtime = arguments.realtime;
+    options.self_test = arguments.self_test;
     options.frames_path = arguments.frames;
     if (!arguments.firmware.empty()) options.firmware = arguments.firmware;
     for (const std::string &text : arguments.effects) options.effects.push_back(sim::parse_effect(text));
@@ -213,6 +233,9 @@ Verb verb_simulate() {
                   .help = "firmware configuration instead of the scenario's",
                   .one_of = {"default", "paper"}},
                  {.name = "--realtime", .into = &arguments->realtime, .help = "keep pace with the wall clock"},
+                 {.name = "--self-test",
+                  .into = &arguments->self_test,
+                  .help = "the firmware's self-test before the drive; what fails is named and ends the run"},
                  {.name = "--seeds", .into = &arguments->seeds, .help = "run seeds FIRST..LAST; file names get the seed", .value = "A..B"},
                  {.name = "--jobs", .into = &arguments->jobs, .help = "runs side by side", .range = Range{1, 256}}},
             .run = [arguments](Outcome &outcome) { run(*arguments, outcome); }};

@@ -1,5 +1,7 @@
 #include "loop.h"
 
+#include "hal/sim/forwarding.h"
+
 #include <exception>
 
 namespace traction {
@@ -7,9 +9,10 @@ namespace traction {
 namespace {
 
 struct Guard {
-    const hal_t &inner;
+    const hal_t &world;
     Link &link;
     std::exception_ptr thrown;
+    const hal_t &inner() const { return world; }
 
     // A call that may throw; after the first throw nothing is called any more.
     template <typename Call> hal_result_t call(Call what) {
@@ -24,31 +27,26 @@ struct Guard {
 };
 
 hal_t guarded(Guard &guard) {
-    hal_t hal{};
-    hal.context = &guard;
+    hal_t hal = hal::forwarding(&guard);
     hal.wait_tick = [](void *context) {
         auto &g = *static_cast<Guard *>(context);
-        return g.call([&g] { return g.link.over() ? HAL_END : g.inner.wait_tick(g.inner.context); });
+        return g.call([&g] { return g.link.over() ? HAL_END : g.world.wait_tick(g.world.context); });
     };
     hal.read = [](void *context, sensor_frame_t *frame) {
         auto &g = *static_cast<Guard *>(context);
-        return g.call([&g, frame] { return g.inner.read(g.inner.context, frame); });
+        return g.call([&g, frame] { return g.world.read(g.world.context, frame); });
     };
     hal.write = [](void *context, const actuator_frame_t *actuator) {
         auto &g = *static_cast<Guard *>(context);
-        return g.call([&g, actuator] { return g.inner.write(g.inner.context, actuator); });
-    };
-    hal.safe_stop = [](void *context) {
-        const auto &g = *static_cast<Guard *>(context);
-        g.inner.safe_stop(g.inner.context);
+        return g.call([&g, actuator] { return g.world.write(g.world.context, actuator); });
     };
     return hal;
 }
 
 } // namespace
 
-daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link &link) {
-    Guard guard{.inner = hal, .link = link, .thrown = {}};
+daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link &link, const daemon_start_t &start) {
+    Guard guard{.world = hal, .link = link, .thrown = {}};
     const hal_t outer = guarded(guard);
     const daemon_link_t hooks{.context = &guard,
                               .command =
@@ -61,7 +59,7 @@ daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link 
                                       auto &g = *static_cast<Guard *>(context);
                                       g.call([&] { return g.link.log(*frame, *command, *trace), HAL_OK; });
                                   }};
-    const daemon_result_t result = daemon_run(&outer, &config, &hooks);
+    const daemon_result_t result = daemon_run_from(&outer, &config, &hooks, &start);
     if (guard.thrown) std::rethrow_exception(guard.thrown);
     return result;
 }

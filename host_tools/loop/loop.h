@@ -22,6 +22,6 @@ class Link {
     virtual void log(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) = 0;
 };
 
-daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link &link);
+daemon_result_t run_loop(const hal_t &hal, const control_config_t &config, Link &link, const daemon_start_t &start = {});
 
 } // namespace traction

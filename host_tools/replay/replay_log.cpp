@@ -35,25 +35,31 @@ struct Columns {
         : present(log, "frame.present"), samples(log, "frame.radar_samples"), stop(log, "frame.emergency_stop"),
           battery(log, "battery.voltage_count"), accel(log, "imu.accel_x_count"), gyro(log, "imu.gyro_z_count"),
           radar(log, "radar.adc_count"), mode(log, "command.mode"), speed(log, "command.speed_m_s"),
-          yaw_rate(log, "command.yaw_rate_rad_s"), slip(log, "command.slip"), slip_wheels(log, "command.slip_wheels"),
-          age(log, "command.age_ticks") {
+          yaw_rate(log, "command.yaw_rate_rad_s"), time(log, "frame.time_us"), elapsed(log, "frame.elapsed_ticks"),
+          sequence(log, "frame.radar_sequence"), accel_y(log, "imu.accel_y_count"), accel_z(log, "imu.accel_z_count"),
+          gyro_x(log, "imu.gyro_x_count"), gyro_y(log, "imu.gyro_y_count"), slip(log, "command.slip"),
+          slip_wheels(log, "command.slip_wheels"), age(log, "command.age_ticks") {
         for (int i = 0; i < WHEEL_COUNT; ++i) {
             const std::string wheel = "wheel" + std::to_string(i) + '.';
             encoder.emplace_back(log, wheel + "encoder_count");
             current.emplace_back(log, wheel + "current_count");
             wheel_speed.emplace_back(log, wheel + "command_speed_rad_s");
             duty.emplace_back(log, wheel + "command_duty");
+            bridge.emplace_back(log, wheel + "bridge_status");
         }
     }
-    Column present, samples, stop, battery, accel, gyro, radar, mode, speed, yaw_rate, slip, slip_wheels, age;
-    std::vector<Column> encoder, current, wheel_speed, duty;
+    Column present, samples, stop, battery, accel, gyro, radar, mode, speed, yaw_rate, time, elapsed, sequence, accel_y, accel_z, gyro_x,
+        gyro_y, slip, slip_wheels, age;
+    std::vector<Column> encoder, current, wheel_speed, duty, bridge;
 };
 
 void read_radar(Columns &columns, double t_s, sensor_frame_t &frame) {
     frame.radar_samples = static_cast<std::uint8_t>(columns.samples.at(t_s));
-    const double due = std::floor(t_s * 512 + 1e-6); // the converter's clock: sample n at n/512 s
+    // the converter's clock: sample n at n/512 s. A log without sequence numbers lost none: its newest sample is the tick's last
+    const double first = columns.sequence.at(t_s, std::floor(t_s * 512 + 1e-6) - frame.radar_samples + 1);
+    frame.radar_sequence = static_cast<std::uint32_t>(static_cast<std::int64_t>(first));
     for (int i = 0; i < frame.radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; ++i)
-        frame.radar_count[i] = static_cast<std::uint16_t>(columns.radar.at((due - frame.radar_samples + 1 + i) / 512));
+        frame.radar_count[i] = static_cast<std::uint16_t>(columns.radar.at((first + i) / 512));
 }
 
 LoggedTick read_tick(Columns &columns, double t_s) {
@@ -64,6 +70,14 @@ LoggedTick read_tick(Columns &columns, double t_s) {
     frame.battery_count = static_cast<std::uint16_t>(columns.battery.at(t_s));
     frame.accel_x_count = static_cast<std::int16_t>(columns.accel.at(t_s));
     frame.gyro_z_count = static_cast<std::int16_t>(columns.gyro.at(t_s));
+    // a log from before there was a time read the emergency stop in every tick, and said so of nothing
+    if (!columns.time.there()) frame.present |= FRAME_EMERGENCY_STOP;
+    frame.time_us = static_cast<std::uint32_t>(columns.time.at(t_s));
+    frame.elapsed_ticks = static_cast<std::uint32_t>(columns.elapsed.at(t_s, 1));
+    frame.accel_y_count = static_cast<std::int16_t>(columns.accel_y.at(t_s));
+    frame.accel_z_count = static_cast<std::int16_t>(columns.accel_z.at(t_s));
+    frame.gyro_x_count = static_cast<std::int16_t>(columns.gyro_x.at(t_s));
+    frame.gyro_y_count = static_cast<std::int16_t>(columns.gyro_y.at(t_s));
     frame.emergency_stop = columns.stop.at(t_s) != 0;
     read_radar(columns, t_s, frame);
     command_t &command = tick.command;
@@ -77,6 +91,7 @@ LoggedTick read_tick(Columns &columns, double t_s) {
     for (std::size_t i = 0; i < WHEEL_COUNT; ++i) {
         frame.encoder_count[i] = static_cast<std::int32_t>(columns.encoder[i].at(t_s));
         frame.current_count[i] = static_cast<std::uint16_t>(columns.current[i].at(t_s));
+        frame.bridge_status[i] = static_cast<std::uint8_t>(columns.bridge[i].at(t_s));
         command.wheel_speed_rad_s[i] = static_cast<float>(columns.wheel_speed[i].at(t_s));
         command.duty[i] = static_cast<float>(columns.duty[i].at(t_s));
     }
@@ -154,7 +169,7 @@ class Compare : public Link {
         watch("estimate.speed_m_s", [](const trace_t &t, std::size_t) { return t.speed_m_s; });
         watch("estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return t.speed_std_m_s; });
         watch("estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return t.accel_bias_m_s2; });
-        watch("control.faults", [](const trace_t &t, std::size_t) { return static_cast<float>(t.faults); }); // 15 bits: exact
+        watch("control.faults", [](const trace_t &t, std::size_t) { return static_cast<float>(t.faults); }); // 20 bits: exact
     }
     void command(const sensor_frame_t &, command_t &command) override { command = replay_.command; }
     void log(const sensor_frame_t &frame, const command_t &, const trace_t &trace) override {

@@ -35,6 +35,8 @@ Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
                      .traction = column(name + "traction_N"),
                      .slip_valid = column(name + "slip_valid"),
                      .saturated = column(name + "saturated"),
+                     .refused = column(name + "encoder_refused", true),
+                     .bridge = column(name + "bridge_status", true),
                      .command_speed = column(name + "command_speed_rad_s", true),
                      .command_duty = column(name + "command_duty", true)};
     }
@@ -64,7 +66,16 @@ Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
            .present = column("frame.present"),
            .samples = column("frame.radar_samples"),
            .emergency_stop = column("frame.emergency_stop", true),
-           .motor_enable = column("actuator.motor_enable")};
+           .motor_enable = column("actuator.motor_enable"),
+           .drive = column("actuator.drive"),
+           .time = column("frame.time_us"),
+           .elapsed = column("frame.elapsed_ticks"),
+           .sequence = column("frame.radar_sequence"),
+           .accel_y = column("imu.accel_y_count"),
+           .accel_z = column("imu.accel_z_count"),
+           .gyro_x = column("imu.gyro_x_count"),
+           .gyro_y = column("imu.gyro_y_count"),
+           .fault_wheels = column("control.fault_wheels", true)};
 }
 
 void Recorder::put(std::size_t column, double t_s, double value) {
@@ -103,6 +114,8 @@ void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, con
     put(at.traction, t_s, tidy(trace.traction_N));
     put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
     put(at.saturated, t_s, trace.saturated ? 1 : 0);
+    put(at.refused, t_s, trace.encoder_refused ? 1 : 0);
+    put(at.bridge, t_s, frame.bridge_status[wheel]);
     put(at.command_speed, t_s, exact(command.wheel_speed_rad_s[wheel]));
     put(at.command_duty, t_s, exact(command.duty[wheel]));
 }
@@ -114,12 +127,25 @@ void Recorder::add_frame(double t_s, const sensor_frame_t &frame) {
     put(at_.present, t_s, frame.present);
     put(at_.samples, t_s, frame.radar_samples);
     put(at_.emergency_stop, t_s, frame.emergency_stop ? 1 : 0);
-    // samples keep the converter's own clock, n/512 s; those of a silent tick are skipped
-    const auto due = static_cast<std::int64_t>(std::floor(t_s * 512 + 1e-6));
-    const std::int64_t first = due - frame.radar_samples + 1;
-    for (int i = 0; i < frame.radar_samples; i++)
-        if (first + i >= radar_samples_) put(at_.radar_count, static_cast<double>(first + i) / 512, frame.radar_count[i]);
-    radar_samples_ = due + 1;
+    if ((frame.present & FRAME_TIME) != 0u) put(at_.time, t_s, frame.time_us);
+    if (frame.elapsed_ticks != 1) put(at_.elapsed, t_s, frame.elapsed_ticks);
+    if ((frame.present & FRAME_ACCEL_YZ) != 0u) {
+        put(at_.accel_y, t_s, frame.accel_y_count);
+        put(at_.accel_z, t_s, frame.accel_z_count);
+    }
+    if ((frame.present & FRAME_GYRO_XY) != 0u) {
+        put(at_.gyro_x, t_s, frame.gyro_x_count);
+        put(at_.gyro_y, t_s, frame.gyro_y_count);
+    }
+    // samples keep the converter's own clock, n/512 s; what was recorded already is not recorded again
+    if ((frame.present & FRAME_RADAR) == 0u) return;
+    put(at_.sequence, t_s, frame.radar_sequence);
+    for (std::uint32_t i = 0; i < frame.radar_samples; i++) {
+        const std::uint32_t n = frame.radar_sequence + i;
+        if (static_cast<std::int32_t>(n - radar_next_) < 0) continue;
+        put(at_.radar_count, static_cast<double>(n) / 512, frame.radar_count[i]);
+        radar_next_ = n + 1;
+    }
 }
 
 void Recorder::add_command(double t_s, const command_t &command) {
@@ -142,7 +168,9 @@ void Recorder::add_estimates(double t_s, const trace_t &trace) {
     put(at_.standstill, t_s, trace.standstill ? 1 : 0);
     put(at_.mode, t_s, trace.mode);
     put(at_.faults, t_s, trace.faults);
-    put(at_.motor_enable, t_s, trace.actuator.motor_enable ? 1 : 0);
+    put(at_.fault_wheels, t_s, trace.fault_wheels);
+    put(at_.drive, t_s, trace.actuator.drive);
+    put(at_.motor_enable, t_s, trace.actuator.drive == DRIVE_ON || trace.actuator.drive == DRIVE_BRAKE ? 1 : 0);
 }
 
 void Recorder::add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) {

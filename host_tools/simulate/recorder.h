@@ -38,18 +38,19 @@ class Recorder {
 
     std::uint64_t expected_;
     std::vector<Column> columns_;
-    std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
+    std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick
     float last_float_ = 0;
     double last_exact_ = 0;
 
     struct Wheel {
-        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated, command_speed,
-            command_duty;
+        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated, refused, bridge,
+            command_speed, command_duty;
     } wheel_[WHEEL_COUNT]{};
     struct {
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,
             speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate, command_slip,
-            command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable;
+            command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable, drive, time, elapsed, sequence, accel_y,
+            accel_z, gyro_x, gyro_y, fault_wheels;
     } at_{};
 };
 

@@ -135,10 +135,12 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     pace_hal_t pace{};
     const hal_t world = rover.hal();
     const daemon_result_t run =
-        run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_of(scenario, options.firmware.value_or("")), session);
+        run_loop(options.realtime ? pace_hal(&pace, &world) : world, firmware_of(scenario, options.firmware.value_or("")), session,
+                 {.self_test = options.self_test, .warm = options.warm, .rise_K = nullptr, .rise_out_K = nullptr});
     result.ended_by = run.ended_by;
     result.ticks = run.ticks;
     result.faults = run.faults;
+    result.self_test = run.self_test;
     session.take(result);
 
     write_header(scenario, seed, result.log);

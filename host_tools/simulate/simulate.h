@@ -4,6 +4,7 @@
 // The same scenario, seed and effects give the same log, byte for byte.
 #pragma once
 
+#include "firmware/core/self_test.h"
 #include "hal/hal.h"
 #include "host_tools/log/log.h"
 #include "sim/scenario/scenario.h"
@@ -24,6 +25,8 @@ struct SimulateOptions {
     bool record = true;                     // false: run only (benchmarks)
     bool truth = false;                     // fill SimulationResult::truth
     bool realtime = false;                  // keep pace with the wall clock
+    bool warm = false;                      // a restart: the windings are taken to be warm
+    bool self_test = false;                 // before the drive plan; what fails ends the run
     std::string frames_path;                // replay text, one line a tick; empty: none
     std::function<void()> after_second;     // called after every simulated second
 };
@@ -35,8 +38,9 @@ struct SimulationResult {
     std::uint64_t hide_seed = 0;
     hal_result_t ended_by = HAL_END; // HAL_END: the scenario's duration; negative: a device was lost
     std::uint64_t ticks = 0;
-    std::uint32_t faults = 0;     // fault_t bits that the firmware has latched
-    std::uint64_t trace_hash = 0; // FNV-1a over every trace, for comparing runs
+    std::uint32_t faults = 0;       // fault_t bits that the firmware has latched
+    self_test_result_t self_test{}; // all zero unless asked for
+    std::uint64_t trace_hash = 0;   // FNV-1a over every trace, for comparing runs
 };
 
 SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &options = {});

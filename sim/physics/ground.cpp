@@ -35,6 +35,17 @@ const Soil &Ground::at(double x_m, double y_m) const {
     return soil;
 }
 
+double Ground::slope_here_rad(double path_m) const {
+    double rise = slope_rad;
+    for (const SlopeStep &step : slope_steps) {
+        if (path_m >= step.path_m)
+            rise = step.slope_rad;
+        else if (path_m > step.path_m - slope_blend_m)
+            rise += (step.slope_rad - rise) * (path_m - step.path_m + slope_blend_m) / slope_blend_m;
+    }
+    return rise;
+}
+
 double Ground::grip_change(double x_m, double y_m) const {
     double trend = 0;
     if (gradient_1_m != 0) trend = gradient_1_m * (x_m * math::cos(gradient_direction_rad) + y_m * math::sin(gradient_direction_rad));

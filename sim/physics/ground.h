@@ -27,12 +27,19 @@ struct SoilPatch {
     Soil soil;
 };
 
+// From path_m on the ground rises by slope_rad.
+struct SlopeStep {
+    double path_m = 0, slope_rad = 0;
+};
+
 struct Ground {
     Soil soil;                                   // where no patch lies
     std::vector<SoilPatch> patches;              // the last that covers a place wins
     ContactLaw contact = ContactLaw::aggregated; // of every soil that has Bekker parameters; the others stay aggregated
     double slope_rad = 0;                        // the ground rises ...
     double slope_direction_rad = 0;              // ... towards this world heading
+    std::vector<SlopeStep> slope_steps;          // along the path: the rise from each place on, instead of slope_rad
+    double slope_blend_m = 0.1;                  // over which one rise goes over into the next
     double grip_noise = 0;                       // relative rms of the grip over the ground [1]; 0.06 on soil, 0.02 on concrete (assumed)
     double grip_length_m = 0.2;                  // its correlation length: lattice step of the noise
     std::uint64_t seed = 1;                      // of the grip noise
@@ -41,6 +48,8 @@ struct Ground {
     double gradient_direction_rad = 0;
 
     const Soil &at(double x_m, double y_m) const;
+    // The rise where the rover has come to, path_m along its way: slope_rad, or the steps' with a straight blend before each.
+    double slope_here_rad(double path_m) const;
     // Relative change of the grip at a place: value noise, deterministic, rms grip_noise.
     double grip_change(double x_m, double y_m) const;
 };

@@ -28,8 +28,8 @@ void start_ode() {
 }
 
 // A slope of its own kind each, in world axes: the body that heads along x is turned by -direction from the rise.
-Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g) {
-    const law::Slope known = law::grade_m_s2(g, ground.slope_rad, -ground.slope_direction_rad),
+Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g, double path_m) {
+    const law::Slope known = law::grade_m_s2(g, ground.slope_here_rad(path_m), -ground.slope_direction_rad),
                      unnoticed = law::grade_m_s2(g, effects.slope_rad, -effects.slope_direction_rad);
     const double x = known.along_m_s2 + unnoticed.along_m_s2, y = known.across_m_s2 + unnoticed.across_m_s2;
     return {x, y, -std::sqrt(std::max(g * g - x * x - y * y, 0.0))};
@@ -39,7 +39,8 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g) 
 
 Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
     start_ode();
-    gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2);
+    gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, 0);
+    rise_rad = config.ground.slope_here_rad(0);
     world = dWorldCreate();
     threading = dThreadingAllocateSelfThreadedImplementation();
     dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading), threading);
@@ -176,9 +177,16 @@ void Plant::World::step() {
     for (std::size_t i = 0; i < wheel_count; ++i) supply_A += duty[i] * drive[i].current_A;
     used_C += supply_A * dt;
     const double supply_V =
-        config.rover.battery_voltage_V - config.rover.battery_fade_V_C * used_C - config.rover.battery_resistance_ohm * supply_A;
+        config.rover.battery_voltage_V - sag_V - config.rover.battery_fade_V_C * used_C - config.rover.battery_resistance_ohm * supply_A;
     truth.battery_voltage_V = supply_V;
 
+    if (!config.ground.slope_steps.empty()) { // the plane stays, gravity leans: what a rover on it feels
+        const double before_rad = rise_rad;
+        rise_rad = config.ground.slope_here_rad(truth.path_m);
+        truth.rise_rate_rad_s = (rise_rad - before_rad) / dt * math::cos(truth.yaw_rad - config.ground.slope_direction_rad);
+        gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, truth.path_m);
+        dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
+    }
     const Vec3 before = mean_velocity();
     for (int i = 0; i < wheel_count; ++i) step_wheel(i, supply_V);
     push_body();
@@ -251,6 +259,10 @@ void Plant::set_duty(int wheel, double duty) {
 void Plant::set_enabled(bool enabled) { world_->enabled = enabled; }
 
 void Plant::block_wheel(int wheel, bool blocked) { world_->blocked.at(static_cast<std::size_t>(wheel)) = blocked; }
+
+void Plant::open_motor(int wheel, bool open) { world_->open.at(static_cast<std::size_t>(wheel)) = open; }
+
+void Plant::sag_supply(double sag_V) { world_->sag_V = sag_V; }
 
 void Plant::step() { world_->step(); }
 

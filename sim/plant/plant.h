@@ -67,7 +67,9 @@ class Plant {
     void set_duty(int wheel, double duty); // clamped to -1..1; NaN counts as 0
     void set_enabled(bool enabled);        // false releases all bridges: no current
     void block_wheel(int wheel, bool blocked);
-    void step(); // advances by dt_s
+    void open_motor(int wheel, bool open); // a broken wire, or a bridge that let go: no current in this winding
+    void sag_supply(double sag_V);         // the battery gives so much less than it should
+    void step();                           // advances by dt_s
 
     const Truth &truth() const;
     const Energy &energy() const;

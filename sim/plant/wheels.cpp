@@ -201,7 +201,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     DriveState &d = drive[n];
     const double speed_before = d.wheel_speed_rad_s;
     if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
-    d.current_A = enabled ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s) : 0;
+    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s) : 0;
     if (!blocked[n]) {
         out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
         const DriveWork work = drive_step(r.drive, mine, d, out.torque_Nm, config.dt_s);

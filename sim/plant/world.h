@@ -73,7 +73,9 @@ struct Plant::World {
     std::array<DriveState, wheel_count> drive{};
     std::array<ContactState, wheel_count> contact{};
     std::array<double, wheel_count> duty{};
-    std::array<bool, wheel_count> blocked{};
+    std::array<bool, wheel_count> blocked{}, open{};
+    double sag_V = 0;
+    double rise_rad = 0;                  // of the ground where the rover is
     std::vector<SoilConstants> constants; // of the base soil and of each patch, soft contact only
     RutMemory ruts;
     std::array<RutTrace, wheel_count> trace;

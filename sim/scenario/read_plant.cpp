@@ -50,6 +50,20 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
     ground.gradient_direction_rad = keys.number("gradient_direction_rad", 0, {-10, 10});
     ground.slope_rad = keys.number("slope_rad", 0, {-0.5, 0.5});
     ground.slope_direction_rad = keys.number("slope_direction_rad", 0, {-10, 10});
+    if (const toml::array *list = keys.array("slope_steps")) {
+        for (const toml::node &node : *list) {
+            const toml::array *pair = node.as_array();
+            if (pair == nullptr || pair->size() != 2)
+                keys.fail_at(node, "slope_steps", "is not a list of pairs",
+                             "write [[path_m, slope_rad], ...], as [[1.0, 0.05], [3.0, 0.0]]");
+            const SlopeStep step{keys.number_of((*pair)[0], "slope_steps", {-1000, 1000}),
+                                 keys.number_of((*pair)[1], "slope_steps", {-0.5, 0.5})};
+            if (!ground.slope_steps.empty() && step.path_m <= ground.slope_steps.back().path_m)
+                keys.fail_at(node, "slope_steps", "its path does not lie after the one before", "order the steps by their path");
+            ground.slope_steps.push_back(step);
+        }
+    }
+    ground.slope_blend_m = keys.number("slope_blend_m", ground.slope_blend_m, {0.001, 10});
     ground.grip_noise = keys.number("grip_noise", ground.soil.law == TractionLaw::janosi ? 0.06 : 0.02, {0, 0.5});
     ground.grip_length_m = keys.number("grip_length_m", ground.grip_length_m, {0.02, 10});
     if (keys.has("seed")) scenario.ground_seed = static_cast<std::uint64_t>(keys.integer("seed", 1, 0, INT64_MAX));

@@ -8,8 +8,10 @@ namespace traction::sim {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> sensor_names{"encoder", "current", "battery", "accel", "gyro", "radar", "camera"};
-constexpr std::array<std::string_view, 5> kind_names{"stuck", "noisy", "dropped", "delayed", "timeout"};
+constexpr std::array<std::string_view, 9> sensor_names{"encoder", "current", "battery", "accel",         "gyro",
+                                                       "radar",   "camera",  "bridge",  "emergency_stop"};
+constexpr std::array<std::string_view, 11> kind_names{"stuck", "noisy", "dropped", "delayed",  "timeout", "offset",
+                                                      "drift", "spike", "dead",    "slipping", "lost"};
 
 // [sensors.accel] and its like: offset, drift, gain, noise in the sensor's unit.
 void read_analog(Keys &parent, std::string_view key, const std::string &unit, const std::string &drift_unit, double largest,
@@ -45,6 +47,10 @@ void read_sensors(const toml::table &table, const std::string &file, SensorConfi
     read_analog(keys, "accel", "m_s2", "m_s3", 10, {&config.accel, 1});
     read_analog(keys, "gyro", "rad_s", "rad_s2", 5, {&config.gyro, 1});
     config.accel_vibration_1_s = keys.number("accel_vibration_1_s", config.accel_vibration_1_s, {0, 10});
+    config.heave_m = keys.number("heave_m", config.heave_m, {0, 0.1});
+    config.heave_Hz = keys.number("heave_Hz", config.heave_m > 0 ? 8 : 0, {0, 200});
+    config.pitch_vibration_rad = keys.number("pitch_vibration_rad", config.pitch_vibration_rad, {0, 0.3});
+    config.pitch_vibration_Hz = keys.number("pitch_vibration_Hz", config.pitch_vibration_rad > 0 ? 6 : 0, {0, 200});
     read_camera(keys, config.camera);
     keys.finish();
 }
@@ -65,6 +71,13 @@ void read_radar(const toml::table &table, const std::string &file, Scenario &sce
     config.flicker_count = keys.number("flicker_count", config.flicker_count, {0, 200});
     config.dropout_per_s = keys.number("dropout_per_s", config.dropout_per_s, {0, 10});
     config.dropout_s = keys.number("dropout_s", config.dropout_s, {0.01, 10});
+    config.offset_error_count = keys.number("offset_error_count", config.offset_error_count, {-500, 500});
+    if (const toml::array *list = keys.tables("interference"))
+        for (std::size_t i = 0; i < list->size(); i++) {
+            Keys line(*(*list)[i].as_table(), file, "radar.interference[" + std::to_string(i) + "]");
+            config.interference.push_back({line.need_number("frequency_Hz", {0.1, 10000}), line.need_number("rms_count", {0, 500})});
+            line.finish();
+        }
     keys.finish();
 }
 
@@ -74,10 +87,27 @@ SensorFault read_sensor_fault(Keys &keys) {
     SensorFault fault;
     fault.sensor = static_cast<FaultySensor>(keys.word("sensor", "", sensor_names));
     fault.kind = static_cast<FaultKind>(keys.word("how", "", kind_names));
-    if (fault.sensor == FaultySensor::encoder || fault.sensor == FaultySensor::current)
+    if (fault.sensor == FaultySensor::encoder || fault.sensor == FaultySensor::current || fault.sensor == FaultySensor::bridge)
         fault.wheel = static_cast<int>(keys.integer("wheel", -1, 0, wheel_count - 1));
     if (fault.kind == FaultKind::noisy) fault.amount = keys.need_number("noise", {0, 10000});
     if (fault.kind == FaultKind::delayed) fault.amount = keys.need_number("delay_s", {0, 2});
+    if (fault.kind == FaultKind::offset) fault.amount = keys.need_number("offset", {-10000, 10000});
+    if (fault.kind == FaultKind::drift) fault.amount = keys.need_number("drift_s", {-10000, 10000});
+    if (fault.kind == FaultKind::spike) fault.amount = keys.need_number("spike", {-10000, 10000});
+    if (fault.kind == FaultKind::dead) fault.amount = keys.number("noise", 0.3, {0, 100});
+    if (fault.kind == FaultKind::slipping || fault.kind == FaultKind::lost) fault.amount = keys.need_number("share", {0, 1});
+    const bool radar_kind = fault.kind == FaultKind::dead || fault.kind == FaultKind::lost;
+    if (radar_kind && fault.sensor != FaultySensor::radar)
+        keys.fail("how", "is a way in which the radar fails", "write sensor = \"radar\"");
+    if (fault.kind == FaultKind::slipping && fault.sensor != FaultySensor::encoder)
+        keys.fail("how", "is a way in which an encoder fails", "write sensor = \"encoder\"");
+    const bool line = fault.sensor == FaultySensor::bridge || fault.sensor == FaultySensor::emergency_stop;
+    if (line && fault.kind != FaultKind::dropped && fault.kind != FaultKind::timeout)
+        keys.fail("how", "is not a way in which a line of one bit fails", "write \"dropped\" or \"timeout\"");
+    const bool rising = fault.kind == FaultKind::offset || fault.kind == FaultKind::drift || fault.kind == FaultKind::spike;
+    if (fault.sensor == FaultySensor::camera && (rising || radar_kind))
+        keys.fail("how", "is for the rover's own devices; the camera is none of them",
+                  "write \"stuck\", \"noisy\", \"dropped\" or \"delayed\"");
     if (fault.kind == FaultKind::timeout && fault.sensor == FaultySensor::camera)
         keys.fail("how", "is for the rover's own devices; the camera is none of them", "write \"dropped\"");
     return fault;
@@ -86,7 +116,8 @@ SensorFault read_sensor_fault(Keys &keys) {
 } // namespace
 
 void read_faults(const toml::array &list, const std::string &file, Scenario &scenario) {
-    constexpr std::array<std::string_view, 4> what{"wheel_blocked", "sensor", "emergency_stop", "command_lost"};
+    constexpr std::array<std::string_view, 7> what{"wheel_blocked", "sensor",    "emergency_stop", "command_lost",
+                                                   "motor_open",    "brown_out", "missed_ticks"};
     for (std::size_t i = 0; i < list.size(); i++) {
         Keys keys(*list[i].as_table(), file, "fault[" + std::to_string(i) + "]");
         const std::size_t kind = keys.word("what", "", what);
@@ -104,8 +135,16 @@ void read_faults(const toml::array &list, const std::string &file, Scenario &sce
             scenario.sensor_faults.push_back(fault);
         } else if (kind == 2) {
             scenario.emergency_stops.emplace_back(from_s, to_s);
-        } else {
+        } else if (kind == 3) {
             scenario.command_losses.emplace_back(from_s, to_s);
+        } else if (kind == 4) {
+            if (!keys.has("wheel")) keys.fail("wheel", "missing", "give 0, 1, 2 or 3");
+            scenario.open_motors.push_back({static_cast<int>(keys.integer("wheel", 0, 0, wheel_count - 1)), from_s, to_s});
+        } else if (kind == 5) {
+            scenario.supply_sags.push_back({keys.need_number("sag_V", {0, 60}), from_s, to_s});
+        } else {
+            const auto ticks = static_cast<std::uint32_t>(keys.integer("ticks", 1, 1, 1000));
+            scenario.missed_ticks.push_back({ticks, keys.number("every_s", 0, {0, 3600}), from_s, to_s});
         }
         keys.finish();
     }

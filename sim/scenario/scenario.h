@@ -26,6 +26,17 @@ struct WheelBlockSpan {
     double from_s = 0, to_s = 0;
 };
 
+// The battery gives so much less.
+struct SupplySag {
+    double sag_V = 0, from_s = 0, to_s = 0;
+};
+
+// The loop sleeps through so many ticks at from_s, and again every so often until to_s; every_s 0: once.
+struct MissedTicks {
+    std::uint32_t ticks = 1;
+    double every_s = 0, from_s = 0, to_s = 0;
+};
+
 struct FirmwareChoice {
     std::string config = "default";           // or "paper"
     double doppler_scale = 0;                 // calibration of the radar; 0: as the configuration has it
@@ -46,7 +57,9 @@ struct Scenario {
     FirmwareChoice firmware;
     std::vector<DriveSegment> drive;
     std::vector<SensorFault> sensor_faults;
-    std::vector<WheelBlockSpan> wheel_blocks;
+    std::vector<WheelBlockSpan> wheel_blocks, open_motors;
+    std::vector<SupplySag> supply_sags;
+    std::vector<MissedTicks> missed_ticks;
     std::vector<std::pair<double, double>> emergency_stops, command_losses; // [from, to) s
     std::vector<ActiveEffect> effects;
     std::optional<HiddenDraw> hidden;

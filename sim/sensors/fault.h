@@ -3,13 +3,19 @@
 
 namespace traction::sim {
 
-enum class FaultySensor { encoder, current, battery, accel, gyro, radar, camera };
+enum class FaultySensor { encoder, current, battery, accel, gyro, radar, camera, bridge, emergency_stop };
 enum class FaultKind {
-    stuck,   // repeats its last value
-    noisy,   // adds noise of standard deviation `amount` (SI unit of the sensor; pulses for an encoder, counts for the radar)
-    dropped, // says nothing
-    delayed, // says what it measured `amount` seconds ago
-    timeout, // says nothing, and reading the devices ends with a time-out
+    stuck,    // repeats its last value
+    noisy,    // adds noise of standard deviation `amount` (SI unit of the sensor; pulses for an encoder, counts for the radar)
+    dropped,  // says nothing
+    delayed,  // says what it measured `amount` seconds ago
+    timeout,  // says nothing, and reading the devices ends with a time-out
+    offset,   // reads `amount` too much (SI unit; pulses for an encoder, counts for the radar)
+    drift,    // reads `amount` more with every second
+    spike,    // reads `amount` too much in the first tick, and right again after it
+    dead,     // radar: no echo, and noise of `amount` counts
+    slipping, // encoder: loses `amount` of its pulses, 0..1
+    lost,     // radar: each sample is lost with probability `amount`; a frame gives what follows the last loss in it, or precedes the first
 };
 
 struct SensorFault {

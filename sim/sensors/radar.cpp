@@ -97,9 +97,14 @@ std::uint16_t Radar::sample(double path_m) {
     }
     if (!settled_) filter_.settle(echo);
     settled_ = true;
-    const double volts = filter_.step(echo) + config_.noise_count * noise_.normal() + config_.flicker_count * flicker;
-    return static_cast<std::uint16_t>(
-        std::clamp(std::floor(volts + config_.offset_count + 0.5), 0.0, static_cast<double>(config_.max_count)));
+    double volts = filter_.step(echo) + config_.noise_count * noise_.normal() + config_.flicker_count * flicker;
+    for (const RadarLine &line : config_.interference) {
+        const double turns = line.frequency_Hz * static_cast<double>(samples_) / rate_Hz;
+        volts += 1.4142135623730951 * line.rms_count * math::sin(2 * math::pi * (turns - std::floor(turns)));
+    }
+    samples_++;
+    return static_cast<std::uint16_t>(std::clamp(std::floor(volts + config_.offset_count + config_.offset_error_count + 0.5), 0.0,
+                                                 static_cast<double>(config_.max_count)));
 }
 
 } // namespace traction::sim

@@ -11,8 +11,14 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace traction::sim {
+
+// A line that does not move with the ground: mains, a switching supply.
+struct RadarLine {
+    double frequency_Hz = 0, rms_count = 0;
+};
 
 struct RadarConfig {
     std::string_view model = "MDU1130"; // of radar_models()
@@ -23,10 +29,12 @@ struct RadarConfig {
     double echo_count = 75;             // [ADC count] rms of the echo before the band-pass, assumed: 4 sigma inside 10 bits
     double noise_count = 1.0;           // [ADC count] rms white, assumed
     double flicker_count = 0.5;         // [ADC count] rms 1/f, assumed
-    double offset_count = 512;          // [ADC count] mid-scale of 10 bits
-    int max_count = 1023;               // [ADC count] the converter's rail
-    double dropout_per_s = 0;           // [1/s] how often the echo fades out altogether
-    double dropout_s = 0.3;             // [s] for how long
+    double offset_count = 512;          // [ADC count] mid-scale of 10 bits, as the description has it
+    double offset_error_count = 0;      // [ADC count] added to it: where the converter really rests
+    std::vector<RadarLine> interference;
+    int max_count = 1023;     // [ADC count] the converter's rail
+    double dropout_per_s = 0; // [1/s] how often the echo fades out altogether
+    double dropout_s = 0.3;   // [s] for how long
 };
 
 // A row of table II, Lhomme-Desages.
@@ -72,6 +80,7 @@ class Radar {
     Random noise_, fade_;
     std::array<double, 3> flicker_{};
     int faded_samples_ = 0;
+    std::int64_t samples_ = 0;
     bool settled_ = false;
 };
 

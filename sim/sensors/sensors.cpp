@@ -49,15 +49,34 @@ double tangent_of(double angle_deg) {
 Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &start)
     : config_(config), radar_(config.radar, mix64(seed + 1)), camera_(config.camera, mix64(seed + 2)),
       battery_(config.battery, seed, "battery"), accel_(config.accel, seed, "imu.accel"), gyro_(config.gyro, seed, "imu.gyro"),
-      last_(start), tan_depression_(tangent_of(config.radar.depression_deg)) {
+      accel_y_({.noise = config.accel.noise}, seed, "imu.accel_y"), accel_z_({.noise = config.accel.noise}, seed, "imu.accel_z"),
+      gyro_x_({.noise = config.gyro.noise}, seed, "imu.gyro_x"), gyro_y_({.noise = config.gyro.noise}, seed, "imu.gyro_y"), last_(start),
+      tan_depression_(tangent_of(config.radar.depression_deg)) {
     constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current", "wheel3.current"};
     for (std::size_t i = 0; i < wheel_count; i++) current_.emplace_back(config.current[i], seed, name[i]);
     if (const auto pose = camera_.step({start.t_s, start.position_m[0], start.position_m[1], start.yaw_rad}))
         pending_.camera.push_back(*pose);
 }
 
+// Two harmonic motions, grown with the speed up to 0.1 m/s: a standing rover does not shake.
+Sensors::Vibration Sensors::vibration(const Truth &truth) const {
+    Vibration shake;
+    const double share = std::fmin(1.0, std::fabs(truth.v_body_m_s[0]) / 0.1);
+    if (config_.heave_m > 0) {
+        const double rate = 2 * math::pi * config_.heave_Hz, phase = rate * truth.t_s;
+        shake.heave_m = share * config_.heave_m * math::sin(phase);
+        shake.lift_m_s2 = -rate * rate * shake.heave_m;
+    }
+    if (config_.pitch_vibration_rad > 0) {
+        const double rate = 2 * math::pi * config_.pitch_vibration_Hz, phase = rate * truth.t_s;
+        shake.pitch_rad = share * config_.pitch_vibration_rad * math::sin(phase);
+        shake.pitch_rate_rad_s = share * config_.pitch_vibration_rad * rate * math::cos(phase);
+    }
+    return shake;
+}
+
 // The path that the beam sees: the body's, stretched by scale errors and by the pitch that tips the beam.
-void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
+void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration &shake) {
     // nose down by p: cos(theta_d + p)/cos(theta_d) = cos p - tan(theta_d) sin p; up a rise the ground itself pitches the nose up
     const BodyEffects &b = config_.effects.body;
     double stretch = law::radar_scale(1, b.radar_scale) * law::radar_pitch(b.radar_pitch_s2_m, accel_m_s2);
@@ -67,7 +86,11 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2) {
         const double pitch = config_.radar_mount_pitch * (truth.pitch_rad - ground_rad);
         stretch *= 1 - tan_depression_ * pitch - 0.5 * pitch * pitch;
     }
-    const double step_m = (truth.path_m - last_.path_m) * stretch;
+    stretch *= 1 - tan_depression_ * shake.pitch_rad;
+    // a hop lengthens the beam by sin(theta_d) of it, which looks like a path of tan(theta_d) of it, backwards
+    const double hop_m = -tan_depression_ * (shake.heave_m - heave_m_);
+    heave_m_ = shake.heave_m;
+    const double step_m = (truth.path_m - last_.path_m) * stretch + hop_m;
     const double step_s = truth.t_s - last_.t_s;
     for (;;) {
         const double due_s = static_cast<double>(radar_samples_) / Radar::rate_Hz;
@@ -86,10 +109,17 @@ void Sensors::step(const Truth &truth) {
         accel_m_s2_ += (rate - accel_m_s2_) * std::fmin(1.0, step_s / accel_smoothing_s);
         lagged_m_s2_ += (accel_m_s2_ - lagged_m_s2_) * std::fmin(1.0, step_s / law::accel_tilt_lag_s);
     }
-    step_radar(truth, accel_m_s2_);
+    const Vibration shake = vibration(truth);
+    step_radar(truth, accel_m_s2_, shake);
     for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A);
     battery_.add(truth.battery_voltage_V);
-    accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_));
+    // a nose that nods down by p turns -g p into the axis
+    accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_) -
+               gravity_m_s2 * shake.pitch_rad);
+    accel_y_.add(truth.specific_force_m_s2[1]);
+    accel_z_.add(truth.specific_force_m_s2[2] + shake.lift_m_s2);
+    gyro_x_.add(truth.rate_body_rad_s[0]);
+    gyro_y_.add(truth.rate_body_rad_s[1] - truth.rise_rate_rad_s + shake.pitch_rate_rad_s);
     gyro_.add(truth.rate_body_rad_s[2]);
     if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
         pending_.camera.push_back(*pose);
@@ -98,6 +128,7 @@ void Sensors::step(const Truth &truth) {
 
 void Sensors::measure(Measurements &out) {
     out = pending_;
+    out.radar_first = static_cast<std::uint32_t>(radar_samples_ - static_cast<std::int64_t>(out.radar_count.size()));
     pending_.radar_count.clear();
     pending_.camera.clear();
     for (std::size_t i = 0; i < wheel_count; i++) {
@@ -106,8 +137,9 @@ void Sensors::measure(Measurements &out) {
         out.current_A[i] = current_[i].measure(last_.t_s);
     }
     out.battery_V = battery_.measure(last_.t_s);
-    out.accel_x_m_s2 = accel_.measure(last_.t_s, config_.accel_vibration_1_s * std::fabs(last_.v_body_m_s[0]));
-    out.gyro_z_rad_s = gyro_.measure(last_.t_s);
+    const double vibration = config_.accel_vibration_1_s * std::fabs(last_.v_body_m_s[0]);
+    out.accel_m_s2 = {accel_.measure(last_.t_s, vibration), accel_y_.measure(last_.t_s, vibration), accel_z_.measure(last_.t_s, vibration)};
+    out.gyro_rad_s = {gyro_x_.measure(last_.t_s), gyro_y_.measure(last_.t_s), gyro_.measure(last_.t_s)};
 }
 
 } // namespace traction::sim

@@ -27,6 +27,8 @@ struct SensorConfig {
     AnalogConfig accel;
     double accel_vibration_1_s = sim::accel_vibration_1_s;
     AnalogConfig gyro;
+    double heave_m = 0, heave_Hz = 0;                       // amplitude and rate of a body that hops while it drives faster than 0.1 m/s
+    double pitch_vibration_rad = 0, pitch_vibration_Hz = 0; // the same of its nodding, nose down positive
     CameraConfig camera;
     double encoder_counts_per_turn = sim::encoder_counts_per_turn; // of a wheel
     RoverEffects effects;         // those that act on every reading anew; the others are in gain, offset, drift, scale and delay
@@ -46,7 +48,10 @@ void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &c
 struct Measurements {
     std::array<std::int32_t, wheel_count> encoder_count{};
     std::array<double, wheel_count> current_A{};
-    double battery_V = 0, accel_x_m_s2 = 0, gyro_z_rad_s = 0;
+    double battery_V = 0;
+    std::array<double, 3> accel_m_s2{};     // specific force along body x, y, z
+    std::array<double, 3> gyro_rad_s{};     // about body x, y, z
+    std::uint32_t radar_first = 0;          // number of radar_count[0] among all samples; sample n is taken at n/512 s
     std::vector<std::uint16_t> radar_count; // since the last tick, oldest first
     std::vector<Pose> camera;               // since the last tick
 };
@@ -60,16 +65,21 @@ class Sensors {
     void measure(Measurements &out); // ends the tick
 
   private:
-    void step_radar(const Truth &truth, double accel_m_s2);
+    struct Vibration {
+        double heave_m = 0, lift_m_s2 = 0, pitch_rad = 0, pitch_rate_rad_s = 0;
+    };
+    Vibration vibration(const Truth &truth) const;
+    void step_radar(const Truth &truth, double accel_m_s2, const Vibration &shake);
     SensorConfig config_;
     Radar radar_;
     Camera camera_;
     std::vector<AnalogSensor> current_;
-    AnalogSensor battery_, accel_, gyro_;
+    AnalogSensor battery_, accel_, gyro_; // of the last two: x and z, which the effects of the catalogue act on
+    AnalogSensor accel_y_, accel_z_, gyro_x_, gyro_y_;
     Measurements pending_;
     Truth last_;
     double tan_depression_;
-    double radar_path_m_ = 0;
+    double radar_path_m_ = 0, heave_m_ = 0;
     std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
     double accel_m_s2_ = 0;          // along x, smoothed over 10 ms
     double lagged_m_s2_ = 0;         // the same as the suspension follows it

@@ -23,7 +23,16 @@ static int draw(int range) {
 }
 
 static sensor_frame_t frame_at(uint32_t tick) {
-    sensor_frame_t frame = {.tick = tick, .present = 0xfffu, .battery_count = 1800, .radar_samples = tick % 25 < 3 ? 6 : 5};
+    static uint32_t sequence;
+    sensor_frame_t frame = {.tick = tick,
+                            .elapsed_ticks = 1,
+                            .time_us = tick * 10000u,
+                            .present = FRAME_ALL,
+                            .battery_count = 1800,
+                            .accel_z_count = 2452,
+                            .radar_sequence = sequence,
+                            .radar_samples = tick % 25 < 3 ? 6 : 5};
+    sequence += frame.radar_samples;
     for (int i = 0; i < WHEEL_COUNT; i++) {
         frame.encoder_count[i] = (int32_t)(40 * tick) + draw(4);
         frame.current_count[i] = (uint16_t)(2148 + draw(30));

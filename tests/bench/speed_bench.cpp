@@ -118,15 +118,18 @@ void run(const Profile &profile, const Samples &samples, int seed, const Variant
         const doppler_output_t d = doppler_step(&config.doppler, &doppler, &samples[used], static_cast<int32_t>(until - used));
         used = until;
         const double v = profile.speed(t), a = (profile.speed(t) - profile.speed(t - 0.01)) / 0.01;
-        const ground_speed_input_t input = {
-            .accel_x_m_s2 = static_cast<float>(a + 0.05 + variant.accel_noise * random.normal()),
-            .doppler_m_s = d.speed_m_s,
-            .doppler_late_s = static_cast<float>(d.late_samples) / 512.0f,
-            .wheel_m_s = static_cast<float>(v * 1.1),
-            .accel_valid = true,
-            .doppler_fresh = d.fresh,
-            .doppler_quiet = d.quiet,
-        };
+        const ground_speed_input_t input = {.accel_x_m_s2 = static_cast<float>(a + 0.05 + variant.accel_noise * random.normal()),
+                                            .doppler_m_s = d.speed_m_s,
+                                            .doppler_late_s = static_cast<float>(d.late_samples) / 512.0f,
+                                            .wheel_m_s = static_cast<float>(v * 1.1),
+                                            .accel_valid = true,
+                                            .doppler_fresh = d.fresh,
+                                            .doppler_quiet = d.quiet,
+                                            .doppler_dead = false,
+                                            .busy = false,
+                                            .doppler_trust = 1,
+                                            .doppler_misfit = 0,
+                                            .elapsed_ticks = 1};
         const double estimate = static_cast<double>(ground_speed_step(&config.ground_speed, &filter, &input).speed_m_s);
         const double error = estimate - v;
         ok_run = std::fabs(error) <= 0.1 * std::fabs(v) ? ok_run + 1 : 0;

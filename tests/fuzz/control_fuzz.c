@@ -37,7 +37,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                 if (!(fabsf(trace.wheel[i].duty) <= 1.0f) || trace.actuator.duty_q15[i] < -32767) {
                     abort();
                 }
-                if ((trace.faults & ~(uint32_t)SAFETY_LIMITING) != 0u && (trace.actuator.duty_q15[i] != 0 || trace.actuator.motor_enable)) {
+                if ((trace.faults & ~(uint32_t)SAFETY_LIMITING) != 0u &&
+                    (trace.actuator.duty_q15[i] != 0 || trace.actuator.drive != DRIVE_BRAKE)) {
                     abort();
                 }
             }

@@ -31,7 +31,7 @@ class CountingHal {
             auto *self = static_cast<CountingHal *>(context);
             *frame = {};
             frame->tick = self->ticks - 1;
-            frame->present = 0xfffu;
+            frame->present = FRAME_ALL;
             const int n = static_cast<int>(frame->tick);
             for (int i = 0; i < WHEEL_COUNT; i++) {
                 frame->encoder_count[i] = 100 * n + i;
@@ -102,8 +102,8 @@ TEST(Counts, a_quantity_comes_back_within_half_a_count) {
         sim::Measurements measured;
         measured.current_A.fill(current);
         measured.battery_V = 7 + current / 2;
-        measured.accel_x_m_s2 = 3 * current;
-        measured.gyro_z_rad_s = current / 2;
+        measured.accel_m_s2 = {3 * current, -current, current};
+        measured.gyro_rad_s = {-current, current, current / 2};
         sensor_frame_t frame{};
         hal::to_counts({}, measured, &frame);
         sense_state_t state{};
@@ -111,8 +111,8 @@ TEST(Counts, a_quantity_comes_back_within_half_a_count) {
         // rounding leaves half a count; 1e-6 for the firmware's single precision
         EXPECT_NEAR(static_cast<double>(out.current_A[2]), current, 0.001 + 1e-6);
         EXPECT_NEAR(static_cast<double>(out.battery_V), measured.battery_V, 0.002 + 1e-6);
-        EXPECT_NEAR(static_cast<double>(out.accel_x_m_s2), measured.accel_x_m_s2, 0.002 + 1e-6);
-        EXPECT_NEAR(static_cast<double>(out.gyro_z_rad_s), measured.gyro_z_rad_s, 0.00025 + 1e-6);
+        EXPECT_NEAR(static_cast<double>(out.accel_x_m_s2), measured.accel_m_s2[0], 0.002 + 1e-6);
+        EXPECT_NEAR(static_cast<double>(out.gyro_z_rad_s), measured.gyro_rad_s[2], 0.00025 + 1e-6);
     }
 }
 
@@ -121,8 +121,10 @@ TEST(Counts, stay_inside_the_converters_for_any_quantity) {
     for (const double value : {-inf, -1e30, -5.0, 0.0, 5.0, 1e30, inf, nan}) {
         sim::Measurements measured;
         measured.current_A.fill(value);
-        measured.battery_V = measured.accel_x_m_s2 = measured.gyro_z_rad_s = value;
-        measured.radar_count.assign(12, 1023); // more than a frame holds
+        measured.battery_V = value;
+        measured.accel_m_s2.fill(value);
+        measured.gyro_rad_s.fill(value);
+        measured.radar_count.assign(70, 1023); // more than a frame holds
         sensor_frame_t frame{};
         hal::to_counts({}, measured, &frame);
         for (const auto count : frame.current_count) EXPECT_LE(count, 4095);
@@ -162,14 +164,14 @@ TEST(FaultHal, a_dropped_sensor_loses_its_bit_and_no_other) {
     };
     using enum sim::FaultySensor;
     for (const Case &c : {Case{encoder, 1, 0x002}, Case{encoder, -1, 0x00f}, Case{current, 3, 0x080}, Case{current, -1, 0x0f0},
-                          Case{battery, -1, 0x100}, Case{accel, -1, 0x200}, Case{gyro, -1, 0x400}, Case{radar, -1, 0x800}}) {
+                          Case{battery, -1, 0x100}, Case{accel, -1, 0x2200}, Case{gyro, -1, 0x4400}, Case{radar, -1, 0x800}}) {
         const auto frames =
             run({.sensors = {{.sensor = c.sensor, .wheel = c.wheel, .kind = sim::FaultKind::dropped, .from_s = 0.1, .to_s = 0.2}},
                  .emergency_stop_s = {}},
                 40);
         for (std::size_t i = 0; i < frames.size(); i++) {
             const bool failing = i + 1 >= 10 && i + 1 < 20; // frame i ends at (i + 1) * 10 ms
-            EXPECT_EQ(frames[i].present, failing ? 0xfffu & ~c.lost : 0xfffu) << i;
+            EXPECT_EQ(frames[i].present, failing ? 0xfffffu & ~c.lost : 0xfffffu) << i;
         }
     }
 }
@@ -187,7 +189,7 @@ TEST(FaultHal, a_device_that_times_out_is_told_and_the_others_are_still_read) {
         const bool silent = tick == 1 || tick == 2; // a tick ends its 10 ms
         EXPECT_EQ(hal.read(hal.context, &frame), silent ? HAL_ERR_TIMEOUT : HAL_OK) << tick;
         EXPECT_EQ(frame.tick, tick); // hal.h: the tick and what the others said
-        EXPECT_EQ(frame.present, silent ? 0xfffu & ~static_cast<unsigned>(FRAME_GYRO) : 0xfffu) << tick;
+        EXPECT_EQ(frame.present, silent ? 0xfffffu & ~static_cast<unsigned>(FRAME_GYRO | FRAME_GYRO_XY) : 0xfffffu) << tick;
     }
 }
 
@@ -266,7 +268,7 @@ TEST(SimHal, a_tick_is_ten_milliseconds_and_the_run_ends) {
     while (hal.wait_tick(hal.context) == HAL_OK) {
         ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
         EXPECT_EQ(frame.tick, ticks++);
-        EXPECT_EQ(frame.present, 0xfffu);
+        EXPECT_EQ(frame.present, FRAME_ALL);
         EXPECT_NEAR(world.truth().t_s, 0.01 * ticks, 1e-9); // sums of 1 ms in double precision
         samples += frame.radar_samples;
     }
@@ -281,7 +283,10 @@ TEST(SimHal, a_blocked_wheel_stands_and_is_let_go) {
     hal::SimHal world(config);
     const hal_t hal = world.hal();
     for (int tick = 0; hal.wait_tick(hal.context) == HAL_OK; tick++) {
-        actuator_frame_t actuator{.duty_q15 = {16000, 16000, 16000, 16000}, .motor_enable = true, .status_led = false};
+        const actuator_frame_t actuator{.sequence = static_cast<std::uint32_t>(tick) + 1,
+                                        .drive = DRIVE_ON,
+                                        .duty_q15 = {16000, 16000, 16000, 16000},
+                                        .status_led = false};
         hal.write(hal.context, &actuator);
         const double speed = world.truth().wheel[2].speed_rad_s;
         const bool held = tick > 102 && tick < 199, free = tick == 90 || tick == 290;
@@ -293,15 +298,90 @@ TEST(SimHal, a_blocked_wheel_stands_and_is_let_go) {
 TEST(SimHal, a_released_bridge_carries_no_current_and_safe_stop_releases) {
     hal::SimHal world(sand());
     const hal_t hal = world.hal();
-    const actuator_frame_t push{.duty_q15 = {30000, 30000, 30000, 30000}, .motor_enable = true, .status_led = false};
+    actuator_frame_t push{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {30000, 30000, 30000, 30000}, .status_led = false};
     for (int i = 0; i < 50; i++) {
         hal.wait_tick(hal.context);
+        push.sequence++;
         hal.write(hal.context, &push);
     }
     EXPECT_GT(std::fabs(world.truth().wheel[0].current_A), 0.1);
     hal.safe_stop(hal.context);
     hal.wait_tick(hal.context);
     for (const auto &wheel : world.truth().wheel) EXPECT_EQ(wheel.current_A, 0);
+}
+
+TEST(SimHal, a_bridge_that_hears_nothing_new_releases_itself_after_its_time) {
+    // written each tick: all new; the same number again and again; nothing after tick 49
+    for (const int how : {0, 1, 2}) {
+        hal::SimHal world(sand());
+        const hal_t hal = world.hal();
+        actuator_frame_t push{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {9000, 9000, 9000, 9000}, .status_led = false};
+        for (int tick = 0; tick < 60; tick++) {
+            hal.wait_tick(hal.context);
+            const double current_A = world.truth().wheel[0].current_A;
+            const bool early = tick >= 1 && tick < 55, late = tick >= 56; // the order of tick 49 acts for 50 ms
+            EXPECT_TRUE(!early || current_A != 0) << how << " " << tick;
+            EXPECT_TRUE(!late || (current_A == 0) == (how != 0)) << how << " " << tick;
+            if (tick < 50 || how == 0) push.sequence++;
+            if (tick < 50 || how != 2) hal.write(hal.context, &push);
+        }
+    }
+}
+
+// Duty 0 on a driven bridge and the brake are one circuit: the shorted winding, ke w/Ra against the motion.
+TEST(SimHal, a_brake_shorts_the_winding_and_a_coast_opens_it) {
+    std::array<double, 2> speed{}, current_A{};
+    for (const drive_state_t drive : {DRIVE_BRAKE, DRIVE_COAST}) {
+        hal::SimHal world(sand());
+        const hal_t hal = world.hal();
+        actuator_frame_t order{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {16000, 16000, 16000, 16000}, .status_led = false};
+        for (int tick = 0; tick < 103; tick++) {
+            hal.wait_tick(hal.context);
+            if (tick == 100) order.drive = drive; // the duty it still names counts for nothing
+            order.sequence++;
+            hal.write(hal.context, &order);
+        }
+        const std::size_t n = drive == DRIVE_BRAKE ? 0 : 1;
+        speed[n] = world.truth().wheel[0].speed_rad_s;
+        current_A[n] = world.truth().wheel[0].current_A;
+    }
+    EXPECT_EQ(current_A[1], 0);
+    EXPECT_NEAR(current_A[0], -0.265 * speed[0] / 3.24, 0.05); // of the millisecond before: the wheel loses 0.5 rad/s in it
+    EXPECT_LT(speed[0], speed[1] - 0.5);
+}
+
+TEST(SimHal, a_frame_tells_its_time_and_what_was_missed) {
+    hal::SimHal world(sand());
+    const hal_t hal = world.hal();
+    sensor_frame_t frame{};
+    std::uint32_t next = 1; // the sample at t = 0 belongs to no tick
+    for (const int ticks : {1, 1, 3, 1}) {
+        for (int i = 0; i < ticks; i++) hal.wait_tick(hal.context);
+        ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
+        EXPECT_EQ(frame.elapsed_ticks, static_cast<std::uint32_t>(ticks));
+        EXPECT_EQ(frame.time_us, (frame.tick + 1) * 10000);
+        EXPECT_GE(frame.radar_sequence, next);
+        EXPECT_TRUE(ticks != 1 || frame.tick > 1 || frame.radar_sequence == next);
+        next = frame.radar_sequence + frame.radar_samples;
+        EXPECT_EQ(next - 1, (frame.tick + 1) * 512 / 100); // the newest: n/512 s <= t
+        EXPECT_NEAR(frame.accel_z_count * 0.004, 9.81, 0.5);
+    }
+}
+
+TEST(HalStatus, a_wrapper_hands_on_what_the_devices_say) {
+    hal::SimHal world(sand());
+    hal::DelayHal late(world.hal(), 2);
+    hal::FaultHal faulty(late.hal(), {}, {}, 1);
+    const hal_t hal = faulty.hal();
+    EXPECT_EQ(hal_open_devices(&hal), HAL_OK);
+    hal_status_t status;
+    EXPECT_EQ(hal_self_test(&hal, &status), HAL_OK);
+    for (const auto device : status.device) EXPECT_EQ(device, HAL_DEVICE_WORKS);
+    const hal_t bare{}; // one that can tell nothing
+    EXPECT_EQ(hal_status(&bare, &status), HAL_OK);
+    for (const auto device : status.device) EXPECT_EQ(device, HAL_DEVICE_ABSENT);
+    hal_kick_watchdog(&bare);
+    hal_close_devices(&bare);
 }
 
 TEST(DelayHal, gives_each_order_late_by_its_ticks_and_none_before) {
@@ -321,7 +401,8 @@ TEST(DelayHal, gives_each_order_late_by_its_ticks_and_none_before) {
     const hal_t hal = late.hal();
     for (std::int16_t i = 0; i < 8; i++) {
         hal.wait_tick(hal.context);
-        const actuator_frame_t actuator{.duty_q15 = {i, i, i, i}, .motor_enable = true, .status_led = false};
+        const actuator_frame_t actuator{
+            .sequence = static_cast<std::uint32_t>(i), .drive = DRIVE_ON, .duty_q15 = {i, i, i, i}, .status_led = false};
         if (i != 2) hal.write(hal.context, &actuator); // a tick without an order moves no other
     }
     // order i is written after tick i + 1 has begun, and seen three ticks later; those of the last three are still under way
@@ -332,17 +413,17 @@ TEST(DelayHal, gives_each_order_late_by_its_ticks_and_none_before) {
     EXPECT_EQ(orders.seen.back(), (std::pair{-1, 0})); // at once, and what was under way is forgotten
 }
 
-TEST(DelayHal, a_bridge_that_does_not_answer_ends_the_loop_though_the_order_was_late) {
+TEST(DelayHal, a_bridge_that_is_lost_ends_the_loop_though_the_order_was_late) {
     hal_t inner{};
     inner.wait_tick = [](void *) { return HAL_OK; };
-    inner.write = [](void *, const actuator_frame_t *) { return HAL_ERR_TIMEOUT; };
+    inner.write = [](void *, const actuator_frame_t *) { return HAL_ERR_IO; };
     hal::DelayHal late(inner, 1);
     const hal_t hal = late.hal();
     const actuator_frame_t actuator{};
     EXPECT_EQ(hal.wait_tick(hal.context), HAL_OK);
     EXPECT_EQ(hal.write(hal.context, &actuator), HAL_OK);
     EXPECT_EQ(hal.wait_tick(hal.context), HAL_OK);
-    EXPECT_EQ(hal.wait_tick(hal.context), HAL_ERR_IO); // not HAL_ERR_TIMEOUT, which the loop forgives
+    EXPECT_EQ(hal.wait_tick(hal.context), HAL_ERR_IO);
 }
 
 // The delay of an effect, split into whole ticks (DelayHal) and the bus's part of one, acts as one delay of 1 ms grain.
@@ -351,9 +432,10 @@ TEST(SimRover, a_delayed_duty_acts_late_by_the_delay) {
         const auto scenario = sim::parse_scenario("duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"stop\"\n" + delay, "x.toml");
         hal::SimRover rover(scenario, scenario.effects, 3);
         const hal_t hal = rover.hal();
-        const actuator_frame_t push{.duty_q15 = {30000, 30000, 30000, 30000}, .motor_enable = true, .status_led = false};
+        actuator_frame_t push{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {30000, 30000, 30000, 30000}, .status_led = false};
         std::vector<double> current_A;
         while (hal.wait_tick(hal.context) == HAL_OK) {
+            push.sequence++;
             hal.write(hal.context, &push);
             sensor_frame_t frame{};
             hal.read(hal.context, &frame);
@@ -396,4 +478,60 @@ TEST(SimHal, a_dead_sensor_never_stalls_the_loop) {
             EXPECT_EQ(result.ticks, 300u);
         }
     }
+}
+
+// Five ticks that nobody reads: the FIFO keeps their radar samples, the frame says what was missed.
+TEST(FaultHal, missed_ticks_are_told_and_lose_no_radar_sample) {
+    hal::SimHal world(sand());
+    hal::FaultHal faulty(
+        world.hal(),
+        {.sensors = {}, .emergency_stop_s = {}, .missed_ticks = {{.ticks = 5, .every_s = 0.5, .from_s = 0.5, .to_s = never_s}}}, {}, 1);
+    const hal_t hal = faulty.hal();
+    sensor_frame_t frame{};
+    std::uint32_t next = 0, missed = 0, expected_tick = 0;
+    while (hal.wait_tick(hal.context) == HAL_OK) {
+        ASSERT_EQ(hal.read(hal.context, &frame), HAL_OK);
+        expected_tick += frame.elapsed_ticks;
+        EXPECT_EQ(frame.tick + 1, expected_tick);
+        missed += frame.elapsed_ticks - 1;
+        EXPECT_TRUE(next == 0 || frame.radar_sequence == next);
+        next = frame.radar_sequence + frame.radar_samples;
+    }
+    EXPECT_EQ(missed, 25u); // five times in 3 s: at 0.5, 1.0, 1.5, 2.0 and 2.5 s
+}
+
+TEST(FaultHal, a_sensor_that_drifts_jumps_or_slips_does_so_by_its_amount) {
+    using enum sim::FaultySensor;
+    const auto with = [](sim::FaultySensor sensor, sim::FaultKind kind, double amount) {
+        return run({.sensors = {{.sensor = sensor, .wheel = 1, .kind = kind, .from_s = 0.1, .to_s = never_s, .amount = amount}},
+                    .emergency_stop_s = {}},
+                   30);
+    };
+    // the counting HAL: current 2048 + n, encoder 100 n + wheel, accelerometer n; frame n ends at (n + 1) 10 ms
+    EXPECT_EQ(with(current, sim::FaultKind::offset, 0.2)[20].current_count[1], 2048 + 20 + 100); // 2 mA a count
+    EXPECT_EQ(with(current, sim::FaultKind::drift, 1.0)[29].current_count[1], 2048 + 29 + 100);  // 0.2 s after it began
+    const auto spiked = with(accel, sim::FaultKind::spike, 0.4);
+    EXPECT_EQ(spiked[9].accel_x_count, 9 + 100); // 4 mm/s^2 a count, in one tick
+    EXPECT_EQ(spiked[10].accel_x_count, 10);
+    const auto slips = with(encoder, sim::FaultKind::slipping, 0.5);
+    EXPECT_EQ(slips[29].encoder_count[1] - slips[19].encoder_count[1], 500); // half of 100 a tick
+    EXPECT_EQ(slips[29].encoder_count[0] - slips[19].encoder_count[0], 1000);
+}
+
+TEST(FaultHal, lost_samples_leave_one_run_and_its_number_tells_what_is_missing) {
+    const auto frames =
+        run({.sensors = {{.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::lost, .from_s = 0, .to_s = never_s, .amount = 0.05}},
+             .emergency_stop_s = {}},
+            500);
+    int lost = 0, sample = 0;
+    for (std::size_t n = 0; n < frames.size(); n++) {
+        const sensor_frame_t &frame = frames[n];
+        const int whole = n % 5 == 0 ? 6 : 5;
+        for (int i = 0; i < frame.radar_samples; i++) // the counting HAL numbers its samples; its frames begin at 0
+            EXPECT_EQ(frame.radar_count[i], (sample + static_cast<int>(frame.radar_sequence) + i) % 1024);
+        sample += whole;
+        lost += whole - frame.radar_samples;
+    }
+    EXPECT_GT(lost, 130 - 40); // 0.05 of 2600 at least, three sigma; more, as a run has no hole
+    EXPECT_LT(lost, 3 * 130);
 }

@@ -142,7 +142,12 @@ struct Watched {
                         auto &x = *static_cast<Watched *>(c);
                         x.stopped = true;
                         x.inner.safe_stop(x.inner.context);
-                    }};
+                    },
+                .open = nullptr,
+                .self_test = nullptr,
+                .status = nullptr,
+                .kick_watchdog = nullptr,
+                .close = nullptr};
     }
 };
 

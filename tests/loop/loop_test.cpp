@@ -302,6 +302,13 @@ class FromLog : public Link {
         frame.battery_count = static_cast<std::uint16_t>(at("battery.voltage_count", t_s));
         frame.accel_x_count = static_cast<std::int16_t>(at("imu.accel_x_count", t_s));
         frame.gyro_z_count = static_cast<std::int16_t>(at("imu.gyro_z_count", t_s));
+        frame.elapsed_ticks = 1;
+        frame.time_us = static_cast<std::uint32_t>(at("frame.time_us", t_s));
+        frame.accel_y_count = static_cast<std::int16_t>(at("imu.accel_y_count", t_s));
+        frame.accel_z_count = static_cast<std::int16_t>(at("imu.accel_z_count", t_s));
+        frame.gyro_x_count = static_cast<std::int16_t>(at("imu.gyro_x_count", t_s));
+        frame.gyro_y_count = static_cast<std::int16_t>(at("imu.gyro_y_count", t_s));
+        frame.radar_sequence = static_cast<std::uint32_t>(at("frame.radar_sequence", t_s));
         frame.radar_samples = static_cast<std::uint8_t>(at("frame.radar_samples", t_s));
         for (int i = 0; i < frame.radar_samples; i++)
             frame.radar_count[i] = static_cast<std::uint16_t>(log_.find("radar.adc_count")->value[sample_++]);

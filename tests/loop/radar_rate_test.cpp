@@ -33,6 +33,7 @@ TEST(RadarRate, the_window_of_another_rate_has_its_own_weights) {
 double worst_error(const doppler_window_t &window, double rate_Hz, double a) {
     ground_speed_config_t config = rover_config_default().ground_speed;
     config.window = &window;
+    config.doppler_spread_s = 0; // this radar gives the window's mean
     ground_speed_state_t state;
     ground_speed_reset(&config, &state);
     const auto speed_at = [a](double t) { return 0.3 + (t > 2 ? a * (std::fmin(t, 3.0) - 2) : 0); };
@@ -54,7 +55,12 @@ double worst_error(const doppler_window_t &window, double rate_Hz, double a) {
                                             .wheel_m_s = static_cast<float>(speed_at(t)),
                                             .accel_valid = true,
                                             .doppler_fresh = fresh,
-                                            .doppler_quiet = false};
+                                            .doppler_quiet = false,
+                                            .doppler_dead = false,
+                                            .busy = false,
+                                            .doppler_trust = 1,
+                                            .doppler_misfit = 0,
+                                            .elapsed_ticks = 1};
         const double estimate = static_cast<double>(ground_speed_step(&config, &state, &input).speed_m_s);
         if (t > 2.1 && t < 4) error = std::fmax(error, std::fabs(estimate - speed_at(t)));
     }

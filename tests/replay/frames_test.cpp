@@ -22,6 +22,9 @@ sensor_frame_t extreme_frame() {
     frame.radar_samples = RADAR_SAMPLES_PER_TICK_MAX;
     for (auto &count : frame.radar_count) count = UINT16_MAX;
     frame.emergency_stop = true;
+    frame.elapsed_ticks = frame.time_us = frame.radar_sequence = UINT32_MAX;
+    frame.accel_y_count = frame.accel_z_count = frame.gyro_x_count = frame.gyro_y_count = frame.gyro_z_count = INT16_MIN;
+    for (auto &status : frame.bridge_status) status = UINT8_MAX;
     return frame;
 }
 
@@ -64,7 +67,7 @@ std::string with(const std::string &line, int index, const std::string &value) {
 
 TEST(Frames, extremes_come_back_bit_for_bit_and_the_line_fits) {
     const std::string line = line_of(extreme_frame(), extreme_command());
-    EXPECT_LE(line.size(), 335u); // frames.h
+    EXPECT_LE(line.size(), 694u); // frames.h
     EXPECT_EQ(line.back(), '\n');
     sensor_frame_t frame;
     command_t command;
@@ -73,25 +76,25 @@ TEST(Frames, extremes_come_back_bit_for_bit_and_the_line_fits) {
     EXPECT_EQ(line_of(frame, command), line);
     EXPECT_EQ(frame.encoder_count[0], INT32_MIN);
     EXPECT_EQ(frame.accel_x_count, INT16_MIN);
-    EXPECT_EQ(frame.radar_count[7], UINT16_MAX);
+    EXPECT_EQ(frame.radar_count[63], UINT16_MAX);
     const command_t given = extreme_command();
     EXPECT_EQ(std::memcmp(&command.platform_speed_m_s, &given.platform_speed_m_s, sizeof(float)), 0); // the NaN's own bits
     EXPECT_EQ(std::memcmp(&command.duty[3], &given.duty[3], sizeof(float)), 0);                       // minus zero
 }
 
 TEST(Frames, a_line_that_is_none_is_refused_with_field_value_and_mend) {
-    const std::string line = line_of({}, {}); // 0 radar samples: 15 fields of the frame, 14 of the command
+    const std::string line = line_of({}, {}); // 0 radar samples: 26 fields of the frame, 14 of the command
     EXPECT_EQ(refusal(line), "accepted");
     EXPECT_EQ(refusal(with(line, 0, "-1")), "tick = -1: out of range; 0 to 4294967295");
-    EXPECT_EQ(refusal(with(line, 1, "0x3")), "present = 0x3: not a hexadecimal number");
-    EXPECT_EQ(refusal(with(line, 2, "2147483648")), "enc = 2147483648: out of range; -2147483648 to 2147483647");
-    EXPECT_EQ(refusal(with(line, 2, "99999999999999999999")), "enc = 99999999999999999999: out of range; -2147483648 to 2147483647");
-    EXPECT_EQ(refusal(with(line, 6, "12.5")), "cur = 12.5: not a whole number");
-    EXPECT_EQ(refusal(with(line, 13, "2")), "estop = 2: out of range; 0 to 1");
-    EXPECT_EQ(refusal(with(line, 14, "9")), "n = 9: out of range; 0 to 8");
-    EXPECT_EQ(refusal(with(line, 15, "6")), "mode = 6: out of range; 0 to 5");
-    EXPECT_EQ(refusal(with(line, 16, "1.5")), "v = 1.5: not a hexadecimal number");
-    EXPECT_NE(refusal(with(line, 14, "1")), "accepted"); // the mode is then a radar sample, and the line one field short
+    EXPECT_EQ(refusal(with(line, 3, "0x3")), "present = 0x3: not a hexadecimal number");
+    EXPECT_EQ(refusal(with(line, 4, "2147483648")), "enc = 2147483648: out of range; -2147483648 to 2147483647");
+    EXPECT_EQ(refusal(with(line, 4, "99999999999999999999")), "enc = 99999999999999999999: out of range; -2147483648 to 2147483647");
+    EXPECT_EQ(refusal(with(line, 8, "12.5")), "cur = 12.5: not a whole number");
+    EXPECT_EQ(refusal(with(line, 19, "2")), "estop = 2: out of range; 0 to 1");
+    EXPECT_EQ(refusal(with(line, 25, "65")), "n = 65: out of range; 0 to 64");
+    EXPECT_EQ(refusal(with(line, 26, "6")), "mode = 6: out of range; 0 to 5");
+    EXPECT_EQ(refusal(with(line, 27, "1.5")), "v = 1.5: not a hexadecimal number");
+    EXPECT_NE(refusal(with(line, 25, "1")), "accepted"); // the mode is then a radar sample, and the line one field short
 }
 
 TEST(Frames, a_line_that_is_cut_or_goes_on_is_refused) {

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { FRAME_BITS = 0xfffff }; // every device of the rover
+
 static uint64_t state = 20260101;
 
 static uint32_t draw(uint32_t range) {
@@ -30,15 +32,17 @@ int main(int argc, char **argv) {
         return 2;
     }
     int32_t encoder[4] = {0, 0x7fffff00, -5, 1000};
-    uint32_t phase = 0;
+    uint32_t phase = 0, sequence = 1;
     for (uint32_t tick = 0; tick < 3000; tick++) {
-        const uint32_t mode = tick < 100 ? 0 : 1 + (tick / 145) % 5;
+        // a stop of 60 ms in every 200: these wheels obey no motor, and longer than that would be called a contradiction
+        const uint32_t mode = tick < 100 || tick % 20 < 6 ? 0 : 1 + (tick / 145) % 5;
         const uint32_t drive = (tick / 300) % 3; // pulses a tick: 0, 25, 50 -> 0, 0.15, 0.30 m/s
         for (int i = 0; i < 4; i++) {
             encoder[i] = (int32_t)((uint32_t)encoder[i] + drive * 25 + draw(5) * (drive > 0));
         }
         const uint32_t lost = tick % 700 == 650 ? 1u << draw(12) : 0u;
-        fprintf(out, "%" PRIu32 " %x %d %d %d %d", tick, 0xfffu & ~lost, encoder[0], encoder[1], encoder[2], encoder[3]);
+        fprintf(out, "%" PRIu32 " 1 %" PRIu32 " %x %d %d %d %d", tick, 10000 * (tick + 1), (unsigned)FRAME_BITS & ~lost, encoder[0],
+                encoder[1], encoder[2], encoder[3]);
         for (int i = 0; i < 4; i++) {
             fprintf(out, " %d", 2048 + (int)drive * 120 + (int)draw(40) - 20);
         }
@@ -46,7 +50,9 @@ int main(int argc, char **argv) {
         const int battery = 1800 - (int)draw(20);
         const int accel = (int)draw(100) - 40;
         const int gyro = (int)draw(40) - 20;
-        fprintf(out, " %d %d %d %d %u", battery, accel, gyro, tick >= 2900 && tick < 2910, samples);
+        fprintf(out, " %d %d 0 2452 0 0 %d %d 0 0 0 0 %" PRIu32 " %u", battery, accel, gyro, tick >= 2900 && tick < 2910, sequence,
+                samples);
+        sequence += samples;
         for (uint32_t n = 0; n < samples; n++) {
             phase += drive * 1150; // about 9 Hz of Doppler per 0.15 m/s
             const int fade = triangle((uint32_t)(tick * 521));

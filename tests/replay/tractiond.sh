@@ -41,7 +41,7 @@ else
 fi
 
 # a frame that is none: file, line, field, value, mend; what came before was driven, and the motors are stopped
-awk 'NR == 3 { $12 = 70000 } { print }' frames.txt >bad.txt
+awk 'NR == 3 { $14 = 70000 } { print }' frames.txt >bad.txt
 run 3 --hal replay bad.txt
 says 'bad.txt:3: accel = 70000: out of range; -32768 to 32767; motors stopped after 2 ticks'
 head -c 1000 frames.txt >short.txt

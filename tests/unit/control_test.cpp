@@ -11,7 +11,7 @@ namespace {
 sensor_frame_t frame_at(uint32_t tick, int32_t pulses) {
     sensor_frame_t frame = {};
     frame.tick = tick;
-    frame.present = 0xfffu;
+    frame.present = FRAME_ALL;
     frame.battery_count = 1800;
     frame.radar_samples = 5;
     for (int n = 0; n < 5; ++n) {
@@ -84,7 +84,7 @@ TEST(Control, an_unknown_mode_stops) {
     command_t command = {};
     command.mode = static_cast<control_mode_t>(MODE_COUNT);
     const sensor_frame_t frame = frame_at(0, 0);
-    EXPECT_FALSE(control_step(&config, &state, &command, &frame).actuator.motor_enable);
+    EXPECT_NE(control_step(&config, &state, &command, &frame).actuator.drive, DRIVE_ON);
 }
 
 // 20,000 ticks of frames and commands made of random bits: every output bounded, nothing undefined (preset dev runs it under UBSan).
@@ -134,7 +134,7 @@ TEST(Control, is_bounded_for_arbitrary_frames_and_commands) {
             ASSERT_LE(std::abs(trace.actuator.duty_q15[i]), 32767);
             ASSERT_LE(std::fabs(trace.wheel[i].slip), 1.0f);
             ASSERT_TRUE(std::isfinite(trace.wheel[i].traction_N));
-            ASSERT_TRUE(trace.actuator.motor_enable || trace.actuator.duty_q15[i] == 0);
+            ASSERT_TRUE(trace.actuator.drive == DRIVE_ON || trace.actuator.duty_q15[i] == 0);
         }
     }
 }
@@ -152,6 +152,7 @@ class Rolling : public ::testing::Test {
         config.safety.required = 0;
         control_reset(&config, &state);
         state.ground_speed.speed_m_s = 0.3f;
+        state.ground_speed.p_vv = state.ground_speed.p_bb = 1e-6f; // it is sure of that
         frame.battery_count = 1800;
         frame.present = 0xffu | FRAME_BATTERY;
         for (auto &count : frame.current_count) {
@@ -162,6 +163,11 @@ class Rolling : public ::testing::Test {
         for (int k = 0; k < ticks; ++k) {
             for (int i = 0; i < WHEEL_COUNT; ++i) {
                 frame.encoder_count[i] += pulses[i];
+                // what the motor draws: a winding without current would be called open
+                const double emf_V = 0.265 * pulses[i] * 2 * clutter::pi / 60;
+                const bool driven = trace.actuator.drive >= DRIVE_BRAKE;
+                const double drop_V = driven ? 7.2 * static_cast<double>(trace.wheel[i].duty) - emf_V : 0;
+                frame.current_count[i] = static_cast<uint16_t>(2048 + std::lround(drop_V / 3.24 / 0.002));
             }
             trace = control_step(&config, &state, &command, &frame);
             frame.tick++;
@@ -300,6 +306,7 @@ TEST_F(Rolling, accelerometer_and_radar_are_used_when_they_are_there_and_left_al
 TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
     frame.present |= FRAME_ACCEL | FRAME_RADAR;
     doppler_state_t doppler = {};
+    doppler_output_t heard = {};
     ground_speed_state_t filter = state.ground_speed;
     int fresh = 0;
     float last = 0;
@@ -310,14 +317,21 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
         }
         frame.accel_x_count = static_cast<int16_t>(tick < 150 ? 20 : -20);
         run(1);
-        const doppler_output_t value = doppler_step(&config.doppler, &doppler, frame.radar_count, frame.radar_samples);
+        doppler_output_t value = heard; // by the tick before
+        value.late_samples += frame.radar_samples;
+        heard = doppler_step(&config.doppler, &doppler, frame.radar_count, frame.radar_samples);
         const ground_speed_input_t input = {.accel_x_m_s2 = trace.accel_x_m_s2,
                                             .doppler_m_s = value.speed_m_s,
                                             .doppler_late_s = static_cast<float>(value.late_samples) / 512.0f,
                                             .wheel_m_s = 0.298f,
                                             .accel_valid = true,
-                                            .doppler_fresh = value.fresh,
-                                            .doppler_quiet = value.quiet};
+                                            .doppler_fresh = value.fresh && !value.beyond && !value.spoilt,
+                                            .doppler_quiet = value.quiet,
+                                            .doppler_dead = value.dead,
+                                            .busy = heard.busy || heard.fresh,
+                                            .doppler_trust = value.trust,
+                                            .doppler_misfit = value.misfit,
+                                            .elapsed_ticks = 1};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;
         last = value.fresh ? value.speed_m_s : last;

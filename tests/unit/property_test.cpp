@@ -78,7 +78,7 @@ RC_GTEST_PROP(Property, no_command_drives_a_rover_whose_emergency_stop_is_active
         for (float &duty : command.duty) duty = any_float();
         const trace_t trace = control_step(&config, state.get(), &command, &frame);
         for (const std::int16_t duty : trace.actuator.duty_q15) RC_ASSERT(tick < 3 || duty == 0);
-        RC_ASSERT(tick < 3 || !trace.actuator.motor_enable);
+        RC_ASSERT(tick < 3 || trace.actuator.drive != DRIVE_ON);
     }
 }
 

@@ -45,6 +45,7 @@ static sense_config_t sense_default() {
         .battery_max_count = 4095,
         .radar_max_count = 1023,
         .encoder_step_max = 573, // [count/tick] 60 rad/s, twice the no-load speed 7.2 V/ke = 27 rad/s (assumed margin)
+        .encoder_jump_max = 12,  // [count/tick] 1.18 rad/s: stall torque 0.589 N m over 5e-3 kg m^2 for 10 ms, and a pulse
     };
     return sense;
 }
@@ -55,7 +56,10 @@ static doppler_config_t doppler_default() {
         .method = DOPPLER_LIKELIHOOD,
         .offset_count = 512, // [count] assumed: mid-scale of 10 bit
         .hop = 64,
-        .scale = 1.0f,           // until `traction calibrate` has measured it
+        .scale = 1.0f, // until `traction calibrate` has measured it
+        .max_count = 1023,
+        .per_tick_q8 = 1311, // 5.12 samples
+        .per_sample_s = 1.0f / 512.0f,
         .quiet_power_count2 = 2, // [count^2] assumed
     };
     return doppler;
@@ -66,25 +70,51 @@ static ground_speed_config_t ground_speed_default() {
         .method = GROUND_SPEED_BIAS,
         .window = &doppler_template_mdu1130.window,
         .tick_s = tick_s,
+        .per_tick_1_s = 100.0f,
+        .tick_q20_s = tick_s * 1048576.0f,
         .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
+        .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
-        .bias_start_m_s2 = 0.1f,
-        .bias_max_m_s2 = 1.0f,
+        .bias_start_m_s2 = 0.3f,        // as rover_config.c has it
+        .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
-        .doppler_accel_s2 = 0.0125f,
+        .doppler_accel_s2 = 0.004f,
+        .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
-        .gate_patience = 8,
+        .gate_patience = 4,
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
         .jump_limit = 2.0f,   // [1] 2.5 settles a slope 0.2 s later and is 0.01 cm/s better in speed_bench
         .jump_m2_s4 = 0.002f, // [m^2/s^4] assumed: (0.045 m/s^2)^2, a quarter of a degree
+        .agile_m2_s4 = 0.5f,  // [m^2/s^4] (0.7 m/s^2)^2: 4 deg of slope within 0.125 s, assumed
+        .agile_limit = 20.0f, // exp(10) to one
+        .agile_sure = 5.0f,
+        .apart_told_m_s = 0.06f,
+        .agile_drift = 0.0f,
+        .agile_most = 10.0f,
+        .apart_forget = 0.04f,
+        .apart_share = 0.5f,
+        .apart_least_m_s = 0.03f,
+        .apart_noise = 112.0f,
+        .agile_values = 4, // half a second: a window's length
+        .misfit_share = 0.02f,
+        .misfit_max = 30.0f,
         .quiet_needed = 3,
-        .quiet_noise_m2_s2 = 9e-4f,    // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
-        .still_m_s = 0.006f,           // one encoder pulse a tick
-        .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
+        .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
+        .still_m_s = 0.006f,        // one encoder pulse a tick
+        .still_needed = 25,         // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
+        .loud_needed = 3,
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
-        .sign_hysteresis_m_s = 0.12f,
+        .slow_m_s = 0.12f,
+        .sign_sure = 18.0f, // exp(9) to one
+        .wheel_odds = 2.0f, // e to one, assumed
+        .wheel_match = 14.0f,
+        .wheel_pull = 0.5f,
+        .against_values = 4,
+        .against_odds = 4.0f,
+        .wheel_noise_m_s = 0.1f, // assumed
+        .wheel_slip = 0.5f,
     };
     return ground_speed;
 }
@@ -92,7 +122,7 @@ static ground_speed_config_t ground_speed_default() {
 static safety_config_t safety_default() {
     const safety_config_t safety = {
         .tick_s = tick_s,
-        .required = 0xfffu,
+        .required = 0x1fffu,
         .patience_ticks = 7,          // off in the 8th bad tick: 80 ms, inside the 100 ms asked for
         .command_patience_ticks = 8,  // 80 ms
         .missed_ticks_max = 5,        // 50 ms
@@ -108,9 +138,15 @@ static safety_config_t safety_default() {
         .temperature_rise_max_K = 95.0f,                       // [K] assumed: class B winding at 35 C
         .battery_min_V = 5.4f,                                 // [V] assumed: 0.9 V per cell of 6
         .battery_s = 0.5f,                                     // [s] assumed
-        .disagree_m_s = 0.15f,                                 // [m/s] assumed
-        .disagree_ratio = 1.5f,                                // [1] assumed
-        .disagree_s = 1.0f,                                    // [s] assumed
+        .brown_out_V = 0.8f * 5.4f,
+        .brown_out_ticks = 2,
+        .radar_dead_count2 = 819, // 0.8 count^2 times 32^2
+        .radar_dead_blocks = 6,   // 0.375 s
+        .sigmas = 3.0f,
+        .disagree_m_s = 0.15f,             // [m/s] assumed
+        .disagree_ratio_m = 1.5f * 0.057f, // [1] assumed, times the radius
+        .turning_rad_s = 0.15f / 0.057f,
+        .disagree_s = 1.0f, // [s] assumed
     };
     return safety;
 }
@@ -122,6 +158,20 @@ control_config_t written_out() {
                      .half_track_m = half_track_m,
                      .mass_kg = mass_kg},
         .sense = sense_default(),
+        .circuit = {.resistance_ohm = resistance_ohm,
+                    .back_emf_Vs = torque_constant_Nm_A,
+                    .per_back_emf_1_Vs = 1.0f / torque_constant_Nm_A,
+                    .contradict_V = 0.07f * 7.2f,
+                    .contradict_current = 0.35f,
+                    .contradict_speed = 0.25f,
+                    .open_A = 0.02f * 7.2f / resistance_ohm,
+                    .open_V = 0.07f * 7.2f,
+                    .open_speed = 0.1f,
+                    .jump_rad_s = tick_s * torque_constant_Nm_A * 7.2f / (resistance_ohm * wheel_inertia_kg_m2),
+                    .hold_ticks = 3,
+                    .refused_ticks = 30,
+                    .contradict_looks = 8,
+                    .open_looks = 6},
         .doppler = doppler_default(),
         .ground_speed = ground_speed_default(),
         .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
@@ -154,6 +204,7 @@ control_config_t written_out() {
                        .duration_ticks = 2000,
                        .wheel_max_rad_s = 25.0f},
         .safety = safety_default(),
+        .self_test = {}, // no part of a tick: self_test_test.cpp
         .feed_forward = true,
     };
     return config;
@@ -166,6 +217,7 @@ TEST(ControlConfig, the_reference_rover_keeps_every_bit) {
     // these hold 32-bit numbers alone: no padding
     expect_same_bits(built.geometry, before.geometry, "geometry");
     expect_same_bits(built.sense, before.sense, "sense");
+    expect_same_bits(built.circuit, before.circuit, "circuit");
     expect_same_bits(built.slip, before.slip, "slip");
     expect_same_bits(built.motor, before.motor, "motor");
     expect_same_bits(built.wheel_pid, before.wheel_pid, "wheel_pid");
@@ -179,13 +231,16 @@ TEST(ControlConfig, the_reference_rover_keeps_every_bit) {
     EXPECT_EQ(built.doppler.offset_count, before.doppler.offset_count);
     EXPECT_EQ(built.doppler.hop, before.doppler.hop);
     EXPECT_EQ(built.doppler.scale, before.doppler.scale);
+    EXPECT_EQ(built.doppler.max_count, before.doppler.max_count);
+    EXPECT_EQ(built.doppler.per_tick_q8, before.doppler.per_tick_q8);
+    EXPECT_EQ(built.doppler.per_sample_s, before.doppler.per_sample_s);
     EXPECT_EQ(built.doppler.quiet_power_count2, before.doppler.quiet_power_count2);
     EXPECT_EQ(built.ground_speed.method, before.ground_speed.method);
     EXPECT_EQ(built.ground_speed.window, before.ground_speed.window);
     const auto rest = offsetof(ground_speed_config_t, tick_s);
     EXPECT_EQ(std::memcmp(reinterpret_cast<const char *>(&built.ground_speed) + rest,
                           reinterpret_cast<const char *>(&before.ground_speed) + rest,
-                          offsetof(ground_speed_config_t, sign_hysteresis_m_s) + sizeof(float) - rest),
+                          offsetof(ground_speed_config_t, wheel_slip) + sizeof(float) - rest),
               0);
 }
 

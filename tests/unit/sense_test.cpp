@@ -9,7 +9,7 @@ namespace {
 
 sensor_frame_t quiet_frame() {
     sensor_frame_t frame = {};
-    frame.present = 0xfffu;
+    frame.present = FRAME_ALL;
     for (auto &count : frame.current_count) {
         count = 2048;
     }

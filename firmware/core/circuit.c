@@ -1,0 +1,111 @@
+#include "circuit.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+static float left_V(const circuit_config_t *config, float duty, float supply_V, float current_A)
+{
+    return fixed_finite(duty * supply_V - config->resistance_ohm * current_A); // ke w_c of (1)
+}
+
+// The speed that wheel `i` is given in this tick: the encoder's, or what the circuit says since it was last believed.
+static void judge_jump(const circuit_config_t *config, circuit_state_t *state, const circuit_input_t *input,
+                       const sense_config_t *sense_config, sense_state_t *sense_state, sense_output_t *sense, int i)
+{
+    const uint32_t bit = 1u << (uint32_t)i;
+    const bool was_refused = (state->refused & bit) != 0u;
+    const float now_V = left_V(config, input->duty[i], sense->battery_V, sense->current_A[i]);
+    const float before_V = was_refused ? state->circuit_V[i] : left_V(config, state->duty[i], state->supply_V, state->current_A[i]);
+    const float old = fixed_finite(state->speed_rad_s[i]);
+    const float change = fixed_finite((now_V - before_V) * config->per_back_emf_1_Vs);
+    const float expected = fixed_clamp(old + change, -1000.0f, 1000.0f); // [rad/s] beyond any wheel: keeps it finite
+    const float off = fabsf(fixed_finite(sense->speed_rad_s[i]) - expected);
+    // the encoder is right where the circuit explains at least half of the jump, or where it has come back
+    const bool explained = fixed_greater(fabsf(sense->speed_rad_s[i] - old), off + off);
+    if (explained || !fixed_greater(off, config->jump_rad_s)) {
+        state->refused &= ~bit;
+        state->refused_ticks[i] = 0;
+        return;
+    }
+    state->refused |= bit;
+    state->refused_ticks[i] += state->refused_ticks[i] < UINT32_MAX ? 1u : 0u;
+    state->circuit_V[i] = now_V;
+    sense_replace(sense_config, sense_state, sense, i, expected);
+}
+
+// Nothing to judge a jump by: no motor drives. What lasts is believed, a glitch is gone before.
+static void hold_jump(const circuit_config_t *config, circuit_state_t *state, const sense_config_t *sense_config,
+                      sense_state_t *sense_state, sense_output_t *sense, int i)
+{
+    const uint32_t bit = 1u << (uint32_t)i;
+    const float old = fixed_finite(state->speed_rad_s[i]);
+    const bool back = !fixed_greater(fabsf(fixed_finite(sense->speed_rad_s[i]) - old), config->jump_rad_s);
+    state->refused_ticks[i] += state->refused_ticks[i] < UINT32_MAX ? 1u : 0u;
+    if (back || state->refused_ticks[i] > config->hold_ticks) {
+        state->refused &= ~bit;
+        state->refused_ticks[i] = 0;
+        return;
+    }
+    state->refused |= bit;
+    state->circuit_V[i] = left_V(config, state->duty[i], state->supply_V, state->current_A[i]);
+    sense_replace(sense_config, sense_state, sense, i, old);
+}
+
+static bool agreed(uint8_t *looks, bool bad, uint32_t needed)
+{
+    *looks = !bad ? 0u : (uint8_t)(*looks + (*looks < UINT8_MAX ? 1u : 0u));
+    return *looks >= needed;
+}
+
+// (2) and (3) for one wheel.
+static void look(const circuit_config_t *config, circuit_state_t *state, const circuit_input_t *input, const sense_output_t *sense, int i,
+                 circuit_output_t *out)
+{
+    const uint32_t needed = ((uint32_t)FRAME_ENCODER_0 | (uint32_t)FRAME_CURRENT_0) << (uint32_t)i;
+    const bool known = (sense->usable & needed) == needed && (sense->usable & FRAME_BATTERY) != 0u && input->driven && state->driven;
+    bool contradicts = false;
+    bool broken = false;
+    if (known) {
+        const float emf_V = config->back_emf_Vs * sense->speed_rad_s[i];
+        const float drop_V = config->resistance_ohm * sense->current_A[i];
+        const float across_V = fixed_finite(input->duty[i] * sense->battery_V - emf_V);
+        const float about_V = config->contradict_speed * fabsf(emf_V);
+        broken = fixed_greater(config->open_A, fabsf(sense->current_A[i])) &&
+                 fixed_greater(fabsf(across_V), config->open_V + config->open_speed * fabsf(emf_V));
+        contradicts =
+            !broken && fixed_greater(fabsf(across_V - drop_V), config->contradict_V + config->contradict_current * fabsf(drop_V) + about_V);
+    }
+    const uint32_t bit = 1u << (uint32_t)i;
+    out->contradict |= agreed(&state->contradict_looks[i], contradicts, config->contradict_looks) ? bit : 0u;
+    out->broken |= agreed(&state->open_looks[i], broken, config->open_looks) ? bit : 0u;
+}
+
+circuit_output_t circuit_step(const circuit_config_t *config, circuit_state_t *state, const circuit_input_t *input,
+                              const sense_config_t *sense_config, sense_state_t *sense_state, sense_output_t *sense)
+{
+    circuit_output_t out = {0};
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        const uint32_t bit = 1u << (uint32_t)i;
+        const bool doubtful = ((sense->jumped | state->refused) & bit) != 0u && (sense->usable & bit) != 0u;
+        if (doubtful && input->driven && state->driven && (sense->usable & ((uint32_t)FRAME_CURRENT_0 << (uint32_t)i)) != 0u) {
+            judge_jump(config, state, input, sense_config, sense_state, sense, i);
+        } else if (doubtful) {
+            hold_jump(config, state, sense_config, sense_state, sense, i);
+        }
+        out.contradict |= state->refused_ticks[i] > config->refused_ticks ? bit : 0u;
+        state->speed_rad_s[i] = sense->speed_rad_s[i];
+        state->current_A[i] = sense->current_A[i];
+    }
+    if (input->look) {
+        look(config, state, input, sense, (int)(state->turn % WHEEL_COUNT), &out);
+        state->turn = (state->turn + 1u) % WHEEL_COUNT;
+    }
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        state->duty[i] = input->duty[i];
+    }
+    state->supply_V = sense->battery_V;
+    state->driven = input->driven;
+    out.refused = state->refused;
+    return out;
+}

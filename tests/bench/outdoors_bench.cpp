@@ -1,0 +1,282 @@
+// outdoors_bench - the whole control_step on echoes and frames of outdoors.h: one row per thing that the first hour outdoors brings.
+//
+// usage: outdoors_bench [--seeds N] [--first N] [--only WORD]. Exit 1 when a row misses its goal: error <= 4 cm/s, or NEES <= 2, or a fault
+// within 0.5 s; never a wrong sign for more than 0.5 s; closed loops within 0.1 m/s of their command from 1.5 s on, without a fault.
+#include "tests/bench/outdoors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace {
+
+using outdoors::Case;
+
+double ramp(double t, double t0, double t1, double v0, double v1) {
+    return t <= t0 ? v0 : t >= t1 ? v1 : v0 + (v1 - v0) * (t - t0) / (t1 - t0);
+}
+
+struct Row {
+    std::string group;
+    Case what;
+    double fault_by_s = -1; // a fault is an answer when it comes by then
+};
+
+std::vector<Case> calm() {
+    std::vector<Case> all;
+    const auto add = [&all](const char *name, std::function<double(double)> speed) {
+        Case now;
+        now.name = name, now.speed = std::move(speed);
+        all.push_back(now);
+    };
+    add("constant 0.1", [](double) { return 0.1; });
+    add("constant 0.2", [](double) { return 0.2; });
+    add("constant 0.5", [](double) { return 0.5; });
+    add("constant 1.0", [](double) { return 1.0; });
+    add("ramps 0.2 m/s2", [](double t) { return t < 10 ? ramp(t, 2, 6, 0.1, 0.9) : ramp(t, 12, 16, 0.9, 0.1); });
+    add("ramps 1 m/s2", [](double t) {
+        const double p = std::fmod(t, 5.0);
+        return p < 2.5 ? ramp(p, 0.5, 1.2, 0.15, 0.85) : ramp(p, 3, 3.7, 0.85, 0.15);
+    });
+    add("stop and go", [](double t) {
+        const double p = std::fmod(t, 6.0);
+        return p < 3 ? ramp(p, 1, 1.8, 0, 0.4) : ramp(p, 4, 4.8, 0.4, 0);
+    });
+    add("slip events", [](double t) {
+        const double p = std::fmod(t, 4.0);
+        return p < 2 ? ramp(p, 1, 1.3, 0.5, 0.25) : ramp(p, 2.5, 2.8, 0.25, 0.5);
+    });
+    add("sine", [](double t) { return 0.4 + 0.25 * std::sin(2 * outdoors::pi * t / 5); });
+    return all;
+}
+
+std::vector<Row> rows() {
+    std::vector<Row> all;
+    const auto add = [&all](const char *group, const std::string &name, Case now, double fault_by_s = -1) {
+        now.name = name;
+        all.push_back({group, std::move(now), fault_by_s});
+    };
+    const double deg = outdoors::pi / 180;
+    const auto constant = [](double v) { return [v](double) { return v; }; };
+    for (const Case &now : calm()) {
+        add("calm", now.name, now);
+    }
+    for (const double v : {0.2, 0.3}) {
+        for (const double step : {-10.0, -5.0, -3.0, -2.0, -1.0, 2.0, 3.0, 5.0, 10.0}) {
+            Case now;
+            now.speed = constant(v), now.slope = [step, deg](double t) { return t < 6 ? 0 : step * deg; };
+            char name[64];
+            std::snprintf(name, sizeof name, "step of %+.0f deg at %.1f m/s", step, v);
+            add("slope", name, now);
+        }
+        Case now;
+        now.speed = constant(v), now.settle_s = 2, now.slope = [deg](double) { return 10 * deg; };
+        add("slope", "10 deg from the start at " + std::to_string(v).substr(0, 3), now);
+        now.slope = [deg](double) { return -10 * deg; };
+        add("slope", "-10 deg from the start at " + std::to_string(v).substr(0, 3), now);
+    }
+    for (const double a : {-0.5, -1.0}) {
+        Case now;
+        now.speed = [a](double t) { return std::fmax(0.3, 1.0 + a * t); }, now.settle_s = 1;
+        add("restart", "decelerating at " + std::to_string(a).substr(0, 4), now);
+        now.wheel = [](double) { return 0.0; }, now.speed = [a](double t) { return std::fmax(0.3, 1.0 + a * t); };
+        now.duration_s = 4;
+        add("restart", "the same, wheels blocked", now);
+    }
+    {
+        Case now;
+        now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 6, 0.3, -0.4); }, now.wheel = constant(0.33);
+        add("backwards", "slides back, wheels forward", now);
+        now.speed = [](double t) { return 0.3 * std::cos(2 * outdoors::pi * t / 8); };
+        add("backwards", "to and fro, wheels forward", now);
+        now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 5.7, 0.3, -0.4); },
+        now.slope = [deg](double t) { return t < 5 ? 0 : 6 * deg; };
+        add("backwards", "slope of 6 deg, slides back", now);
+        Case reverse;
+        reverse.speed = [](double t) { return -0.3 + 0.1 * std::sin(t); };
+        add("backwards", "reverse drive", reverse);
+        reverse.speed = [](double t) { return 0.35 * std::sin(2 * outdoors::pi * t / 6); };
+        add("backwards", "forward and reverse", reverse);
+    }
+    for (const double offset : {15.0, -15.0, 40.0}) {
+        Case now;
+        now.offset_count = offset, now.echo_count = 10;
+        add("converter", "offset " + std::to_string(static_cast<int>(offset)) + ", echo 10 counts", now);
+    }
+    {
+        Case now;
+        now.echo_count = 600;
+        add("converter", "echo beyond the rails", now);
+    }
+    for (const double v : {1.5, 2.0, 3.0}) {
+        Case now;
+        now.speed = constant(v), now.duration_s = 10;
+        add("band", "speed " + std::to_string(v).substr(0, 3), now, 0.75);
+        now.speed = [v](double t) { return ramp(t, 2, 4, 0.5, v); }, now.settle_s = 1;
+        add("band", "from 0.5 to " + std::to_string(v).substr(0, 3), now, 3.7);
+    }
+    for (const double snr : {10.0, 5.0, 0.0}) {
+        for (const double v : {0.2, 0.5, 1.0}) {
+            Case now;
+            now.snr_dB = snr, now.speed = constant(v);
+            add("noise", "SNR " + std::to_string(static_cast<int>(snr)) + " dB at " + std::to_string(v).substr(0, 3), now);
+        }
+    }
+    for (const double v : {0.2, 0.3, 0.5, 0.6}) {
+        for (const double tone : {50.0, 33.3}) {
+            Case now;
+            now.tone_Hz = tone, now.tone_count = now.echo_count * 1.41, now.speed = constant(v);
+            add("noise", std::to_string(static_cast<int>(tone)) + " Hz as large as the echo at " + std::to_string(v).substr(0, 3), now);
+            now.tone_count *= 0.3;
+            add("noise", "the same, a tenth of its power", now);
+        }
+    }
+    for (const double a : {0.5, 1.0, 2.0}) {
+        for (const Case &calm_case : calm()) {
+            if (calm_case.name == "constant 0.5" || calm_case.name == "sine" || calm_case.name == "stop and go") {
+                Case now = calm_case;
+                now.accel_noise = a;
+                add("vibration", "accelerometer " + std::to_string(a).substr(0, 3) + ", " + calm_case.name, now);
+            }
+        }
+    }
+    for (const double v : {0.2, 0.3, 0.5, 0.6}) {
+        Case now;
+        now.speed = constant(v), now.heave_m = 0.005;
+        add("vibration", "heave 5 mm at 8 Hz, " + std::to_string(v).substr(0, 3), now);
+        now.heave_m = 0, now.pitch_rad = 0.01;
+        add("vibration", "pitch 0.01 rad at 5 Hz, " + std::to_string(v).substr(0, 3), now);
+    }
+    for (const bool sequence : {true, false}) {
+        for (const double lost : {0.01, 0.05, 0.1}) {
+            Case now;
+            now.lost_share = lost, now.sequence = sequence, now.speed = constant(0.5);
+            add("lost", std::to_string(lost).substr(0, 4) + " of the samples" + (sequence ? "" : ", unnumbered"), now);
+        }
+        Case now;
+        now.lost_ticks_share = 0.1, now.sequence = sequence, now.speed = constant(0.5);
+        add("lost", std::string("a radar tick in ten") + (sequence ? "" : ", unnumbered"), now);
+    }
+    {
+        Case now;
+        now.radar_silent = [](double t) { return t > 5 && t < 9; }, now.speed = constant(0.3);
+        add("lost", "no radar for 4 s", now, 5.5);
+        now.speed = [](double t) { return 0.4 + 0.2 * std::sin(t); };
+        add("lost", "no radar for 4 s, sine", now, 5.5);
+        Case dead;
+        dead.radar_dead = [](double t) { return t > 5; };
+        add("lost", "front end dead from 5 s", dead, 5.5);
+        dead.radar_dead = [](double) { return true; }, dead.speed = [](double t) { return ramp(t, 1, 1.5, 0, 0.3); }, dead.settle_s = 1;
+        add("lost", "front end dead, start", dead, 2);
+        Case missed;
+        missed.missed_share = 0.02;
+        add("lost", "2 % of the ticks missed", missed, 20);
+    }
+    const struct {
+        const char *name;
+        double most, slip;
+    } soils[] = {{"concrete", 0.8, 0.05}, {"gravel", 0.95, 0.087}, {"sand", 0.72, 0.26}};
+    for (const auto &soil : soils) {
+        for (const double slope : {-10.0, -5.0, 5.0, 10.0}) {
+            Case now;
+            now.closed = true, now.duration_s = 12, now.settle_s = 1.5, now.soil_max_share = soil.most, now.soil_slip = soil.slip;
+            now.slope = [slope, deg](double) { return slope * deg; };
+            char name[64];
+            std::snprintf(name, sizeof name, "%s, %+.0f deg from the start", soil.name, slope);
+            add("closed", name, now);
+            now.slope = [slope, deg](double t) { return t < 5 ? 0 : slope * deg; };
+            std::snprintf(name, sizeof name, "%s, %+.0f deg as a step", soil.name, slope);
+            add("closed", name, now);
+        }
+    }
+    return all;
+}
+
+std::string names_of(std::uint32_t faults) {
+    char text[32];
+    std::snprintf(text, sizeof text, faults == 0 ? "" : "0x%x", faults);
+    return text;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+    int seeds = 4, first = 1;
+    std::string only;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
+        if (std::strcmp(argv[i], "--first") == 0) first = std::atoi(argv[i + 1]);
+        if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
+    }
+    const control_config_t config = rover_config_default();
+    std::printf("%-10s %-38s | %6s %7s %6s %6s %6s | %s\n", "group", "row", "RMSE", "NEES", "sign s", "worst", "p95 %", "faults, first at");
+    bool all_met = true;
+    double calm_square = 0, nees_sum = 0;
+    int calm_rows = 0, nees_rows = 0;
+    for (const Row &row : rows()) {
+        if (!only.empty() && row.group.find(only) == std::string::npos && row.what.name.find(only) == std::string::npos) {
+            continue;
+        }
+        outdoors::Score sum;
+        bool faulted = true, off = false;
+        std::vector<double> relative, fix;
+        double off_worst = 0;
+        for (int seed = first; seed < first + seeds; ++seed) {
+            const outdoors::Run run = outdoors::drive(row.what, static_cast<std::uint64_t>(seed), config);
+            const outdoors::Score one = outdoors::score(row.what, run);
+            if (std::getenv("OUTDOORS_TRACE") != nullptr) { // every tick, for the eye
+                for (const outdoors::Step &step : run.steps) {
+                    std::printf("%.2f true %.3f estimate %.3f std %.3f wheel %.3f faults %x%s\n", step.t, step.speed, step.estimate,
+                                step.std, step.wheel, step.faults, step.note.c_str());
+                }
+            }
+            sum.square += one.square, sum.nees_sum += one.nees_sum, sum.n += one.n, sum.faults |= one.faults;
+            sum.wrong_sign_s = std::max(sum.wrong_sign_s, one.wrong_sign_s), sum.worst = std::max(sum.worst, one.worst);
+            sum.first_fault_s = std::max(sum.first_fault_s, one.first_fault_s);
+            faulted = faulted && one.first_fault_s >= 0 && one.first_fault_s <= row.fault_by_s;
+            relative.insert(relative.end(), one.relative.begin(), one.relative.end());
+            fix.push_back(one.first_fix_s < 0 ? 99 : one.first_fix_s);
+            for (const outdoors::Step &step : run.steps) {
+                const double past = row.what.name.find("step") != std::string::npos ? (step.t >= 5 ? step.t - 5 : step.t) : step.t;
+                if (row.what.closed && past > 1.5) {
+                    off_worst = std::max(off_worst, std::fabs(step.speed - row.what.command_m_s));
+                    off = off || std::fabs(step.speed - row.what.command_m_s) > 0.1;
+                }
+            }
+        }
+        std::sort(relative.begin(), relative.end()), std::sort(fix.begin(), fix.end());
+        const double rmse = 100 * std::sqrt(sum.square / sum.n), nees = sum.nees_sum / sum.n;
+        bool met =
+            (rmse <= 4 || nees <= 2 || (row.fault_by_s > 0 && faulted)) && (sum.wrong_sign_s <= 0.5 || (row.fault_by_s > 0 && faulted));
+        if (row.what.closed) {
+            met = !off && sum.faults == 0;
+        }
+        if (row.fault_by_s < 0 && sum.faults != 0) {
+            met = false;
+        }
+        if (row.group == "calm") {
+            calm_square += rmse * rmse, ++calm_rows;
+        }
+        if (sum.faults == 0) {
+            nees_sum += nees, ++nees_rows;
+        }
+        std::printf("%-10s %-38s | %6.2f %7.2f %6.2f %6.2f %6.1f | %s %.2f fix %.2f %s", row.group.c_str(), row.what.name.c_str(), rmse,
+                    nees, sum.wrong_sign_s, sum.worst, 100 * relative[relative.size() * 95 / 100], names_of(sum.faults).c_str(),
+                    sum.first_fault_s, fix[fix.size() * 9 / 10 < fix.size() ? fix.size() * 9 / 10 : 0], met ? "" : "MISSED");
+        if (row.what.closed) {
+            std::printf(" off %.3f", off_worst);
+        }
+        std::printf("\n");
+        std::fflush(stdout);
+        all_met = all_met && met;
+    }
+    if (calm_rows > 0) {
+        std::printf("calm: RMSE %.2f cm/s; ", std::sqrt(calm_square / calm_rows));
+    }
+    std::printf("NEES over %d rows without a fault %.2f; goals %s\n", nees_rows, nees_sum / std::max(1, nees_rows),
+                all_met ? "met" : "missed");
+    return all_met ? 0 : 1;
+}

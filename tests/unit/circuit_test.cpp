@@ -1,0 +1,221 @@
+// What the motor's circuit says of its encoder: impossible speeds are refused and replaced, contradictions and open windings named.
+#include "firmware/core/rover_config.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+constexpr double ke = 0.265, Ra = 3.24, supply_V = 7.2, rad_per_count = 2 * M_PI / 6000;
+
+// A rover whose wheels obey (a) of motor.h: the test sets true speeds, the fixture makes encoder and current of them.
+class Circuit : public ::testing::Test {
+  protected:
+    control_config_t config = rover_config_default();
+    control_state_t state = {};
+    command_t command = {};
+    sensor_frame_t frame = {};
+    trace_t trace = {};
+    double speed_rad_s[WHEEL_COUNT] = {5, 5, 5, 5}, angle_rad[WHEEL_COUNT] = {};
+    double Ra_true = Ra, ke_true = ke, V_true = supply_V;
+    bool frozen[WHEEL_COUNT] = {}, open[WHEEL_COUNT] = {};
+    int glitch_count = 0; // added to wheel 1 in the next frame alone
+
+    void SetUp() override {
+        config.safety.required = 0;
+        control_reset(&config, &state);
+        command.mode = MODE_WHEEL_SPEED;
+        for (float &speed : command.wheel_speed_rad_s) {
+            speed = 5;
+        }
+        frame.present = 0xffu | FRAME_BATTERY | FRAME_EMERGENCY_STOP;
+        frame.battery_count = 1800;
+    }
+    // Every wheel turns as its motor and a load make it: 0.72 kg a wheel over 0.057 m beside J, and the losses of (18).
+    void turn_by_torque(double load_Nm) {
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            const double duty = static_cast<double>(trace.wheel[i].duty);
+            const double motor_Nm = open[i] ? 0 : ke_true * (duty * V_true - ke_true * speed_rad_s[i]) / Ra_true;
+            const double loss_Nm = 0.03 * std::tanh(5 * speed_rad_s[i]) + 1.6e-3 * speed_rad_s[i];
+            speed_rad_s[i] += 0.01 * (motor_Nm - loss_Nm - load_Nm) / (5e-3 + 2.3e-3);
+        }
+    }
+    void run(int ticks, int missed = 0) {
+        for (int k = 0; k < ticks; ++k) {
+            frame.elapsed_ticks = 1 + static_cast<uint32_t>(missed);
+            frame.tick += frame.elapsed_ticks;
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                angle_rad[i] += speed_rad_s[i] * 0.01 * (1 + missed);
+                if (!frozen[i]) {
+                    frame.encoder_count[i] = static_cast<int32_t>(std::floor(angle_rad[i] / rad_per_count));
+                }
+                const bool driven = trace.actuator.drive >= DRIVE_BRAKE && !open[i];
+                const double current_A =
+                    driven ? (static_cast<double>(trace.wheel[i].duty) * V_true - ke_true * speed_rad_s[i]) / Ra_true : 0;
+                frame.current_count[i] = static_cast<uint16_t>(2048 + std::lround(current_A / 0.002));
+            }
+            sensor_frame_t given = frame;
+            given.encoder_count[1] += glitch_count;
+            glitch_count = 0;
+            trace = control_step(&config, &state, &command, &given);
+        }
+    }
+};
+
+TEST_F(Circuit, missed_ticks_do_not_make_a_wheel_faster) {
+    for (const int missed : {1, 2, 4}) {
+        SetUp(); // what was missed before is forgotten
+        run(50);
+        run(1, missed);
+        for (const wheel_trace_t &wheel : trace.wheel) {
+            EXPECT_NEAR(wheel.speed_rad_s, 5, 0.11); // a pulse in 10 ms
+            EXPECT_NEAR(wheel.accel_rad_s2, 0, 2.7); // four roundings of a pulse in (2): 0.65 rad/s^2 each
+            EXPECT_FALSE(wheel.encoder_refused);
+        }
+        for (int k = 0; k < 10; ++k) {
+            run(1);
+            EXPECT_NEAR(trace.wheel[2].accel_rad_s2, 0, 2.7) << k;
+        }
+        EXPECT_EQ(trace.faults, 0u);
+    }
+}
+
+// The first and the last tick that a glitch touches, and the eight of (2): nothing of it is left.
+TEST_F(Circuit, a_glitch_of_one_tick_is_refused_and_leaves_no_traction_behind) {
+    for (const bool driven : {true, false}) {
+        command.mode = driven ? MODE_WHEEL_SPEED : MODE_STOP;
+        run(100);
+        const double traction_N = static_cast<double>(trace.wheel[1].traction_N), duty = static_cast<double>(trace.wheel[1].duty);
+        for (const int size : {300, -300, 60, 570}) {
+            glitch_count = size;
+            for (int k = 0; k < 12; ++k) {
+                run(1);
+                EXPECT_NEAR(trace.wheel[1].speed_rad_s, 5, 0.22) << size << " " << k;
+                // J times the rounding of (2) over R, 0.65 rad/s^2 4 times, and 2 counts of current
+                EXPECT_NEAR(trace.wheel[1].traction_N, traction_N, 0.3) << size << " " << k;
+                EXPECT_NEAR(trace.wheel[1].duty, duty, 0.06) << size << " " << k; // Kp times a pulse
+            }
+            EXPECT_EQ(trace.faults, 0u);
+        }
+    }
+}
+
+TEST_F(Circuit, a_frozen_encoder_is_named_within_half_a_second_and_its_wheel_never_driven_full) {
+    for (const double cruise : {2.0, 5.0, 12.0}) {
+        SetUp();
+        frozen[2] = false;
+        for (int i = 0; i < WHEEL_COUNT; ++i) {
+            speed_rad_s[i] = cruise;
+            command.wheel_speed_rad_s[i] = static_cast<float>(cruise);
+        }
+        run(200);
+        ASSERT_EQ(trace.faults, 0u);
+        frozen[2] = true;
+        int ticks = 0;
+        for (; ticks < 100 && trace.faults == 0u; ++ticks) {
+            run(1);
+            EXPECT_LT(std::fabs(trace.wheel[2].duty), 0.95f) << cruise << " " << ticks;
+        }
+        EXPECT_LE(ticks, 50) << cruise;
+        EXPECT_EQ(trace.faults, static_cast<uint32_t>(FAULT_ENCODER_CIRCUIT)) << cruise;
+        EXPECT_EQ(trace.fault_wheels, 4u);
+        EXPECT_EQ(trace.actuator.drive, DRIVE_BRAKE);
+    }
+}
+
+// A wheel that a stone stops does stand: its current says so, and the encoder is believed within the tick that follows.
+TEST_F(Circuit, a_jammed_wheel_is_believed) {
+    run(200);
+    speed_rad_s[3] = 0;
+    run(2);
+    EXPECT_FALSE(trace.wheel[3].encoder_refused);
+    EXPECT_NEAR(trace.wheel[3].speed_rad_s, 0, 0.11);
+    run(60);
+    EXPECT_EQ(trace.faults & FAULT_ENCODER_CIRCUIT, 0u);
+}
+
+// Level hard ground, the least that a driving motor draws: the other wheels drag the dead one, 1 % slower.
+TEST_F(Circuit, an_open_winding_is_named_and_the_rover_drives_on) {
+    for (int tick = 0; tick < 200; ++tick) {
+        turn_by_torque(0.0);
+        run(1);
+    }
+    EXPECT_NEAR(speed_rad_s[0], 5, 0.1);
+    EXPECT_EQ(trace.faults, 0u);
+    open[0] = true;
+    int ticks = 0;
+    for (; ticks < 100 && trace.faults == 0u; ++ticks) {
+        turn_by_torque(0.0);
+        speed_rad_s[0] = 0.99 * speed_rad_s[1];
+        run(1);
+    }
+    EXPECT_LE(ticks, 50);
+    EXPECT_EQ(trace.faults, static_cast<uint32_t>(FAULT_MOTOR_OPEN));
+    EXPECT_EQ(trace.fault_wheels, 1u);
+    EXPECT_EQ(trace.actuator.drive, DRIVE_ON);
+}
+
+// Downhill the ground turns the wheels, and a motor may draw nothing at all for long.
+TEST_F(Circuit, a_motor_that_the_slope_relieves_is_not_called_open) {
+    for (int tick = 0; tick < 3000; ++tick) {
+        turn_by_torque(-0.08 * tick / 3000); // N m: from level ground to 11 deg for a wheel of 0.72 kg
+        run(1);
+        ASSERT_EQ(trace.faults, 0u) << tick;
+    }
+    EXPECT_LT(trace.wheel[0].current_A, -0.05f);
+}
+
+// A winding 37 % hotter, magnets and battery divider 10 % weaker, in both directions, through starts, stops and reversals.
+TEST_F(Circuit, a_motor_unlike_its_description_is_not_called_broken) {
+    for (const double hot : {1.37, 0.85}) {
+        for (const double weak : {0.9, 1.1}) {
+            SetUp();
+            Ra_true = Ra * hot;
+            ke_true = ke * weak;
+            trace = {};
+            double target = 0;
+            for (int tick = 0; tick < 3000; ++tick) {
+                if (tick % 300 == 0) {
+                    target = (tick / 300 % 4 - 1.5) * 8; // -12, -4, 4, 12 rad/s
+                }
+                for (float &speed : command.wheel_speed_rad_s) {
+                    speed = static_cast<float>(target);
+                }
+                turn_by_torque(0.0);
+                run(1);
+                ASSERT_EQ(trace.faults & (FAULT_ENCODER_CIRCUIT | FAULT_MOTOR_OPEN), 0u) << hot << " " << weak << " " << tick;
+            }
+        }
+    }
+}
+
+TEST_F(Circuit, any_number_is_accepted) {
+    const float odd[] = {0.0f, -0.0f, 1e30f, -1e30f, std::nanf(""), INFINITY, 1e-40f};
+    for (const float a : odd) {
+        for (const float b : odd) {
+            circuit_state_t circuit = {};
+            sense_state_t sense_state = {};
+            sense_output_t sense = {};
+            circuit.refused = 0xfu;
+            const float duty[WHEEL_COUNT] = {a, b, a, b};
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                sense.speed_rad_s[i] = b;
+                sense.current_A[i] = a;
+                circuit.speed_rad_s[i] = a;
+                circuit.circuit_V[i] = b;
+            }
+            sense.battery_V = b;
+            sense.jumped = 0xfu;
+            sense.usable = 0x1ffu;
+            sense.elapsed_ticks = 1;
+            const circuit_input_t input = {.duty = duty, .driven = true, .look = true};
+            for (int k = 0; k < 40; ++k) {
+                circuit_step(&config.circuit, &circuit, &input, &config.sense, &sense_state, &sense);
+                sense.battery_V = b;
+            }
+        }
+    }
+}
+
+} // namespace
