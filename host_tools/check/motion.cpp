@@ -38,7 +38,9 @@ class Motion {
     }
     bool wheels_blamed() const {
         return std::any_of(findings_.begin(), findings_.end(), [](const Finding &f) {
-            return f.severity == Severity::error && f.signal.find(".speed_rad_s") != std::string::npos && f.signal.rfind("wheel", 0) == 0;
+            const bool motion = f.signal.find(".speed_rad_s") != std::string::npos || f.signal.find(".angle_rad") != std::string::npos ||
+                                f.signal.find(".encoder_count") != std::string::npos;
+            return f.severity == Severity::error && motion && f.signal.rfind("wheel", 0) == 0;
         });
     }
     void add(const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value) {
@@ -108,7 +110,7 @@ void Motion::encoders() {
     std::vector<const Wheel *> wheels;
     for (const Wheel &wheel : grid_.wheel) {
         const std::string name = "wheel" + std::to_string(wheel.index);
-        if (wheel.speed.empty() || blamed(name + ".speed")) continue;
+        if (wheel.speed.empty() || blamed(wheel.speed_column)) continue;
         const std::vector<double> speed = smooth(wheel.speed, 2);
         for (const bool count : {false, true}) {
             const std::vector<double> &rate = count ? wheel.count_rate : wheel.angle_rate;
@@ -117,12 +119,12 @@ void Motion::encoders() {
             const Fit line = rate.empty() ? Fit{} : fit(rate, speed);
             if (!line.good || line.rms > 0.5 * line.y_rms) continue;
             if (line.a < 0) {
-                add("sign", Severity::error, column, say("'%s' falls while '%s.speed_rad_s' is positive", column.c_str(), name.c_str()),
+                add("sign", Severity::error, column, say("'%s' falls while '%s' is positive", column.c_str(), wheel.speed_column.c_str()),
                     "turn the sign of one of them round", line.a);
             } else if (!count && (line.a < 0.8 || line.a > 1.25)) {
                 const UnitSlip *slip = unit_slip('w', line.a), *inverse = unit_slip('w', 1 / line.a);
-                add("unit", Severity::error, inverse != nullptr ? name + ".speed_rad_s" : column,
-                    say("'%s' advances %.4g times as fast as '%s.speed_rad_s' says%s%s", column.c_str(), line.a, name.c_str(),
+                add("unit", Severity::error, inverse != nullptr ? wheel.speed_column : column,
+                    say("'%s' advances %.4g times as fast as '%s' says%s%s", column.c_str(), line.a, wheel.speed_column.c_str(),
                         slip != nullptr || inverse != nullptr ? ": one of them looks like " : "",
                         slip != nullptr      ? slip->written
                         : inverse != nullptr ? inverse->written
@@ -138,7 +140,7 @@ void Motion::encoders() {
         const double ratio = quantile(per_rad, 0.5) / per_rad[i];
         if (ratio > 0.7 && ratio < 1.4) continue;
         const UnitSlip *slip = unit_slip('w', ratio);
-        const std::string name = "wheel" + std::to_string(wheels[i]->index) + ".speed_rad_s";
+        const std::string &name = wheels[i]->speed_column;
         if (!blamed(name)) {
             add("unit", Severity::error, name,
                 say("'%s' has %.4g counts for a radian, the other wheels %.4g%s%s", name.c_str(), per_rad[i], quantile(per_rad, 0.5),
@@ -218,7 +220,7 @@ void Motion::ground() {
     if (!grid_.camera_speed.empty()) sources.push_back({"camera.x_m", heading_fits_ ? &grid_.camera_forward : &grid_.camera_speed, false});
     if (!grid_.radar.empty()) sources.push_back({"radar.speed_m_s", &grid_.radar, quantile(grid_.radar, 0.02) < -0.05});
     if (!grid_.carriage.empty()) sources.push_back({"carriage.speed_m_s", &grid_.carriage, true});
-    const double known = machine_.wheel_radius_m;
+    const double known = grid_.speed_is_guessed ? not_known : machine_.wheel_radius_m;
     for (Source &source : sources) {
         source.radius = radius_from(*source.speed, source.alike);
         const double ratio = source.radius / known;
@@ -227,7 +229,7 @@ void Motion::ground() {
             std::isfinite(known) ? is_unit : source.radius < 0.012 || source.radius > 1.0; // [m] assumed: wheels of 24 mm to 2 m
         if (source.speed == &grid_.carriage) source.absurd = source.radius > 1.0;          // the carriage imposes slip: 0.9 is no mistake
         const bool judged = blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); // beside the camera
-        if (judged) source.absurd = false;
+        if (judged || grid_.speed_is_guessed || !machine_.rolls_freely) source.absurd = false;
         if (source.has_sign && source.alike < -0.3) {
             add("sign", Severity::error, source.name, say("'%s' is negative when the wheels turn forwards", source.name),
                 "turn its sign round (map: sign = -1)", source.alike);
@@ -321,7 +323,7 @@ void Motion::yaw() {
             say("the gyro turns against the wheels (correlation %.2f): its sign is wrong, or left and right wheels are exchanged",
                 with_wheels),
             "turn its sign round: a turn to the left is positive", with_wheels);
-    } else if (line.a > 2) { // wheel radius over track is below 1 on any rover
+    } else if (line.a > 2 && !grid_.speed_is_guessed) { // wheel radius over track is below 1 on any rover
         add("unit", Severity::error, "imu.gyro_z_rad_s",
             say("the gyro reads %.3g times the wheels' difference in speed: it looks like deg/s", line.a), "multiply it by 0.0174533",
             line.a);
@@ -337,7 +339,8 @@ void Motion::accel() {
         return;
     }
     const bool camera = !grid_.camera_forward.empty() && heading_fits_ && !blamed("camera");
-    const double radius = std::isfinite(machine_.wheel_radius_m) ? machine_.wheel_radius_m : grid_.effective_radius_m;
+    const double radius =
+        std::isfinite(machine_.wheel_radius_m) && !grid_.speed_is_guessed ? machine_.wheel_radius_m : grid_.effective_radius_m;
     if (!camera && (!std::isfinite(radius) || blamed("wheel.speed") || wheels_blamed() || !machine_.wheels_point_forward)) return;
     std::vector<double> reference = slope(camera ? grid_.camera_forward : smooth(grid_.mean_speed, 5), 5),
                         measured = smooth(smooth(grid_.accel, 5), 5);

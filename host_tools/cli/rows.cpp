@@ -27,6 +27,13 @@ Option report_row(std::string &report) {
     return {.name = "--report", .into = &report, .help = "write a report page (HTML)", .value = "FILE", .kind = Kind::output};
 }
 
+Option despite_row(std::vector<std::string> &despite) {
+    return {.name = "--despite",
+            .into = &despite,
+            .help = "learn although the check found this error (its id, such as sign); written into result and lineage",
+            .value = "ID"};
+}
+
 std::vector<Option> lab_rows(lab::Request &request) {
     return {log_row(request.log),
             model_row(request.model),
@@ -37,7 +44,8 @@ std::vector<Option> lab_rows(lab::Request &request) {
              .value = "FILE",
              .kind = Kind::log},
             {.name = "--from", .into = &request.from_s, .help = "use the log from this time [s]", .value = "S"},
-            {.name = "--to", .into = &request.to_s, .help = "use the log up to this time [s]", .value = "S"}};
+            {.name = "--to", .into = &request.to_s, .help = "use the log up to this time [s]", .value = "S"},
+            despite_row(request.despite)};
 }
 
 std::vector<std::string> effect_names() {

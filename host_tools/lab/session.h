@@ -5,12 +5,14 @@
 #include "host_tools/lab/model/model.h"
 
 #include <string>
+#include <vector>
 
 namespace traction::lab {
 
 struct Request {
     std::string model, log, map, repeat;
-    double from_s = 0, to_s = 0; // part of the log; to_s 0: all
+    double from_s = 0, to_s = 0;           // part of the log; to_s 0: all
+    std::vector<std::string> despite = {}; // errors of the check that shall not stop it (gate.h)
 };
 
 struct Session {
@@ -18,7 +20,8 @@ struct Session {
     Dataset data;
 };
 
-// Throws ModelError, log::LogError.
+// The log has passed the gate, or was let through despite an error: data.despite and data.messages say so. Throws ModelError,
+// log::LogError, Refused (gate.h).
 Session open_session(const Request &request);
 
 } // namespace traction::lab

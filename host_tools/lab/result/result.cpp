@@ -76,7 +76,7 @@ json head_json(const std::string &verb, const Model &model, const Dataset &data)
     return {{"schema", "traction.lab/1"},
             {"verb", verb},
             {"title", verb + ": " + model.name + " against " + data.log_file},
-            {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}}},
+            {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}, {"despite", data.despite}}},
             {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
 }
 

@@ -1,0 +1,183 @@
+// Scales that no effect of the catalogue reaches, magnitudes that are taken for signed values, signs without a voltage.
+//
+//   U = ke*w + Ra*I        with a known machine: a factor in both is the voltage's, in ke alone the wheel speed's, in Ra alone the
+//   current's I*w > 0 on the whole   dry friction and rolling only consume
+#include "series.h"
+
+#include "host_tools/log/vocabulary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::check {
+
+namespace {
+
+// The widest scale of the catalogue is 0.4 (current_gain), of radii and voltages 0.3; beyond 1.6 it is a mistake.
+constexpr double widest_scale = 1.6;
+constexpr double widest_winding = 4; // wiring_resistance may nearly double Ra, noise of the current may halve what a fit finds of it
+constexpr double most_slip = 0.5;    // [1] through a whole drive, where slip is least: beyond, the radius is wrong
+
+void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
+    findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
+}
+
+bool has_error(const Findings &findings, const std::string &start) {
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
+}
+
+bool beyond(double ratio, double limit) { return std::isfinite(ratio) && (ratio > limit || ratio < 1 / limit); }
+
+double middle(const std::vector<double> &values) { return quantile(values, 0.5); }
+
+// Voltage, speed and current against the model's motor, by the median of the wheels.
+void motor_scale(const Grid &grid, const Machine &machine, Findings &findings) {
+    if (!std::isfinite(machine.back_emf_Vs) || has_error(findings, "battery")) return;
+    std::vector<double> ke, Ra;
+    std::string speed, current;
+    for (const Wheel &wheel : grid.wheel) {
+        const std::string name = "wheel" + std::to_string(wheel.index) + ".";
+        if (wheel.unsigned_current || !wheel.in_volts || wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty() ||
+            grid.speed_is_guessed || has_error(findings, name))
+            continue;
+        const Fit law = fit(wheel.voltage, wheel.speed, wheel.current);
+        if (!law.good || law.rms * law.rms > 0.1 * law.y_rms * law.y_rms || !(law.a > 8 * law.error_a)) continue;
+        ke.push_back(law.a / machine.back_emf_Vs);
+        if (law.b > 8 * law.error_b && std::isfinite(machine.resistance_ohm)) Ra.push_back(law.b / machine.resistance_ohm);
+        if (speed.empty()) speed = wheel.speed_column, current = name + "current_A";
+    }
+    if (ke.empty()) return;
+    const double a = middle(ke), b = Ra.empty() ? not_known : middle(Ra);
+    if (beyond(a, widest_scale)) {
+        const bool both = std::isfinite(b) && !beyond(a / b, 1.25);
+        if (both) {
+            add(findings, "scale", grid.battery.empty() ? "wheel.duty" : "battery.voltage_V",
+                say("the motors' voltage is %.3g times what their back-EMF and winding together need (medians of %zu wheels)", a,
+                    ke.size()),
+                say("find the factor %.3g in battery voltage or duty; or mend back-EMF and resistance in the model", a), a);
+        } else {
+            add(findings, "scale", speed,
+                say("the wheels turn %.3g times as fast as their motors' back-EMF allows (median of %zu wheels)", 1 / a, ke.size()),
+                "check encoder.counts_per_turn, the gear ratio and the unit of the wheel speed; or the model's back-EMF", 1 / a);
+        }
+    } else if (beyond(b, widest_winding)) {
+        add(findings, "scale", current,
+            say("the currents are %.3g times what the motors' winding lets through (median of the wheels)", 1 / b),
+            "check the gain of the current sensors; or the model's resistance", 1 / b);
+    }
+}
+
+// Speed over ground against wheel speed and the known radius.
+void radius_scale(const Grid &grid, const Machine &machine, Findings &findings) {
+    const double ratio = grid.effective_radius_m / machine.wheel_radius_m;
+    if (!std::isfinite(ratio) || !machine.wheels_point_forward || !machine.rolls_freely || grid.speed_is_guessed) return;
+    if (has_error(findings, "wheel") || has_error(findings, grid.ground_source)) return;
+    if (ratio < widest_scale && ratio > most_slip) return;
+    add(findings, "scale", grid.wheel.front().speed_column,
+        say("over ground the machine moves %.3g times as far as its wheels roll with the known radius of %.4g m ('%s')", ratio,
+            machine.wheel_radius_m, grid.ground_source.c_str()),
+        say("check encoder.counts_per_turn and gear ratio (a factor %.3g), the radius in the model, and the unit of '%s'", 1 / ratio,
+            grid.ground_source.c_str()),
+        ratio);
+}
+
+// The accelerometer against the wheels' acceleration times the known radius, where nothing else sees the ground.
+void accel_scale(const Grid &grid, const Machine &machine, Findings &findings) {
+    if (grid.accel.empty() || !grid.ground_speed.empty() || !std::isfinite(machine.wheel_radius_m) || grid.speed_is_guessed) return;
+    if (!machine.wheels_point_forward || !machine.rolls_freely || has_error(findings, "wheel") || has_error(findings, "imu.accel")) return;
+    std::vector<double> reference = slope(smooth(grid.mean_speed, 5), 5), measured = smooth(smooth(grid.accel, 5), 5);
+    const double offset = quantile(measured, 0.5);
+    for (double &v : reference) v *= machine.wheel_radius_m;
+    for (double &v : measured) v -= offset;
+    const Fit line = fit(measured, reference);
+    if (!line.good || correlation(measured, reference) < 0.9 || (line.a > 0.4 && line.a < 2)) return;
+    add(findings, "scale", "imu.accel_x_m_s2",
+        say("the accelerometer reads %.3g of the acceleration of the wheels' rims (known radius %.4g m)", line.a, machine.wheel_radius_m),
+        "check the accelerometer's scale, encoder.counts_per_turn, and the radius in the model", line.a);
+}
+
+// A current that never is negative although the motor pushes both ways.
+void magnitude(const Wheel &wheel, Findings &findings) {
+    if (wheel.unsigned_current || wheel.current.empty() || wheel.speed.empty()) return;
+    const std::string name = "wheel" + std::to_string(wheel.index) + ".current_A";
+    std::vector<double> size = wheel.current, turn = wheel.speed;
+    for (double &v : size) v = std::fabs(v);
+    for (double &v : turn) v = std::fabs(v);
+    const double largest = quantile(size, 0.98), least = quantile(wheel.current, 0.005), fastest = quantile(turn, 0.98);
+    if (!(largest > 0) || least < -0.05 * largest) return;
+    const auto tell = [&](const char *evidence, double value) {
+        add(findings, "magnitude", name, say("'%s' is never negative, but %s", name.c_str(), evidence),
+            "declare it a magnitude: unsigned = true in the map, or '# unsigned." + name + ": 1' in the header", value);
+    };
+    double back = 0, backwards = 0, forward = 0, forwards = 0;
+    for (std::size_t k = 0; k < wheel.speed.size(); ++k) {
+        if (!std::isfinite(wheel.current[k])) continue;
+        if (wheel.speed[k] < -0.1 * fastest) back += wheel.current[k], backwards += 1;
+        if (wheel.speed[k] > 0.1 * fastest) forward += wheel.current[k], forwards += 1;
+    }
+    if (backwards * step_s > 2 && forwards > 0 && back / backwards > 0.3 * forward / forwards && forward > 0) {
+        tell("the motor drives in reverse as well", back / backwards);
+        return;
+    }
+    if (wheel.voltage.empty()) return;
+    const Fit as_is = fit(wheel.voltage, wheel.speed, wheel.current);
+    std::vector<double> folded = wheel.current;
+    double negative = 0, all = 0;
+    for (std::size_t k = 0; k < folded.size(); ++k) {
+        const bool is_negative = wheel.voltage[k] - std::max(0.0, as_is.a) * wheel.speed[k] < 0;
+        folded[k] *= is_negative ? -1 : 1;
+        if (std::isfinite(folded[k])) all += 1, negative += is_negative;
+    }
+    const Fit turned = fit(wheel.voltage, wheel.speed, folded);
+    if (!as_is.good || !turned.good || negative < 0.05 * all) return;
+    if (turned.a > 0 && turned.b > 0 && turned.rms * turned.rms < 0.25 * as_is.rms * as_is.rms)
+        tell("the motor's voltage asks for negative currents too", turned.rms / as_is.rms);
+}
+
+// Without a voltage: I = c1*dw/dt + c2*sign(w), inertia and friction, both above 0.
+void sign_without_voltage(const Wheel &wheel, Findings &findings) {
+    if (!wheel.voltage.empty() || wheel.current.empty() || wheel.speed.empty() || wheel.unsigned_current) return;
+    const std::string start = "wheel" + std::to_string(wheel.index) + ".";
+    if (has_error(findings, start)) return;
+    std::vector<double> turn = wheel.speed;
+    for (double &v : turn) v = std::fabs(v);
+    const double still = 0.05 * quantile(turn, 0.98);
+    std::vector<double> way(wheel.speed.size(), not_known);
+    for (std::size_t k = 0; k < way.size(); ++k)
+        if (std::isfinite(wheel.speed[k])) way[k] = wheel.speed[k] > still ? 1 : wheel.speed[k] < -still ? -1 : 0;
+    const Fit law = fit(wheel.current, slope(smooth(wheel.speed, 2), 2), way);
+    if (!law.good || !(law.a < -4 * law.error_a) || !(law.b < -4 * law.error_b)) return;
+    add(findings, "sign", start + "current_A",
+        say("'%scurrent_A' is negative when the wheel drives forward and when it speeds up", start.c_str()),
+        "turn the sign of current or speed round (map: sign = -1)", law.b);
+}
+
+void negated_radar(const Grid &grid, Findings &findings) {
+    if (grid.radar.empty() || has_error(findings, "radar")) return;
+    if (!(quantile(grid.radar, 0.98) <= 0) || !(quantile(grid.radar, 0.02) < -0.02)) return;
+    double forward = 0, turning = 0;
+    for (const double w : grid.mean_speed) {
+        if (!(std::fabs(w) > 0.5)) continue;
+        turning += 1, forward += w > 0;
+    }
+    if (!(forward > 0.2 * turning) || turning < 40) return;
+    add(findings, "sign", "radar.speed_m_s", "'radar.speed_m_s' is never positive, but the wheels drive forward",
+        "turn its sign round (map: sign = -1)", quantile(grid.radar, 0.02));
+}
+
+} // namespace
+
+void check_scales(const Grid &grid, const Machine &machine, Findings &findings) {
+    motor_scale(grid, machine, findings);
+    radius_scale(grid, machine, findings);
+    accel_scale(grid, machine, findings);
+    for (const Wheel &wheel : grid.wheel) sign_without_voltage(wheel, findings);
+    negated_radar(grid, findings);
+}
+
+void check_magnitudes(const Grid &grid, Findings &findings) {
+    for (const Wheel &wheel : grid.wheel) magnitude(wheel, findings);
+}
+
+} // namespace traction::check
