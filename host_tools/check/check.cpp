@@ -29,11 +29,11 @@ const char *severity_name(Severity severity) {
 }
 
 const std::vector<std::string> &error_ids() {
-    static const std::vector<std::string> ids = {"axis",        "clipped",           "clock_jump",      "clock_rate", "counter_jump",
-                                                 "dead_sensor", "drive_unexplained", "heading",         "late",       "magnitude",
-                                                 "not_finite",  "nothing_to_use",    "samples_missing", "scale",      "short",
-                                                 "sign",        "stuck_sensor",      "swapped_wheels",  "time_unit",  "unit",
-                                                 "wrapped"};
+    static const std::vector<std::string> ids = {
+        "axis",      "clipped", "clock_jump", "clock_rate",   "counter_jump",   "dead_sensor",    "drive_unexplained",
+        "heading",   "late",    "no_motion",  "magnitude",    "not_finite",     "nothing_to_use", "samples_missing",
+        "scale",     "short",   "sign",       "stuck_sensor", "swapped_wheels", "time_unit",      "unit",
+        "unrelated", "wheels",  "wrapped"};
     return ids;
 }
 
@@ -41,7 +41,7 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
     Report report;
     const Grid grid = make_grid(log, machine);
     check_quality(log, repairs, grid, report.findings, report.rates);
-    if (grid.count >= 100) { // 5 s
+    if (grid.count >= 50) { // 2.5 s
         check_magnitudes(grid, report.findings);
         check_drives(grid, machine, report.findings);
         check_motion(grid, machine, report.findings);

@@ -193,6 +193,39 @@ void one_motor(const Wheel &wheel, Findings &findings) {
     tell_late(column, cells * step_s, "the rest of its motor", now.rms / std::sqrt(best), findings);
 }
 
+// Two sensors of the ground's speed, or of its change, that have nothing in common although it changes.
+void unrelated(const Grid &grid, const Machine &machine, Findings &findings) {
+    const auto tell = [&](const char *column, const char *beside, double alike) {
+        add(findings, "unrelated", column, say("'%s' has nothing to do with %s (correlation %.2f)", column, beside, alike),
+            "check that it is of this run and of this time", alike);
+    };
+    const auto spread = [](const std::vector<double> &x) { return quantile(x, 0.95) - quantile(x, 0.05); };
+    if (!grid.radar.empty() && !grid.camera_speed.empty() && !has_error(findings, "radar") && !has_error(findings, "camera")) {
+        std::vector<double> radar = grid.radar;
+        for (double &v : radar) v = std::fabs(v);
+        const std::vector<double> camera = smooth(grid.camera_speed, 5);
+        double best = -1; // a window of a second is half a second late
+        for (int cells = -5; cells <= 15; ++cells) best = std::max(best, correlation(camera, shifted(radar, cells)));
+        if (best < 0.4 && spread(camera) > 0.5 * quantile(camera, 0.95) && quantile(camera, 0.95) > 0.05)
+            tell("radar.speed_m_s", "the camera's speed", best);
+    }
+    const double radius =
+        std::isfinite(machine.wheel_radius_m) && !grid.speed_is_guessed ? machine.wheel_radius_m : grid.effective_radius_m;
+    if (grid.accel.empty() || has_error(findings, "imu.accel") || has_error(findings, "wheel") || !std::isfinite(radius)) return;
+    if (!machine.wheels_point_forward || !machine.rolls_freely || !machine.on_ground) return;
+    std::vector<double> rim = slope(smooth(grid.mean_speed, 5), 5), felt = smooth(smooth(grid.accel, 5), 5);
+    if (grid.camera_forward.size() == rim.size() && !has_error(findings, "camera"))
+        rim = slope(grid.camera_forward, 5);
+    else
+        for (double &v : rim) v *= radius;
+    double squares = 0, n = 0;
+    for (const double a : rim)
+        if (std::isfinite(a)) squares += a * a, n += 1;
+    double best = -1;
+    for (int cells = -6; cells <= 6; ++cells) best = std::max(best, correlation(rim, shifted(felt, cells)));
+    if (n > 200 && std::sqrt(squares / n) > 0.2 && best < 0.2) tell("imu.accel_x_m_s2", "the machine's starts and stops", best);
+}
+
 } // namespace
 
 void check_clock(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) {
@@ -201,6 +234,7 @@ void check_clock(const log::Log &log, const Grid &grid, const Machine &machine, 
     std::vector<double> size = grid.mean_speed;
     for (double &v : size) v = std::fabs(v);
     const bool rolls = machine.wheels_point_forward && machine.rolls_freely && !has_error(findings, "wheel");
+    unrelated(grid, machine, findings);
     const std::vector<double> nothing;
     // the catalogue's camera_delay goes to 0.4 s; a radar's window of a second is a quarter late and a half long
     one_moment("camera.x_m", rolls ? smooth(size, 5) : nothing, grid.camera_speed, "the wheels", 0, 0.6, findings);

@@ -271,13 +271,23 @@ void Motion::ground() {
 void Motion::yaw() {
     if (grid_.gyro.empty()) return;
     const double fastest = std::max(std::fabs(quantile(grid_.gyro, 0.01)), std::fabs(quantile(grid_.gyro, 0.99)));
-    std::vector<double> apart(grid_.count, not_known); // right minus left: wheels 1, 3 and 0, 2
-    const bool four = grid_.wheel.size() == 4 &&
-                      std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
-    for (std::size_t k = 0; four && k < grid_.count; ++k)
-        apart[k] = 0.5 * (grid_.wheel[1].speed[k] + grid_.wheel[3].speed[k] - grid_.wheel[0].speed[k] - grid_.wheel[2].speed[k]);
+    std::vector<double> apart(grid_.count, not_known); // right minus left; without a model 1, 3 and 0, 2
+    const bool known = machine_.wheel_y_m.size() == grid_.wheel.size();
+    const bool sides = (known || grid_.wheel.size() == 4) &&
+                       std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
+    const auto side = [&](std::size_t i) {
+        return known ? (machine_.wheel_y_m[i] > 0) - (machine_.wheel_y_m[i] < 0) : i % 2 == 0 ? 1 : -1;
+    };
+    int left = 0, right = 0;
+    for (std::size_t i = 0; i < grid_.wheel.size(); ++i) left += side(i) > 0, right += side(i) < 0;
+    const bool two_sides = sides && left > 0 && right > 0;
+    for (std::size_t k = 0; two_sides && k < grid_.count; ++k) {
+        apart[k] = 0;
+        for (std::size_t i = 0; i < grid_.wheel.size(); ++i)
+            if (side(i) != 0) apart[k] -= side(i) * grid_.wheel[i].speed[k] / (side(i) > 0 ? left : right);
+    }
     const double with_wheels =
-        four && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
+        two_sides && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
     if (!grid_.camera_yaw_rate.empty() && !blamed("camera.yaw")) {
         const std::vector<double> gyro = smooth(grid_.gyro, 5);
         const Fit line = fit(gyro, grid_.camera_yaw_rate);
@@ -306,7 +316,7 @@ void Motion::yaw() {
                 add("swapped_wheels", Severity::error, "wheel.speed_rad_s",
                     say("gyro and camera agree, but the wheels turn the other way (correlation %.2f): left and right are exchanged",
                         with_wheels),
-                    "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
+                    known ? "exchange their columns, or mend y_m in the model" : "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
             }
             return;
         }

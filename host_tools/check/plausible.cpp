@@ -68,6 +68,101 @@ void motor_scale(const Grid &grid, const Machine &machine, Findings &findings) {
     }
 }
 
+// One motor against the others of the machine, whatever they are: no effect makes one this different.
+void odd_motor(const Grid &grid, Findings &findings) {
+    struct One {
+        const Wheel *wheel;
+        Fit law;
+    };
+    std::vector<One> all;
+    for (const Wheel &wheel : grid.wheel) {
+        if (wheel.unsigned_current || wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty()) continue;
+        const Fit law = fit(wheel.voltage, wheel.speed, wheel.current);
+        if (law.good && law.rms * law.rms < 0.1 * law.y_rms * law.y_rms && law.a > 8 * law.error_a && law.b > 8 * law.error_b)
+            all.push_back({&wheel, law});
+    }
+    for (const One &one : all) {
+        std::vector<double> ke, Ra;
+        for (const One &other : all)
+            if (other.wheel != one.wheel) ke.push_back(other.law.a), Ra.push_back(other.law.b);
+        const std::string current = "wheel" + std::to_string(one.wheel->index) + ".current_A";
+        if (ke.size() < 2 || has_error(findings, one.wheel->speed_column) || has_error(findings, current)) continue;
+        const double a = middle(ke) / one.law.a, b = middle(Ra) / one.law.b;
+        if (beyond(a, widest_scale))
+            add(findings, "scale", one.wheel->speed_column,
+                say("'%s' is %.3g times as large as its motor's back-EMF allows beside those of the other wheels",
+                    one.wheel->speed_column.c_str(), a),
+                "check this encoder's counts per turn, its unit and its gear", a);
+        else if (beyond(b, 2.5)) // wiring_resistance and heat reach 2
+            add(findings, "scale", current,
+                say("'%s' is %.3g times as large as its winding lets through beside those of the other wheels", current.c_str(), b),
+                "check the gain and the unit of this current sensor", b);
+    }
+}
+
+// A current that has nothing to do with its motor: the winding that is left of it is far below the known one.
+void stray_current(const Grid &grid, const Machine &machine, Findings &findings) {
+    if (!std::isfinite(machine.resistance_ohm) || grid.speed_is_guessed) return;
+    for (const Wheel &wheel : grid.wheel) {
+        const std::string start = "wheel" + std::to_string(wheel.index) + ".", name = start + "current_A";
+        if (wheel.unsigned_current || !wheel.in_volts || wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty()) continue;
+        if (has_error(findings, start) || has_error(findings, "battery")) continue;
+        const Fit law = fit(wheel.voltage, wheel.speed, wheel.current);
+        if (!law.good || !(law.b + 4 * law.error_b < machine.resistance_ohm / widest_winding)) continue;
+        add(findings, "unrelated", name,
+            say("'%s' does not go with the voltage of its motor: a winding of %.3g ohm is left of %.3g", name.c_str(), law.b,
+                machine.resistance_ohm),
+            "check that it is this wheel's current, of this run and this time; or the model's resistance", law.b);
+    }
+}
+
+// One wheel that turns against all the others of a machine that drives straight: its motor is mounted the other way round.
+void odd_wheel(const Grid &grid, const Machine &machine, Findings &findings) {
+    if (!machine.wheels_point_forward || grid.wheel.size() < 3 || has_error(findings, "wheel")) return;
+    const double turns = 0.3 * std::fmax(std::fabs(quantile(grid.gyro, 0.98)), std::fabs(quantile(grid.gyro, 0.02)));
+    const auto straight = [&](std::vector<double> speed) {
+        for (std::size_t k = 0; k < speed.size() && !grid.gyro.empty(); ++k)
+            if (std::fabs(grid.gyro[k]) > turns) speed[k] = not_known;
+        return speed;
+    };
+    for (const Wheel &odd : grid.wheel) {
+        if (odd.speed.empty()) return;
+        const std::vector<double> own = straight(odd.speed);
+        bool against = true, together = true;
+        for (const Wheel &other : grid.wheel) {
+            if (&other == &odd) continue;
+            const Fit line = fit(straight(other.speed), own);
+            against = against && line.good && line.a < 0 && line.rms < 0.7 * line.y_rms;
+            for (const Wheel &third : grid.wheel) {
+                if (&third == &odd || &third == &other) continue;
+                const Fit both = fit(straight(other.speed), straight(third.speed));
+                together = together && both.good && both.a > 0 && both.rms < 0.7 * both.y_rms;
+            }
+        }
+        if (!against || !together) continue;
+        add(findings, "sign", odd.speed_column,
+            say("'%s' turns against all other wheels while the machine drives straight", odd.speed_column.c_str()),
+            "its motor is mounted the other way round: turn the signs of its speed, current and duty round (map: sign = -1)", -1);
+        return;
+    }
+}
+
+// The left and right of the model's wheels, or too few of them.
+void wheels_of_model(const Grid &grid, const Machine &machine, Findings &findings) {
+    if (machine.wheel_y_m.empty() || !machine.rolls_freely || !machine.on_ground) return;
+    const auto drives = [&](int index) {
+        return std::any_of(grid.wheel.begin(), grid.wheel.end(),
+                           [&](const Wheel &w) { return w.index == index && !w.speed.empty() && !w.current.empty(); });
+    };
+    for (const Wheel &wheel : grid.wheel) {
+        if (wheel.index < static_cast<int>(machine.wheel_y_m.size()) || !drives(wheel.index)) continue;
+        add(findings, "wheels", wheel.speed_column,
+            say("the log has a driven wheel %d, the model has %zu wheels from 0", wheel.index, machine.wheel_y_m.size()),
+            "give the model all wheels that push, or map the log's wheels to the model's", wheel.index);
+        return;
+    }
+}
+
 // Speed over ground against wheel speed and the known radius.
 void radius_scale(const Grid &grid, const Machine &machine, Findings &findings) {
     const double ratio = grid.effective_radius_m / machine.wheel_radius_m;
@@ -169,7 +264,11 @@ void negated_radar(const Grid &grid, Findings &findings) {
 } // namespace
 
 void check_scales(const Grid &grid, const Machine &machine, Findings &findings) {
+    wheels_of_model(grid, machine, findings);
     motor_scale(grid, machine, findings);
+    odd_motor(grid, findings);
+    stray_current(grid, machine, findings);
+    odd_wheel(grid, machine, findings);
     radius_scale(grid, machine, findings);
     accel_scale(grid, machine, findings);
     for (const Wheel &wheel : grid.wheel) sign_without_voltage(wheel, findings);

@@ -377,11 +377,13 @@ void Quality::run() {
             "read the file through a map (--map), or name the columns as docs/log_format.md does", 0);
         return;
     }
-    if (!trials && fastest >= 2 && std::isfinite(fastest)) {
+    const bool endless = !trials && grid_.count == 0 && log_.duration_s() > 50000; // [s] more than half a day, in one drive
+    if (!trials && (fastest >= 2 || endless) && std::isfinite(fastest)) {
         add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.4g s: the times look like milliseconds", fastest),
             "divide the times by 1000 (map: time.scale = 0.001)", fastest);
-    } else if (most < (trials ? 4U : 50U)) { // the lab's least number of rows; a straight line's standard error of 14 %
-        add("short", Severity::error, "", say("the log has %zu sample(s) of its fastest signal: nothing can be learnt from it", most),
+    } else if (most < (trials ? 4U : 50U) || (!trials && log_.duration_s() < 2.5)) { // the lab's least number of rows, its shortest block
+        add("short", Severity::error, "",
+            say("the log lasts %.3g s and has %zu sample(s) of its fastest signal: nothing can be learnt from it", log_.duration_s(), most),
             "record at least half a minute with starts, stops and turns", static_cast<double>(most));
     } else if (!trials && log_.duration_s() < 5) {
         add("short", Severity::warning, "", say("the log lasts %.3g s", log_.duration_s()),

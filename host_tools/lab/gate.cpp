@@ -27,6 +27,7 @@ check::Machine machine_of(const Model &model) {
     if (const auto counts = model.sensors.find("encoder.counts_per_turn"); counts != model.sensors.end() && counts->second.given)
         machine.counts_per_turn = counts->second.value;
     machine.wheels_point_forward = model.motion != BodyMotion::none;
+    machine.on_ground = model.motion != BodyMotion::none;
     machine.rolls_freely = model.motion != BodyMotion::imposed;
     for (const WheelSpec &wheel : model.wheel) {
         const auto heading = wheel.geometry.find("heading_rad");
