@@ -31,7 +31,7 @@ class Motion {
     void yaw();
     void accel();
     bool straight(std::size_t k) const; // the wheels agree, so the body moves along its heading
-    double radius_from(const std::vector<double> &speed, double &alike) const;
+    double radius_from(const std::vector<double> &speed, double &alike, double &middle) const;
     bool blamed(const std::string &start) const {
         return std::any_of(findings_.begin(), findings_.end(),
                            [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
@@ -193,7 +193,7 @@ void Motion::heading() {
     }
 }
 
-double Motion::radius_from(const std::vector<double> &speed, double &alike) const {
+double Motion::radius_from(const std::vector<double> &speed, double &alike, double &middle) const {
     std::vector<double> ratio, a(grid_.count, not_known), b(grid_.count, not_known);
     for (std::size_t k = 0; k < speed.size(); ++k) {
         if (!straight(k) || !std::isfinite(speed[k])) continue;
@@ -204,6 +204,7 @@ double Motion::radius_from(const std::vector<double> &speed, double &alike) cons
     if (ratio.size() < 40) return not_known;
     const Fit line = fit(a, b);
     alike = line.good && line.y_rms > 0 ? std::copysign(1 - line.rms / line.y_rms, line.a) : 0;
+    middle = quantile(ratio, 0.5);
     return quantile(ratio, 0.9); // where slip is least
 }
 
@@ -213,7 +214,7 @@ void Motion::ground() {
         const char *name;
         const std::vector<double> *speed;
         bool has_sign;
-        double radius = not_known, alike = 0;
+        double radius = not_known, alike = 0, middle = not_known;
         bool absurd = false;
     };
     std::vector<Source> sources;
@@ -222,13 +223,14 @@ void Motion::ground() {
     if (!grid_.carriage.empty()) sources.push_back({"carriage.speed_m_s", &grid_.carriage, true});
     const double known = grid_.speed_is_guessed ? not_known : machine_.wheel_radius_m;
     for (Source &source : sources) {
-        source.radius = radius_from(*source.speed, source.alike);
+        source.radius = radius_from(*source.speed, source.alike, source.middle);
         const double ratio = source.radius / known;
         const bool is_unit = unit_slip('v', ratio) != nullptr || unit_slip('w', 1 / ratio) != nullptr;
         source.absurd =
             std::isfinite(known) ? is_unit : source.radius < 0.012 || source.radius > 1.0; // [m] assumed: wheels of 24 mm to 2 m
         if (source.speed == &grid_.carriage) source.absurd = source.radius > 1.0;          // the carriage imposes slip: 0.9 is no mistake
         const bool judged = blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); // beside the camera
+        if (source.radius > known && source.middle < 2 * known) source.absurd = false; // wheels that are locked now and then
         if (judged || grid_.speed_is_guessed || !machine_.rolls_freely) source.absurd = false;
         if (source.has_sign && source.alike < -0.3) {
             add("sign", Severity::error, source.name, say("'%s' is negative when the wheels turn forwards", source.name),
@@ -364,6 +366,8 @@ void Motion::accel() {
         add("unit", Severity::error, "imu.accel_x_m_s2",
             say("the accelerometer reads %.3g of the acceleration that the camera sees: it looks like %s", line.a, slip->written),
             say("multiply it by %.6g", 1 / slip->factor), line.a);
+    } else if (line.a < 0 && (line.a > -0.5 || alike > -0.75)) {
+        return; // wheels that lock and spin swing against the body
     } else if (line.a < 0) {
         add("sign", Severity::error, "imu.accel_x_m_s2",
             say("the accelerometer is negative when the machine speeds up (slope %.3g)", line.a), "turn its sign round (map: sign = -1)",

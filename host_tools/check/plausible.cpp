@@ -168,7 +168,9 @@ void radius_scale(const Grid &grid, const Machine &machine, Findings &findings) 
     const double ratio = grid.effective_radius_m / machine.wheel_radius_m;
     if (!std::isfinite(ratio) || !machine.wheels_point_forward || !machine.rolls_freely || grid.speed_is_guessed) return;
     if (has_error(findings, "wheel") || has_error(findings, grid.ground_source)) return;
-    if (ratio < widest_scale && ratio > most_slip) return;
+    // wheels that are locked now and then are left behind: then half of the drive does not see it
+    const bool too_far = ratio > widest_scale && grid.middle_radius_m > 1.3 * machine.wheel_radius_m;
+    if (!too_far && ratio > most_slip) return;
     add(findings, "scale", grid.wheel.front().speed_column,
         say("over ground the machine moves %.3g times as far as its wheels roll with the known radius of %.4g m ('%s')", ratio,
             machine.wheel_radius_m, grid.ground_source.c_str()),

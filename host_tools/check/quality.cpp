@@ -103,8 +103,10 @@ void Quality::rate(const log::Signal &signal) {
     rate.jitter = (quantile(step, 0.95) - quantile(step, 0.05)) / (2 * rate.median_s);
     const bool said =
         std::any_of(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.id == "not_finite" && f.signal == signal.name; });
+    // a radar without a peak and a camera that is blocked give no sample: nothing is wrong with the log
+    const bool may_pause = signal.name == "radar.speed_m_s" || signal.name.rfind("camera.", 0) == 0;
     if (rate.missing > 0.03 && !said) {
-        add("samples_missing", rate.missing > 0.2 ? Severity::error : Severity::warning, signal.name,
+        add("samples_missing", rate.missing > 0.2 && !may_pause ? Severity::error : Severity::warning, signal.name,
             say("'%s' lacks %.0f %% of its samples (one every %.4g s expected)", signal.name.c_str(), 100 * rate.missing, rate.median_s),
             "look for an overloaded logger or a bad link; record again", rate.missing);
     } else if (rate.jitter > 0.3 && !said) {
@@ -321,8 +323,12 @@ void Quality::derived_speeds() {
     for (const Wheel &wheel : grid_.wheel) {
         if (speed == nullptr || wheel.speed.empty() || wheel.speed_column.find(".speed_rad_s") != std::string::npos) continue;
         log::Signal rate{wheel.speed_column, {}, {}};
+        std::vector<double> size = wheel.speed;
+        for (double &v : size) v = std::fabs(v);
+        const double creep = 0.02 * quantile(size, 0.98); // a count now and then
         for (std::size_t k = 0; k < grid_.count; ++k)
-            if (std::isfinite(wheel.speed[k])) rate.t_s.push_back(grid_.time(k)), rate.value.push_back(wheel.speed[k]);
+            if (std::isfinite(wheel.speed[k]))
+                rate.t_s.push_back(grid_.time(k)), rate.value.push_back(std::fabs(wheel.speed[k]) < creep ? 0 : wheel.speed[k]);
         if (rate.t_s.size() >= 40) dead_or_stuck(rate, *speed);
     }
 }

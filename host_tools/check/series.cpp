@@ -282,7 +282,7 @@ void add_ground_speed(Grid &grid, const Machine &machine) {
         if (!grid.gyro.empty() && std::fabs(grid.gyro[k]) > 0.3) continue;
         ratio.push_back(std::fabs(grid.ground_speed[k]) * n / size);
     }
-    if (ratio.size() >= 40) grid.effective_radius_m = quantile(ratio, 0.9);
+    if (ratio.size() >= 40) grid.effective_radius_m = quantile(ratio, 0.9), grid.middle_radius_m = quantile(ratio, 0.5);
 }
 
 } // namespace

@@ -47,6 +47,7 @@ struct Grid {
     std::vector<double> ground_speed;      // camera, else radar with the wheels' sign, else carriage; empty: unknown
     std::string ground_source;             // the column it comes from
     double effective_radius_m = not_known; // ground speed over wheel speed where slip is least
+    double middle_radius_m = not_known;    // the same, median
     double rad_per_count = not_known;      // of the encoders, by the machine, else by the header
     bool speed_is_guessed = false;         // counts of unknown size: wheel speeds are right but for one common factor
     std::vector<char> active;              // 1 where a wheel turns or is driven
