@@ -43,6 +43,7 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     }
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (diagnosis.kind == "nothing") outcome.exit_code = exit_negative;
+    if (diagnosis.kind == "wrong_model") outcome.exit_code = exit_bad_input;
     if (!request.apply) return;
     if (diagnosis.accepted.empty()) {
         std::printf("nothing to add: no model is written\n");

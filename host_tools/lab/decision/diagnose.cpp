@@ -1,6 +1,7 @@
 #include "diagnose.h"
 
 #include "classes.h"
+#include "doubt.h"
 #include "host_tools/lab/fit/screen.h"
 #include "shapes.h"
 #include "trial.h"
@@ -31,11 +32,13 @@ std::string figures(double value) {
 // Forward selection, round by round, then backward elimination, then structure-free shapes.
 class Search {
   public:
-    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), options_(options) { d_.model = model; }
+    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), stated_(model), options_(options) {
+        d_.model = model;
+    }
 
     Diagnosis run() {
         Problem problem = fitted(d_.model);
-        const Problem first = problem;
+        Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
             d_.ladder.push_back({d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem),
@@ -49,6 +52,8 @@ class Search {
         eliminate_backward(problem);
         if (options_.shapes) test_shapes(first, problem);
         conclude();
+        if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
+            name_nothing(d_, stated_, d->text);
         return std::move(d_);
     }
 
@@ -386,6 +391,7 @@ class Search {
 
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
+    const Model &stated_;
     const DiagnoseOptions &options_;
     Diagnosis d_;
     Columns::Cache cache_;

@@ -10,6 +10,13 @@ namespace traction::lab {
 
 namespace {
 
+constexpr double gross = 1.4;             // a data sheet, a ruler, a scale: none is wrong by that much
+constexpr double suspicious = 0.3;        // (1) of the worst balance, before effects
+constexpr double describes_nothing = 0.9; // (1) of the worst balance, with all that was accepted
+constexpr double several_names = 1.1;     // one wrong number is simpler than two effects
+constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
+constexpr double much_better = 0.5;       // of the error as stated
+
 // What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
 struct Datum {
     const char *table, *key, *name;
@@ -72,33 +79,91 @@ std::vector<double> misfits(const Problem &problem) {
     return out;
 }
 
-std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
-    std::vector<Suspect> out;
-    for (const Datum &datum : data_of_a_model) {
-        Suspect best;
-        for (const double start : {1.0, 0.2, 5.0, 0.01}) {
-            Model model = stated;
-            if (!set_free(model, datum, start)) break;
-            const Physics physics = make_physics(model);
-            Problem problem(data, physics, free_parameters(model, physics));
-            problem.fit({.iterations = 4});
-            const double error = overall_error(problem);
-            if (!best.quantity.empty() && !(error < best.error)) continue;
-            for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-                const FreeParameter &p = problem.parameters[i];
-                if (p.owner != datum.table || p.key != datum.key) continue;
-                Model as_is = stated;
-                best = {datum.name, values_of(as_is, datum).front()->value, p.base + problem.theta[static_cast<Eigen::Index>(i)], p.unit,
-                        error};
-                break;
-            }
+namespace {
+
+// The datum from `start` times what is stated; where it ends at the edge of what it may be, once more from there.
+Suspect gross_error(const Model &stated, const Dataset &data, const Datum &datum, double start) {
+    Suspect out;
+    Model as_is = stated;
+    for (int round = 0; round < 4; ++round) {
+        Model model = stated;
+        if (!set_free(model, datum, start)) return {};
+        const Physics physics = make_physics(model);
+        Problem problem(data, physics, free_parameters(model, physics));
+        problem.fit({.iterations = 3});
+        const double error = overall_error(problem), value = values_of(as_is, datum).front()->value;
+        double moved = 0, ratio = 1;
+        std::string unit;
+        for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+            const FreeParameter &p = problem.parameters[i];
+            if (p.owner != datum.table || p.key != datum.key) continue;
+            moved = p.base + problem.theta[static_cast<Eigen::Index>(i)], ratio = moved / p.base, unit = p.unit;
+            break;
         }
-        if (!best.quantity.empty()) out.push_back(best);
+        if (unit.empty() || !std::isfinite(error)) return out;
+        if (out.quantity.empty() || error < out.error) out = {datum.name, value, moved, unit, error};
+        if (ratio > 0.03 && ratio < 5.5) return out;
+        start *= ratio < 1 ? 0.05 : 5;
     }
-    std::stable_sort(out.begin(), out.end(), [](const Suspect &a, const Suspect &b) { return a.error < b.error; });
     return out;
 }
 
-std::optional<Doubt> doubt(const Model &, const Dataset &, const Problem &) { return {}; }
+bool is_gross(const Suspect &s) { return s.fitted < s.stated / gross || s.fitted > s.stated * gross; }
+
+} // namespace
+
+std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
+    std::vector<std::pair<Suspect, const Datum *>> found;
+    for (const Datum &datum : data_of_a_model)
+        if (Suspect s = gross_error(stated, data, datum, 1); !s.quantity.empty()) found.emplace_back(std::move(s), &datum);
+    const auto less = [](const auto &a, const auto &b) { return a.first.error < b.first.error; };
+    std::stable_sort(found.begin(), found.end(), less);
+    for (std::size_t i = 0; i < found.size() && i < 3; ++i) // a valley that a search from where it stands does not see
+        for (const double start : {0.25, 4.0})
+            if (Suspect s = gross_error(stated, data, *found[i].second, start); !s.quantity.empty() && s.error < found[i].first.error)
+                found[i].first = std::move(s);
+    std::stable_sort(found.begin(), found.end(), less);
+    std::vector<Suspect> out;
+    for (auto &[suspect, datum] : found) out.push_back(std::move(suspect));
+    return out;
+}
+
+std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &first, const Problem &last, std::size_t accepted,
+                           double shape_gain) {
+    const auto worst_of = [](const Problem &problem) {
+        const std::vector<double> m = misfits(problem);
+        return m.empty() ? 0.0 : *std::max_element(m.begin(), m.end());
+    };
+    const double before = overall_error(first), after = overall_error(last), worst = worst_of(last);
+    bool at_bound = false;
+    for (std::size_t i = 0; i < first.parameters.size(); ++i) at_bound = at_bound || first.at_bound(i);
+    if (!at_bound && worst_of(first) < suspicious && !(accepted >= 2 && before > 2 * after)) return std::nullopt;
+    Doubt out;
+    const double left = after * (1 - shape_gain);
+    for (Suspect &s : gross_errors(stated, data)) {
+        const double needed = accepted >= 2 ? several_names : one_name;
+        if (is_gross(s) && s.error < needed * left && s.error < much_better * before) out.suspects.push_back(std::move(s));
+    }
+    if (out.suspects.empty() && worst < describes_nothing) return std::nullopt;
+    char buffer[300];
+    if (out.suspects.empty()) {
+        std::snprintf(
+            buffer, sizeof buffer,
+            "as fitted it leaves %.0f %% of a measured signal. Look at the wheels' order and signs, radius, mass, units and gear, and "
+            "the ground's law",
+            100 * worst);
+        out.text = buffer;
+    } else {
+        for (std::size_t i = 0; i < out.suspects.size() && i < 3; ++i) {
+            const Suspect &s = out.suspects[i];
+            std::snprintf(buffer, sizeof buffer, "%s%s: %.4g %s would describe it (error %.3g x noise), the model has %.4g",
+                          i == 0 ? "Look first at " : "; or ", s.quantity.c_str(), s.fitted, s.unit == "1" ? "" : s.unit.c_str(), s.error,
+                          s.stated);
+            out.text += buffer;
+        }
+        out.text += "; then at units, gear, the wheels' order, and the ground's law";
+    }
+    return out;
+}
 
 } // namespace traction::lab

@@ -23,11 +23,8 @@ struct Suspect {
 };
 
 struct Doubt {
-    double misfit = 0;   // (1), root mean square over the balances
-    std::string balance; // the worst
-    double worst = 0;    // its (1)
-    std::optional<Suspect> suspect;
-    std::string text; // what to look at
+    std::vector<Suspect> suspects; // one of these grossly different would describe the log; least error first; may be empty
+    std::string text;              // what to look at
 };
 
 // (1) of every balance of a fitted problem.
@@ -36,7 +33,9 @@ std::vector<double> misfits(const Problem &problem);
 // Every datum of the model that a log can tell, each grossly free by itself; least error first.
 std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data);
 
-// `last`: the problem of the model with all that was accepted, fitted. Nothing where the model describes the log.
-std::optional<Doubt> doubt(const Model &stated, const Dataset &data, const Problem &last);
+// `first`: the model's problem, fitted within its priors. `last`: the same with all that was accepted, `accepted` effects; `shape_gain`:
+// share of the error that a structure-free shape takes off beside them, 0 for none. Nothing where the model describes the log.
+std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &first, const Problem &last, std::size_t accepted,
+                           double shape_gain);
 
 } // namespace traction::lab
