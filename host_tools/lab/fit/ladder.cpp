@@ -22,13 +22,32 @@ double overall_heldout(const Problem &problem) {
     return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0;
 }
 
+namespace {
+
+// What store() writes for each parameter: itself, and for a wheel's own difference the sum with what the wheels share.
+Eigen::MatrixXd stored_sums(const Problem &problem) {
+    const auto n = static_cast<Eigen::Index>(problem.parameters.size());
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Identity(n, n);
+    Eigen::Index shared = 0; // each wheel's own follow what they share
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const FreeParameter &p = problem.parameters[static_cast<std::size_t>(i)], &q = problem.parameters[static_cast<std::size_t>(shared)];
+        if (!p.own)
+            shared = i;
+        else if (p.owner == q.owner && p.key == q.key && !q.own)
+            sums(i, shared) = 1;
+    }
+    return sums;
+}
+
+} // namespace
+
 LadderStep fit_model(Model &model, const Dataset &data, const std::string &label) {
     const Physics physics = make_physics(model);
     Problem problem(data, physics, free_parameters(model, physics));
     problem.fit({.iterations = 10, .thorough = true});
     LadderStep step{label, overall_error(problem), overall_heldout(problem), 1};
     const Screen screen(problem);
-    const std::vector<ParameterError> errors = screen.parameter_errors();
+    const std::vector<ParameterError> errors = screen.errors_of(stored_sums(problem));
     for (std::size_t i = 0; i < problem.parameters.size(); ++i)
         store(model, problem.parameters[i], problem.theta[static_cast<Eigen::Index>(i)], errors[i].half_width);
     return step;

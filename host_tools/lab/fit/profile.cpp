@@ -15,8 +15,6 @@ constexpr double limit = 3.841459; // chi^2, one degree of freedom, 95 %
 constexpr int most_steps = 24;     // a side
 constexpr int chords = 8;
 
-std::string name_of(const FreeParameter &p) { return p.owner + "." + p.key + (p.wheel >= 0 ? " on wheel " + std::to_string(p.wheel) : ""); }
-
 // The best fit without one of its parameters, which is held where it is put.
 class Held {
   public:
@@ -233,7 +231,7 @@ std::vector<Eigen::Index> find_wanted(const Problem &problem, const Model &model
         bool found = false;
         for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
             const FreeParameter &p = problem.parameters[i];
-            if (name != p.owner && name != p.owner + "." + p.key && name != name_of(p)) continue;
+            if ((p.own || (name != p.owner && name != p.owner + "." + p.key)) && name != name_of(p)) continue;
             found = true;
             if (std::find(list.begin(), list.end(), static_cast<Eigen::Index>(i)) == list.end())
                 list.push_back(static_cast<Eigen::Index>(i));

@@ -179,6 +179,10 @@ Machine machine_of(const GeneratorConfig &config) {
     Random random(config.seed, 11);
     Machine machine = config.exact ? nominal(config.soil) : draw(config.soil, random);
     if (config.exact) machine.grip_noise = 0;
+    if (config.apart && !config.exact) {
+        Random wheel_random(config.seed, 15); // a stream of its own: the rest of the machine stays as it was
+        draw_apart(machine, WheelSpread(), wheel_random);
+    }
     return machine;
 }
 

@@ -19,6 +19,7 @@ struct GeneratorConfig {
     std::uint64_t seed = 1;       // machine, drive, ground and noise
     std::uint64_t noise_seed = 0; // another value: the same run with other sensor noise (a repeat run)
     std::vector<Setting> hidden;
+    bool apart = false; // every wheel drawn for itself (WheelSpread); false: the logs of the first blind sets, to the last digit
     bool exact = false; // nominal machine, no ground noise (for checks)
     bool quiet = false; // no sensor noise (for checks)
     bool camera = true, radar = true, battery = true;
@@ -30,6 +31,9 @@ log::Log generate(const GeneratorConfig &config);
 
 // The machine that `config` draws (the seal keeps it, so that a judge can tell which nuisance was off).
 Machine machine_of(const GeneratorConfig &config);
+
+// The model that the operator would write: the data sheet's values, one for all wheels, and its tolerances.
+std::string data_sheet(const GeneratorConfig &config);
 
 Soil soil_of(const std::string &name); // throws std::invalid_argument
 std::string name_of(Soil soil);

@@ -30,6 +30,12 @@ nlohmann::json seal_of(const BlindCase &blind) {
                        {"rolling_coefficient", m.rolling},
                        {"grip_noise", m.grip_noise},
                        {"grip_length_m", m.grip_length}};
+    if (blind.config.apart)
+        seal["machine"]["each"] = {{"torque_constant", m.KG_each},
+                                   {"resistance", m.Ra_each},
+                                   {"coulomb", m.coulomb_each},
+                                   {"viscous", m.viscous_each},
+                                   {"radius", m.radius_each}};
     for (const Setting &setting : blind.config.hidden) {
         const Kind *kind = find_kind(setting.name);
         nlohmann::json effect = {{"name", setting.name},
@@ -65,7 +71,7 @@ int run(int argc, char **argv) {
     CLI::App app{"Writes a log of a rover that the lab's authors did not model."};
     BlindCase blind;
     blind.category = "chosen";
-    std::string soil = "sand", out, seal;
+    std::string soil = "sand", out, seal, model;
     std::vector<std::string> effects;
     bool is_blind = false, list = false;
     app.add_option("--soil", soil, "sand, gravel or concrete");
@@ -74,24 +80,28 @@ int run(int argc, char **argv) {
     app.add_option("--noise-seed", blind.config.noise_seed, "the same run with other sensor noise");
     app.add_option("--duration", blind.config.duration_s, "seconds")->check(CLI::Range(1.0, 3600.0));
     app.add_option("--drive", blind.config.drive, "full, cruise, stairs or sweep");
+    app.add_flag("--apart", blind.config.apart, "every wheel drawn for itself; without it all wheels of a machine are alike");
     app.add_flag("--exact", blind.config.exact, "nominal machine, even ground");
     app.add_flag("--quiet", blind.config.quiet, "no sensor noise");
     app.add_flag("--truth", blind.config.truth, "add truth.* columns");
     app.add_flag("--blind", is_blind, "draw soil and what is hidden by the seed");
     app.add_option("--seal", seal, "write what is hidden to this JSON file");
+    app.add_option("--model", model, "write the operator's data sheet, a model file, here");
     app.add_option("--out", out, "the log (CSV)");
     app.add_flag("--list", list, "list what can be hidden");
     CLI11_PARSE(app, argc, argv);
     if (list) return list_kinds(), 0;
     if (out.empty()) throw std::invalid_argument("--out LOG is missing");
     if (is_blind) {
-        const std::uint64_t noise_seed = blind.config.noise_seed;
-        blind = draw_case(blind.config.seed, blind.config.duration_s);
-        blind.config.noise_seed = noise_seed;
+        const GeneratorConfig asked = blind.config;
+        blind = draw_case(asked.seed, asked.duration_s);
+        blind.config.noise_seed = asked.noise_seed;
+        blind.config.apart = asked.apart;
     } else {
         blind.config.soil = soil_of(soil);
         for (const std::string &effect : effects) blind.config.hidden.push_back(parse_setting(effect));
     }
+    if (!model.empty()) write_text(model, data_sheet(blind.config));
     if (!seal.empty()) write_text(seal, seal_of(blind).dump(1));
     log::write_csv(generate(blind.config), out);
     return 0;

@@ -66,6 +66,17 @@ Machine draw(Soil soil, Random &random) {
     return m;
 }
 
+void draw_apart(Machine &machine, const WheelSpread &spread, Random &random) {
+    const auto shares = [&](PerWheel &share, double relative) {
+        for (double &one : share) one = 1 + relative * std::clamp(random.normal(), -2.5, 2.5);
+    };
+    shares(machine.KG_each, spread.KG);
+    shares(machine.Ra_each, spread.Ra);
+    shares(machine.coulomb_each, spread.friction);
+    shares(machine.viscous_each, spread.friction);
+    shares(machine.radius_each, spread.radius);
+}
+
 GroundField::GroundField(double rms, double length_m, Random &random) : amplitude_(0) {
     constexpr int count = 48;
     for (int i = 0; i < count; ++i)
@@ -94,7 +105,7 @@ World::World(const Machine &machine, const Hidden &hidden, Random &random)
     }
     state_ = Vector::Zero(size);
     battery = m_.battery_V;
-    for (std::size_t i = 0; i < wheels; ++i) radius_[i] = m_.radius * (1 + h_.radius_change[i]);
+    for (std::size_t i = 0; i < wheels; ++i) radius_[i] = m_.radius * m_.radius_each[i] * (1 + h_.radius_change[i]);
     delayed_.assign(static_cast<std::size_t>(std::lround(h_.actuation_delay / h_s)), PerWheel{});
     set_loads();
 }
@@ -108,8 +119,9 @@ double World::shear(double s) const {
 double World::friction(int wheel_index, double w) const {
     const std::size_t i = at(wheel_index);
     const double theta = wheel[i].angle, size = std::fabs(w);
-    double g = m_.coulomb + h_.coulomb[i] + h_.friction_drift * t / 120 + (t > h_.friction_step_time ? h_.friction_step : 0);
-    g += (m_.viscous + h_.viscous[i]) * size + h_.friction_squared * size * size;
+    double g =
+        m_.coulomb * m_.coulomb_each[i] + h_.coulomb[i] + h_.friction_drift * t / 120 + (t > h_.friction_step_time ? h_.friction_step : 0);
+    g += (m_.viscous * m_.viscous_each[i] + h_.viscous[i]) * size + h_.friction_squared * size * size;
     g += h_.stribeck[i] * std::exp(-(w * w) / (h_.stribeck_speed[i] * h_.stribeck_speed[i]));
     g += h_.ripple_cos[i] * std::cos(h_.ripple_order[i] * theta) + h_.ripple_sin[i] * std::sin(h_.ripple_order[i] * theta);
     if (w < 0) g += h_.reverse_friction;
@@ -210,9 +222,9 @@ void World::step(const PerWheel &wanted) {
         drawn += std::fabs(duty[i] * wheel[i].current);
         current_now_[i] = wheel[i].current;
         const double hot = wheel[i].heat, constant = (1 + h_.constant_change[i]) * (1 - magnet_1_K * hot);
-        KG_[i] = m_.KG * constant;
-        ke_[i] = m_.ke * constant;
-        Ra_[i] = m_.Ra * (1 + copper_1_K * hot);
+        KG_[i] = m_.KG * m_.KG_each[i] * constant;
+        ke_[i] = m_.ke * m_.KG_each[i] * constant; // the same magnets
+        Ra_[i] = m_.Ra * m_.Ra_each[i] * (1 + copper_1_K * hot);
     }
     battery = m_.battery_V * (1 - 0.012 * t / 120) - m_.battery_ohm * drawn; // discharges 1.2 % in two minutes (assumed)
     for (std::size_t i = 0; i < wheels; ++i) voltage_[i] = duty[i] * battery;

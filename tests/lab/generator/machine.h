@@ -31,10 +31,20 @@ struct Machine {
     Soil soil = Soil::sand;
     double mu = 0, sc = 0, rolling = 0;
     double grip_noise = 0, grip_length = 0.2; // random field, relative rms and correlation length [m]
+    // each wheel's share of the value above; 1 where all wheels are alike
+    PerWheel KG_each{1, 1, 1, 1}, Ra_each{1, 1, 1, 1}, coulomb_each{1, 1, 1, 1}, viscous_each{1, 1, 1, 1}, radius_each{1, 1, 1, 1};
 };
 
 Machine nominal(Soil soil);
 Machine draw(Soil soil, Random &random); // 1-3 % off nominal, as machines of one type are
+
+// How far the wheels of one machine are from each other (standard deviations, relative): magnets and windings of one batch, grease and
+// bearings, rims. After issue 12; motor constants of a batch are within 1 to 3 %, resistances within 5 % of the sheet, friction differs
+// most.
+struct WheelSpread {
+    double KG = 0.01, Ra = 0.05, friction = 0.15, radius = 0.002;
+};
+void draw_apart(Machine &machine, const WheelSpread &spread, Random &random);
 
 // Grip over the ground: a sum of plane waves with Gaussian wave numbers, so Gaussian correlation (spectral method, Shinozuka).
 class GroundField {
