@@ -56,7 +56,8 @@ struct WheelInput {
 struct Dataset {
     double start_s = 0, step_s = 0.01; // grid: time[k] = start_s + k * step_s
     std::size_t count = 0;
-    bool independent_rows = false; // a table of steady states, not a time series
+    double standstill_rad_s = 0.15; // below it friction is indeterminate: the torque balance says nothing (inputs.h)
+    bool independent_rows = false;  // a table of steady states, not a time series
     std::vector<WheelInput> wheel;
     std::vector<double> yaw_rate_rad_s;       // empty when unknown
     std::vector<double> yaw_rad;              // empty when unknown: integral of the rate, or the camera's
