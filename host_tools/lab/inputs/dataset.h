@@ -71,6 +71,7 @@ struct Dataset {
     std::vector<std::string> messages; // what is missing and what that removes
     double smoothing_half_s = 0;       // half width of the encoder's parabolas, of the last wheel and before half_width_for() widens them
     double accel_bias_prior_m_s2 = 0;  // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
+    std::vector<double> run_start_s;   // where each run begins, of a data set of several (join_runs.h); empty: one run
     std::vector<std::string> despite;  // errors of the check that were overridden when the log was opened
     std::string log_file, scenario, date;
     double duration_s = 0;

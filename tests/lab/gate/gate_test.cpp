@@ -3,8 +3,11 @@
 #include "spoil.h"
 
 #include "host_tools/check/check.h"
+#include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/gate.h"
 #include "host_tools/lab/session.h"
+#include "host_tools/lab/validate.h"
 #include "tests/log/files.h"
 
 #include <gtest/gtest.h>
@@ -103,6 +106,38 @@ TEST(Gate, what_learns_refuses_and_goes_on_only_aloud) {
     EXPECT_EQ(session.data.despite, std::vector<std::string>{"sign"});
     EXPECT_TRUE(std::any_of(session.data.messages.begin(), session.data.messages.end(),
                             [](const std::string &m) { return m.rfind("DESPITE", 0) == 0; }));
+}
+
+// Two runs of one machine, one log cut in two: read together they are judged as the whole, and each is judged by what the other says.
+TEST(Runs, two_runs_are_one_data_set_and_judge_each_other) {
+    const Base &b = sound("counts");
+    log::Log halves[2] = {b.log, b.log};
+    for (int i = 0; i < 2; ++i)
+        for (log::Signal &s : halves[i].signals) {
+            log::Signal part{s.name, {}, {}};
+            for (std::size_t k = 0; k < s.t_s.size(); ++k)
+                if ((s.t_s[k] < 60) == (i == 0)) part.t_s.push_back(s.t_s[k]), part.value.push_back(s.value[k]);
+            s = std::move(part);
+        }
+    const test::File first("first.csv", ""), second("second.csv", ""), model("runs.toml", lab::model_text(b.model));
+    log::write_csv(halves[0], first.path()), log::write_csv(halves[1], second.path());
+    lab::Request request{.model = model.path(), .log = first.path(), .map = "", .repeat = ""};
+    request.logs = {second.path()};
+    const lab::Session session = lab::open_session(request);
+    ASSERT_EQ(session.data.run_start_s.size(), 2U);
+    EXPECT_NEAR(session.data.duration_s, b.log.duration_s(), 0.1);
+    const lab::Dataset whole = lab::make_dataset(session.model, b.log);
+    lab::Model joined_model = session.model, whole_model = session.model;
+    const lab::LadderStep joined = lab::fit_model(joined_model, session.data, "joined"),
+                          single = lab::fit_model(whole_model, whole, "whole");
+    EXPECT_NEAR(joined.train, single.train, 0.05 * single.train); // rows are lost where it is cut
+    const std::vector<lab::Validation> judged = lab::validate(session, request, session.model);
+    ASSERT_EQ(judged.size(), 2U);
+    for (const lab::Validation &v : judged) {
+        EXPECT_TRUE(v.left_out);
+        EXPECT_LT(v.fitted, 2 * single.train) << v.log; // the same machine, whose grip wanders
+        EXPECT_NEAR(v.fitted, v.result, 1e-9) << v.log; // no effect was added
+    }
 }
 
 TEST(Gate, a_wrong_model_gets_no_name) {
