@@ -250,6 +250,20 @@ void sign_without_voltage(const Wheel &wheel, Findings &findings) {
         "turn the sign of current or speed round (map: sign = -1)", law.b);
 }
 
+// A wheel that turns at one and the same speed, to the last digit, while its motor's current comes and goes: its encoder says nothing.
+void frozen_speed(const Wheel &wheel, Findings &findings) {
+    if (wheel.speed.empty() || wheel.current.empty() || has_error(findings, wheel.speed_column)) return;
+    double low = not_known, high = not_known, n = 0;
+    for (const double w : wheel.speed)
+        if (std::isfinite(w)) low = std::fmin(low, w), high = std::fmax(high, w), n += 1;
+    const double spread = quantile(wheel.current, 0.95) - quantile(wheel.current, 0.05), largest = quantile(wheel.current, 0.99);
+    if (n * step_s < 5 || low == 0 || high - low > 1e-9 * std::fabs(low) || !(spread > 0.3 * std::fabs(largest))) return;
+    findings.push_back(
+        {"dead_sensor", Severity::error, wheel.speed_column,
+         say("'%s' stands at %.5g through the whole drive while the current varies over %.3g A", wheel.speed_column.c_str(), low, spread),
+         "check its wiring; or take the column out of the log", low});
+}
+
 void negated_radar(const Grid &grid, Findings &findings) {
     if (grid.radar.empty() || has_error(findings, "radar")) return;
     if (!(quantile(grid.radar, 0.98) <= 0) || !(quantile(grid.radar, 0.02) < -0.02)) return;
@@ -273,7 +287,7 @@ void check_scales(const Grid &grid, const Machine &machine, Findings &findings) 
     odd_wheel(grid, machine, findings);
     radius_scale(grid, machine, findings);
     accel_scale(grid, machine, findings);
-    for (const Wheel &wheel : grid.wheel) sign_without_voltage(wheel, findings);
+    for (const Wheel &wheel : grid.wheel) sign_without_voltage(wheel, findings), frozen_speed(wheel, findings);
     negated_radar(grid, findings);
 }
 

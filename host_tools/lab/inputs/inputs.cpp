@@ -101,7 +101,7 @@ double InputBuilder::top_speed_rad_s() const {
 }
 
 bool InputBuilder::grid_and_wheels() {
-    if (const double top = top_speed_rad_s(); top > 0) data.standstill_rad_s = std::min(standstill_most_rad_s, standstill_share * top);
+    if (const double top = top_speed_rad_s(); top > 0) data.standstill_rad_s = standstill_share * top;
     const auto wheels = [this](double step_s) {
         data.wheel.assign(model.wheel.size(), {});
         if (!set_grid(step_s)) return false;

@@ -8,9 +8,9 @@
 
 namespace traction::lab {
 
-// Below this a wheel stands: friction is indeterminate there. A share of the log's own top speed, so that a linear axis whose radius is one
-// metre is read like the same axis with a radius of a decimetre; never more than a rover's, 0.15 rad/s.
-inline constexpr double standstill_share = 0.06, standstill_most_rad_s = 0.15;
+// Below this share of the log's own top speed a wheel stands: friction is indeterminate there. 0.15 rad/s of a small rover's 12, and a
+// linear axis whose radius is one metre is read like the same axis with a radius of a decimetre.
+inline constexpr double standstill_share = 0.0125;
 
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
