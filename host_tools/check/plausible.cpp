@@ -88,7 +88,7 @@ void odd_motor(const Grid &grid, Findings &findings) {
         const std::string current = "wheel" + std::to_string(one.wheel->index) + ".current_A";
         if (ke.size() < 2 || has_error(findings, one.wheel->speed_column) || has_error(findings, current)) continue;
         const double a = middle(ke) / one.law.a, b = middle(Ra) / one.law.b;
-        if (beyond(a, widest_scale))
+        if (beyond(a, 2)) // a wheel that a sweep drags was seen at 1.64
             add(findings, "scale", one.wheel->speed_column,
                 say("'%s' is %.3g times as large as its motor's back-EMF allows beside those of the other wheels",
                     one.wheel->speed_column.c_str(), a),
@@ -100,7 +100,7 @@ void odd_motor(const Grid &grid, Findings &findings) {
     }
 }
 
-// A current that has nothing to do with its motor: the winding that is left of it is far below the known one.
+// A current, or a speed, that has nothing to do with its motor: the winding, or the back-EMF, that is left is far below the known one.
 void stray_current(const Grid &grid, const Machine &machine, Findings &findings) {
     if (!std::isfinite(machine.resistance_ohm) || grid.speed_is_guessed) return;
     for (const Wheel &wheel : grid.wheel) {
@@ -108,6 +108,13 @@ void stray_current(const Grid &grid, const Machine &machine, Findings &findings)
         if (wheel.unsigned_current || !wheel.in_volts || wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty()) continue;
         if (has_error(findings, start) || has_error(findings, "battery")) continue;
         const Fit law = fit(wheel.voltage, wheel.speed, wheel.current);
+        if (law.good && std::isfinite(machine.back_emf_Vs) && law.a + 4 * law.error_a < machine.back_emf_Vs / widest_winding) {
+            add(findings, "unrelated", wheel.speed_column,
+                say("'%s' does not go with the voltage of its motor: a back-EMF of %.3g V s is left of %.3g", wheel.speed_column.c_str(),
+                    law.a, machine.back_emf_Vs),
+                "check that it is this wheel's speed, of this run and this time; or the model's back-EMF", law.a);
+            continue;
+        }
         if (!law.good || !(law.b + 4 * law.error_b < machine.resistance_ohm / widest_winding)) continue;
         add(findings, "unrelated", name,
             say("'%s' does not go with the voltage of its motor: a winding of %.3g ohm is left of %.3g", name.c_str(), law.b,

@@ -305,11 +305,16 @@ void Quality::jumps(const log::Signal &signal) {
     for (std::size_t i = 1; i < v.size(); ++i) gap.push_back(t[i] - t[i - 1]);
     const double usual = quantile(gap, 0.5);
     for (std::size_t i = 1; i < v.size(); ++i) rate.push_back(std::fabs(v[i] - v[i - 1]) / std::max(gap[i - 1], usual));
-    const double fast = quantile(rate, 0.99);
+    const auto alone = [&](std::size_t i) { // twenty times its neighbours
+        return (i == 0 || rate[i] > 20 * rate[i - 1]) && (i + 1 == rate.size() || rate[i] > 20 * rate[i + 1]);
+    };
+    double fast = 0; // of all steps that follow from one another
+    for (std::size_t i = 0; i < rate.size(); ++i)
+        if (!alone(i)) fast = std::max(fast, rate[i]);
     std::size_t count = 0, first = 0;
     for (std::size_t i = 0; i < rate.size(); ++i)
-        if (rate[i] > 20 * fast && fast > 0 && count++ == 0) first = i;
-    if (count == 0 || count > rate.size() / 100 + 1) return;
+        if (alone(i) && rate[i] > 5 * fast && fast > 0 && count++ == 0) first = i;
+    if (count == 0 || count > rate.size() / 10 + 1) return;
     add("counter_jump", Severity::error, signal.name,
         say("'%s' jumps by %.6g between two samples at t = %.3f s (%zu such jumps): a counter that overflowed or was reset",
             signal.name.c_str(), v[first + 1] - v[first], t[first + 1], count),
