@@ -25,7 +25,7 @@ const log::Log &hidden() { // one effect on one wheel and 100 s: what is named m
         config.soil = generator::Soil::concrete;
         config.seed = 77;
         config.duration_s = duration_s;
-        config.hidden = {generator::parse_setting("viscous_friction:coefficient=0.006,wheel=1")};
+        config.hidden = {generator::parse_setting("viscous_friction:coefficient_Nms=0.006,wheel=1")};
         return generator::generate(config);
     }();
     return log;
