@@ -86,7 +86,7 @@ void odd_motor(const Grid &grid, Findings &findings) {
         for (const One &other : all)
             if (other.wheel != one.wheel) ke.push_back(other.law.a), Ra.push_back(other.law.b);
         const std::string current = "wheel" + std::to_string(one.wheel->index) + ".current_A";
-        if (ke.size() < 2 || has_error(findings, one.wheel->speed_column) || has_error(findings, current)) continue;
+        if (ke.size() < 2 || has_error(findings, "wheel" + std::to_string(one.wheel->index) + ".")) continue;
         const double a = middle(ke) / one.law.a, b = middle(Ra) / one.law.b;
         if (beyond(a, 2)) // a wheel that a sweep drags was seen at 1.64
             add(findings, "scale", one.wheel->speed_column,
@@ -103,6 +103,7 @@ void odd_motor(const Grid &grid, Findings &findings) {
 // A current, or a speed, that has nothing to do with its motor: the winding, or the back-EMF, that is left is far below the known one.
 void stray_current(const Grid &grid, const Machine &machine, Findings &findings) {
     if (!std::isfinite(machine.resistance_ohm) || grid.speed_is_guessed) return;
+    if (std::any_of(findings.begin(), findings.end(), [](const Finding &f) { return f.id == "swapped_wheels"; })) return;
     for (const Wheel &wheel : grid.wheel) {
         const std::string start = "wheel" + std::to_string(wheel.index) + ".", name = start + "current_A";
         if (wheel.unsigned_current || !wheel.in_volts || wheel.voltage.empty() || wheel.speed.empty() || wheel.current.empty()) continue;
@@ -125,7 +126,8 @@ void stray_current(const Grid &grid, const Machine &machine, Findings &findings)
 
 // One wheel that turns against all the others of a machine that drives straight: its motor is mounted the other way round.
 void odd_wheel(const Grid &grid, const Machine &machine, Findings &findings) {
-    if (!machine.wheels_point_forward || grid.wheel.size() < 3 || has_error(findings, "wheel")) return;
+    // without a model three wheels may be an omni robot's
+    if (!machine.wheels_point_forward || grid.wheel.size() < (machine.wheel_y_m.empty() ? 4U : 3U) || has_error(findings, "wheel")) return;
     const double turns = 0.3 * std::fmax(std::fabs(quantile(grid.gyro, 0.98)), std::fabs(quantile(grid.gyro, 0.02)));
     const auto straight = [&](std::vector<double> speed) {
         for (std::size_t k = 0; k < speed.size() && !grid.gyro.empty(); ++k)

@@ -11,7 +11,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double gross = 1.4;             // a data sheet, a ruler, a scale: none is wrong by that much
-constexpr double suspicious = 0.3;        // (1) of the worst balance, before effects
+constexpr double suspicious = 0.15;       // (1) of the worst balance, before effects
 constexpr double describes_nothing = 0.9; // (1) of the worst balance, with all that was accepted
 constexpr double several_names = 1.1;     // one wrong number is simpler than two effects
 constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
@@ -145,7 +145,7 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     const double before = overall_error(first), after = overall_error(last), worst = worst_of(last);
     bool at_bound = false;
     for (std::size_t i = 0; i < first.parameters.size(); ++i) at_bound = at_bound || first.at_bound(i);
-    if (!at_bound && worst_of(first) < suspicious && !(accepted >= 2 && before > 2 * after)) return std::nullopt;
+    if (!at_bound && worst_of(first) < suspicious && !(accepted >= 2 && before > 1.3 * after)) return std::nullopt;
     Doubt out;
     const double left = after * (1 - shape_gain);
     for (Suspect &s : gross_errors(stated, data)) {
