@@ -35,10 +35,19 @@ endfunction()
 function(traction_headers name)
   target_precompile_headers(${name} PRIVATE ${ARGN})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>) # lets ccache see the header's contents
+    set(options $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>) # lets ccache see the header's contents
   else()
-    target_compile_options(${name} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
+    set(options "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
   endif()
+  target_compile_options(${name} PRIVATE ${options})
+  set_target_properties(${name} PROPERTIES TRACTION_HEADER_OPTIONS "${options}")
+endfunction()
+
+# traction_same_headers(NAME OTHER): the headers that OTHER has read, compiled with the same options.
+function(traction_same_headers name other)
+  target_precompile_headers(${name} REUSE_FROM ${other})
+  get_target_property(options ${other} TRACTION_HEADER_OPTIONS)
+  target_compile_options(${name} PRIVATE ${options})
 endfunction()
 
 # traction_waits(NAME): this target waits for people, files and its libraries, so its code is compiled for a short build.

@@ -35,6 +35,7 @@ void add_effect(const AddRequest &request, Outcome &outcome) {
     outcome.json = lab::head_json("add", added.model, session.data);
     lab::put_comparison(outcome.json, lab::compare(added.model, session.data, true));
     outcome.json["ladder"] = lab::ladder_json(added.ladder);
+    outcome.json["limits"] = lab::limits_json(added.limits);
     outcome.json["verdict"] = {{"kind", added.helps ? "named" : "nothing"}, {"effects", {request.effect}}, {"text", added.text}};
     const std::vector<lab::Validation> validation = lab::validate(session, request.input, added.model);
     std::fputs(lab::validation_text(validation).c_str(), stdout);

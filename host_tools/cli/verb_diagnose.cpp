@@ -53,7 +53,7 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     if (!request.apply) return;
     if (diagnosis.accepted.empty()) {
         std::printf("nothing to add: no model is written\n");
-        outcome.exit_code = exit_negative;
+        if (diagnosis.kind != "wrong_model") outcome.exit_code = exit_negative;
         return;
     }
     lab::Model model = diagnosis.model;

@@ -44,7 +44,7 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
     Keys keys(table, file, "ground");
     Ground &ground = scenario.plant.ground;
     read_soil(keys, ground.soil);
-    constexpr std::array<std::string_view, 3> laws{"aggregated", "bekker", "arc"};
+    constexpr std::array<std::string_view, 3> laws{"aggregated", "bekker", "arc"}; // ContactLaw, in its order
     ground.contact = static_cast<ContactLaw>(keys.word("contact", "aggregated", laws));
     ground.gradient_1_m = keys.number("gradient_1_m", 0, {-1, 1});
     ground.gradient_direction_rad = keys.number("gradient_direction_rad", 0, {-10, 10});
@@ -52,10 +52,6 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
     ground.slope_direction_rad = keys.number("slope_direction_rad", 0, {-10, 10});
     ground.grip_noise = keys.number("grip_noise", ground.soil.law == TractionLaw::janosi ? 0.06 : 0.02, {0, 0.5});
     ground.grip_length_m = keys.number("grip_length_m", ground.grip_length_m, {0.02, 10});
-    constexpr std::string_view contact_names[] = {"aggregated", "bekker", "arc"}; // ContactLaw, in its order
-    ground.contact = static_cast<ContactLaw>(keys.word("contact", "aggregated", contact_names));
-    ground.gradient_1_m = keys.number("gradient_1_m", 0, {-1, 1});
-    ground.gradient_direction_rad = keys.number("gradient_direction_rad", 0, {-10, 10});
     if (keys.has("seed")) scenario.ground_seed = static_cast<std::uint64_t>(keys.integer("seed", 1, 0, INT64_MAX));
     if (const toml::array *list = keys.tables("patch"))
         for (std::size_t i = 0; i < list->size(); i++)

@@ -5,6 +5,7 @@
 #include "sim_bench_rival.h"
 
 #include "host_tools/log/log.h"
+#include "host_tools/log/write_file.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/plant/plant.h"
 
@@ -16,8 +17,8 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -102,10 +103,7 @@ void print_profile(const std::vector<Case> &list) {
 }
 
 void write_json(const std::vector<Case> &list, const char *path) {
-    const std::string part = std::string(path) + ".part";
-    std::ofstream out;
-    out.exceptions(std::ios::failbit | std::ios::badbit);
-    out.open(part);
+    std::ostringstream out;
     out << "{\"schema\": \"traction.bench_sim/1\", \"unit\": \"simulated seconds per CPU second\", \"cases\": [";
     for (std::size_t i = 0; i < list.size(); ++i) {
         out << (i == 0 ? "" : ",") << "\n  {\"name\": \"" << list[i].name << "\", \"median\": " << list[i].median();
@@ -113,8 +111,7 @@ void write_json(const std::vector<Case> &list, const char *path) {
         out << "}";
     }
     out << "\n]}\n";
-    out.close();
-    std::filesystem::rename(part, path);
+    log::write_file(out.str(), path);
 }
 
 } // namespace

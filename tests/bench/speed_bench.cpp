@@ -4,6 +4,7 @@
 // usage: speed_bench [--seeds N] [--json FILE] [--brief]; brief: the first table alone. `traction bench speed` runs it.
 // Scored from 4 s on, when the slowest method has its first fix. Exit 1 when a goal of ours is missed on either radar.
 #include "firmware/core/rover_config.h"
+#include "host_tools/log/write_file.h"
 #include "sim/sensors/radar.h"
 #include "tests/unit/clutter.h"
 
@@ -11,7 +12,7 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <functional>
 #include <string>
 
 namespace {
@@ -291,7 +292,7 @@ int main(int argc, char **argv) {
     }
     json["goals_met"] = met;
     if (!json_file.empty()) {
-        std::ofstream(json_file) << json.dump(1) << '\n';
+        traction::log::write_file(json.dump(1) + "\n", json_file);
     }
     return met ? 0 : 1;
 }

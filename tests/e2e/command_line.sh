@@ -38,6 +38,7 @@ says 2 "no effect 'slip_sinkge'; did you mean 'slip_sinkage'?" simulate cruise -
 says 2 "no effect 'bcklash'; did you mean 'backlash'?" effects bcklash
 says 2 "no effect 'bcklash'; did you mean 'backlash'?" next --model rover_sand --effects bcklash
 says 2 "there is no 'lap'; did you mean 'lab'?" bench lap
+says 2 "--logs 0: give 1 to" bench lab --logs 0
 says 2 "needs LOG or --log LOG" compare --model rover_sand
 says 2 "give a whole number" simulate cruise --seed x
 says 2 "is given twice" check a.csv --log b.csv
@@ -161,6 +162,10 @@ if grep -q '"fault_names": ""' fault.json; then want=0; else want=1; fi
 sed 's/^name = .*/name = "cut off"/' "$root/scenarios/cruise.toml" >fault.toml
 printf '\n[[fault]]\nwhat = "emergency_stop"\nfrom_s = 2\nto_s = 60\n' >>fault.toml
 gives 1 "ended with a latched fault: emergency stop" simulate fault.toml
+
+# a benchmark is a program of its own: its table, its JSON and its exit code come through
+gives 0 '"schema": "traction.bench_lab/1"' bench lab --logs 1 --duration 20 --json -
+grep -q '1 sealed logs, generator: independent, 20 s each' stderr.txt || bad "bench lab shows no table: $(cat stderr.txt)"
 
 # pages
 gives 0 "^traction [0-9.]* (commit " --version

@@ -11,14 +11,18 @@ std::string verdict_text(const Diagnosis &d) {
     std::string names;
     for (const CandidateResult &a : d.accepted) names += (names.empty() ? "" : " and ") + a.candidate.label();
     if (d.kind == "nothing") {
-        std::snprintf(buffer, sizeof buffer,
-                      "Nothing found that the log supports; the error stands at %.2f x noise. %zu effects could not have been seen in it.",
-                      before, d.not_excited.size());
+        std::snprintf(
+            buffer, sizeof buffer,
+            "Nothing found that the log supports; the held-out error stands at %.2f x noise (%.2f in the fit). %zu effects could not "
+            "have been seen in it.",
+            before, d.ladder.empty() ? 0 : d.ladder.front().train, d.not_excited.size());
         return buffer;
     }
     std::string text;
     if (!names.empty()) {
-        std::snprintf(buffer, sizeof buffer, "The model lacks %s: held-out error %.3f -> %.3f x noise.", names.c_str(), before, after);
+        std::snprintf(buffer, sizeof buffer,
+                      "The model lacks %s: held-out error %.3f -> %.3f x noise (5 s blocks, each predicted by a refit to the others).",
+                      names.c_str(), before, after);
         text = buffer;
     }
     for (const ConfoundedClass &c : d.classes) {

@@ -1,5 +1,6 @@
 #include "profile.h"
 
+#include "identify.h"
 #include "problem.h"
 #include "screen.h"
 
@@ -257,6 +258,11 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const std::vector<Eigen::Index> list = find_wanted(best, model, wanted);
     for (int i = 0; i < 3; ++i) best.fit({.iterations = 10, .thorough = true}); // until the scales no longer depend on where the fit began
     best.fit({.iterations = 10, .reweight = false, .thorough = true});          // to the optimum of the scales that the profile keeps
+    for (const Eigen::Index i : list)
+        if (!wanted.empty() && is_dead(best, static_cast<std::size_t>(i)))
+            throw ModelError(model.file, 0, "--profile",
+                             name_of(best.parameters[static_cast<std::size_t>(i)]) + " changes nothing that this log holds",
+                             "ask for another parameter, or drive so that it matters");
     const std::vector<ParameterError> errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();

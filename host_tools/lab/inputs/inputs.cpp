@@ -149,6 +149,12 @@ bool InputBuilder::set_grid(double step_s) {
     data.independent_rows = model.motion == BodyMotion::imposed && period >= 0.5;
     data.start_s = first;
     data.step_s = data.independent_rows ? period : std::max(step_s, (last - first) / 30000);
+    if (!data.independent_rows && data.step_s > step_s) {
+        char text[160];
+        std::snprintf(text, sizeof text, "the log is %.0f s long: the model is integrated in steps of %.0f ms, not %.0f ms", last - first,
+                      1e3 * data.step_s, 1e3 * step_s);
+        say(text);
+    }
     data.count = static_cast<std::size_t>((last - first) / data.step_s + 1e-6) + 1;
     data.gap.assign(data.count, 0);
     return data.count >= 3;

@@ -16,7 +16,7 @@ std::string value(const char *key, double value, double relative, const char *so
 } // namespace
 
 std::string data_sheet(const GeneratorConfig &config) {
-    const Machine m = nominal(config.soil);
+    const Machine m = nominal(config.soil, config.size);
     const bool apart = config.apart; // a sheet that knows of wheels that differ states what batches of motors and bearings state
     char line[400];
     std::string text = "format = \"traction.model/1\"\nname = \"campaign rover on " + name_of(config.soil) +
@@ -41,9 +41,10 @@ std::string data_sheet(const GeneratorConfig &config) {
     text += value("mu", m.mu, 0.065, "table");
     text += value("shear_slip", m.sc, 0.11, "table");
     text += value("rolling_coefficient", m.rolling, 0.003 / m.rolling, "assumed");
-    text += "\n[sensors.encoder]\ncounts_per_turn = 6000\n[sensors.current]\nnoise_A = 0.015\n[sensors.accel]\nnoise_m_s2 = 0.2\n"
-            "bias_m_s2 = { value = 0, prior = 0.05, source = \"data sheet\" }\n[sensors.radar]\nwindow_s = 0.5\nminimum_m_s = 0.05\n"
-            "[sensors.camera]\nnoise_m = 0.001\n";
+    std::snprintf(line, sizeof line, "\n[sensors.encoder]\ncounts_per_turn = 6000\n[sensors.current]\nnoise_A = %.4g\n", m.current_noise_A);
+    text += line;
+    text += "[sensors.accel]\nnoise_m_s2 = 0.2\nbias_m_s2 = { value = 0, prior = 0.05, source = \"data sheet\" }\n[sensors.radar]\n"
+            "window_s = 0.5\nminimum_m_s = 0.05\n[sensors.camera]\nnoise_m = 0.001\n";
     return text;
 }
 

@@ -1,0 +1,1 @@
+// json_headers.cpp - nothing: the target of this file is its precompiled header (CMakeLists.txt).
