@@ -20,6 +20,7 @@ struct Suspect {
     double stated = 0, fitted = 0;
     std::string unit;
     double error = 0; // of the model so changed, with no effect, in units of noise
+    double gross = 0; // ratio from which it is no tolerance
 };
 
 struct Doubt {
