@@ -312,11 +312,11 @@ void Quality::jumps(const log::Signal &signal) {
     for (std::size_t i = 0; i < rate.size(); ++i)
         if (!alone(i)) fast = std::max(fast, rate[i]);
     const auto [low, high] = std::minmax_element(v.begin(), v.end());
-    // what overflows has run through its range, what is reset through most of it; a wheel that hardly turned says nothing
+    // five times as fast as any other step, alone, and no small part of the whole; a wheel that hardly turned says nothing
     const double half_radian = signal.name.find(".angle_rad") != std::string::npos ? 0.5
                                : std::isfinite(grid_.rad_per_count)                ? 0.5 / grid_.rad_per_count
                                                                                    : 200;
-    const double large = std::max(0.3 * (*high - *low), half_radian);
+    const double large = std::max(0.02 * (*high - *low), half_radian);
     std::size_t count = 0, first = 0;
     for (std::size_t i = 0; i < rate.size(); ++i)
         if (alone(i) && rate[i] > 5 * fast && fast > 0 && std::fabs(v[i + 1] - v[i]) > large && count++ == 0) first = i;
