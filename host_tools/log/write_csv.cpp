@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <set>
@@ -12,7 +13,35 @@ namespace traction::log {
 
 namespace {
 
+// Nearly every value is a whole number of millionths (recorder.h): its digits are those of a whole number. The text is that of
+// std::to_chars all the same; where that would write an exponent, or in doubt, it does the work.
+bool append_millionths(std::string &text, double value) {
+    const double size = std::fabs(value);
+    if (size == 0 && !std::signbit(value)) {
+        text += '0';
+        return true;
+    }
+    if (!(size >= 1e-3 && size < 1e9)) return false;
+    const auto whole = static_cast<std::uint64_t>(size * 1e6 + 0.5);
+    if (static_cast<double>(whole) / 1e6 != size) return false;
+    std::uint64_t above = whole / 1000000, below = whole % 1000000;
+    if (below == 0 && above >= 100000 && above % 10 == 0) return false; // 1e+05 is shorter
+    char buffer[24], *first = buffer + sizeof buffer;
+    if (below != 0) {
+        int places = 6;
+        for (; below % 10 == 0; below /= 10) --places;
+        for (; places > 0; --places, below /= 10) *--first = static_cast<char>('0' + below % 10);
+        *--first = '.';
+    }
+    do *--first = static_cast<char>('0' + above % 10);
+    while ((above /= 10) != 0);
+    if (value < 0) *--first = '-';
+    text.append(first, buffer + sizeof buffer);
+    return true;
+}
+
 void append_number(std::string &text, double value) {
+    if (append_millionths(text, value)) return;
     char buffer[32];
     const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
     text.append(buffer, end);

@@ -155,10 +155,13 @@ SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const So
     Nodes depth, sigma, limit, tau, free_tau;
     node_depths(arc, (place < 0.95 ? place : 0.95) * arc.entry_rad, z, depth);
     for (std::size_t i = 0; i < arc_nodes; ++i) sigma[i] = k * math::exp(n * math::log(depth[i]));
-    if (contact.rut_m > 0) {
+    if (contact.rut_m >
+        0) { // (5) up to the old depth, and what the slip and the contact's length make of (1) there; beyond it the soil is new
         const double reload = reload_N_m3(soil, constants.k_wide, contact.rut_m);
+        const double now = k * math::pow(contact.rut_m, n) / (constants.k_wide * math::pow(contact.rut_m, soil.n));
         for (std::size_t i = 0; i < arc_nodes; ++i) {
-            const double again = depth[i] > surface ? reload * (depth[i] - surface) : 0;
+            if (depth[i] >= contact.rut_m) continue;
+            const double again = depth[i] > surface ? now * reload * (depth[i] - surface) : 0;
             sigma[i] = again < sigma[i] ? again : sigma[i];
         }
     }

@@ -10,8 +10,16 @@ double faster(const ContactInput &in) { return std::max(std::fabs(in.rim_m_s), s
 } // namespace
 
 SlipChange slip_step(const ContactInput &in, ContactState &state, double dt_s) {
+    constexpr double fast_m_s = 0.05, slow_m_s = 0.001, springy = 0.2; // (4), assumed
+    const double speed = faster(in), total = total_slip(state), kept = springy * in.shear_slip;
+    if (speed < state.speed_m_s && speed < fast_m_s && total > kept) { // (4)
+        const double share = (speed + slow_m_s) / (std::min(state.speed_m_s, fast_m_s) + slow_m_s);
+        const double scale = (kept + (total - kept) * share) / total;
+        state.slip *= scale, state.side_slip *= scale;
+    }
+    state.speed_m_s = speed;
     const double before = state.slip, side_before = state.side_slip;
-    const double share = dt_s / in.relaxation_m, keep = 1 / (1 + share * faster(in));
+    const double share = dt_s / in.relaxation_m, keep = 1 / (1 + share * speed);
     // beyond full sliding the state carries no more force: let it not wind up at rest
     const double full = 8 * in.shear_slip + 2;
     state.slip = std::clamp((before + share * (in.rim_m_s - in.along_m_s)) * keep, -full, full);
@@ -46,6 +54,16 @@ ContactForce contact_force(const ContactInput &in, const ContactState &state, co
     }
     force.across_N *= in.side_ratio;
     return force;
+}
+
+double rolling_step(ContactState &state, double along_m_s, double resistance_N, double load_kg, double dt_s) {
+    constexpr double stretch_m = 2e-4, damping_ratio = 0.3; // assumed: below any sensor's resolution; as in contact_force
+    const double before = state.rolling, share = dt_s / stretch_m;
+    state.rolling = std::clamp((before + share * along_m_s) / (1 + share * std::fabs(along_m_s)), -1.0, 1.0);
+    if (resistance_N <= 0) return state.rolling;
+    const double damping = 2 * damping_ratio * std::sqrt(resistance_N / stretch_m * load_kg);
+    const double rate_m_s = (state.rolling - before) * stretch_m / dt_s;
+    return std::clamp(state.rolling + damping * rate_m_s / resistance_N, -1.0, 1.0);
 }
 
 ContactForce contact_step(const ContactInput &in, ContactState &state, double dt_s) {

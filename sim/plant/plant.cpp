@@ -37,7 +37,7 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g) 
 
 } // namespace
 
-Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)) {
+Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
     start_ode();
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2);
     world = dWorldCreate();
@@ -193,10 +193,10 @@ void Plant::World::step() {
         const double along = dot(after, a.heading);
         const double to_body = dot(a.force, after);
         const double vertical = a.force[2] * after[2];
-        const double rolling = a.resist_N * along;
+        const double rolling = a.resist_N * along, edge = a.edge_N * along;
         energy.rolling += rolling * dt;
-        energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling)) * dt;
-        energy.body -= vertical * dt;
+        energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling - edge)) * dt;
+        energy.body -= (vertical + edge) * dt;
     }
     const Vec3 velocity = mean_velocity();
     energy.body -= 0.5 * (dot(push, velocity) + dot(push, push_velocity)) * dt;
@@ -271,8 +271,9 @@ std::uint64_t Plant::state_hash() const {
         }
     for (std::size_t i = 0; i < wheel_count; ++i) {
         const DriveState &d = world_->drive[i];
-        for (const double value : {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A, d.heat_K,
-                                   world_->contact[i].slip, world_->contact[i].side_slip})
+        for (const double value :
+             {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A, d.heat_K,
+              world_->contact[i].slip, world_->contact[i].side_slip, world_->contact[i].rolling, world_->contact[i].speed_m_s})
             mix(value);
     }
     for (const RutTrace &trace : world_->trace) mix(trace.found_m()), mix(trace.deepest_m());

@@ -1,13 +1,12 @@
 #include "rut.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 namespace traction::sim {
 
 namespace {
-
-constexpr double cell_m = 0.02; // half a contact length: assumed
 
 // splitmix64's finaliser
 std::uint64_t mix(std::uint64_t x) {
@@ -16,60 +15,89 @@ std::uint64_t mix(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
+double squared(double x_m, double y_m) { return x_m * x_m + y_m * y_m; }
+
+// Far enough from both ends to be found.
+bool is_left(const RutPiece &piece, double x_m, double y_m, double width_m) {
+    const double far2 = width_m * width_m;
+    return squared(piece.x0_m - x_m, piece.y0_m - y_m) > far2 && squared(piece.x1_m - x_m, piece.y1_m - y_m) > far2;
+}
+
 } // namespace
 
-RutMemory::RutMemory() : slots_(1024) {}
+// A piece lies in the cell of its second end: whatever is near enough to count lies in the nine cells around.
+RutMemory::RutMemory(double width_m) : width_m_(width_m), cell_m_(width_m + 2 * RutTrace::piece_m) {}
 
-std::uint64_t RutMemory::cell(double x_m, double y_m) {
-    const auto index = [](double place_m) {
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(place_m / cell_m + 0.5)) + 0x40000000) & 0xffffffffu;
+std::uint64_t RutMemory::cell(double x_m, double y_m, int right, int up) const {
+    const auto index = [this](double place_m, int more) {
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(place_m / cell_m_)) + more) & 0xffffffffu;
     };
-    return (index(x_m) << 32) | index(y_m);
+    return (index(x_m, right) << 32) | index(y_m, up);
 }
 
-std::size_t RutMemory::find(std::uint64_t cell) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t i = static_cast<std::size_t>(mix(cell)) & mask;
-    while (slots_[i].cell != 0 && slots_[i].cell != cell) i = (i + 1) & mask;
-    return i;
+void RutMemory::add(const RutPiece &piece) {
+    near_[cell(piece.x1_m, piece.y1_m, 0, 0)].push_back(static_cast<std::uint32_t>(pieces_.size()));
+    pieces_.push_back(piece);
 }
 
-double RutMemory::depth(std::uint64_t cell) const { return slots_[find(cell)].depth_m; }
-
-void RutMemory::mark(std::uint64_t cell, double depth_m) {
-    std::size_t i = find(cell);
-    if (slots_[i].cell == 0) {
-        if (2 * (used_ + 1) > slots_.size()) {
-            std::vector<Slot> old(2 * slots_.size());
-            old.swap(slots_);
-            for (const Slot &slot : old)
-                if (slot.cell != 0) slots_[find(slot.cell)] = slot;
-            i = find(cell);
+double RutMemory::depth(double x_m, double y_m) const {
+    double found = 0;
+    const double reach2 = width_m_ * width_m_;
+    for (int right = -1; right <= 1; ++right)
+        for (int up = -1; up <= 1; ++up) {
+            const auto list = near_.find(cell(x_m, y_m, right, up));
+            if (list == near_.end()) continue;
+            for (const std::uint32_t i : list->second) {
+                const RutPiece &p = pieces_[i];
+                const double dx = p.x1_m - p.x0_m, dy = p.y1_m - p.y0_m, length2 = squared(dx, dy);
+                const double along = length2 > 0 ? ((x_m - p.x0_m) * dx + (y_m - p.y0_m) * dy) / length2 : 0;
+                const double share = std::clamp(along, 0.0, 1.0);
+                const double apart2 = squared(x_m - (p.x0_m + share * dx), y_m - (p.y0_m + share * dy));
+                if (apart2 >= reach2) continue;
+                const double overlap = 1 - std::sqrt(apart2) / width_m_; // (1)
+                found = std::max(found, overlap * (p.depth0_m + share * (p.depth1_m - p.depth0_m)));
+            }
         }
-        slots_[i].cell = cell;
-        ++used_;
-    }
-    if (depth_m > slots_[i].depth_m) slots_[i].depth_m = depth_m;
+    return found;
 }
 
 std::uint64_t RutMemory::hash() const {
     std::uint64_t sum = 0;
-    for (const Slot &slot : slots_)
-        if (slot.cell != 0) sum ^= mix(slot.cell ^ mix(std::bit_cast<std::uint64_t>(slot.depth_m)));
+    for (const RutPiece &p : pieces_)
+        for (const double value : {p.x0_m, p.y0_m, p.depth0_m, p.x1_m, p.y1_m, p.depth1_m})
+            sum = mix(sum ^ std::bit_cast<std::uint64_t>(value));
     return sum;
 }
 
-double RutTrace::follow(RutMemory &memory, double x_m, double y_m, double sinkage_m, double travel_m) {
-    const std::uint64_t here = RutMemory::cell(x_m, y_m);
-    if (here != cell_) {
-        if (cell_ != 0) memory.mark(cell_, deepest_m_);
-        cell_ = here;
-        target_m_ = memory.depth(here);
-        deepest_m_ = 0;
+void RutTrace::lay(RutMemory &memory, double x_m, double y_m) {
+    const RutPiece piece{last_.x0_m, last_.y0_m, last_.depth0_m, x_m, y_m, deepest_m_};
+    if (piece.depth0_m > found_m_ || piece.depth1_m > found_m_) waiting_.push_back(piece); // else it rolls in a deeper rut
+    last_.x0_m = x_m, last_.y0_m = y_m, last_.depth0_m = deepest_m_;
+    constexpr std::size_t most = 64; // a wheel that rocks on the spot: the oldest count as left
+    for (std::size_t i = 0; i < waiting_.size();) {
+        if (!is_left(waiting_[i], x_m, y_m, memory.width_m()) && waiting_.size() <= most) {
+            ++i;
+            continue;
+        }
+        memory.add(waiting_[i]);
+        waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    if (sinkage_m > deepest_m_) deepest_m_ = sinkage_m;
-    const double share = std::fabs(travel_m) / (0.5 * cell_m);
-    found_m_ += (target_m_ - found_m_) * (share < 1 ? share : 1);
+}
+
+double RutTrace::follow(RutMemory &memory, double x_m, double y_m, double sinkage_m) {
+    if (!started_) {
+        last_ = {x_m, y_m, sinkage_m, x_m, y_m, sinkage_m};
+        started_ = true;
+    }
+    path_m_ += std::sqrt(squared(x_m - last_.x1_m, y_m - last_.y1_m));
+    last_.x1_m = x_m, last_.y1_m = y_m;
+    deepest_m_ = std::max(deepest_m_, sinkage_m);
+    if (path_m_ >= piece_m) {
+        lay(memory, x_m, y_m);
+        path_m_ = 0, deepest_m_ = sinkage_m;
+        from_m_ = found_m_, to_m_ = memory.depth(x_m, y_m);
+    }
+    found_m_ = from_m_ + (to_m_ - from_m_) * std::min(path_m_ / piece_m, 1.0);
     return found_m_;
 }
 

@@ -18,6 +18,7 @@ struct WheelTruth {
     double duty = 0;              // as applied by the bridge, -1..1
     double traction_N = 0;        // Ft of (2), along the wheel's heading, on the rover
     double rolling_N = 0;         // Rr of (2), >= 0
+    double rolling_share = 0;     // how much of it acts: 1 rolling ahead, -1 back, between at rest, where it holds
     double lateral_N = 0;         // on the rover, along body y
     double normal_N = 0;          // Fn, >= 0
     double slip = 0;              // slip state, (1) extended

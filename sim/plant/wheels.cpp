@@ -29,41 +29,121 @@ Plant::World::Meeting Plant::World::meet_aggregated(int i, ContactInput in, cons
     return out;
 }
 
-Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point,
+namespace {
+
+// What the ground gives a wheel, at one sinkage and slip.
+struct Given {
+    SoilForce soil;
+    double by_slip_N = 0, twist_Nm = 0; // the part of traction and torque that is due to slip, >= 0
+    double side_ratio = 1;
+};
+
+// Ground that does not sink: (20) or (21) on the wheel's own spring.
+Given on_firm(const Soil &soil, const RoverParameters &r, const SoilWheel &wheel, double sinkage_m, double total) {
+    Given out;
+    out.soil.normal_N = r.contact_stiffness_N_m * sinkage_m;
+    out.soil.largest_N = wheel.strength * (soil.adhesion_N + soil.fm_per_fn * out.soil.normal_N);
+    out.soil.shear_slip = wheel.shear * soil.shear_slip;
+    out.soil.resistance_N = soil.rolling_coefficient * out.soil.normal_N;
+    out.by_slip_N = out.soil.largest_N * traction_share(soil.law, total, out.soil.shear_slip);
+    out.twist_Nm = wheel.radius_m * out.by_slip_N;
+    out.side_ratio = out.soil.largest_N > 0 ? wheel.strength * soil.lateral_coefficient * out.soil.normal_N / out.soil.largest_N : 1;
+    return out;
+}
+
+// `still`: 0 rolling .. 0.5 at rest, where the arc law's two directions are met halfway.
+Given on_soft(const Soil &soil, const SoilConstants &constants, ContactLaw contact, const SoilWheel &wheel, const SoilContact &at,
+              double still) {
+    const auto law = contact == ContactLaw::arc ? arc_force : bekker_force;
+    Given out;
+    SoilForce &soft = out.soil;
+    soft = law(*soil.bekker, constants, wheel, at);
+    out.by_slip_N = std::fabs(soft.traction_N - soft.free_traction_N), out.twist_Nm = std::fabs(soft.torque_Nm - soft.free_torque_Nm);
+    if (still > 0 && contact == ContactLaw::arc) {
+        const SoilForce other = law(*soil.bekker, constants, wheel, {at.sinkage_m, -at.slip, at.rut_m});
+        out.by_slip_N += still * (std::fabs(other.traction_N - other.free_traction_N) - out.by_slip_N);
+        out.twist_Nm += still * (std::fabs(other.torque_Nm - other.free_torque_Nm) - out.twist_Nm);
+        soft.normal_N += still * (other.normal_N - soft.normal_N);
+        soft.resistance_N += still * (other.resistance_N - soft.resistance_N);
+    }
+    return out;
+}
+
+void mix(Given &a, const Given &b, double share) {
+    const auto blend = [share](double &x, double y) { x += share * (y - x); };
+    blend(a.soil.normal_N, b.soil.normal_N), blend(a.soil.largest_N, b.soil.largest_N), blend(a.soil.shear_slip, b.soil.shear_slip);
+    blend(a.soil.resistance_N, b.soil.resistance_N), blend(a.soil.free_traction_N, b.soil.free_traction_N);
+    blend(a.soil.free_torque_Nm, b.soil.free_torque_Nm), blend(a.by_slip_N, b.by_slip_N), blend(a.twist_Nm, b.twist_Nm);
+    blend(a.side_ratio, b.side_ratio);
+}
+
+} // namespace
+
+// The soils before and behind the axle, and how much of the wheel's footprint the one in front has: at a patch's edge a wheel stands on
+// both.
+Plant::World::Footing Plant::World::footing(const double *point, const Vec3 &heading, double half_m) const {
+    const auto soil_at = [&](double ahead_m) {
+        return &config.ground.at(point[0] + ahead_m * heading[0], point[1] + ahead_m * heading[1]);
+    };
+    Footing out{.behind = soil_at(-half_m), .front = soil_at(half_m), .length_m = 2 * half_m};
+    if (out.behind == out.front) return out;
+    double low = -half_m, high = half_m; // one edge under a wheel: a strip narrower than the footprint is overlooked (assumed wider)
+    for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (low + high);
+        (soil_at(middle) == out.behind ? low : high) = middle;
+    }
+    out.share_front = (half_m - high) / (2 * half_m);
+    return out;
+}
+
+// Work to press the wheel down to its sinkage: Gauss-Legendre, 4 points.
+template <class Normal> double work_to_sink_J(double sinkage_m, const Normal &normal_N) {
+    constexpr double place[] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
+    constexpr double weight[] = {0.17392742256872692, 0.32607257743127305, 0.32607257743127305, 0.17392742256872692};
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) sum += weight[i] * normal_N(place[i] * sinkage_m);
+    return sum * sinkage_m;
+}
+
+Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Footing &foot, double factor, const double *point,
                                               double sink_m_s) {
     const auto n = static_cast<std::size_t>(i);
     const RoverParameters &r = config.rover;
     Meeting out;
     out.sinkage_m = std::max(0.0, -point[2]);
-    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m, config.dt_s * in.along_m_s);
+    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m);
     const SlipChange change = slip_step(in, contact[n], config.dt_s);
     const double total = total_slip(contact[n]);
     const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, law::shear_stiffness(1, effects.body.shear_change)};
-    const auto law = config.ground.contact == ContactLaw::arc ? arc_force : bekker_force;
     // the law counts slip along the motion: a wheel that rolls backwards sees the mirrored one; near rest, the mean of both
     const double slip = std::copysign(std::min(total, 1.0), in.along_m_s < 0 ? -contact[n].slip : contact[n].slip);
-    SoilForce soft = law(*soil.bekker, constants_of(soil), wheel, {out.sinkage_m, slip, rut});
-    double by_slip = std::fabs(soft.traction_N - soft.free_traction_N), twist = std::fabs(soft.torque_Nm - soft.free_torque_Nm);
     const double still = 0.5 * (1 - std::fabs(in.along_m_s) / reversal_m_s);
-    if (still > 0 && config.ground.contact == ContactLaw::arc) {
-        const SoilForce other = law(*soil.bekker, constants_of(soil), wheel, {out.sinkage_m, -slip, rut});
-        by_slip += still * (std::fabs(other.traction_N - other.free_traction_N) - by_slip);
-        twist += still * (std::fabs(other.torque_Nm - other.free_torque_Nm) - twist);
-        soft.normal_N += still * (other.normal_N - soft.normal_N);
-        soft.resistance_N += still * (other.resistance_N - soft.resistance_N);
+    const auto given_by = [&](const Soil &soil, double sinkage_m) {
+        return soil.bekker ? on_soft(soil, constants_of(soil), config.ground.contact, wheel, {sinkage_m, slip, rut}, still)
+                           : on_firm(soil, r, wheel, sinkage_m, total);
+    };
+    Given given = given_by(*foot.front, out.sinkage_m);
+    if (foot.front != foot.behind) {
+        mix(given, given_by(*foot.behind, out.sinkage_m), 1 - foot.share_front);
+        // the wheel is lifted by what it enters and let down by what it leaves: -dU/dx of the mixture, so that an edge gives no energy
+        const auto work_J = [&](const Soil &soil) {
+            return work_to_sink_J(out.sinkage_m, [&](double z) { return given_by(soil, z).soil.normal_N; });
+        };
+        out.edge_N = (work_J(*foot.behind) - work_J(*foot.front)) / foot.length_m;
     }
     const double belly = std::max(0.0, out.sinkage_m - 0.9 * r.wheel_radius_m) * r.contact_stiffness_N_m; // the body sits down
-    out.load_N = std::max(0.0, soft.normal_N + belly - (soft.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
+    out.load_N = std::max(0.0, given.soil.normal_N + belly - (given.soil.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
     if (out.load_N <= 0) return out;
-    in.grip_N = soft.largest_N;
-    in.shear_slip = soft.shear_slip;
+    in.grip_N = given.soil.largest_N;
+    in.shear_slip = given.soil.shear_slip;
+    in.side_ratio = given.side_ratio;
     in.law = TractionLaw::janosi;
     // the part due to slip goes with the slip; what rolling alone does goes with the direction of rolling
-    out.force = contact_force(in, contact[n], change, by_slip, config.dt_s);
-    out.free_N = soft.free_traction_N;
-    out.free_Nm = soft.free_torque_Nm;
-    out.arm_m = by_slip > 1e-6 ? twist / by_slip : 0;
-    out.rolling_N = soft.resistance_N;
+    out.force = contact_force(in, contact[n], change, given.by_slip_N, config.dt_s);
+    out.free_N = given.soil.free_traction_N;
+    out.free_Nm = given.soil.free_torque_Nm;
+    out.arm_m = given.by_slip_N > 1e-6 ? given.twist_Nm / given.by_slip_N : 0;
+    out.rolling_N = given.soil.resistance_N;
     return out;
 }
 
@@ -87,7 +167,9 @@ void Plant::World::step_wheel(int i, double supply_V) {
 
     const double radius = law::wheel_radius_m(r.wheel_radius_m, mine.radius_change);
     const double rim = radius * drive[n].wheel_speed_rad_s;
-    const Soil &soil = config.ground.at(point[0], point[1]);
+    const bool soft = config.ground.contact != ContactLaw::aggregated;
+    const Footing foot = footing(point, out.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
+    const Soil &soil = *foot.front;
     const double factor = grip_factor(i, point[0], point[1], rim - along);
     const ContactInput input{.law = soil.law,
                              .shear_slip = soil.shear_slip,
@@ -96,23 +178,24 @@ void Plant::World::step_wheel(int i, double supply_V) {
                              .along_m_s = along,
                              .across_m_s = across,
                              .load_kg = r.mass_kg / 4};
-    const bool soft = config.ground.contact != ContactLaw::aggregated && soil.bekker.has_value();
     const Meeting met =
-        soft ? meet_soft(i, input, soil, factor, point, out.velocity[2])
-             : meet_aggregated(i, input, soil, factor,
-                               std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]));
+        soft && (foot.front->bekker || foot.behind->bekker)
+            ? meet_soft(i, input, foot, factor, point, out.velocity[2])
+            : meet_aggregated(i, input, soil, factor,
+                              std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]));
     const double load = met.load_N;
     const double slip_size = std::min(1.0, std::fabs(contact[n].slip));
     double rolling = met.rolling_N;
     each_resistance(mine, b, slip_size, along, [&](double per_load) { rolling += per_load * load; });
     const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
-    // reversing resistance: never more than would stop a quarter of the rover within the step
-    const double width = std::max(reversal_m_s, 4 * (rolling + met.free_N) * config.dt_s / r.mass_kg);
-    const double pull = met.force.along_N + met.free_N * soft_sign(along, width);
-    const double ahead = pull - rolling * soft_sign(along, width);
+    // what rolling alone pulls (arc law) is part of what it takes: both turn with the direction of rolling
+    const double turned = rolling_step(contact[n], along, rolling - met.free_N, r.mass_kg / 4, config.dt_s);
+    const double pull = met.force.along_N + met.free_N * turned;
+    const double ahead = pull - rolling * turned + met.edge_N;
     for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * out.heading[k] + sideways * left[k];
     out.force[2] = load;
-    out.resist_N = pull - ahead;
+    out.resist_N = rolling * turned;
+    out.edge_N = met.edge_N;
     dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], at[0], at[1], at[2]);
 
     DriveState &d = drive[n];
@@ -133,6 +216,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     WheelTruth &w = truth.wheel[n];
     w.traction_N = pull;
     w.rolling_N = rolling;
+    w.rolling_share = turned;
     w.lateral_N = sideways;
     w.normal_N = load;
     w.slip = std::clamp(contact[n].slip, -1.0, 1.0); // beyond: wheels that turn against the motion, full sliding all the same

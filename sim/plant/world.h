@@ -20,7 +20,8 @@ using Vec3 = std::array<double, 3>;
 
 inline double dot(const Vec3 &a, const Vec3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-inline constexpr double reversal_m_s = 0.005; // resistances reverse over this speed: assumed, below any sensor's resolution
+inline constexpr double reversal_m_s =
+    0.005; // what rolling does to torque and load turns over this speed: assumed, below any sensor's resolution
 
 // -1..1, the sign of a speed made continuous over `width`.
 inline double soft_sign(double speed, double width) { return std::clamp(speed / width, -1.0, 1.0); }
@@ -41,9 +42,16 @@ struct Plant::World {
         double load_N = 0, rolling_N = 0, sinkage_m = 0;
         double arm_m = 0;               // of force.along_N about the axle; 0: the radius
         double free_N = 0, free_Nm = 0; // pull and torque of rolling alone, in its direction
+        double edge_N = 0;              // ahead: of the edge between two soils
     };
+    struct Footing { // the soils under a wheel
+        const Soil *behind, *front;
+        double share_front = 1;
+        double length_m = 0;
+    };
+    Footing footing(const double *point, const Vec3 &heading, double half_m) const;
     Meeting meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N);
-    Meeting meet_soft(int i, ContactInput in, const Soil &soil, double factor, const double *point, double sink_m_s);
+    Meeting meet_soft(int i, ContactInput in, const Footing &foot, double factor, const double *point, double sink_m_s);
     const SoilConstants &constants_of(const Soil &soil) const;
     void push_body();
     void observe(const Vec3 &velocity_before);
@@ -70,8 +78,8 @@ struct Plant::World {
     RutMemory ruts;
     std::array<RutTrace, wheel_count> trace;
     struct Applied {
-        Vec3 force{}, velocity{};                                // at the contact point, world
-        double resist_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
+        Vec3 force{}, velocity{};                                            // at the contact point, world
+        double resist_N = 0, edge_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
         Vec3 heading{};
     };
     std::array<Applied, wheel_count> applied{};

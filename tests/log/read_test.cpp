@@ -6,7 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
 
 using namespace traction::log;
 using traction::test::File;
@@ -286,6 +292,68 @@ TEST(Write, refuses_what_could_not_be_read_back_and_leaves_no_file) {
     EXPECT_HAS(refusal_of(log), "header line");
     EXPECT_NE(::access(path.c_str(), F_OK), 0);
     EXPECT_NE(::access((path + ".part").c_str(), F_OK), 0);
+}
+
+// The writer has a way of its own for millionths; what it writes is what std::to_chars would.
+TEST(Write, every_number_stands_in_its_shortest_digits) {
+    Signal signal{.name = "wheel0.current_A", .t_s = {}, .value = {}};
+    std::vector<double> values = {0,
+                                  -0.0,
+                                  1e-3,
+                                  0.001,
+                                  -0.001,
+                                  1e-4,
+                                  0.00012,
+                                  1.2e-5,
+                                  100000,
+                                  -100000,
+                                  123456,
+                                  1200000,
+                                  1e5,
+                                  1e6,
+                                  999999,
+                                  1e9,
+                                  1e8,
+                                  1e9 - 1,
+                                  0.1,
+                                  -0.3,
+                                  1e-6,
+                                  5e-324,
+                                  1.5e308,
+                                  0.000999,
+                                  1e15,
+                                  1e22,
+                                  1.0 / 3,
+                                  -2.0 / 3e6,
+                                  4503599627370496.5,
+                                  0.1 + 0.2,
+                                  999999999.999999,
+                                  1e-3 - 1e-9};
+    std::mt19937_64 random(7);
+    for (int i = 0; i < 200000; ++i) {
+        const double whole = static_cast<double>(static_cast<std::int64_t>(random() % 2000000000001ull) - 1000000000000ll);
+        const double scale = std::pow(10.0, static_cast<double>(random() % 13));
+        values.push_back(std::round(whole / scale) / 1e6);                    // millionths, of every size
+        values.push_back(whole / scale);                                      // and anything else
+        values.push_back(std::nextafter(std::round(whole / scale) / 1e6, 9)); // beside them
+    }
+    for (const double value : values) signal.t_s.push_back(static_cast<double>(signal.t_s.size())), signal.value.push_back(value);
+    Log log;
+    log.signals.push_back(signal);
+    const File file("numbers.csv", "");
+    write_csv(log, file.path());
+    std::ifstream in(file.path());
+    std::string line;
+    while (std::getline(in, line) && !line.starts_with("t_s")) {
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        ASSERT_TRUE(std::getline(in, line));
+        char want[64];
+        char *end = std::to_chars(want, want + 32, static_cast<double>(i)).ptr;
+        *end++ = ',';
+        end = std::to_chars(end, want + sizeof want, values[i]).ptr;
+        ASSERT_EQ(line, std::string(want, end));
+    }
 }
 
 TEST(Write, to_a_folder_that_is_not_there_is_a_file_error) { EXPECT_THROW(write_csv(Log{}, "/nonexistent/x.csv"), FileError); }

@@ -346,7 +346,8 @@ TEST(PlantEffects, a_slope_pulls_by_its_law_and_a_high_centre_then_loads_the_low
     settle(plant, 4);
     double along = 0, front = 0, rear = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        along += plant.truth().wheel[i].traction_N;
+        along +=
+            plant.truth().wheel[i].traction_N - plant.truth().wheel[i].rolling_share * plant.truth().wheel[i].rolling_N; // both hold it
         (i >= 2 ? front : rear) += plant.truth().wheel[i].normal_N / 2;
     }
     const double pull = 2.88 * law::grade_m_s2(9.81, 0.1, 0.7 - 0.2).along_m_s2;
@@ -364,6 +365,22 @@ double push_N(Plant &plant) {
     double push = mass * plant.truth().specific_force_m_s2[0];
     for (const WheelTruth &wheel : plant.truth().wheel) push -= wheel.traction_N - wheel.rolling_N;
     return push;
+}
+
+TEST(PlantEffects, multi_pass_acts_on_the_wheels_that_follow_in_a_track_and_changes_ends_with_the_direction) {
+    for (const double duty : {0.5, -0.5}) {
+        Plant plant(on("sand", {with("multi_pass", {0.3})}));
+        for (int i = 0; i < 4; ++i) plant.set_duty(i, duty);
+        settle(plant, 3);
+        for (std::size_t i = 0; i < 4; ++i) { // (20): Ft = Fm f(s), Fm of the sand's own numbers but for the effect
+            const Soil &sand = *find_soil("sand");
+            const WheelTruth &w = plant.truth().wheel[i];
+            const double plain =
+                (sand.adhesion_N + sand.fm_per_fn * w.normal_N) * traction_share(sand.law, std::fabs(w.slip), sand.shear_slip);
+            const bool follows = (i < 2) == (duty > 0); // rear wheels when it drives ahead
+            EXPECT_NEAR(std::fabs(w.traction_N) / plain, follows ? 1.3 : 1.0, 1e-6) << i << " at duty " << duty;
+        }
+    }
 }
 
 TEST(PlantEffects, tether_and_drag_pull_by_their_laws) {

@@ -55,7 +55,7 @@ std::array<double, 4> expected_loads(const Truth &t, double wheel_spin[4]) {
         const std::size_t mate = (i + 2) % 4;
         double pitch = 0.05 * (t.wheel[i].traction_N + t.wheel[mate].traction_N);
         for (const std::size_t k : {i, mate}) {
-            pitch -= 0.05 * t.wheel[k].rolling_N * (t.wheel[k].ground_speed_m_s > 0 ? 1 : -1);
+            pitch -= 0.05 * t.wheel[k].rolling_N * t.wheel[k].rolling_share;
             pitch += 0.5 * r.wheel_mass_kg * r.wheel_radius_m * r.wheel_radius_m * wheel_spin[k];
         }
         fn[i] = r.mass_kg * r.gravity_m_s2 / 4 + (i < 2 ? 1 : -1) * pitch / (4 * r.half_wheelbase_m) * 2 +
@@ -81,8 +81,7 @@ Residuals run(const std::vector<ActiveEffect> &effects, std::uint64_t *hash = nu
         for (std::size_t i = 0; i < 4; ++i) {
             const WheelTruth &w = t.wheel[i], &o = before.wheel[i];
             spin[i] = (w.speed_rad_s - o.speed_rad_s) / config.dt_s;
-            const double sign = w.ground_speed_m_s > 0 ? 1 : -1;
-            along += w.traction_N - sign * w.rolling_N;
+            along += w.traction_N - w.rolling_share * w.rolling_N;
             const bool turns = std::fabs(w.speed_rad_s) > 0.5 && std::fabs(o.speed_rad_s) > 0.5;
             rolling_all = rolling_all && std::fabs(w.ground_speed_m_s) > 0.02;
             if (turns) // (17), (18)
@@ -97,9 +96,9 @@ Residuals run(const std::vector<ActiveEffect> &effects, std::uint64_t *hash = nu
             if (std::fabs(t.rate_body_rad_s[2]) < 1e-9 && fast > 0.25)
                 add(strength, std::fabs(w.traction_N) - soil.fm_per_fn * w.normal_N * janosi(std::fabs(w.slip), soil.shear_slip));
             add(rolling, w.rolling_N - soil.rolling_coefficient * w.normal_N);
-            // relaxation equation of the baseline, times the step
+            // relaxation equation of the baseline, times the step; below 5 cm/s a stopping wheel gives slip up, (4) of contact.h
             const double h = config.dt_s / r.relaxation_length_m;
-            if (std::fabs(w.slip) < 1 && std::fabs(o.slip) < 1) // the truth is held at +-1
+            if (fast > 0.05 && std::fabs(w.slip) < 1 && std::fabs(o.slip) < 1) // the truth is held at +-1
                 add(slipping, w.slip * (1 + h * fast) - o.slip - h * (rim - v));
             add(sideways, w.lateral_N);
         }
