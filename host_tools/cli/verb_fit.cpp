@@ -7,6 +7,7 @@
 #include "host_tools/lab/result/profile_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
+#include "host_tools/lab/validate.h"
 #include "host_tools/report/report.h"
 #include "host_tools/report/svg.h"
 
@@ -119,6 +120,9 @@ void fit(const FitRequest &request, Outcome &outcome) {
     outcome.json["limits"] = lab::limits_json(limits);
     outcome.json["identifiability"] = lab::identifiability_json(told, peaks);
     outcome.json["fitted"] = fitted;
+    const std::vector<lab::Validation> validation = lab::validate(session, request.input, model);
+    std::fputs(lab::validation_text(validation).c_str(), stdout);
+    outcome.json["validation"] = lab::validation_json(validation);
     if (request.profiled) print_profiles(request, session, outcome);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (request.out.empty()) return;
@@ -138,6 +142,7 @@ Verb verb_fit() {
             lab_rows(request->input),
             {{.name = "--out", .into = &request->out, .help = "write the fitted model to this file", .value = "FILE", .kind = Kind::output},
              report_row(request->report),
+             validate_row(request->input.validate),
              {.name = "--profile",
               .into = &request->profile,
               .help = "profile likelihood of these, such as motor.resistance_ohm; of every effect's strength when none is named",

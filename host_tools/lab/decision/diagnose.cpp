@@ -1,6 +1,7 @@
 #include "diagnose.h"
 
 #include "classes.h"
+#include "doubt.h"
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/screen.h"
 #include "shapes.h"
@@ -33,11 +34,13 @@ std::string figures(double value) {
 // Forward selection, round by round, then backward elimination, then structure-free shapes.
 class Search {
   public:
-    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), options_(options) { d_.model = model; }
+    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), stated_(model), options_(options) {
+        d_.model = model;
+    }
 
     Diagnosis run() {
         Problem problem = fitted_problem(d_.model, data_);
-        const Problem first = problem;
+        Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
             if (round == 0) held_ = held_out(problem);
@@ -54,6 +57,8 @@ class Search {
         settle_last(problem);
         d_.limits = limits_of(problem);
         conclude();
+        if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
+            name_nothing(d_, stated_, d->text);
         return std::move(d_);
     }
 
@@ -448,6 +453,7 @@ class Search {
 
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
+    const Model &stated_;
     const DiagnoseOptions &options_;
     Diagnosis d_;
     Columns::Cache cache_;

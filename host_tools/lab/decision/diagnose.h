@@ -64,7 +64,7 @@ struct Diagnosis {
     std::vector<ConfoundedClass> classes;
     std::vector<std::pair<std::string, std::string>> not_excited; // effect, why
     std::optional<UnknownShape> unknown;
-    std::string kind; // named class partial unknown nothing
+    std::string kind; // named class partial unknown nothing wrong_model
     std::vector<std::string> effects;
     std::vector<std::string> nearest; // of the catalogue to the unknown shape, whose proxies they were: not the cause
     std::string text;
@@ -75,6 +75,9 @@ struct Diagnosis {
 };
 
 Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOptions &options);
+
+// The verdict wrong_model: takes back every name, class and shape; the model stays as stated. `look_at`: what to look at (doubt.h).
+void name_nothing(Diagnosis &diagnosis, const Model &stated, const std::string &look_at);
 
 // The sentence that ends a diagnosis; conclude() of diagnose.cpp puts it into `text`.
 std::string verdict_text(const Diagnosis &diagnosis);

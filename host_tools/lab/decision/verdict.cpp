@@ -43,4 +43,18 @@ std::string verdict_text(const Diagnosis &d) {
     return text;
 }
 
+void name_nothing(Diagnosis &d, const Model &stated, const std::string &look_at) {
+    for (CandidateResult &r : d.ranking)
+        if (r.verdict == "named" || r.verdict == "class" || r.verdict == "nearest") r.verdict = "wrong_model", r.class_index.reset();
+    if (d.ladder.size() > 1) d.ladder.resize(1);
+    d.accepted.clear(), d.classes.clear(), d.effects.clear(), d.nearest.clear(), d.not_excited.clear();
+    d.unknown.reset();
+    d.model = stated;
+    d.kind = "wrong_model";
+    char buffer[200];
+    std::snprintf(buffer, sizeof buffer, "This model does not describe this log: its error is %.3g x noise, and no effect is named. ",
+                  d.ladder.empty() ? 0.0 : d.ladder.front().train);
+    d.text = buffer + look_at + ".";
+}
+
 } // namespace traction::lab

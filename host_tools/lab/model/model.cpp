@@ -394,6 +394,7 @@ void read_lineage(const toml::table &root, Model &model) {
         entry.train = (*table)["train"].value_or(std::nan(""));
         entry.heldout = (*table)["heldout"].value_or(std::nan(""));
         entry.floor = (*table)["floor"].value_or(std::nan(""));
+        entry.despite = (*table)["despite"].value_or(std::string());
         model.lineage.push_back(std::move(entry));
     }
 }

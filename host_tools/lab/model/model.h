@@ -70,6 +70,7 @@ struct LineageEntry {
     double train = std::numeric_limits<double>::quiet_NaN(); // error in units of noise
     double heldout = std::numeric_limits<double>::quiet_NaN();
     double floor = std::numeric_limits<double>::quiet_NaN();
+    std::string despite = {}; // errors of the check that were overridden, separated by blanks
 };
 
 struct Model {

@@ -64,6 +64,7 @@ void write_lineage(std::string &out, const Model &model) {
     for (const LineageEntry &entry : model.lineage) {
         out += "\n[[lineage]]\nlabel = " + quoted(entry.label) + "\nlog = " + quoted(entry.log) + "\n";
         if (!entry.date.empty()) out += "date = " + quoted(entry.date) + "\n";
+        if (!entry.despite.empty()) out += "despite = " + quoted(entry.despite) + "\n";
         if (std::isfinite(entry.train)) out += "train = " + number(entry.train) + "\n";
         if (std::isfinite(entry.heldout)) out += "heldout = " + number(entry.heldout) + "\n";
         if (std::isfinite(entry.floor)) out += "floor = " + number(entry.floor) + "\n";

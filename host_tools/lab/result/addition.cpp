@@ -19,7 +19,9 @@ void append_lineage(Model &model, const Dataset &data, const std::vector<LadderS
         if (i == 0 && !model.lineage.empty()) continue; // the baseline is the last entry already
         const bool last = i + 1 == ladder.size();
         const LadderStep &r = last && std::isfinite(final_step.train) ? final_step : ladder[i];
-        model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor});
+        std::string despite;
+        for (const std::string &id : data.despite) despite += (despite.empty() ? "" : " ") + id;
+        model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor, despite});
     }
 }
 

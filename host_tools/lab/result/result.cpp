@@ -86,11 +86,12 @@ static std::string verdict_words(const CandidateResult &r, const Diagnosis &d) {
 json head_json(const std::string &verb, const Model &model, const Dataset &data) {
     json effects = json::array();
     for (const EffectUse &use : model.effects) effects.push_back(effect_json(use));
-    return {{"schema", "traction.lab/1"},
-            {"verb", verb},
-            {"title", verb + ": " + model.name + " against " + data.log_file},
-            {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}}},
-            {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
+    return {
+        {"schema", "traction.lab/1"},
+        {"verb", verb},
+        {"title", verb + ": " + model.name + " against " + data.log_file},
+        {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}, {"despite", data.despite}}},
+        {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
 }
 
 void put_comparison(json &out, const Comparison &c) {
