@@ -2,7 +2,9 @@
 
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/forward/make_dataset.h"
+#include "sim/physics/effects/catalogue.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -36,12 +38,12 @@ json candidate_json(const lab::CandidateResult &result) {
 
 } // namespace
 
-json ask_lab(const std::string &log_file, const std::string &model_file) {
+json ask_lab(const std::string &log_file, const std::string &model_file, const std::string &map_file) {
     using clock = std::chrono::steady_clock;
     const auto since = [](clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); };
     const auto start = clock::now();
     const lab::Model model = lab::read_model(model_file);
-    const log::Log log = log::read_csv(log_file);
+    const log::Log log = log::read_csv(log_file, map_file);
     const double read_s = since(start);
     const lab::Dataset data = lab::make_dataset(model, log);
     const lab::Diagnosis found = lab::diagnose(model, data, lab::DiagnoseOptions{});
@@ -66,17 +68,36 @@ json ask_lab(const std::string &log_file, const std::string &model_file) {
     return answer;
 }
 
-double floor_with_truth(const std::string &log_file, const std::string &model_file, const json &seal) {
-    std::string text = lab::model_text(lab::read_model(model_file));
+TruthFit fit_with_truth(const SealedLog &one, const json &seal) {
+    lab::Model model = lab::read_model(one.model);
     for (const json &effect : seal.at("effects")) {
-        if (effect.value("outside", false)) return 0;
-        text += "\n[[effect]]\nname = \"" + effect.at("name").get<std::string>() + "\"\n";
-        if (effect.at("wheel").get<int>() >= 0) text += "wheel = " + std::to_string(effect.at("wheel").get<int>()) + "\n";
-        for (const auto &[key, value] : effect.at("parameters").items()) text += key + " = " + json(value.get<double>()).dump() + "\n";
+        const sim::Effect *known = sim::find_effect(effect.at("name").get<std::string>());
+        if (known == nullptr) return {};
+        lab::EffectUse use;
+        use.name = known->name;
+        use.wheel = effect.at("wheel").get<int>();
+        for (const sim::EffectParameter &spec : known->parameters) {
+            const std::string key(spec.name);
+            lab::Parameter p;
+            p.value = effect.at("parameters").value(key, spec.typical);
+            p.fixed = !spec.strength;
+            p.unit = spec.unit;
+            p.maximum = 4 * std::max(std::fabs(p.value), std::fabs(spec.maximum)); // wide: the truth's own error is asked for
+            p.minimum = spec.minimum < 0 ? -p.maximum : 0;
+            use.parameters[key] = p;
+        }
+        model.effects.push_back(std::move(use));
     }
-    lab::Model model = lab::parse_model(text, model_file);
-    const lab::Dataset data = lab::make_dataset(model, log::read_csv(log_file));
-    return lab::fit_model(model, data, "truth").train;
+    const std::size_t first = model.effects.size() - seal.at("effects").size();
+    const lab::Dataset data = lab::make_dataset(model, log::read_csv(one.log, one.map));
+    TruthFit fit;
+    fit.floor = lab::fit_model(model, data, "truth").train;
+    for (const auto &[key, p] : model.effects[first].parameters) {
+        if (p.fixed || !(p.high > p.low)) continue;
+        const double truth = seal.at("effects")[0].at("parameters").value(key, 0.0);
+        fit.detectability = std::max(fit.detectability, std::fabs(truth) / ((p.high - p.low) / (2 * 1.96)));
+    }
+    return fit;
 }
 
 std::string campaign_model(const std::string &generator, const std::string &soil) {

@@ -8,11 +8,11 @@
 namespace traction::bench_lab {
 
 // Reads the log and the model, runs diagnose, returns the answer.
-nlohmann::json ask_lab(const std::string &log_file, const std::string &model_file);
+nlohmann::json ask_lab(const std::string &log_file, const std::string &model_file, const std::string &map_file = "");
 
-// The floor: error (root of the mean over balances, in units of noise) that the lab's own fit leaves when the model holds every
-// effect of the opened seal. 0 when there is none.
-double floor_with_truth(const std::string &log_file, const std::string &model_file, const nlohmann::json &seal);
+// The fit of a model that holds every effect of the opened seal, of the hidden size to begin with: the error that it leaves (root of the
+// mean over balances, in units of noise) and the d' of the first. Nothing (zeros) where an effect is outside the catalogue.
+TruthFit fit_with_truth(const SealedLog &one, const nlohmann::json &seal);
 
 // Data sheet of the campaign's rover on that soil.
 std::string campaign_model(const std::string &generator, const std::string &soil);

@@ -1,6 +1,6 @@
 // campaign.h - a blind campaign: sealed logs made by other programs, the lab run on each, the seals opened when all answers are in.
 //
-// The logs come from lab_generate (a rover that shares no code with the lab) or from `traction simulate` (the ODE plant). Both run
+// The logs come from lab_generate (rovers that share no code with the lab) or from `traction simulate` (the ODE plant). Both run
 // as processes of their own and write what they hid to a seal beside the log; this program reads the seals in open_seals() alone.
 #pragma once
 
@@ -18,7 +18,8 @@ struct CampaignOptions {
     int jobs = 2;
     std::uint64_t seed = 1000; // of the first log; the others follow
     double duration_s = 120;
-    std::string generator = "independent"; // or "plant"
+    std::string generator = "independent"; // wheels alike; "apart": each drawn for itself; "fleet": sizes, sensors, plans; "plant"
+    std::string category;                  // clean, one, two, outside: that alone; empty: as they are drawn
     std::string folder;                    // logs, seals and answers are kept here
     std::string lab_generate;              // the generator's program
     std::string traction;                  // this program, for the plant
@@ -28,7 +29,8 @@ struct CampaignOptions {
 
 struct SealedLog {
     std::string log, seal, soil;
-    double seconds = 0;
+    std::string model, map; // what the operator hands over with the log; map empty: our own format
+    double seconds = 0;     // processor time of the lab on this log
     nlohmann::json result;
 };
 
@@ -42,8 +44,12 @@ void answer_all(std::vector<SealedLog> &logs, const CampaignOptions &options, co
 // Reads the seals. Call it last.
 std::vector<Judged> open_seals(const std::vector<SealedLog> &logs);
 
-// Adds the floor to every answered log with catalogue effects: the error that the fit with the true effects leaves.
-using Floor = std::function<double(const SealedLog &, const nlohmann::json &seal)>;
+// Adds to every answered log with catalogue effects what the fit that is given the true effects leaves and knows.
+struct TruthFit {
+    double floor = 0;         // error in units of noise; 0: the fit could not be made
+    double detectability = 0; // d' of the first hidden effect: its size / its standard error in that fit
+};
+using Floor = std::function<TruthFit(const SealedLog &, const nlohmann::json &seal)>;
 void add_floors(std::vector<Judged> &judged, const std::vector<SealedLog> &logs, const CampaignOptions &options, const Floor &floor);
 
 } // namespace traction::bench_lab

@@ -56,7 +56,7 @@ nlohmann::json run_peers(const std::vector<SealedLog> &logs, const CampaignOptio
     if (!std::filesystem::exists(script)) return {{"skipped", "tests/bench/lab is not there (an installed program has no peers)"}};
     const std::string list = folder + "/logs.json", answer = folder + "/peers.json", said = folder + "/peers.txt";
     nlohmann::json files = nlohmann::json::array();
-    for (const SealedLog &one : logs) files.push_back({{"log", one.log}, {"model", campaign_model(options.generator, one.soil)}});
+    for (const SealedLog &one : logs) files.push_back({{"log", one.log}, {"model", one.model}});
     log::write_file(files.dump(1) + '\n', list);
     std::filesystem::remove(answer);
     const std::string command = "sh " + quoted(script) + " " + quoted(list) + " " + quoted(answer) + " " + quoted(options.traction) +

@@ -49,6 +49,17 @@ std::set<std::string> class_of(const std::string &name, const json &result) {
     return members;
 }
 
+bool listed(const std::string &word, const std::string &list) { // in "a|b|c"
+    return !word.empty() && ("|" + list + "|").find("|" + word + "|") != std::string::npos;
+}
+
+// What is true of the sensors though nobody hid it: an accelerometer that is late may be told so.
+bool true_of_the_chain(const std::string &name, const json &seal) {
+    const json chain = seal.value("chain", json::object());
+    const bool late = number(chain, "accel_late_s") > 0 || number(chain, "accel_cutoff_Hz") > 0;
+    return late && (name == "accel_delay" || name == "accel_lag");
+}
+
 void coverage(const json &effect, const json &result, Reading &reading) {
     const std::string name = text(effect, "name");
     for (const json &candidate : list_of(result, "accepted")) { // the joint fit's values, which the user is shown
@@ -66,7 +77,8 @@ void coverage(const json &effect, const json &result, Reading &reading) {
     }
 }
 
-// d' of the hidden size: the lab's d' of its own estimate, scaled by hidden size / estimate (so hidden size / standard error).
+// Where no fit with the truth was made: the lab's d' of its own estimate, scaled by hidden size / estimate (so hidden size / standard
+// error).
 double detectability(const json &effect, const json &result) {
     double best = 0;
     for (const json &candidate : list_of(result, "candidates")) {
@@ -109,17 +121,24 @@ Reading read_case(const json &seal, const json &result) {
     const json verdict = result.value("verdict", json::object());
     const std::string kind = text(verdict, "kind");
     const auto unknown = result.find("unknown");
-    r.flagged_unknown = kind == "unknown" || kind == "partial" || (unknown != result.end() && unknown->is_object() && !unknown->empty());
+    r.flagged_unknown = kind == "unknown" || kind == "partial" || kind == "wrong_model" ||
+                        (unknown != result.end() && unknown->is_object() && !unknown->empty());
     std::set<std::string> found;
     int wheel_said = -1;
+    const std::string law = hidden.empty() ? "" : text(hidden[0], "law"); // outside: the catalogue's own name, where it has learnt it
+    bool law_named = false;
     for (const json &name : list_of(verdict, "effects")) {
         const std::string label = name.get<std::string>();
         if (label.rfind("shape:", 0) == 0) continue;
+        if (true_of_the_chain(plain(label), seal)) continue; // right, and no answer to the question
         if (r.named.empty()) wheel_said = wheel_of(label);
         r.named.push_back(plain(label));
         bool right = false;
         for (const std::string &member : class_of(plain(label), result))
-            if (truths.count(member) != 0) right = true, found.insert(member);
+            if (truths.count(member) != 0)
+                right = true, found.insert(member);
+            else if (listed(member, law))
+                right = law_named = true;
         r.named_right.push_back(right);
     }
     // one class among several names of a "class" verdict counts once
@@ -144,10 +163,12 @@ Reading read_case(const json &seal, const json &result) {
     r.wheel_right = wheel_said == r.truth_wheel;
     for (const json &effect : hidden)
         if (found.count(text(effect, "name")) != 0) coverage(effect, result, r);
-    if (!hidden.empty()) r.detectability = detectability(hidden[0], result);
+    if (!hidden.empty()) r.detectability = number(result, "detectability_with_truth", detectability(hidden[0], result));
     r.visible = r.detectability >= 2;
-    if (r.category == "outside" && r.flagged_unknown) r.variable_right = variable_right(text(hidden[0], "variable"), result);
+    if (r.category == "outside" && law_named) r.flagged_unknown = r.variable_right = true; // it told what it is
+    if (r.category == "outside" && r.flagged_unknown && !law_named) r.variable_right = variable_right(text(hidden[0], "variable"), result);
 
+    r.silent = r.named.empty() && !r.flagged_unknown;
     r.said =
         r.named.empty()
             ? (r.flagged_unknown
@@ -169,6 +190,7 @@ json reading_json(const Reading &r) {
             {"named", r.named},
             {"named_right", r.named_right},
             {"covered", r.covered},
+            {"silent", r.silent},
             {"first_right", r.first_right},
             {"first_named_right", r.first_named_right},
             {"wheel_right", r.wheel_right},

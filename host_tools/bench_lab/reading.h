@@ -12,12 +12,13 @@ struct Reading {
     std::string category; // clean, one, two, outside
     std::string truth;    // name of the first hidden effect, or empty
     int truth_wheel = -1;
-    double detectability = 0;       // d' of the hidden size: hidden size / the lab's standard error for it; 0 unknown
+    double detectability = 0;       // d' of the hidden size: it / its standard error in the fit that is given the truth; 0 unknown
     bool visible = false;           // d' >= 2
     std::string said;               // first effect named, "(unknown: X)", or "(nothing)"
     std::vector<std::string> named; // every effect in the verdict
     std::vector<bool> named_right;  // each of them: hidden, or in one class with a hidden one
     std::vector<bool> covered;      // per strength parameter of rightly named effects: interval holds the truth
+    bool silent = false;            // neither named nor flagged
     bool first_right = false;       // the first candidate of the ranking is the hidden one, or shares a class with it
     bool first_named_right = false;
     bool wheel_right = false;

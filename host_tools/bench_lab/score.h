@@ -16,7 +16,7 @@ struct Judged {
     std::string log;
     nlohmann::json seal;   // traction.seal/1
     nlohmann::json result; // traction.lab/1 of diagnose; {"error": text} when the lab failed
-    double seconds = 0;    // of the lab on this log
+    double seconds = 0;    // processor time of the lab on this log
 };
 
 // A share with its 95 % Wilson interval (Wilson 1927).
@@ -41,7 +41,7 @@ struct Line {
 
 struct Score {
     std::vector<Line> lines;
-    std::map<std::string, std::vector<Line>> by_soil;
+    std::map<std::string, std::vector<Line>> by_soil, by_group;  // group: size of the rover, sensor chain, where the seals tell them
     std::map<std::string, std::map<std::string, int>> confusion; // hidden -> said -> how often, single effects
     nlohmann::json cases;                                        // one entry per log: what was hidden, what was said, why it counts
     int failures = 0;                                            // logs on which the lab did not answer

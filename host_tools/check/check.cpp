@@ -28,13 +28,25 @@ const char *severity_name(Severity severity) {
     return "";
 }
 
+const std::vector<std::string> &error_ids() {
+    static const std::vector<std::string> ids = {
+        "axis",      "clipped", "clock_jump", "clock_rate",   "counter_jump",   "dead_sensor",    "drive_unexplained",
+        "heading",   "late",    "no_motion",  "magnitude",    "not_finite",     "nothing_to_use", "samples_missing",
+        "scale",     "short",   "sign",       "stuck_sensor", "swapped_wheels", "time_unit",      "unit",
+        "unrelated", "wheels",  "wrapped"};
+    return ids;
+}
+
 Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const Machine &machine) {
     Report report;
     const Grid grid = make_grid(log, machine);
     check_quality(log, repairs, grid, report.findings, report.rates);
-    if (grid.count >= 100) { // 5 s
+    if (grid.count >= 50) { // 2.5 s
+        check_magnitudes(grid, report.findings);
         check_drives(grid, machine, report.findings);
         check_motion(grid, machine, report.findings);
+        check_scales(grid, machine, report.findings);
+        check_clock(log, grid, machine, report.findings);
         report.excitation = measure_excitation(grid);
         judge_excitation(report.excitation, grid, report.findings);
     }

@@ -29,7 +29,12 @@ struct Machine {
     double wheel_radius_m = std::numeric_limits<double>::quiet_NaN();
     double back_emf_Vs = std::numeric_limits<double>::quiet_NaN(); // at the wheel
     double resistance_ohm = std::numeric_limits<double>::quiet_NaN();
-    bool wheels_point_forward = true; // false (omni): wheel speeds are not compared with the body's
+    double battery_V = std::numeric_limits<double>::quiet_NaN();       // used where the log has no battery voltage
+    double counts_per_turn = std::numeric_limits<double>::quiet_NaN(); // of an encoder, at the wheel
+    std::vector<double> wheel_y_m = {};                                // to the left of the middle; empty: 0, 2 left and 1, 3 right
+    bool wheels_point_forward = true;                                  // false (omni): wheel speeds are not compared with the body's
+    bool on_ground = true;                                             // false: wheels in the air
+    bool rolls_freely = true; // false: a bench imposes slip, so speed over ground says nothing of the radius
 };
 
 struct Rate {
@@ -83,5 +88,8 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
 Report check_file(const std::string &path, const std::string &map_path = "", const Machine &machine = {});
 
 const char *severity_name(Severity severity);
+
+// The ids of findings that may be errors (docs/log_format.md).
+const std::vector<std::string> &error_ids();
 
 } // namespace traction::check

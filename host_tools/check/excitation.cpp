@@ -142,7 +142,8 @@ void judge_excitation(const Excitation &out, const Grid &grid, Findings &finding
     };
     if (grid.wheel.empty()) return;
     if (out.moving_s < 5) {
-        note("no_motion", say("the wheels are driven for %.3g s only", out.moving_s), "drive", out.moving_s, Severity::warning);
+        note("no_motion", say("the wheels are driven for %.3g s only", out.moving_s), "drive", out.moving_s,
+             out.moving_s < 1 ? Severity::error : Severity::warning); // [s] less is no drive
         return;
     }
     if (out.constant_input > 0.8)

@@ -31,14 +31,16 @@ class Motion {
     void yaw();
     void accel();
     bool straight(std::size_t k) const; // the wheels agree, so the body moves along its heading
-    double radius_from(const std::vector<double> &speed, double &alike) const;
+    double radius_from(const std::vector<double> &speed, double &alike, double &middle) const;
     bool blamed(const std::string &start) const {
         return std::any_of(findings_.begin(), findings_.end(),
                            [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
     }
     bool wheels_blamed() const {
         return std::any_of(findings_.begin(), findings_.end(), [](const Finding &f) {
-            return f.severity == Severity::error && f.signal.find(".speed_rad_s") != std::string::npos && f.signal.rfind("wheel", 0) == 0;
+            const bool motion = f.signal.find(".speed_rad_s") != std::string::npos || f.signal.find(".angle_rad") != std::string::npos ||
+                                f.signal.find(".encoder_count") != std::string::npos;
+            return f.severity == Severity::error && motion && f.signal.rfind("wheel", 0) == 0;
         });
     }
     void add(const char *id, Severity severity, const std::string &signal, std::string text, std::string mend, double value) {
@@ -108,7 +110,7 @@ void Motion::encoders() {
     std::vector<const Wheel *> wheels;
     for (const Wheel &wheel : grid_.wheel) {
         const std::string name = "wheel" + std::to_string(wheel.index);
-        if (wheel.speed.empty() || blamed(name + ".speed")) continue;
+        if (wheel.speed.empty() || blamed(wheel.speed_column)) continue;
         const std::vector<double> speed = smooth(wheel.speed, 2);
         for (const bool count : {false, true}) {
             const std::vector<double> &rate = count ? wheel.count_rate : wheel.angle_rate;
@@ -117,12 +119,12 @@ void Motion::encoders() {
             const Fit line = rate.empty() ? Fit{} : fit(rate, speed);
             if (!line.good || line.rms > 0.5 * line.y_rms) continue;
             if (line.a < 0) {
-                add("sign", Severity::error, column, say("'%s' falls while '%s.speed_rad_s' is positive", column.c_str(), name.c_str()),
+                add("sign", Severity::error, column, say("'%s' falls while '%s' is positive", column.c_str(), wheel.speed_column.c_str()),
                     "turn the sign of one of them round", line.a);
             } else if (!count && (line.a < 0.8 || line.a > 1.25)) {
                 const UnitSlip *slip = unit_slip('w', line.a), *inverse = unit_slip('w', 1 / line.a);
-                add("unit", Severity::error, inverse != nullptr ? name + ".speed_rad_s" : column,
-                    say("'%s' advances %.4g times as fast as '%s.speed_rad_s' says%s%s", column.c_str(), line.a, name.c_str(),
+                add("unit", Severity::error, inverse != nullptr ? wheel.speed_column : column,
+                    say("'%s' advances %.4g times as fast as '%s' says%s%s", column.c_str(), line.a, wheel.speed_column.c_str(),
                         slip != nullptr || inverse != nullptr ? ": one of them looks like " : "",
                         slip != nullptr      ? slip->written
                         : inverse != nullptr ? inverse->written
@@ -138,7 +140,7 @@ void Motion::encoders() {
         const double ratio = quantile(per_rad, 0.5) / per_rad[i];
         if (ratio > 0.7 && ratio < 1.4) continue;
         const UnitSlip *slip = unit_slip('w', ratio);
-        const std::string name = "wheel" + std::to_string(wheels[i]->index) + ".speed_rad_s";
+        const std::string &name = wheels[i]->speed_column;
         if (!blamed(name)) {
             add("unit", Severity::error, name,
                 say("'%s' has %.4g counts for a radian, the other wheels %.4g%s%s", name.c_str(), per_rad[i], quantile(per_rad, 0.5),
@@ -191,7 +193,7 @@ void Motion::heading() {
     }
 }
 
-double Motion::radius_from(const std::vector<double> &speed, double &alike) const {
+double Motion::radius_from(const std::vector<double> &speed, double &alike, double &middle) const {
     std::vector<double> ratio, a(grid_.count, not_known), b(grid_.count, not_known);
     for (std::size_t k = 0; k < speed.size(); ++k) {
         if (!straight(k) || !std::isfinite(speed[k])) continue;
@@ -202,6 +204,7 @@ double Motion::radius_from(const std::vector<double> &speed, double &alike) cons
     if (ratio.size() < 40) return not_known;
     const Fit line = fit(a, b);
     alike = line.good && line.y_rms > 0 ? std::copysign(1 - line.rms / line.y_rms, line.a) : 0;
+    middle = quantile(ratio, 0.5);
     return quantile(ratio, 0.9); // where slip is least
 }
 
@@ -211,23 +214,24 @@ void Motion::ground() {
         const char *name;
         const std::vector<double> *speed;
         bool has_sign;
-        double radius = not_known, alike = 0;
+        double radius = not_known, alike = 0, middle = not_known;
         bool absurd = false;
     };
     std::vector<Source> sources;
     if (!grid_.camera_speed.empty()) sources.push_back({"camera.x_m", heading_fits_ ? &grid_.camera_forward : &grid_.camera_speed, false});
     if (!grid_.radar.empty()) sources.push_back({"radar.speed_m_s", &grid_.radar, quantile(grid_.radar, 0.02) < -0.05});
     if (!grid_.carriage.empty()) sources.push_back({"carriage.speed_m_s", &grid_.carriage, true});
-    const double known = machine_.wheel_radius_m;
+    const double known = grid_.speed_is_guessed ? not_known : machine_.wheel_radius_m;
     for (Source &source : sources) {
-        source.radius = radius_from(*source.speed, source.alike);
+        source.radius = radius_from(*source.speed, source.alike, source.middle);
         const double ratio = source.radius / known;
         const bool is_unit = unit_slip('v', ratio) != nullptr || unit_slip('w', 1 / ratio) != nullptr;
         source.absurd =
             std::isfinite(known) ? is_unit : source.radius < 0.012 || source.radius > 1.0; // [m] assumed: wheels of 24 mm to 2 m
         if (source.speed == &grid_.carriage) source.absurd = source.radius > 1.0;          // the carriage imposes slip: 0.9 is no mistake
         const bool judged = blamed(source.name) || (source.speed == &grid_.radar && !grid_.camera_speed.empty()); // beside the camera
-        if (judged) source.absurd = false;
+        if (source.radius > known && source.middle < 2 * known) source.absurd = false; // wheels that are locked now and then
+        if (judged || grid_.speed_is_guessed || !machine_.rolls_freely) source.absurd = false;
         if (source.has_sign && source.alike < -0.3) {
             add("sign", Severity::error, source.name, say("'%s' is negative when the wheels turn forwards", source.name),
                 "turn its sign round (map: sign = -1)", source.alike);
@@ -269,13 +273,23 @@ void Motion::ground() {
 void Motion::yaw() {
     if (grid_.gyro.empty()) return;
     const double fastest = std::max(std::fabs(quantile(grid_.gyro, 0.01)), std::fabs(quantile(grid_.gyro, 0.99)));
-    std::vector<double> apart(grid_.count, not_known); // right minus left: wheels 1, 3 and 0, 2
-    const bool four = grid_.wheel.size() == 4 &&
-                      std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
-    for (std::size_t k = 0; four && k < grid_.count; ++k)
-        apart[k] = 0.5 * (grid_.wheel[1].speed[k] + grid_.wheel[3].speed[k] - grid_.wheel[0].speed[k] - grid_.wheel[2].speed[k]);
+    std::vector<double> apart(grid_.count, not_known); // right minus left; without a model 1, 3 and 0, 2
+    const bool known = machine_.wheel_y_m.size() == grid_.wheel.size();
+    const bool sides = (known || grid_.wheel.size() == 4) &&
+                       std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
+    const auto side = [&](std::size_t i) {
+        return known ? (machine_.wheel_y_m[i] > 0) - (machine_.wheel_y_m[i] < 0) : i % 2 == 0 ? 1 : -1;
+    };
+    int left = 0, right = 0;
+    for (std::size_t i = 0; i < grid_.wheel.size(); ++i) left += side(i) > 0, right += side(i) < 0;
+    const bool two_sides = sides && left > 0 && right > 0;
+    for (std::size_t k = 0; two_sides && k < grid_.count; ++k) {
+        apart[k] = 0;
+        for (std::size_t i = 0; i < grid_.wheel.size(); ++i)
+            if (side(i) != 0) apart[k] -= side(i) * grid_.wheel[i].speed[k] / (side(i) > 0 ? left : right);
+    }
     const double with_wheels =
-        four && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
+        two_sides && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
     if (!grid_.camera_yaw_rate.empty() && !blamed("camera.yaw")) {
         const std::vector<double> gyro = smooth(grid_.gyro, 5);
         const Fit line = fit(gyro, grid_.camera_yaw_rate);
@@ -304,7 +318,7 @@ void Motion::yaw() {
                 add("swapped_wheels", Severity::error, "wheel.speed_rad_s",
                     say("gyro and camera agree, but the wheels turn the other way (correlation %.2f): left and right are exchanged",
                         with_wheels),
-                    "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
+                    known ? "exchange their columns, or mend y_m in the model" : "wheels 0 and 2 are left, 1 and 3 right", with_wheels);
             }
             return;
         }
@@ -321,7 +335,7 @@ void Motion::yaw() {
             say("the gyro turns against the wheels (correlation %.2f): its sign is wrong, or left and right wheels are exchanged",
                 with_wheels),
             "turn its sign round: a turn to the left is positive", with_wheels);
-    } else if (line.a > 2) { // wheel radius over track is below 1 on any rover
+    } else if (line.a > 2 && !grid_.speed_is_guessed) { // wheel radius over track is below 1 on any rover
         add("unit", Severity::error, "imu.gyro_z_rad_s",
             say("the gyro reads %.3g times the wheels' difference in speed: it looks like deg/s", line.a), "multiply it by 0.0174533",
             line.a);
@@ -337,7 +351,8 @@ void Motion::accel() {
         return;
     }
     const bool camera = !grid_.camera_forward.empty() && heading_fits_ && !blamed("camera");
-    const double radius = std::isfinite(machine_.wheel_radius_m) ? machine_.wheel_radius_m : grid_.effective_radius_m;
+    const double radius =
+        std::isfinite(machine_.wheel_radius_m) && !grid_.speed_is_guessed ? machine_.wheel_radius_m : grid_.effective_radius_m;
     if (!camera && (!std::isfinite(radius) || blamed("wheel.speed") || wheels_blamed() || !machine_.wheels_point_forward)) return;
     std::vector<double> reference = slope(camera ? grid_.camera_forward : smooth(grid_.mean_speed, 5), 5),
                         measured = smooth(smooth(grid_.accel, 5), 5);
@@ -351,6 +366,8 @@ void Motion::accel() {
         add("unit", Severity::error, "imu.accel_x_m_s2",
             say("the accelerometer reads %.3g of the acceleration that the camera sees: it looks like %s", line.a, slip->written),
             say("multiply it by %.6g", 1 / slip->factor), line.a);
+    } else if (line.a < 0 && (line.a > -0.5 || alike > -0.75)) {
+        return; // wheels that lock and spin swing against the body
     } else if (line.a < 0) {
         add("sign", Severity::error, "imu.accel_x_m_s2",
             say("the accelerometer is negative when the machine speeds up (slope %.3g)", line.a), "turn its sign round (map: sign = -1)",

@@ -34,6 +34,8 @@ class Quality {
     void dead_or_stuck(const log::Signal &signal, const log::Quantity &entry);
     log::Signal whole_pose(const log::Signal &camera_x) const;
     void outliers(const log::Signal &signal);
+    void jumps(const log::Signal &signal);
+    void derived_speeds();
     void coarse(const log::Signal &signal);
     bool active_at(const log::Signal &signal, double t_s) const;
     bool electrics_agree(int wheel, double t0_s, double t1_s, bool &known) const;
@@ -101,8 +103,10 @@ void Quality::rate(const log::Signal &signal) {
     rate.jitter = (quantile(step, 0.95) - quantile(step, 0.05)) / (2 * rate.median_s);
     const bool said =
         std::any_of(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.id == "not_finite" && f.signal == signal.name; });
+    // a radar without a peak and a camera that is blocked give no sample: nothing is wrong with the log
+    const bool may_pause = signal.name == "radar.speed_m_s" || signal.name.rfind("camera.", 0) == 0;
     if (rate.missing > 0.03 && !said) {
-        add("samples_missing", rate.missing > 0.2 ? Severity::error : Severity::warning, signal.name,
+        add("samples_missing", rate.missing > 0.2 && !may_pause ? Severity::error : Severity::warning, signal.name,
             say("'%s' lacks %.0f %% of its samples (one every %.4g s expected)", signal.name.c_str(), 100 * rate.missing, rate.median_s),
             "look for an overloaded logger or a bad link; record again", rate.missing);
     } else if (rate.jitter > 0.3 && !said) {
@@ -289,6 +293,57 @@ void Quality::outliers(const log::Signal &signal) {
         "leave these cells empty", signal.value[worst], signal.t_s[worst], signal.t_s[worst]);
 }
 
+// A wheel angle that starts again with every turn; a counter that overflows or is reset.
+void Quality::jumps(const log::Signal &signal) {
+    if (wraps(signal)) {
+        add("wrapped", Severity::error, signal.name, say("'%s' starts again with every turn", signal.name.c_str()),
+            "make it continuous (map: unwrap = true)", 0);
+        return;
+    }
+    const std::vector<double> &t = signal.t_s, &v = signal.value;
+    std::vector<double> gap, rate;
+    for (std::size_t i = 1; i < v.size(); ++i) gap.push_back(t[i] - t[i - 1]);
+    const double usual = quantile(gap, 0.5);
+    for (std::size_t i = 1; i < v.size(); ++i) rate.push_back(std::fabs(v[i] - v[i - 1]) / std::max(gap[i - 1], usual));
+    const auto alone = [&](std::size_t i) { // twenty times its neighbours
+        return (i == 0 || rate[i] > 20 * rate[i - 1]) && (i + 1 == rate.size() || rate[i] > 20 * rate[i + 1]);
+    };
+    double fast = 0; // of all steps that follow from one another
+    for (std::size_t i = 0; i < rate.size(); ++i)
+        if (!alone(i)) fast = std::max(fast, rate[i]);
+    const auto [low, high] = std::minmax_element(v.begin(), v.end());
+    // five times as fast as any other step, alone, and no small part of the whole; a wheel that hardly turned says nothing
+    const double half_radian = signal.name.find(".angle_rad") != std::string::npos ? 0.5
+                               : std::isfinite(grid_.rad_per_count)                ? 0.5 / grid_.rad_per_count
+                                                                                   : 200;
+    const double large = std::max(0.02 * (*high - *low), half_radian);
+    std::size_t count = 0, first = 0;
+    for (std::size_t i = 0; i < rate.size(); ++i)
+        if (alone(i) && rate[i] > 5 * fast && fast > 0 && std::fabs(v[i + 1] - v[i]) > large && count++ == 0) first = i;
+    if (count == 0 || count > rate.size() / 10 + 1) return;
+    add("counter_jump", Severity::error, signal.name,
+        say("'%s' jumps by %.6g between two samples at t = %.3f s (%zu such jumps): a counter that overflowed or was reset",
+            signal.name.c_str(), v[first + 1] - v[first], t[first + 1], count),
+        "make it continuous (map: unwrap = true with period = the counter's range), or cut the log there", v[first + 1] - v[first],
+        t[first], t[first + 1]);
+}
+
+// A wheel whose speed comes from its angle or counts may stand still as well.
+void Quality::derived_speeds() {
+    static const log::Quantity *speed = log::find_quantity("wheel0.speed_rad_s");
+    for (const Wheel &wheel : grid_.wheel) {
+        if (speed == nullptr || wheel.speed.empty() || wheel.speed_column.find(".speed_rad_s") != std::string::npos) continue;
+        log::Signal rate{wheel.speed_column, {}, {}};
+        std::vector<double> size = wheel.speed;
+        for (double &v : size) v = std::fabs(v);
+        const double creep = 0.02 * quantile(size, 0.98); // a count now and then
+        for (std::size_t k = 0; k < grid_.count; ++k)
+            if (std::isfinite(wheel.speed[k]))
+                rate.t_s.push_back(grid_.time(k)), rate.value.push_back(std::fabs(wheel.speed[k]) < creep ? 0 : wheel.speed[k]);
+        if (rate.t_s.size() >= 40) dead_or_stuck(rate, *speed);
+    }
+}
+
 void Quality::coarse(const log::Signal &signal) {
     std::vector<double> sorted = signal.value;
     std::sort(sorted.begin(), sorted.end());
@@ -306,7 +361,7 @@ void Quality::coarse(const log::Signal &signal) {
 void Quality::run() {
     repairs();
     const bool trials = log_.header.count("rows") != 0 && log_.header.at("rows") == "trials";
-    std::size_t known = 0;
+    std::size_t known = 0, most = 0;
     double fastest = std::numeric_limits<double>::infinity();
     for (const log::Signal &signal : log_.signals) {
         const log::Quantity *entry = log::find_quantity(signal.name);
@@ -317,6 +372,7 @@ void Quality::run() {
             continue;
         }
         ++known;
+        most = std::max(most, signal.value.size());
         if (constant_by_design(signal) || signal.value.size() < 20) continue;
         outliers(signal);
         if (trials) continue;
@@ -329,6 +385,7 @@ void Quality::run() {
             (one_of(entry->quantity, {"current", "accel_x", "gyro_z"}) || (entry->quantity == "speed" && entry->object != "carriage"))) {
             dead_or_stuck(signal, *entry);
         }
+        if (entry->object == "wheel<i>" && one_of(entry->quantity, {"angle", "encoder"})) jumps(signal);
         if (signal.name == "camera.x_m") dead_or_stuck(whole_pose(signal), *entry);
         if (one_of(entry->quantity, {"current", "speed"}) && entry->kind == log::Kind::measured) coarse(signal);
     }
@@ -337,14 +394,21 @@ void Quality::run() {
             "read the file through a map (--map), or name the columns as docs/log_format.md does", 0);
         return;
     }
-    if (!trials && fastest >= 2 && std::isfinite(fastest)) {
+    const bool endless = !trials && grid_.count == 0 && log_.duration_s() > 50000; // [s] more than half a day, in one drive
+    if (!trials && (fastest >= 2 || endless) && std::isfinite(fastest)) {
         add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.4g s: the times look like milliseconds", fastest),
             "divide the times by 1000 (map: time.scale = 0.001)", fastest);
+    } else if (most < (trials ? 4U : 50U) || (!trials && log_.duration_s() < 2.5)) { // the lab's least number of rows, its shortest block
+        add("short", Severity::error, "",
+            say("the log lasts %.3g s and has %zu sample(s) of its fastest signal: nothing can be learnt from it", log_.duration_s(), most),
+            "record at least half a minute with starts, stops and turns", static_cast<double>(most));
     } else if (!trials && log_.duration_s() < 5) {
         add("short", Severity::warning, "", say("the log lasts %.3g s", log_.duration_s()),
             "record at least half a minute with starts, stops and turns", log_.duration_s());
     }
-    if (!trials) gaps();
+    if (trials) return;
+    derived_speeds();
+    gaps();
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
 
 namespace traction::check {
@@ -104,6 +105,16 @@ const UnitSlip *unit_slip(char kind, double factor) {
     }
 }
 
+// At least three jumps of about a turn, within a range of a turn: an angle that should be continuous and is not.
+bool wraps(const log::Signal &angle) {
+    constexpr double turn = 6.283185307179586;
+    if (angle.value.empty()) return false;
+    const auto [low, high] = std::minmax_element(angle.value.begin(), angle.value.end());
+    std::size_t jumps = 0;
+    for (std::size_t i = 1; i < angle.value.size(); ++i) jumps += std::fabs(angle.value[i] - angle.value[i - 1]) > 0.7 * turn;
+    return jumps >= 3 && *high - *low < 1.01 * turn;
+}
+
 namespace {
 
 // A fast signal: the mean of the samples in each cell. A slow one: the straight line between neighbours that are not far apart.
@@ -165,8 +176,40 @@ void add_camera(const log::Log &log, Grid &grid) {
         grid.camera_forward[k] = vx[k] * std::cos(grid.camera_yaw[k]) + vy[k] * std::sin(grid.camera_yaw[k]);
 }
 
-void add_wheels(const log::Log &log, Grid &grid) {
+// Wheel speeds of a log that has only angles or counts. Counts of unknown size get the speed of a small rover, 6 rad/s assumed.
+void derive_speeds(Grid &grid) {
+    double largest = 0;
+    for (Wheel &wheel : grid.wheel) {
+        const std::string name = "wheel" + std::to_string(wheel.index);
+        wheel.speed_column = name + ".speed_rad_s";
+        if (!wheel.speed.empty()) continue;
+        if (!wheel.angle_rate.empty()) {
+            wheel.speed_column = name + ".angle_rad";
+            wheel.speed = std::move(wheel.angle_rate), wheel.angle_rate.clear();
+        } else if (!wheel.count_rate.empty()) {
+            wheel.speed_column = name + ".encoder_count";
+            wheel.speed = std::move(wheel.count_rate), wheel.count_rate.clear();
+            if (std::isfinite(grid.rad_per_count))
+                for (double &w : wheel.speed) w *= grid.rad_per_count;
+            std::vector<double> size = wheel.speed;
+            for (double &w : size) w = std::fabs(w);
+            largest = std::fmax(largest, quantile(size, 0.98));
+        }
+    }
+    if (std::isfinite(grid.rad_per_count) || !(largest > 0)) return;
+    grid.speed_is_guessed = true;
+    for (Wheel &wheel : grid.wheel)
+        if (wheel.speed_column.find(".encoder_count") != std::string::npos)
+            for (double &w : wheel.speed) w *= 6 / largest;
+}
+
+void add_wheels(const log::Log &log, const Machine &machine, Grid &grid) {
     std::set<int> indices;
+    const auto told = log.header.find("encoder.rad_per_count");
+    if (machine.counts_per_turn > 0)
+        grid.rad_per_count = 6.283185307179586 / machine.counts_per_turn;
+    else if (told != log.header.end())
+        grid.rad_per_count = std::atof(told->second.c_str());
     for (const log::Signal &signal : log.signals) {
         if (log::find_quantity(signal.name) != nullptr && log::wheel_of(signal.name) >= 0) indices.insert(log::wheel_of(signal.name));
     }
@@ -182,7 +225,12 @@ void add_wheels(const log::Log &log, Grid &grid) {
         wheel.voltage = get("voltage_V");
         const auto flag = log.header.find("unsigned." + name + "current_A");
         wheel.unsigned_current = flag != log.header.end() && flag->second != "0";
-        const std::vector<double> count = get("encoder_count"), angle = get("angle_rad");
+        const std::vector<double> count = get("encoder_count");
+        std::vector<double> angle;
+        if (const log::Signal *turned = log.find(name + "angle_rad")) {
+            const log::Signal unwrapped = wraps(*turned) ? continuous(*turned) : *turned;
+            angle = resample(&unwrapped, grid.start_s, grid.count);
+        }
         if (!count.empty()) wheel.count_rate = slope(count, 2);
         const auto sign = log.header.find("firmware.encoder_sign_" + std::to_string(wheel.index)); // an encoder that counts the other way
         if (sign != log.header.end() && sign->second == "-1")
@@ -190,13 +238,15 @@ void add_wheels(const log::Log &log, Grid &grid) {
         if (!angle.empty()) wheel.angle_rate = slope(angle, 2);
         if (wheel.voltage.empty() && grid.battery.empty()) {
             wheel.voltage = wheel.duty;
-            wheel.in_volts = false;
+            wheel.in_volts = std::isfinite(machine.battery_V);
+            for (double &u : wheel.voltage) u *= wheel.in_volts ? machine.battery_V : 1.0;
         } else if (wheel.voltage.empty() && !wheel.duty.empty()) {
             wheel.voltage.assign(grid.count, not_known);
             for (std::size_t k = 0; k < grid.count; ++k) wheel.voltage[k] = wheel.duty[k] * grid.battery[k];
         }
         grid.wheel.push_back(std::move(wheel));
     }
+    derive_speeds(grid);
 }
 
 void add_ground_speed(Grid &grid, const Machine &machine) {
@@ -232,7 +282,7 @@ void add_ground_speed(Grid &grid, const Machine &machine) {
         if (!grid.gyro.empty() && std::fabs(grid.gyro[k]) > 0.3) continue;
         ratio.push_back(std::fabs(grid.ground_speed[k]) * n / size);
     }
-    if (ratio.size() >= 40) grid.effective_radius_m = quantile(ratio, 0.9);
+    if (ratio.size() >= 40) grid.effective_radius_m = quantile(ratio, 0.9), grid.middle_radius_m = quantile(ratio, 0.5);
 }
 
 } // namespace
@@ -259,7 +309,7 @@ Grid make_grid(const log::Log &log, const Machine &machine) {
     grid.radar = get("radar.speed_m_s");
     grid.carriage = get("carriage.speed_m_s");
     add_camera(log, grid);
-    add_wheels(log, grid);
+    add_wheels(log, machine, grid);
     add_ground_speed(grid, machine);
     return grid;
 }

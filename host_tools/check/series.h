@@ -32,6 +32,7 @@ double correlation(const std::vector<double> &a, const std::vector<double> &b);
 struct Wheel {
     int index = 0;
     std::vector<double> speed, set_speed, current, duty, voltage, count_rate, angle_rate; // empty when absent; voltage = duty * battery
+    std::string speed_column; // where speed comes from: the speed column, else the angle's rate, else the counts'
     bool unsigned_current = false;
     bool in_volts = true; // false: no battery voltage in the log, `voltage` is the duty
 };
@@ -46,6 +47,9 @@ struct Grid {
     std::vector<double> ground_speed;      // camera, else radar with the wheels' sign, else carriage; empty: unknown
     std::string ground_source;             // the column it comes from
     double effective_radius_m = not_known; // ground speed over wheel speed where slip is least
+    double middle_radius_m = not_known;    // the same, median
+    double rad_per_count = not_known;      // of the encoders, by the machine, else by the header
+    bool speed_is_guessed = false;         // counts of unknown size: wheel speeds are right but for one common factor
     std::vector<char> active;              // 1 where a wheel turns or is driven
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
@@ -56,6 +60,9 @@ std::vector<double> slope(const std::vector<double> &x, std::size_t half_span);
 
 // The same, averaged over +-half_span samples.
 std::vector<double> smooth(const std::vector<double> &x, std::size_t half_span);
+
+// A wheel angle that jumps back by a turn instead of going on.
+bool wraps(const log::Signal &angle);
 
 // A unit that people mistake for the SI one: the logged number is `factor` times the right one.
 struct UnitSlip {
@@ -74,7 +81,10 @@ void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs,
                    std::vector<Rate> &rates);
 void check_clipping(const log::Signal &signal, const Grid &grid, Findings &findings); // the end of a sensor's range
 void check_drives(const Grid &grid, const Machine &machine, Findings &findings);      // duty, speed, current: units, signs, swaps
-void check_motion(const Grid &grid, const Machine &machine, Findings &findings);      // encoder, camera, radar, imu
+void check_magnitudes(const Grid &grid, Findings &findings);                          // currents that lack their sign
+void check_scales(const Grid &grid, const Machine &machine, Findings &findings);      // factors, with a known machine
+void check_clock(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // its rate; signals that are late
+void check_motion(const Grid &grid, const Machine &machine, Findings &findings);                     // encoder, camera, radar, imu
 Excitation measure_excitation(const Grid &grid);
 void judge_excitation(const Excitation &excitation, const Grid &grid, Findings &findings);
 

@@ -125,6 +125,8 @@ std::string folder_of(Kind kind) {
 void find_data(const Verb &verb) {
     for (const Option &option : verb.options) {
         const std::string folder = folder_of(option.kind);
+        if (std::vector<std::string> *const *paths = std::get_if<std::vector<std::string> *>(&option.into); !folder.empty() && paths)
+            for (std::string &one : **paths) one = data_file(one, folder);
         std::string *const *path = std::get_if<std::string *>(&option.into);
         if (!folder.empty() && path != nullptr) **path = data_file(**path, folder);
     }

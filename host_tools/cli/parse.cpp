@@ -94,7 +94,7 @@ void add(CLI::App &app, Taken &taken) {
     }
     const std::string names = option.name.empty() || option.argument.empty() ? told_as(option) : option.argument + ',' + option.name;
     taken.parser = app.add_option(names, taken.words);
-    if (!std::holds_alternative<Words *>(option.into))
+    if (!std::holds_alternative<Words *>(option.into) || option.at_most == 1)
         taken.parser->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     else if (option.at_most > 0)
         taken.parser->expected(0, option.at_most);

@@ -27,17 +27,45 @@ Option report_row(std::string &report) {
     return {.name = "--report", .into = &report, .help = "write a report page (HTML)", .value = "FILE", .kind = Kind::output};
 }
 
+Option despite_row(std::vector<std::string> &despite) {
+    return {.name = "--despite",
+            .into = &despite,
+            .help = "learn although the check found this error (its id, such as sign); written into result and lineage",
+            .value = "ID",
+            .at_most = 1};
+}
+
 std::vector<Option> lab_rows(lab::Request &request) {
-    return {log_row(request.log),
+    return {{.name = "--log",
+             .argument = "LOG",
+             .into = &request.logs,
+             .help = "log (CSV); given again: further runs of the same machine, fitted together",
+             .kind = Kind::log,
+             .required = true,
+             .at_most = 1},
             model_row(request.model),
-            map_row(request.map),
+            {.name = "--map",
+             .into = &request.maps,
+             .help = "read a foreign CSV through this map (TOML, docs/log_format.md); one for all logs, or one for each",
+             .value = "FILE",
+             .kind = Kind::input,
+             .at_most = 1},
             {.name = "--repeat",
              .into = &request.repeat,
              .help = "a second run of the same drive: its difference is the noise",
              .value = "FILE",
              .kind = Kind::log},
             {.name = "--from", .into = &request.from_s, .help = "use the log from this time [s]", .value = "S"},
-            {.name = "--to", .into = &request.to_s, .help = "use the log up to this time [s]", .value = "S"}};
+            {.name = "--to", .into = &request.to_s, .help = "use the log up to this time [s]", .value = "S"},
+            despite_row(request.despite)};
+}
+
+Option validate_row(std::vector<std::string> &logs) {
+    return {.name = "--validate",
+            .into = &logs,
+            .help = "judge the result on these logs, which are never fitted (read through the first --map)",
+            .value = "LOG...",
+            .kind = Kind::log};
 }
 
 std::vector<std::string> effect_names() {

@@ -12,6 +12,8 @@ namespace traction::cli {
 Option log_row(std::string &log, const char *help = "log (CSV)", bool required = true); // as an argument and as --log
 Option map_row(std::string &map);
 Option model_row(std::string &model);
+Option despite_row(std::vector<std::string> &despite); // --despite ID, may be given again
+Option validate_row(std::vector<std::string> &logs);
 Option report_row(std::string &report);
 
 // LOG, --model, --map, --repeat, --from, --to: what the lab's verbs read.

@@ -6,6 +6,7 @@
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
+#include "host_tools/lab/validate.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
@@ -34,7 +35,11 @@ void add_effect(const AddRequest &request, Outcome &outcome) {
     outcome.json = lab::head_json("add", added.model, session.data);
     lab::put_comparison(outcome.json, lab::compare(added.model, session.data, true));
     outcome.json["ladder"] = lab::ladder_json(added.ladder);
+    outcome.json["limits"] = lab::limits_json(added.limits);
     outcome.json["verdict"] = {{"kind", added.helps ? "named" : "nothing"}, {"effects", {request.effect}}, {"text", added.text}};
+    const std::vector<lab::Validation> validation = lab::validate(session, request.input, added.model);
+    std::fputs(lab::validation_text(validation).c_str(), stdout);
+    outcome.json["validation"] = lab::validation_json(validation);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (!added.helps) outcome.exit_code = exit_negative;
 }
@@ -62,6 +67,7 @@ Verb verb_add() {
                                                              .help = "TOML with an [[effect]] of your own",
                                                              .value = "FILE",
                                                              .kind = Kind::input},
+                                                            validate_row(request->input.validate),
                                                             report_row(request->report)})),
             .run = [request](Outcome &outcome) { add_effect(*request, outcome); }};
 }

@@ -3,6 +3,7 @@
 #include "verbs.h"
 
 #include "host_tools/check/check.h"
+#include "host_tools/lab/gate.h"
 #include "host_tools/lab/model/model.h"
 
 #include <cmath>
@@ -16,28 +17,6 @@ namespace {
 struct CheckOptions {
     std::string log, map, model;
 };
-
-double value_of(const lab::Parameters &parameters, const char *key) {
-    const auto found = parameters.find(key);
-    return found != parameters.end() && found->second.value > 0 ? found->second.value : std::nan("");
-}
-
-// What the model knows that a unit or a sign can be judged by.
-check::Machine machine_of(const lab::Model &model) {
-    check::Machine machine;
-    if (model.wheel.empty()) return machine;
-    machine.wheel_radius_m = value_of(model.wheel[0].geometry, "radius_m");
-    machine.back_emf_Vs = value_of(model.wheel[0].motor, "back_emf_Vs_rad");
-    if (std::isnan(machine.back_emf_Vs)) machine.back_emf_Vs = value_of(model.wheel[0].motor, "torque_constant_Nm_A");
-    machine.resistance_ohm = value_of(model.wheel[0].motor, "resistance_ohm");
-    machine.wheels_point_forward = model.motion != lab::BodyMotion::none;
-    for (const lab::WheelSpec &wheel : model.wheel) {
-        const auto heading = wheel.geometry.find("heading_rad");
-        if (!wheel.grips_sideways || (heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01))
-            machine.wheels_point_forward = false;
-    }
-    return machine;
-}
 
 nlohmann::json excitation_json(const check::Excitation &e) {
     nlohmann::json wheels = nlohmann::json::array();
@@ -107,7 +86,7 @@ void print_report(const CheckOptions &options, const check::Report &report) {
 }
 
 void run_check(const CheckOptions &options, Outcome &outcome) {
-    const check::Machine machine = options.model.empty() ? check::Machine{} : machine_of(lab::read_model(options.model));
+    const check::Machine machine = options.model.empty() ? check::Machine{} : lab::machine_of(lab::read_model(options.model));
     const check::Report report = check::check_file(options.log, options.map, machine);
     print_report(options, report);
     outcome.json = report_json(options, report);

@@ -9,6 +9,7 @@
 #include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/session.h"
+#include "host_tools/lab/validate.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
@@ -41,12 +42,18 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
         if (!next.scenario_toml.empty()) std::printf("(traction next --model MODEL --log LOG --out next.toml writes the scenario)\n");
         outcome.json["next"] = lab::next_json(next);
     }
+    if (diagnosis.kind != "wrong_model") {
+        const std::vector<lab::Validation> validation = lab::validate(session, request.input, diagnosis.model);
+        std::fputs(lab::validation_text(validation).c_str(), stdout);
+        outcome.json["validation"] = lab::validation_json(validation);
+    }
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (diagnosis.kind == "nothing") outcome.exit_code = exit_negative;
+    if (diagnosis.kind == "wrong_model") outcome.exit_code = exit_bad_input;
     if (!request.apply) return;
     if (diagnosis.accepted.empty()) {
         std::printf("nothing to add: no model is written\n");
-        outcome.exit_code = exit_negative;
+        if (diagnosis.kind != "wrong_model") outcome.exit_code = exit_negative;
         return;
     }
     lab::Model model = diagnosis.model;
@@ -63,6 +70,7 @@ Verb verb_diagnose() {
     return {.name = "diagnose",
             .summary = "which physics the model lacks, by held-out error",
             .options = rows(lab_rows(request->input), {report_row(request->report),
+                                                       validate_row(request->input.validate),
                                                        {.name = "--apply",
                                                         .into = &request->apply,
                                                         .help = "add what was named, refit, and write the new model to --out",

@@ -71,6 +71,7 @@ Verb verb_next() {
               .value = "FILE",
               .kind = Kind::input,
               .needs = {"--log"}},
+             despite_row(request->input.despite),
              {.name = "--effects",
               .into = &request->effects,
               .help = "tell these apart (or, one alone: show it), instead of what a diagnosis leaves open; NAME or NAME:WHEEL",

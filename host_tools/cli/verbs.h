@@ -62,8 +62,8 @@ struct Option {
     std::vector<std::string> needs = {}, excludes = {};  // other options of this verb by name
     std::string (*check)(const std::string &) = nullptr; // empty: good; otherwise what is wrong
     char delimiter = '\0';                               // a list may also stand in one word: A,B
-    int at_most = 0;                                     // a list of 0 to this many values; 0: each use of the option adds one or more
-    bool *given = nullptr;                               // told whether the user wrote it
+    int at_most = 0;       // a list of 0 to this many values; 1: one value each use, any number of uses; 0: each use adds one or more
+    bool *given = nullptr; // told whether the user wrote it
 };
 
 struct Verb {

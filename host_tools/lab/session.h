@@ -1,24 +1,36 @@
-// session.h - what every verb of the lab does first: read the model, the log (through its map) and the repeat run.
+// session.h - what every verb of the lab does first: read the model, the logs (each through its map) and the repeat run, through the gate.
 #pragma once
 
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/model/model.h"
 
 #include <string>
+#include <vector>
 
 namespace traction::lab {
 
 struct Request {
     std::string model, log, map, repeat;
-    double from_s = 0, to_s = 0; // part of the log; to_s 0: all
+    double from_s = 0, to_s = 0;            // part of each log; to_s 0: all
+    std::vector<std::string> despite = {};  // errors of the check that shall not stop it (gate.h)
+    std::vector<std::string> logs = {};     // runs of one machine, beside `log`
+    std::vector<std::string> maps = {};     // one for all logs, or one for each; beside `map`
+    std::vector<std::string> validate = {}; // logs that the result is judged on, never fitted
+    std::string map_of_validation() const { return maps.empty() ? map : maps.front(); }
 };
 
 struct Session {
     Model model;
-    Dataset data;
+    Dataset data;               // of all runs, one after the other (join_runs.h)
+    std::vector<log::Log> runs; // as read, through map and gate
 };
 
-// Throws ModelError, log::LogError.
+// Every log has passed the gate, or was let through despite an error: data.despite and data.messages say so. Throws ModelError,
+// log::LogError, Refused (gate.h).
 Session open_session(const Request &request);
+
+// One log, the part that is asked for, through the gate. `told`: warnings and what was overridden; `despite`: ids overridden.
+log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,
+                     std::vector<std::string> &told, std::vector<std::string> &despite);
 
 } // namespace traction::lab

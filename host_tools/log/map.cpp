@@ -186,6 +186,23 @@ void read_header(const std::string &path, const toml::table &table, Map &map) {
     }
 }
 
+void read_join(const std::string &path, const toml::table &table, Map &map) {
+    Keys keys(path, table, "[join]");
+    map.join.line = keys.line();
+    map.join.replace = keys.text("replace", "");
+    map.join.with = keys.text("with", "");
+    map.join.map = keys.text("map", "");
+    map.join.offset_s = keys.number("offset_s", 0);
+    map.join.common = keys.text("correlate", "");
+    map.join.widest_s = keys.number("widest_s", 5);
+    if (map.join.replace.empty() || map.join.map.empty())
+        keys.fail(
+            "[join] needs 'replace', 'with' and 'map'",
+            "write replace = \"_wheels_\", with = \"_imu_\" (parts of the two files' names) and map = \"imu.toml\" (beside this map)");
+    if (!(map.join.widest_s > 0)) keys.fail("widest_s of [join] is not above 0", "write how far apart the two clocks may be, in seconds");
+    keys.none_unknown();
+}
+
 } // namespace
 
 Map read_map(const std::string &path) {
@@ -219,6 +236,7 @@ Map read_map(const std::string &path) {
     read_time(path, as_table(path, *time, "time"), map);
     if (const toml::node *header = keys.look("header")) read_header(path, as_table(path, *header, "header"), map);
     if (const toml::node *where = keys.look("where")) read_filters(path, *where, map);
+    if (const toml::node *join = keys.look("join")) read_join(path, as_table(path, *join, "join"), map);
     const toml::node *signals = keys.look("signal");
     if (signals == nullptr || !signals->is_array() || signals->as_array()->empty())
         keys.fail("the map has no [[signal]]", "write [[signal]] with name and column for each signal");

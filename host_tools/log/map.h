@@ -28,8 +28,19 @@ struct MapSignal {
     std::size_t line = 0;          // in the map
 };
 
+// A second file of the same drive: its name is the log's with one part replaced; it has a map of its own.
+struct MapJoin {
+    std::string replace, with; // in the file's name, without folder
+    std::string map;           // beside this map
+    double offset_s = 0;       // its clock's zero in the first file's time
+    std::string common;        // a signal that both maps name: the offset is where the two agree best; "a, b": two that see one motion
+    double widest_s = 5;       // how far the offset is searched
+    std::size_t line = 0;      // in the map; 0: no second file
+};
+
 struct Map {
     std::string path;
+    MapJoin join;
     Dialect dialect;
     double time_scale = 1; // seconds per unit of the time column
     double time_offset_s = 0;
@@ -45,5 +56,9 @@ Map read_map(const std::string &path);
 // Throws LogError with the line in the log.
 Log read_through_map(const FileBytes &bytes, const std::string &path, const Map &map, std::vector<Repair> &repairs,
                      const ReadLimits &limits);
+
+// The second file of map.join, if there is one, read and put beside the first on one clock: by the given offset, or where two signals that
+// see one motion agree best (correlation; sampled every 20 ms). Throws LogError where it is absent, or where the two never agree.
+void join_second_file(Log &log, const Map &map, std::vector<Repair> &repairs, const ReadLimits &limits);
 
 } // namespace traction::log

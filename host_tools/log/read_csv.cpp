@@ -66,8 +66,14 @@ Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Rep
 Log read_csv(const std::string &path, const std::string &map_path, std::vector<Repair> &repairs, const ReadLimits &limits) {
     const std::size_t before = repairs.size();
     const FileBytes bytes(path, limits.bytes);
-    Log log =
-        map_path.empty() ? read_native(bytes, path, repairs, limits) : read_through_map(bytes, path, read_map(map_path), repairs, limits);
+    Log log;
+    if (map_path.empty()) {
+        log = read_native(bytes, path, repairs, limits);
+    } else {
+        const Map map = read_map(map_path);
+        log = read_through_map(bytes, path, map, repairs, limits);
+        join_second_file(log, map, repairs, limits);
+    }
     for (std::size_t i = before; i < repairs.size(); ++i) log.repairs.push_back(repairs[i].text);
     return log;
 }

@@ -3,24 +3,28 @@
 Mutants of every .c file and of fixed.h are made by universalmutator, shuffled by the seed, and judged until the wanted number has been
 compiled and differs from the original in its machine code (the others are no faults: comments, annotations, the same program).
 A mutant is killed when a unit test fails, a sanitizer (address, undefined behaviour: as in the preset dev) speaks up, or it does not end. The committed replay hash is no judge: it knows yesterday's
-output, not the truth. Survivors that are known to be equivalent are listed with their reason in mutants_equivalent.txt.
+output, not the truth. Verdicts are kept in OUT/verdicts.tsv: a run that was broken off, or whose minutes were over, goes on from there as long as
+firmware and tests are the same. Survivors that are known to be equivalent are listed with their reason in mutants_equivalent.txt.
 """
 
 import argparse
 import concurrent.futures
 import difflib
+import hashlib
 import os
 import pathlib
 import random
+import resource
 import shutil
 import subprocess
 import sys
+import time
 
 C_FLAGS = ["-std=gnu11", "-O2", "-fPIC", "-ffp-contract=off", "-w"]
 SANITIZE = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
 CXX_FLAGS = ["-std=c++20", "-O2", "-ffp-contract=off", "-w"]
 RADARS = ["mdu1130", "dj_radar_2", "dj_radar_3", "drs1000"]
-TIMEOUT_S = 60  # the judge takes about 1 s
+LIMIT_S = 60  # of processor time, whatever else the machine does; the judge takes about 2 s
 
 
 def run(command, **options):
@@ -43,7 +47,8 @@ def build_judge(root, out, jobs):
         must([out / "template_gen", radar, out / f"{radar}.c"])
         commands.append(["cc", *C_FLAGS, f"-I{root}", "-c", out / f"{radar}.c", "-o", base / f"template_{radar}.o"])
     for source in sorted((root / "firmware/app").glob("*.c")):
-        commands.append(["cc", *C_FLAGS, f"-I{root}", "-c", source, "-o", base / f"app_{source.stem}.o"])
+        if source.stem != "tractiond": # the program itself: it has a main of its own
+            commands.append(["cc", *C_FLAGS, f"-I{root}", "-c", source, "-o", base / f"shell_{source.stem}.o"])
     tests = sorted((root / "tests/unit").glob("*_test.cpp"))
     for source in tests:
         commands.append(["c++", *CXX_FLAGS, f"-I{root}", "-c", source, "-o", base / f"{source.stem}.o"])
@@ -77,14 +82,16 @@ class Worker:
         must(["cc", "-shared", *SANITIZE, "-o", self.folder / "libcore.so", *objects, "-lm"])
 
     def link_judge(self, tests):
-        must(["c++", *SANITIZE, "-o", self.folder / "judge", *tests, *sorted(self.base.glob("app_*.o")), f"-L{self.folder}", "-lcore", "-lrapidcheck",
+        must(["c++", *SANITIZE, "-o", self.folder / "judge", *tests, *sorted(self.base.glob("shell_*.o")), f"-L{self.folder}", "-lcore", "-lrapidcheck",
               "-lgtest", "-lgtest_main", "-lpthread", "-lm"])
 
     def passes(self, program):
         environment = dict(os.environ, LD_LIBRARY_PATH=str(self.folder), RC_PARAMS="seed=20261121 max_success=200",
                            ASAN_OPTIONS="detect_leaks=0")
         try:
-            return run([program, "--gtest_fail_fast", "--gtest_brief=1"], cwd=self.root, env=environment, timeout=TIMEOUT_S).returncode == 0
+            limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
+            return run([program, "--gtest_fail_fast", "--gtest_brief=1"], cwd=self.root, env=environment, timeout=20 * LIMIT_S,
+                       preexec_fn=limit).returncode == 0
         except subprocess.TimeoutExpired:
             return False
 
@@ -136,6 +143,7 @@ def main():
     parser.add_argument("--mutants", type=int, required=True)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--minutes", type=float, default=1e6, help="judge no more after these")
     options = parser.parse_args()
     root, out = options.root.resolve(), options.out.resolve()
 
@@ -166,17 +174,33 @@ def main():
             equivalent[name, " | ".join(new)] = reason
     table, survivors, judged, others = {}, [], 0, {"invalid": 0, "same": 0}
     idle = list(workers)
+    digest = hashlib.sha256()
+    for source in sorted([*(root / "firmware").rglob("*.[ch]"), *(root / "tests/unit").glob("*.*")]):
+        digest.update(source.read_bytes())
+    kept, stamp, known = out / "verdicts.tsv", digest.hexdigest(), {}
+    if kept.exists() and kept.read_text().startswith(stamp):
+        known = dict(line.split("\t") for line in kept.read_text().splitlines()[1:])
+    else:
+        kept.write_text(stamp + "\n")
 
     def judge(item):
+        key = hashlib.sha256(item[0].name.encode() + item[1].read_bytes()).hexdigest()
+        if key in known:
+            return known[key]
         worker = idle.pop()
         try:
-            return worker.judge(item[0].name, item[1])
+            verdict = worker.judge(item[0].name, item[1])
+            with kept.open("a") as log:
+                log.write(f"{key}\t{verdict}\n")
+            return verdict
         finally:
             idle.append(worker)
 
+    began = time.monotonic()
+
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         at = 0
-        while judged < options.mutants and at < len(mutants):
+        while judged < options.mutants and at < len(mutants) and time.monotonic() - began < 60 * options.minutes:
             batch = mutants[at:at + min(8 * options.jobs, options.mutants - judged)]
             at += len(batch)
             for (source, path), verdict in zip(batch, pool.map(judge, batch)):
@@ -192,6 +216,8 @@ def main():
                     survivors.append(f"{source.name}:{number}: {old}  =>  {new}" + (f"  [equivalent: {reason}]" if reason else ""))
                 row[verdict] += 1
 
+    if judged < options.mutants and at < len(mutants):
+        print(f"mutate: the {options.minutes:g} minutes are over after {judged} of {options.mutants}; the same command goes on from here")
     (out / "survivors").write_text("".join(f"{line}\n" for line in sorted(survivors)))
     print(f"{'file':<20} {'killed':>8} {'equivalent':>11} {'survived':>9}")
     total = {"killed": 0, "equivalent": 0, "survived": 0}

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace traction::lab {
 namespace {
@@ -60,7 +61,7 @@ TEST(Shapes, a_lead_shared_by_an_axle_is_no_wiring_of_one_motor) {
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_EQ(d.unknown->variable, "current of the motors of its axle (model)");
-    EXPECT_TRUE(is_nearest(d, "wiring_resistance"));
+    EXPECT_TRUE(d.effects.empty()); // a wiring resistance is at most the nearest
 }
 
 TEST(Shapes, a_dead_band_of_the_bridge_shows_over_the_motors_voltage) {
@@ -85,14 +86,15 @@ TEST(Shapes, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
     EXPECT_NE(d.unknown->variable.find("wheel speed"), std::string::npos) << d.text;
 }
 
-TEST(Shapes, a_slow_drift_of_the_grip_shows_as_a_straight_line_over_time) {
+TEST(Shapes, a_slow_drift_of_the_grip_shows_over_time) {
     const Diagnosis d = ask(Soil::gravel, "grip_drift:change=-0.4", 37);
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_EQ(d.unknown->variable, "time");
     EXPECT_EQ(d.unknown->target, "soil_strength");
-    ASSERT_EQ(d.unknown->y.size(), 2U);
-    EXPECT_LT(d.unknown->y[1], d.unknown->y[0]);
+    const std::vector<double> &y = d.unknown->y; // a straight line or a curve: it falls
+    const auto half = static_cast<std::ptrdiff_t>(y.size() / 2);
+    EXPECT_LT(std::accumulate(y.end() - half, y.end(), 0.0), std::accumulate(y.begin(), y.begin() + half, 0.0));
 }
 
 TEST(Shapes, a_shape_takes_no_name_that_is_about_something_else) {

@@ -54,7 +54,9 @@ TEST(Diagnose, names_the_wheel_that_has_more_friction) {
     ASSERT_FALSE(d.accepted.empty());
     EXPECT_EQ(d.accepted[0].candidate.effect, "coulomb_friction");
     EXPECT_EQ(d.accepted[0].candidate.wheel, 2);
-    EXPECT_NEAR(d.accepted[0].value[0], 0.03, 0.004); // size of interest
+    EXPECT_LT(d.accepted[0].low[0], 0.03); // the other wheels' tolerances are in its interval
+    EXPECT_GT(d.accepted[0].high[0], 0.03);
+    EXPECT_GT(d.accepted[0].low[0], 0.004); // size of interest
 }
 
 TEST(Diagnose, two_wheels_of_one_side_that_a_log_cannot_tell_apart_are_a_class) {
@@ -91,10 +93,10 @@ TEST(Diagnose, what_promises_most_is_tried_though_others_are_surer) {
 
 // A sliding wheel is rare: its effect helps in all blocks, but what its coefficient says scatters over them.
 TEST(Diagnose, names_an_effect_that_acts_in_few_blocks) {
-    const Diagnosis d = ask_campaign(80000); // sliding_speed_loss, and coulomb_friction on wheel 0
-    ASSERT_EQ(d.effects.size(), 2U) << d.text;
-    EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), "sliding_speed_loss"), d.effects.end()) << d.text;
-    EXPECT_NE(std::find(d.effects.begin(), d.effects.end(), "coulomb_friction on wheel 0"), d.effects.end()) << d.text;
+    // sliding_speed_loss; and 0.0166 N m on wheel 0, 3.7 of the deviations that a wheel's own friction may have: its tolerance, not named
+    const Diagnosis d = ask_campaign(80000);
+    ASSERT_EQ(d.effects.size(), 1U) << d.text;
+    EXPECT_EQ(d.effects[0], "sliding_speed_loss") << d.text;
 }
 
 TEST(Diagnose, what_only_the_data_sheets_tolerances_decide_is_a_class) {

@@ -180,3 +180,64 @@ TEST(MeasuredData, robotino_unloaded_motors_and_the_cmu_wheel_are_read) {
     const Log plate = read_csv((data / "cmu_single_wheel/plate_100mm_4.csv").string(), "models/maps/cmu_plate.toml");
     EXPECT_NEAR(plate.find("plate.normal_N")->value.back(), 292.91, 1e-9);
 }
+
+namespace {
+
+// A wheel and a gyro that see one motion, the gyro 1.4 s late by its own clock and ten times as often.
+std::string wheel_csv() {
+    std::string text = "t,w\n";
+    for (int i = 0; i < 400; ++i)
+        text += std::to_string(0.1 * i) + "," + std::to_string(std::sin(0.7 * 0.1 * i) + 0.3 * std::sin(3.1 * 0.1 * i)) + "\n";
+    return text;
+}
+std::string gyro_csv() {
+    std::string text = "t,g\n";
+    for (int i = 0; i < 3900; ++i) {
+        const double t = 0.01 * i; // the world's time is t - 1.4
+        text += std::to_string(t) + "," + std::to_string(0.5 * (std::sin(0.7 * (t - 1.4)) + 0.3 * std::sin(3.1 * (t - 1.4)))) + "\n";
+    }
+    return text;
+}
+const std::string wheel_map =
+    "format = \"traction-map 1\"\n[time]\ncolumn = \"t\"\n[[signal]]\nname = \"wheel0.speed_rad_s\"\ncolumn = \"w\"\n";
+const std::string gyro_map =
+    "format = \"traction-map 1\"\n[time]\ncolumn = \"t\"\n[[signal]]\nname = \"imu.gyro_z_rad_s\"\ncolumn = \"g\"\n";
+
+std::string name_of(const std::string &path) { return path.substr(path.find_last_of('/') + 1); }
+
+} // namespace
+
+TEST(MapJoin, two_files_meet_by_a_given_offset_or_by_what_both_see) {
+    const File wheel("drive_pro_1.csv", wheel_csv()), gyro("drive_imu_1.csv", gyro_csv()), second("second.toml", gyro_map);
+    const std::string join = "[join]\nreplace = \"_pro_\"\nwith = \"_imu_\"\nmap = \"" + name_of(second.path()) + "\"\n";
+    const File given("given.toml", wheel_map + join + "offset_s = -1.4\n");
+    const Log by_offset = read_csv(wheel.path(), given.path());
+    ASSERT_NE(by_offset.find("imu.gyro_z_rad_s"), nullptr);
+    EXPECT_NEAR(by_offset.find("imu.gyro_z_rad_s")->t_s.front(), -1.4, 1e-9);
+    const File searched("searched.toml", wheel_map + join + "correlate = \"wheel0.speed_rad_s, imu.gyro_z_rad_s\"\n");
+    const Log by_motion = read_csv(wheel.path(), searched.path());
+    EXPECT_NEAR(by_motion.find("imu.gyro_z_rad_s")->t_s.front(), -1.4, 0.02); // the step of the search
+    EXPECT_NE(by_motion.repairs.back().find("joined"), std::string::npos);
+}
+
+TEST(MapJoin, refuses_what_does_not_meet) {
+    std::string noise = "t,g\n";
+    unsigned state = 1;
+    for (int i = 0; i < 3900; ++i)
+        noise += std::to_string(0.01 * i) + "," + std::to_string((state = state * 1664525U + 1013904223U) >> 16U) + "\n";
+    const File wheel("drive_pro_2.csv", wheel_csv()), gyro("drive_imu_2.csv", noise), second("second_2.toml", gyro_map);
+    const std::string join = "[join]\nreplace = \"_pro_\"\nwith = \"_imu_\"\nmap = \"" + name_of(second.path()) + "\"\n";
+    const auto said = [&](const std::string &rules) {
+        const File map("refused.toml", rules);
+        try {
+            read_csv(wheel.path(), map.path());
+        } catch (const LogError &error) {
+            return std::string(error.what());
+        }
+        return std::string("(read without complaint)");
+    };
+    EXPECT_HAS(said(wheel_map + join + "correlate = \"wheel0.speed_rad_s, imu.gyro_z_rad_s\"\n"), "agree nowhere");
+    EXPECT_HAS(said(wheel_map + join + "correlate = \"wheel0.speed_rad_s, imu.accel_x_m_s2\"\n"), "does not have");
+    EXPECT_HAS(said(wheel_map + "[join]\nreplace = \"_x_\"\nwith = \"_y_\"\nmap = \"" + name_of(second.path()) + "\"\n"), "has no '_x_'");
+    EXPECT_HAS(said(wheel_map + "[join]\nwith = \"_y_\"\n"), "[join] needs");
+}

@@ -12,9 +12,9 @@ set(rules
   "sim|${same_folder}|sim/.+|*"
   "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
 # The lab's rooms, in the order in which data goes through them: a room includes itself and the rooms before it. session.h opens model and
-# log for whoever uses the lab, so that it may look into every room and none looks back.
+# log for whoever uses the lab, through the gate (host_tools/check), so that it may look into every room and none looks back.
 set(rooms model inputs forward fit decision next result)
-list(APPEND rules "host_tools/lab|${same_folder}|sim/physics/.+|host_tools/log/.+|host_tools/lab/.+|*")
+list(APPEND rules "host_tools/lab|${same_folder}|sim/physics/.+|host_tools/(log|check)/.+|host_tools/lab/.+|*")
 set(earlier "")
 foreach(room IN LISTS rooms)
   string(APPEND earlier "|host_tools/lab/${room}/.+")

@@ -2,6 +2,7 @@
 
 #include "host_tools/lab/forward/forward.h"
 #include "host_tools/lab/inputs/dataset.h"
+#include "host_tools/lab/inputs/smooth.h"
 #include "knots.h"
 
 #include "sim/physics/effects/catalogue.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numbers>
 
 namespace traction::lab {
@@ -56,6 +58,69 @@ std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Mot
     return list;
 }
 
+// How much larger than the rover of table I (docs/sources.md), whose sizes the catalogue's ranges are, a machine is: plausible and
+// interesting sizes go with it. Within a third it is that rover.
+class MachineScale {
+  public:
+    MachineScale(const Model &model, const Physics &physics, const Dataset &data) {
+        double KG = 0, Ra = 0, n = 0, arm = 0, radius = 0;
+        for (const WheelPhysics &w : physics.wheel)
+            KG += w.KG, Ra += w.Ra, radius += w.radius, arm = std::max(arm, std::hypot(w.x, w.y)), ++n;
+        KG /= n, Ra /= n, radius /= n;
+        double volt = data.supply_V.empty() ? 0 : median(data.supply_V);
+        if (!(volt > 0)) volt = physics.body.battery_V;
+        const double weight = physics.body.mass * physics.body.gravity;
+        if (KG > 0 && Ra > 0 && volt > 0 && model.motion != BodyMotion::imposed) {
+            by_unit_["N m"] = KG * volt / Ra / (0.265 * 7.2 / 3.24);
+            by_unit_["N m s"] = KG * KG / Ra / (0.265 * 0.265 / 3.24);
+            by_unit_["A"] = volt / Ra / (7.2 / 3.24);
+            by_unit_["s/m"] = 7.2 / 0.265 * 0.057 / (volt / KG * radius);
+        }
+        if (Ra > 0) by_unit_["ohm"] = Ra / 3.24;
+        if (volt > 0) by_unit_["V"] = volt / 7.2;
+        if (weight > 0) by_unit_["N"] = by_unit_["N/m"] = weight / (2.88 * 9.81);
+        if (weight > 0 && arm > 0) by_unit_["m"] = arm / std::hypot(0.083, 0.12);
+    }
+    void apply(sim::EffectParameter &p) const {
+        const auto found = by_unit_.find(std::string(p.unit));
+        if (found == by_unit_.end() || (found->second > 0.67 && found->second < 1.5)) return;
+        const double factor = std::clamp(found->second, 0.01, 1000.0);
+        for (double *x : {&p.minimum, &p.maximum, &p.of_interest}) *x *= factor;
+    }
+
+  private:
+    std::map<std::string, double> by_unit_;
+};
+
+// A ripple needs turns to show, a delay changes that come late.
+bool can_show(const std::string &effect, const std::vector<std::pair<std::string, double>> &shape, const Dataset &data) {
+    if (data.count < 3) return true; // no log: a drive is planned
+    if (effect == "torque_ripple") {
+        double turns = 0;
+        for (const WheelInput &w : data.wheel) {
+            const auto [low, high] = std::minmax_element(w.angle_rad.begin(), w.angle_rad.end());
+            turns = std::max(turns, (*high - *low) / (2 * std::numbers::pi));
+        }
+        const double order = shape.empty() ? 1 : std::fabs(shape[0].second);
+        return turns > std::max(1.0, 3 / order);
+    }
+    if (effect != "actuation_delay" && effect != "camera_delay") return true;
+    std::size_t most = 0;
+    for (const WheelInput &w : data.wheel) { // changes of the wheel's speed by a tenth of its largest within a fifth of a second
+        double largest = 0;
+        for (const double speed : w.speed_rad_s) largest = std::max(largest, std::fabs(speed));
+        const auto lag = std::max<std::size_t>(1, static_cast<std::size_t>(0.2 / data.step_s));
+        std::size_t changes = 0;
+        for (std::size_t k = lag; k < w.speed_rad_s.size(); k += lag)
+            changes += std::fabs(w.speed_rad_s[k] - w.speed_rad_s[k - lag]) > 0.1 * largest;
+        most = std::max(most, changes);
+    }
+    return most >= 4;
+}
+
+// Nothing else than its parameter: a radius or a motor beyond such a range is another machine.
+bool is_change_of_sheet(const std::string &effect) { return effect == "wheel_radius" || effect == "torque_constant"; }
+
 FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle &handle, const EffectHandle::Strength &place,
                                  const sim::EffectParameter &spec, const Physics &physics) {
     FreeParameter free;
@@ -65,8 +130,9 @@ FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle 
     free.wheel = candidate.wheel;
     free.touched = handle.touched;
     const double span = spec.maximum - spec.minimum;
-    free.minimum = spec.minimum < 0 ? spec.minimum - 0.5 * span : 0;
-    free.maximum = spec.maximum + 0.5 * span;
+    const double slack = candidate.bounded ? 0 : 0.5 * span;
+    free.minimum = spec.minimum < 0 ? spec.minimum - slack : 0;
+    free.maximum = spec.maximum + slack;
     if (place.in_body != nullptr) {
         Slot slot;
         slot.in_body = place.in_body;
@@ -178,8 +244,8 @@ void Candidate::prepare(Physics &physics) const {
 }
 
 std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &data, const Motion &motion) {
-    (void)data;
     const Physics physics = make_physics(model);
+    const MachineScale scale(model, physics, data);
     std::vector<Candidate> list;
     for (const EffectHandle &handle : effect_handles()) {
         const sim::Effect *effect = sim::find_effect(handle.name);
@@ -189,6 +255,7 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
         const auto wheels = wheel_choices(*effect, model);
         for (const auto &shape : shapes)
             for (const int wheel : wheels) {
+                if (!can_show(handle.name, shape, data)) continue;
                 if (model.find_effect(handle.name, wheel) != nullptr) continue;
                 // on one wheel already: another wheel may join, all wheels would be a second copy
                 const bool elsewhere =
@@ -200,16 +267,19 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
                 c.variant = shape;
                 c.variants = static_cast<int>(shapes.size() * wheels.size());
                 c.touched = handle.touched;
+                c.bounded = is_change_of_sheet(handle.name);
                 for (const auto &place : handle.strengths) {
-                    const auto spec = std::find_if(effect->parameters.begin(), effect->parameters.end(),
-                                                   [&](const sim::EffectParameter &p) { return p.name == place.key; });
-                    if (spec == effect->parameters.end()) continue;
-                    c.strengths.push_back(strength_parameter(c, handle, place, *spec, physics));
-                    c.of_interest.push_back(spec->of_interest);
-                    c.minimum.push_back(spec->minimum);
-                    c.maximum.push_back(spec->maximum);
+                    const auto found = std::find_if(effect->parameters.begin(), effect->parameters.end(),
+                                                    [&](const sim::EffectParameter &p) { return p.name == place.key; });
+                    if (found == effect->parameters.end()) continue;
+                    sim::EffectParameter spec = *found;
+                    scale.apply(spec);
+                    c.strengths.push_back(strength_parameter(c, handle, place, spec, physics));
+                    c.of_interest.push_back(spec.of_interest);
+                    c.minimum.push_back(spec.minimum);
+                    c.maximum.push_back(spec.maximum);
                     // of what remembers nothing at zero tells
-                    c.step.push_back(handle.remembers ? std::max(spec->of_interest, 0.05 * spec->maximum) : 1e-6 * spec->of_interest);
+                    c.step.push_back(handle.remembers ? std::max(spec.of_interest, 0.05 * spec.maximum) : 1e-6 * spec.of_interest);
                 }
                 if (!c.strengths.empty()) list.push_back(std::move(c));
             }

@@ -19,6 +19,7 @@ struct Candidate {
     std::vector<FreeParameter> strengths;
     std::vector<double> of_interest, minimum, maximum; // per strength
     std::vector<double> step;                          // for the linear screening
+    bool bounded = false;                              // no size beyond its range is believed, whatever it explains
     int variants = 1;                                  // how many like it are tried: shapes x wheels
     unsigned touched = stage_all;
     // structure-free only
@@ -27,6 +28,7 @@ struct Candidate {
     TermTarget target = TermTarget::wheel_torque;
     std::vector<double> knots;
     double order = 0;                   // periodic in the wheel angle
+    bool some_wheels = false;           // a shape of one wheel or one axle (its name says which)
     bool varies_between_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
 
     std::string label() const; // "slip_sinkage", "wiring_resistance on wheel 2"

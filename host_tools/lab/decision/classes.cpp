@@ -66,7 +66,7 @@ void separate_accepted(Diagnosis &d) {
             if (accepted(label))
                 r.class_index.reset(), r.verdict = "named";
             else if (!r.class_index)
-                r.verdict = "not_significant";
+                r.verdict = "not_needed";
         }
 }
 

@@ -1,8 +1,11 @@
 #include "diagnose.h"
 
 #include "classes.h"
+#include "doubt.h"
+#include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/screen.h"
 #include "shapes.h"
+#include "tolerance.h"
 #include "trial.h"
 
 #include "sim/physics/effects/catalogue.h"
@@ -31,15 +34,18 @@ std::string figures(double value) {
 // Forward selection, round by round, then backward elimination, then structure-free shapes.
 class Search {
   public:
-    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), options_(options) { d_.model = model; }
+    Search(const Model &model, const Dataset &data, const DiagnoseOptions &options) : data_(data), stated_(model), options_(options) {
+        d_.model = model;
+    }
 
     Diagnosis run() {
-        Problem problem = fitted(d_.model);
-        const Problem first = problem;
+        Problem problem = fitted_problem(d_.model, data_);
+        Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
-            d_.ladder.push_back({d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem),
-                                 overall_heldout(problem), 1});
+            if (round == 0) held_ = held_out(problem);
+            d_.ladder.push_back(
+                {d_.accepted.empty() ? "baseline" : "+ " + d_.accepted.back().candidate.label(), overall_error(problem), held_.error, 1});
             refresh(problem, screen);
             if (round == options_.most_effects) break;
             std::optional<Problem> next = forward_step(problem, screen, round == 0);
@@ -48,7 +54,11 @@ class Search {
         }
         eliminate_backward(problem);
         if (options_.shapes) test_shapes(first, problem);
+        settle_last(problem);
+        d_.limits = limits_of(problem);
         conclude();
+        if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
+            name_nothing(d_, stated_, d->text);
         return std::move(d_);
     }
 
@@ -64,7 +74,7 @@ class Search {
         for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
             for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
                 const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];
-                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.base == b.base)
+                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
                     problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
             }
         problem.fit({});
@@ -130,23 +140,20 @@ class Search {
         refit_likely(trials, problem, screen);
         if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
         judge_beyond_range(trials, base_error);
-        for (Trial &t : trials)
-            if (!t.refitted && t.verdict == "passes") t.verdict = "not_significant"; // behind others that explain more
         std::stable_sort(trials.begin(), trials.end(),
                          [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
-        std::optional<Problem> next;
+        std::optional<Next> next;
         std::size_t winner = trials.size();
         for (std::size_t i = 0; i < trials.size() && !next; ++i) {
-            if (trials[i].verdict != "passes") continue;
+            if (trials[i].verdict != "passes" || !trials[i].refitted) continue; // behind others that explain more
             next = with(trials[i], problem);
-            if (next)
-                winner = i;
-            else
-                trials[i].verdict = "not_significant";
+            if (next) winner = i;
         }
         if (is_first) note_not_excited(trials);
-        record(trials, winner, base_error, screen, is_first);
-        return next;
+        record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
+        if (!next) return std::nullopt;
+        held_ = std::move(next->held);
+        return std::move(next->problem);
     }
 
     // A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range.
@@ -155,7 +162,7 @@ class Search {
         Trial *best = nullptr;
         for (Trial &t : trials) {
             if (t.verdict == "passes" && t.refitted) most = std::max(most, t.gain);
-            if (t.verdict == "beyond_range" && (best == nullptr || t.gain > best->gain)) best = &t;
+            if (t.verdict == "beyond_range" && !t.candidate.bounded && (best == nullptr || t.gain > best->gain)) best = &t;
         }
         if (best == nullptr || !(best->gain > most)) return;
         const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
@@ -228,29 +235,51 @@ class Search {
         return true;
     }
 
-    // Held-out error; where it lies below that of the fit, the linear step that left a block out went where a bound would have stopped it.
-    static double larger_error(const Problem &problem) { return std::max(overall_error(problem), overall_heldout(problem)); }
+    struct Next {
+        Problem problem;
+        HeldOut held;
+        std::string rival; // a tolerance that explains as much; empty: none does
+    };
 
-    // The whole model with the candidate, fitted anew with scales of its own: must not be worse where it was not fitted, and the
-    // candidate must keep its size.
-    std::optional<Problem> with(const Trial &t, const Problem &before) const {
+    // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks
+    // left out must fall. A data sheet that is wrong by more than it states is asked first.
+    std::optional<Next> with(Trial &t, const Problem &before) {
         Model model = d_.model;
         model.effects.push_back(effect_of(t.candidate, t.value));
         Problem problem = fitted(model, &before);
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
-        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value)) ||
-            larger_error(problem) > 1.03 * larger_error(before))
-            return std::nullopt;
-        return problem;
+        t.verdict = "not_held_out";
+        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
+        Problem compared = problem; // on the scales of the model without it
+        compared.keep_scales(before);
+        compared.jacobian.resize(0, 0);
+        compared.gauss_newton(2);
+        HeldOut held = held_out(compared);
+        const Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()),
+                   noise = fall_between(held_, held, noise_weight(before));
+        const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
+        const bool falls = scaled.sure() && noise.sure();
+        // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
+        const double spared =
+            before.theta.cwiseAbs2().dot(before.prior_precision()) - compared.theta.cwiseAbs2().dot(compared.prior_precision());
+        const bool by_priors = rival && scaled.sum + spared > options_.least_prior_reduction + scaled.error && noise.sum > -noise.error;
+        const bool as_much = rival && (rival->explains_as_much() || !falls);
+        if (!falls && !by_priors) return std::nullopt;
+        if (HeldOut own = held_out(problem); own.error < held_.error)
+            held = std::move(own);
+        else
+            problem = std::move(compared); // what its own scales weigh predicts worse: they stay
+        problem.linearise();
+        return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
 
     // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
     void note_not_excited(const std::vector<Trial> &trials) {
         for (const Trial &t : trials) {
             const Candidate &c = t.candidate;
-            if (c.wheel >= 0 || c.of_interest.empty()) continue;
+            if (c.wheel >= 0 || c.of_interest.empty() || t.p_value < 0.05) continue; // what the log says something of can be seen in it
             bool alone = false, beside = false;
             for (std::size_t j = 0; j < t.error.size(); ++j) {
                 const double size = 3 * c.of_interest[j];
@@ -261,26 +290,27 @@ class Search {
                 d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
                                                           one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) +
                                                           " standard deviations");
-            else if (!beside && t.p_value > 0.05)
+            else if (!beside)
                 d_.not_excited.emplace_back(
                     c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
                                   one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
         }
     }
 
-    void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first) {
+    void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first,
+                const std::string &rival) {
         const bool found = winner < trials.size();
         const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error, options_) : std::vector<std::size_t>();
         for (std::size_t i = 0; i < trials.size(); ++i) {
             CandidateResult r = result_of(trials[i], base_error, screen);
             const bool member = std::find(members.begin(), members.end(), i) != members.end();
             if (i == winner)
-                r.verdict = members.empty() ? "named" : "class";
+                r.verdict = members.empty() && rival.empty() ? "named" : "class";
             else if (member)
                 r.verdict = "class";
-            else if (r.verdict == "passes")
-                r.verdict = "not_significant";
-            if ((i == winner || member) && !members.empty()) r.class_index = static_cast<int>(d_.classes.size());
+            else if (r.verdict == "passes" || (found && r.verdict == "not_held_out"))
+                r.verdict = found ? "not_needed" : "not_held_out";
+            if ((i == winner || member) && r.verdict == "class") r.class_index = static_cast<int>(d_.classes.size());
             for (const auto &[effect, why] : d_.not_excited)
                 if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
             if (is_first) d_.ranking.push_back(r);
@@ -288,10 +318,11 @@ class Search {
         }
         if (!found) return;
         const Trial &w = trials[winner];
-        if (!members.empty()) {
+        if (!members.empty() || !rival.empty()) {
             ConfoundedClass c;
             c.members.push_back(w.candidate.label());
             for (const std::size_t i : members) c.members.push_back(trials[i].candidate.label());
+            if (!rival.empty()) c.members.push_back(rival);
             if (const sim::Effect *effect = sim::find_effect(w.candidate.effect)) c.separate_by = effect->reveals;
             d_.classes.push_back(std::move(c));
         }
@@ -319,17 +350,28 @@ class Search {
             refit(t, problem, screen, without, data_);
             judge(t, screen.heldout_error(), options_);
             if ((t.verdict == "passes" || t.verdict == "beyond_range") && solid) continue; // accepted as a least size, it stays one
+            if (solid && predicts_better(problem, last)) continue;
             d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");
             remove(i, std::move(without), problem);
             last = std::move(problem);
+            i = d_.accepted.size(); // what was needed beside it may not be now
         }
+    }
+
+    // Does it predict blocks left out better, surely, by either's scales?
+    static bool predicts_better(const Problem &before, const Problem &after) {
+        const HeldOut left_before = held_out(before), left_after = held_out(after);
+        return fall_between(left_before, left_after, noise_weight(before)).sure() &&
+               fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
     }
 
     void remove(std::size_t i, Model without, const Problem &problem) {
         const std::string label = d_.accepted[i].candidate.label();
+        for (CandidateResult &r : d_.ranking)
+            if (r.candidate.label() == label && (r.verdict == "named" || r.verdict == "class")) r.verdict = "not_needed";
         std::erase_if(d_.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
         remove_class(d_, label);
-        if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = overall_heldout(problem);
+        if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
         d_.model = std::move(without);
         d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
         refresh(problem, Screen(problem));
@@ -356,6 +398,8 @@ class Search {
                 again = true;
             }
             again = again && !d_.accepted.empty();
+            if (d_.accepted.empty() && !named.empty()) // a shape that took the last name's place must be worth a word by itself
+                d_.unknown = find_unknown(first, last, {}, options_).shape;
         }
     }
 
@@ -374,8 +418,31 @@ class Search {
         remove(i, std::move(without), last);
     }
 
+    // `fit` begins where the model's file stands, this search where the last round ended: the better of the two is what both tell.
+    void settle_last(Problem &last) {
+        if (d_.accepted.empty()) return;
+        Problem anew = fitted_problem(d_.model, data_);
+        if (!(overall_error(anew) < overall_error(last))) return;
+        last = std::move(anew);
+        d_.ladder.back().train = overall_error(last), d_.ladder.back().heldout = held_out(last).error;
+        refresh(last, Screen(last));
+    }
+
+    // What was found, or may be meant, can be seen in this log.
+    bool was_seen(const std::string &effect) const {
+        const auto is = [&](const std::string &label) { return label == effect || label.starts_with(effect + " on wheel"); };
+        for (const ConfoundedClass &c : d_.classes)
+            if (std::any_of(c.members.begin(), c.members.end(), is)) return true;
+        return std::any_of(d_.nearest.begin(), d_.nearest.end(), is) ||
+               std::any_of(d_.accepted.begin(), d_.accepted.end(), [&](const CandidateResult &a) { return a.candidate.effect == effect; });
+    }
+
     void conclude() {
         separate_accepted(d_);
+        std::erase_if(d_.not_excited, [&](const auto &one) { return was_seen(one.first); });
+        if (d_.accepted.empty() && !d_.unknown)
+            for (CandidateResult &r : d_.ranking)
+                if (r.verdict == "not_needed") r.verdict = "not_held_out";
         for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
         if (d_.accepted.empty())
             d_.kind = d_.unknown ? "unknown" : "nothing";
@@ -386,9 +453,11 @@ class Search {
 
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
+    const Model &stated_;
     const DiagnoseOptions &options_;
     Diagnosis d_;
     Columns::Cache cache_;
+    HeldOut held_; // of the model as it stands
     int done_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "candidate.h"
+#include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/inputs/dataset.h"
 
@@ -36,7 +37,7 @@ struct CandidateResult {
     double gain_squares = 0;
     double p_value = 1;       // corrected for the number tried
     double detectability = 0; // d' of the estimate
-    std::string verdict;      // named class nearest not_significant too_small beyond_range wrong_sign not_excited
+    std::string verdict;      // named class nearest not_needed not_held_out not_significant too_small beyond_range wrong_sign not_excited
     std::optional<int> class_index;
     std::vector<std::pair<std::pair<double, double>, double>> evidence; // window, share of the gain
     std::string explains;
@@ -63,16 +64,20 @@ struct Diagnosis {
     std::vector<ConfoundedClass> classes;
     std::vector<std::pair<std::string, std::string>> not_excited; // effect, why
     std::optional<UnknownShape> unknown;
-    std::string kind; // named class partial unknown nothing
+    std::string kind; // named class partial unknown nothing wrong_model
     std::vector<std::string> effects;
     std::vector<std::string> nearest; // of the catalogue to the unknown shape, whose proxies they were: not the cause
     std::string text;
     std::vector<LadderStep> ladder;
-    Model model; // with the accepted effects, refitted
+    Model model;               // with the accepted effects, refitted
+    std::vector<Limit> limits; // at which parameters of the final model stand
     std::vector<std::string> messages;
 };
 
 Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOptions &options);
+
+// The verdict wrong_model: takes back every name, class and shape; the model stays as stated. `look_at`: what to look at (doubt.h).
+void name_nothing(Diagnosis &diagnosis, const Model &stated, const std::string &look_at);
 
 // The sentence that ends a diagnosis; conclude() of diagnose.cpp puts it into `text`.
 std::string verdict_text(const Diagnosis &diagnosis);

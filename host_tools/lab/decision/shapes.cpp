@@ -14,7 +14,9 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double shapes_tried = 72;   // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spent on shapes of one wheel or axle
+constexpr double some_wheels_tried = 100; // electric shapes x wheels and axles
+constexpr double shapes_tried = 72;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -114,7 +116,8 @@ double corrected(const Candidate &c, const Assessment &a) {
         const double blocks = static_cast<double>(a.block_gain.size()), t = a.gain_error > 0 ? a.gain / a.gain_error : 0;
         if (t > 0 && blocks > 1) falls = 0.5 * f_tail(t * t, 1, blocks - 1);
     }
-    return std::min(1.0, 2 * shapes_tried * std::min(a.p_value, falls));
+    const double tried = c.some_wheels ? some_wheels_tried / some_wheels_share : shapes_tried / (1 - some_wheels_share);
+    return std::min(1.0, 2 * tried * std::min(a.p_value, falls));
 }
 
 ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Screen &screen, bool keep) {
@@ -130,6 +133,43 @@ ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Scre
 // One value between two that are nothing: a resonance. What a curve of many values says of it is less sure.
 bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
 
+// Single wheels, and those that stand abreast (axles): at most eight wheels, or the shapes become too many.
+std::vector<std::vector<int>> wheel_groups(const Physics &physics) {
+    std::vector<std::vector<int>> groups;
+    const int n = static_cast<int>(physics.wheel.size());
+    if (n < 2 || n > 8) return groups;
+    const auto wheel = [&](int i) -> const WheelPhysics & { return physics.wheel[static_cast<std::size_t>(i)]; };
+    for (int i = 0; i < n; ++i) {
+        groups.push_back({i});
+        std::vector<int> axle;
+        for (int j = 0; j < n; ++j)
+            if (same_axle(wheel(i), wheel(j))) axle.push_back(j);
+        if (axle.size() > 1 && static_cast<int>(axle.size()) < n && axle.front() == i) groups.push_back(axle);
+    }
+    return groups;
+}
+
+// A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
+void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
+                        const Eigen::MatrixXd &columns, bool keep) {
+    const unsigned electric = stage_torque | stage_voltage;
+    if ((shape.touched & electric) == 0 || (shape.touched & ~electric) != 0 || shape.varies_between_wheels) return;
+    for (const std::vector<int> &group : wheel_groups(problem.physics())) {
+        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+        Eigen::Index first = 0;
+        for (const Balance &b : problem.data().balance) {
+            const auto n = static_cast<Eigen::Index>(b.measured.size());
+            if (std::find(group.begin(), group.end(), b.wheel) != group.end()) part.middleRows(first, n) = columns.middleRows(first, n);
+            first += n;
+        }
+        Candidate c = shape;
+        c.some_wheels = true;
+        c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
+        for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
+        list.push_back(scored(c, part, screen, keep));
+    }
+}
+
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keep = false) {
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
@@ -142,6 +182,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
         }
         const Eigen::MatrixXd C = columns.of(c);
         list.push_back(scored(c, C, screen, keep));
+        add_on_some_wheels(list, problem, screen, c, C, keep);
         for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
             Candidate bump = c;
             bump.effect += ", a bump";
@@ -158,9 +199,11 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
     return list;
 }
 
-// Every ground's strength wanders along the way: that alone is not worth a word.
+// Every ground's strength wanders along the way: that alone is not worth a word. Nor is it over slip, which grows where the ground is weak:
+// at a steady pull the one follows from the other.
 bool uneven(const Candidate &c) {
-    return c.target == TermTarget::soil_strength && c.order == 0 && (c.axis == Axis::time || c.axis == Axis::place || c.axis == Axis::path);
+    return c.target == TermTarget::soil_strength && c.order == 0 &&
+           (c.axis == Axis::time || c.axis == Axis::place || c.axis == Axis::path || c.axis == Axis::slip);
 }
 
 UnknownShape describe(const ShapeScore &s, double base_error) {
@@ -304,7 +347,8 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
     // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
     const auto material = [&](const ShapeScore &s) {
-        return s.assessment.gain > std::max(least, uneven(s.candidate) ? least_uneven : 0.0) * last_screen.heldout_error() ||
+        const double share = s.candidate.some_wheels ? 0.5 : 1; // one wheel's rows are few among all
+        return s.assessment.gain > std::max(share * least, uneven(s.candidate) ? least_uneven : 0.0) * last_screen.heldout_error() ||
                (s.balance_fall > 0.15 && s.p_value < 1e-4);
     };
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);

@@ -11,14 +11,18 @@ std::string verdict_text(const Diagnosis &d) {
     std::string names;
     for (const CandidateResult &a : d.accepted) names += (names.empty() ? "" : " and ") + a.candidate.label();
     if (d.kind == "nothing") {
-        std::snprintf(buffer, sizeof buffer,
-                      "Nothing found that the log supports; the error stands at %.2f x noise. %zu effects could not have been seen in it.",
-                      before, d.not_excited.size());
+        std::snprintf(
+            buffer, sizeof buffer,
+            "Nothing found that the log supports; the held-out error stands at %.2f x noise (%.2f in the fit). %zu effects could not "
+            "have been seen in it.",
+            before, d.ladder.empty() ? 0 : d.ladder.front().train, d.not_excited.size());
         return buffer;
     }
     std::string text;
     if (!names.empty()) {
-        std::snprintf(buffer, sizeof buffer, "The model lacks %s: held-out error %.3f -> %.3f x noise.", names.c_str(), before, after);
+        std::snprintf(buffer, sizeof buffer,
+                      "The model lacks %s: held-out error %.3f -> %.3f x noise (5 s blocks, each predicted by a refit to the others).",
+                      names.c_str(), before, after);
         text = buffer;
     }
     for (const ConfoundedClass &c : d.classes) {
@@ -37,6 +41,20 @@ std::string verdict_text(const Diagnosis &d) {
             text += (i == 0 ? " Nearest in the catalogue, not the cause: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
     }
     return text;
+}
+
+void name_nothing(Diagnosis &d, const Model &stated, const std::string &look_at) {
+    for (CandidateResult &r : d.ranking)
+        if (r.verdict == "named" || r.verdict == "class" || r.verdict == "nearest") r.verdict = "wrong_model", r.class_index.reset();
+    if (d.ladder.size() > 1) d.ladder.resize(1);
+    d.accepted.clear(), d.classes.clear(), d.effects.clear(), d.nearest.clear(), d.not_excited.clear();
+    d.unknown.reset();
+    d.model = stated;
+    d.kind = "wrong_model";
+    char buffer[200];
+    std::snprintf(buffer, sizeof buffer, "This model does not describe this log: its error is %.3g x noise, and no effect is named. ",
+                  d.ladder.empty() ? 0.0 : d.ladder.front().train);
+    d.text = buffer + look_at + ".";
 }
 
 } // namespace traction::lab

@@ -13,13 +13,16 @@ struct LadderStep {
     double train = 0, heldout = 0, floor = 1; // in units of noise
 };
 
-// Root of the mean over balances of the mean square of the residual, in units of each row's measurement noise: of the rows that were
-// fitted, and of 5 s blocks each predicted by the linear step that leaves it out. The problem must be linearised at its optimum. 0 without
-// balances.
+// Root of the mean over balances of the mean square of the residual, in units of each row's measurement noise, on the rows that were
+// fitted; that of blocks left out: heldout.h. 0 without balances.
 double overall_error(const Problem &problem);
-double overall_heldout(const Problem &problem);
 
-// Fits a model to the data (Ceres, to its own convergence) and writes the values with their 95 % intervals into it.
+// The model's problem at its optimum, linearised there. A strength whose slope at zero says little (what remembers: play, relaxation) is
+// started from several places over its range as well; the least squares on the first start's scales are kept.
+Problem fitted_problem(const Model &model, const Dataset &data);
+
+// The optimum of fitted_problem(); writes the values with their 95 % intervals into it.
 LadderStep fit_model(Model &model, const Dataset &data, const std::string &label);
+LadderStep store_fit(Model &model, const Problem &fitted, const std::string &label); // the same of a problem at its optimum
 
 } // namespace traction::lab

@@ -298,11 +298,11 @@ void Problem::quick_fit(const Problem &base, int iterations) {
         Eigen::MatrixXd system = normal;
         system.diagonal() += precision + 1e-9 * normal.diagonal() + Eigen::VectorXd::Constant(all, 1e-12);
         const Eigen::VectorXd moment = jacobian.transpose() * residual.cwiseProduct(row_scale) - precision.cwiseProduct(theta);
-        theta += active_set_step(system, moment);
+        theta += step_within_bounds(system, moment);
     }
 }
 
-Eigen::VectorXd Problem::active_set_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const {
+Eigen::VectorXd Problem::step_within_bounds(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const {
     const Eigen::Index n = theta.size();
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
     std::vector<Eigen::Index> open;
@@ -358,7 +358,7 @@ void Problem::gauss_newton(int fresh) {
         double best = first;
         for (int i = 0; i < steps; ++i) {
             const Eigen::VectorXd before = theta, residual_before = residual;
-            theta += active_set_step(normal, sparse.moment(residual.cwiseProduct(row_scale)) - precision.cwiseProduct(theta));
+            theta += step_within_bounds(normal, sparse.moment(residual.cwiseProduct(row_scale)) - precision.cwiseProduct(theta));
             double now = cost();
             for (int halving = 0; halving < 3 && !(now < best); ++halving) theta = 0.5 * (theta + before), now = cost();
             if (!(now < best)) {
@@ -390,6 +390,26 @@ void Problem::fit(const FitOptions &options) {
         solve(options.iterations);
     else
         gauss_newton(options.iterations);
+}
+
+void Problem::settle() {
+    fit({.iterations = 3});
+    settle_from_here();
+}
+
+void Problem::settle_from_here() {
+    constexpr int most = 4;
+    constexpr double still = 1e-3; // of the error
+    if (data_->count < 3 || measured_.size() == 0) return;
+    update_residual();
+    const auto error = [&] { return residual.cwiseQuotient(noise_rows()).norm(); };
+    for (int i = 0; i < most; ++i) {
+        const double before = error();
+        set_scales();
+        gauss_newton(2);
+        if (std::fabs(error() - before) < still * before) break;
+    }
+    linearise();
 }
 
 double Problem::balance_rms(std::size_t b, bool in_noise) const {

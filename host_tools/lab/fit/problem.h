@@ -26,7 +26,9 @@ class Problem {
     Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> parameters);
 
     void fit(const FitOptions &options);
-    void linearise(); // prediction, residual and Jacobian at the present increments
+    void settle();           // fit() until its scales no longer move the error: the optimum of `fit`, `add`, `compare` and `diagnose` alike
+    void settle_from_here(); // the same without the first steps
+    void linearise();        // prediction, residual and Jacobian at the present increments
 
     const Dataset &data() const { return *data_; }
     Forward &forward() { return forward_; }
@@ -62,6 +64,9 @@ class Problem {
     // each. Leaves the problem linearised at its optimum.
     void gauss_newton(int fresh);
 
+    // Gauss-Newton step by an active set: what would leave its bound is held there, the others solve without it.
+    Eigen::VectorXd step_within_bounds(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
+
     // Keeps the scales of another problem on the same data, so that their errors compare.
     void keep_scales(const Problem &other);
 
@@ -76,8 +81,6 @@ class Problem {
     Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
-    // Gauss-Newton step by an active set: what would leave its bound is held there, the others solve without it.
-    Eigen::VectorXd active_set_step(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
 
     const Dataset *data_;
     Physics base_;

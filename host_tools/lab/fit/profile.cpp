@@ -1,5 +1,6 @@
 #include "profile.h"
 
+#include "identify.h"
 #include "problem.h"
 #include "screen.h"
 
@@ -14,8 +15,6 @@ namespace {
 constexpr double limit = 3.841459; // chi^2, one degree of freedom, 95 %
 constexpr int most_steps = 24;     // a side
 constexpr int chords = 8;
-
-std::string name_of(const FreeParameter &p) { return p.owner + "." + p.key + (p.wheel >= 0 ? " on wheel " + std::to_string(p.wheel) : ""); }
 
 // The best fit without one of its parameters, which is held where it is put.
 class Held {
@@ -233,7 +232,7 @@ std::vector<Eigen::Index> find_wanted(const Problem &problem, const Model &model
         bool found = false;
         for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
             const FreeParameter &p = problem.parameters[i];
-            if (name != p.owner && name != p.owner + "." + p.key && name != name_of(p)) continue;
+            if ((p.own || (name != p.owner && name != p.owner + "." + p.key)) && name != name_of(p)) continue;
             found = true;
             if (std::find(list.begin(), list.end(), static_cast<Eigen::Index>(i)) == list.end())
                 list.push_back(static_cast<Eigen::Index>(i));
@@ -259,6 +258,11 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     const std::vector<Eigen::Index> list = find_wanted(best, model, wanted);
     for (int i = 0; i < 3; ++i) best.fit({.iterations = 10, .thorough = true}); // until the scales no longer depend on where the fit began
     best.fit({.iterations = 10, .reweight = false, .thorough = true});          // to the optimum of the scales that the profile keeps
+    for (const Eigen::Index i : list)
+        if (!wanted.empty() && is_dead(best, static_cast<std::size_t>(i)))
+            throw ModelError(model.file, 0, "--profile",
+                             name_of(best.parameters[static_cast<std::size_t>(i)]) + " changes nothing that this log holds",
+                             "ask for another parameter, or drive so that it matters");
     const std::vector<ParameterError> errors = Screen(best).parameter_errors();
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();

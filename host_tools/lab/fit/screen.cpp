@@ -331,30 +331,34 @@ std::vector<Eigen::VectorXd> Screen::heldout_changes() const {
 }
 
 std::vector<ParameterError> Screen::parameter_errors() const {
+    return errors_of(Eigen::MatrixXd::Identity(nuisance_.cols(), nuisance_.cols()));
+}
+
+std::vector<ParameterError> Screen::errors_of(const Eigen::MatrixXd &weights) const {
     // what is correlated over more than a short block widens the error by long ones, whose fewer degrees of freedom widen the quantile
-    std::vector<ParameterError> errors = parameter_errors_by(fine_);
-    const std::vector<ParameterError> by_long = parameter_errors_by(coarse_);
+    std::vector<ParameterError> errors = errors_by(fine_, weights);
+    const std::vector<ParameterError> by_long = errors_by(coarse_, weights);
     for (std::size_t j = 0; j < errors.size(); ++j)
         if (by_long[j].half_width > errors[j].half_width) errors[j] = by_long[j];
     return errors;
 }
 
-std::vector<ParameterError> Screen::parameter_errors_by(const Blocks &blocks_of) const {
-    const Eigen::Index n = nuisance_.cols(), count = blocks_of.count();
+std::vector<ParameterError> Screen::errors_by(const Blocks &blocks_of, const Eigen::MatrixXd &weights) const {
+    const Eigen::Index n = weights.rows(), count = blocks_of.count();
     const Eigen::VectorXd whole = total_factor_.solve(moment_);
-    const Eigen::MatrixXd inverse = total_factor_.solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd inverse = total_factor_.solve(weights.transpose()).transpose(); // of W A^-1, a row per sum
     const Eigen::VectorXd by_bias = inverse * bias_moment_;
     Eigen::MatrixXd deviation(n, count), information(n, count); // information: of a parameter beside the others, per block
     for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        deviation.col(b) = blocks_of.without[i].matrixU().solve(blocks_of.half[i]) - whole;
+        deviation.col(b) = weights * (blocks_of.without[i].matrixU().solve(blocks_of.half[i]) - whole);
         information.col(b) = (inverse * blocks_of.gram[i]).cwiseProduct(inverse).rowwise().sum();
     }
     std::vector<ParameterError> errors;
     for (Eigen::Index j = 0; j < n; ++j) {
         const double by_data = deviation.row(j).squaredNorm() * static_cast<double>(count - 1) / static_cast<double>(count);
         const double by_prior = inverse.row(j).cwiseAbs2().dot(precision_); // d theta / d prior mean = inverse * precision
-        const double all = std::max(by_data + by_prior, 0.25 * inverse(j, j)) + by_bias[j] * by_bias[j];
+        const double all = std::max(by_data + by_prior, 0.25 * inverse.row(j).dot(weights.row(j))) + by_bias[j] * by_bias[j];
         const double blocks =
             information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;
         const double share = by_data > 0 ? (by_data + by_prior) / by_data : 1e3;

@@ -69,6 +69,8 @@ class Screen {
     std::vector<double> heldout_by_balance(bool in_noise = false) const;
     // Of the problem's own parameters, robust like a candidate's.
     std::vector<ParameterError> parameter_errors() const;
+    // Of sums of them: one sum per row of `weights`.
+    std::vector<ParameterError> errors_of(const Eigen::MatrixXd &weights) const;
     std::vector<Eigen::VectorXd> heldout_changes() const; // parameters without block b, relative to the optimum
 
   private:
@@ -98,7 +100,7 @@ class Screen {
     void factor(Blocks &blocks) const;
     void parts(const Eigen::MatrixXd &columns, Part &fine, Part &coarse) const;
     Eigen::VectorXd projected(const Eigen::VectorXd &column, const Eigen::VectorXd &projection) const;
-    std::vector<ParameterError> parameter_errors_by(const Blocks &blocks) const;
+    std::vector<ParameterError> errors_by(const Blocks &blocks, const Eigen::MatrixXd &weights) const;
 
     const Problem &problem_;
     std::vector<Segment> segments_;

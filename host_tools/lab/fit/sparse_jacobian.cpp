@@ -25,6 +25,17 @@ Eigen::MatrixXd SparseJacobian::gram() const {
     return sum;
 }
 
+Eigen::MatrixXd SparseJacobian::gram(const Eigen::VectorXd &weight) const {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns_, columns_), own;
+    for (const Part &part : parts_) {
+        const auto w = weight.segment(part.first, part.value.rows());
+        if ((w.array() == 0).all()) continue;
+        own.noalias() = part.value.transpose() * w.asDiagonal() * part.value;
+        sum(part.column, part.column) += own;
+    }
+    return sum;
+}
+
 Eigen::VectorXd SparseJacobian::moment(const Eigen::VectorXd &rows) const {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(columns_), own;
     for (const Part &part : parts_) {

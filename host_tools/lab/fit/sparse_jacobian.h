@@ -25,6 +25,7 @@ class SparseJacobian {
     };
     const std::vector<Part> &parts() const { return parts_; }  // in the order of data.balance
     Eigen::MatrixXd gram() const;                              // J' J
+    Eigen::MatrixXd gram(const Eigen::VectorXd &weight) const; // J' diag(weight of each row) J
     Eigen::VectorXd moment(const Eigen::VectorXd &rows) const; // J' rows
 
   private:

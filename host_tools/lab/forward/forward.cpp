@@ -9,8 +9,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double friction_speed_rad_s = 0.05; // friction reverses over this speed: assumed, rows near standstill are left out
-constexpr double bridge_current_A = 0.01;     // the bridge's dead time reverses over this current at least: assumed
+constexpr double friction_share = 1.0 / 3; // of the standstill speed: friction reverses over it; assumed, rows near standstill are left out
+constexpr double bridge_current_A = 0.01;  // the bridge's dead time reverses over this current at least: assumed
 constexpr double voltage_part_s =
     0.01; // dead time bends the voltage balance: it is taken over parts of a row as long as this, a control tick
 
@@ -134,7 +134,7 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
         series_[k] = per_N * (now[k] - before[k]);
         if (by_load != 0)
             series_[k] += per_N * by_load * (std::fabs(now[k]) - std::fabs(before[k])) *
-                          soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_speed_rad_s);
+                          soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_share * data_->standstill_rad_s);
         if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
     }
     rows_of(balance, series_, physics.body.current_delay, true, out);
@@ -181,7 +181,7 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
         double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
         const double viscous = sim::viscous_friction_Nm(p.b, p, std::fabs(w)), angle = gain * in.angle_rad[k];
         const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k]);
-        const double side = soft_sign(w, friction_speed_rad_s);
+        const double side = soft_sign(w, friction_share * data_->standstill_rad_s);
         double gear = friction * side, current_factor = sim::law::current_gain(1, p.current_gain);
         gear += sim::periodic_Nm<law::Library>(p, angle, false) + sim::periodic_Nm<law::Library>(p, angle, true) * side;
         if (!terms.empty()) {

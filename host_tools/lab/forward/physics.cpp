@@ -135,6 +135,8 @@ void FreeParameter::add(Physics &physics, double increment) const {
     for (const Slot &slot : slots) slot.of(physics) += increment;
 }
 
+std::string name_of(const FreeParameter &p) { return p.owner + "." + p.key + (p.wheel >= 0 ? " on wheel " + std::to_string(p.wheel) : ""); }
+
 const std::vector<EffectHandle> &effect_handles() {
     static const std::vector<EffectHandle> handles = make_handles();
     return handles;
@@ -194,6 +196,8 @@ Physics make_physics(const Model &model) {
 
 namespace {
 
+constexpr double most_of_value = 0.9; // of a wheel's own difference: what brakes does not drive
+
 double difference_step(double value, double prior) {
     // so small that two parameters which do the same have parallel sensitivities: on concrete 1e-4 of a radius bends them by 5 %
     const double by_value = 1e-7 * std::fabs(value);
@@ -201,13 +205,36 @@ double difference_step(double value, double prior) {
     return std::max({by_value, by_prior, 1e-10});
 }
 
-void append_shared(std::vector<FreeParameter> &list, const Model &model, const Physics &physics, const Key &key) {
-    // wheels whose numbers agree move together; an overridden wheel moves alone
+// Of the table's number at one wheel; the back-EMF goes with the torque constant where it is not given.
+std::vector<Slot> slots_at(const Model &model, const Key &key, std::size_t wheel) {
+    std::vector<Slot> slots = {wheel_slot(key.in_wheel, static_cast<int>(wheel))};
+    if (key.in_wheel == &W::KG && !model.wheel[wheel].motor.at("back_emf_Vs_rad").given)
+        slots.push_back(wheel_slot(&W::ke, static_cast<int>(wheel)));
+    return slots;
+}
+
+// What one wheel's number differs from the one that the wheels share.
+FreeParameter own_parameter(const Model &model, const FreeParameter &shared, const Key &key, std::size_t wheel) {
+    const Parameter &p = table_of(model.wheel[wheel], key.table).at(key.key);
+    FreeParameter own = shared;
+    own.wheel = static_cast<int>(wheel);
+    own.own = true;
+    own.slots = slots_at(model, key, wheel);
+    own.base = 0;
+    own.prior = p.each_wheel * std::fabs(p.value);
+    own.maximum = most_of_value * std::fabs(p.value);
+    own.minimum = -own.maximum;
+    own.step = difference_step(p.value, own.prior);
+    return own;
+}
+
+// Wheels that have a tolerance each, or whose numbers agree, move together; an overridden wheel moves alone.
+void append_shared(std::vector<FreeParameter> &list, const Model &model, const Key &key) {
     std::vector<bool> done(model.wheel.size(), false);
     for (std::size_t i = 0; i < model.wheel.size(); ++i) {
         const Parameters &table = table_of(model.wheel[i], key.table);
         const auto found = table.find(key.key);
-        if (done[i] || found == table.end() || found->second.fixed || !(found->second.prior > 0)) continue;
+        if (done[i] || found == table.end() || found->second.fixed || !(found->second.prior > 0 || found->second.each_wheel > 0)) continue;
         const Parameter &p = found->second;
         FreeParameter free;
         free.owner = key.table;
@@ -218,23 +245,21 @@ void append_shared(std::vector<FreeParameter> &list, const Model &model, const P
         free.minimum = p.minimum;
         free.maximum = p.maximum;
         free.touched = key.touched;
+        std::vector<std::size_t> together;
         for (std::size_t j = i; j < model.wheel.size(); ++j) {
             const Parameter &q = table_of(model.wheel[j], key.table).at(key.key);
-            if (q.value != p.value || q.prior != p.prior || q.fixed) continue;
+            if (done[j] || q.fixed || q.prior != p.prior || q.each_wheel != p.each_wheel) continue;
+            if (q.value != p.value && !(p.each_wheel > 0)) continue;
             done[j] = true;
-            free.slots.push_back(wheel_slot(key.in_wheel, static_cast<int>(j)));
-            if (free.key == "torque_constant_Nm_A" && !model.wheel[j].motor.at("back_emf_Vs_rad").given)
-                free.slots.push_back(wheel_slot(&W::ke, static_cast<int>(j)));
+            together.push_back(j);
+            for (const Slot &slot : slots_at(model, key, j)) free.slots.push_back(slot);
         }
-        if (done.size() > 1 && std::count(done.begin(), done.end(), true) == 1) free.wheel = static_cast<int>(i);
-        const bool alone = static_cast<std::size_t>(std::count_if(free.slots.begin(), free.slots.end(), [&](const Slot &s) {
-                               return s.in_wheel == key.in_wheel;
-                           })) < model.wheel.size();
-        free.wheel = alone ? static_cast<int>(i) : -1;
-        free.step = difference_step(p.value, p.prior);
-        list.push_back(std::move(free));
+        free.wheel = together.size() < model.wheel.size() ? static_cast<int>(i) : -1;
+        free.step = difference_step(p.value, std::max(p.prior, p.each_wheel * std::fabs(p.value)));
+        if (p.prior > 0) list.push_back(free);
+        for (const std::size_t j : together)
+            if (p.each_wheel > 0 && p.value != 0 && together.size() > 1) list.push_back(own_parameter(model, free, key, j));
     }
-    (void)physics;
 }
 
 void append_effects(std::vector<FreeParameter> &list, const Model &model) {
@@ -281,11 +306,11 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model) {
 
 } // namespace
 
-std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics) {
+std::vector<FreeParameter> free_parameters(const Model &model, const Physics &) {
     std::vector<FreeParameter> list;
     for (const Key &key : keys) {
         if (key.in_wheel != nullptr) {
-            append_shared(list, model, physics, key);
+            append_shared(list, model, key);
             continue;
         }
         const Parameters &table = std::string(key.table) == "rover" ? model.rover : model.sensors;

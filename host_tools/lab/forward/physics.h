@@ -83,8 +83,12 @@ struct FreeParameter {
     double minimum = 0, maximum = 0; // of base + increment
     double step = 0;                 // for differences
     unsigned touched = stage_all;
+    bool own = false; // of a parameter that wheels share: what one wheel's differs from that (base 0)
     void add(Physics &physics, double increment) const;
 };
+
+// "motor.resistance_ohm", "motor.resistance_ohm on wheel 2": an overridden one, or what that wheel's differs.
+std::string name_of(const FreeParameter &parameter);
 
 // An effect as the lab can try it: slots by parameter.
 struct EffectHandle {

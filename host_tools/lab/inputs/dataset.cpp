@@ -91,7 +91,7 @@ struct Builder : InputBuilder {
         const auto a = static_cast<std::size_t>(std::max(0.0, (t0 - data.start_s) / data.step_s));
         const auto b = std::min(data.count - 1, static_cast<std::size_t>((t1 - data.start_s) / data.step_s) + 1);
         for (std::size_t k = a; k <= b; ++k)
-            if (std::fabs(data.wheel[i].speed_rad_s[k]) < standstill_rad_s) return false;
+            if (std::fabs(data.wheel[i].speed_rad_s[k]) < data.standstill_rad_s) return false;
         return true;
     }
 
@@ -171,6 +171,29 @@ struct Builder : InputBuilder {
         return n > 0 ? sum / n : 0;
     }
 
+    // A radar that knows the direction: clearly negative in places, or declared so by signed.radar.speed_m_s.
+    bool carries_sign(const log::Signal &s, double noise) const {
+        if (header("signed." + s.name) > 0) return true;
+        const auto beyond = [&](double sign) {
+            const double least = std::max(4 * noise, parameter(model.sensors, "radar.minimum_m_s"));
+            return std::count_if(s.value.begin(), s.value.end(), [&](double v) { return sign * v > least; });
+        };
+        const auto few = static_cast<std::ptrdiff_t>(s.value.size() / 100 + 3);
+        return beyond(-1) > few; // the check has refused a magnitude that is negated
+    }
+
+    bool reverses(double t0, double t1) const {
+        const auto a = static_cast<std::size_t>(std::max(0.0, (t0 - data.start_s) / data.step_s));
+        const auto b = std::min(data.count - 1, static_cast<std::size_t>(std::max(0.0, (t1 - data.start_s) / data.step_s)));
+        bool forward = false, back = false;
+        for (std::size_t k = a; k <= b; ++k) {
+            double sum = 0;
+            for (const WheelInput &wheel : data.wheel) sum += wheel.speed_rad_s[k];
+            forward = forward || sum > 0, back = back || sum < 0;
+        }
+        return forward && back;
+    }
+
     void radar() {
         const log::Signal *s = signal("radar.speed_m_s");
         if (s == nullptr) {
@@ -183,9 +206,12 @@ struct Builder : InputBuilder {
         const double relative = header("noise.radar.speed_m_s.relative");
         const double window = window_of(*s) > 0 ? window_of(*s) : parameter(model.sensors, "radar.window_s"),
                      least = parameter(model.sensors, "radar.minimum_m_s");
+        const bool has_sign = carries_sign(*s, balance.noise);
+        if (has_sign) say("radar.speed_m_s carries a sign: its magnitude is compared, but where the wheels reverse");
         double last_value = std::nan("");
         for (std::size_t i = 0; i < s->t_s.size(); ++i) {
-            const double t1 = s->t_s[i], t0 = t1 - window, y = s->value[i];
+            const double t1 = s->t_s[i], t0 = t1 - window, y = has_sign ? std::fabs(s->value[i]) : s->value[i];
+            if (has_sign && reverses(t0, t1)) continue;                                             // the mean of both directions
             const bool held = y == last_value && i > 0 && s->t_s[i] - s->t_s[i - 1] < 0.4 * window; // a value held between frames
             last_value = y;
             if (held || std::fabs(y) < least || !usable(t0, t1)) continue;

@@ -56,7 +56,8 @@ struct WheelInput {
 struct Dataset {
     double start_s = 0, step_s = 0.01; // grid: time[k] = start_s + k * step_s
     std::size_t count = 0;
-    bool independent_rows = false; // a table of steady states, not a time series
+    double standstill_rad_s = 0.15; // below it friction is indeterminate: the torque balance says nothing (inputs.h)
+    bool independent_rows = false;  // a table of steady states, not a time series
     std::vector<WheelInput> wheel;
     std::vector<double> yaw_rate_rad_s;       // empty when unknown
     std::vector<double> yaw_rad;              // empty when unknown: integral of the rate, or the camera's
@@ -70,6 +71,8 @@ struct Dataset {
     std::vector<std::string> messages; // what is missing and what that removes
     double smoothing_half_s = 0;       // half width of the encoder's parabolas, of the last wheel and before half_width_for() widens them
     double accel_bias_prior_m_s2 = 0;  // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none
+    std::vector<double> run_start_s;   // where each run begins, of a data set of several (join_runs.h); empty: one run
+    std::vector<std::string> despite;  // errors of the check that were overridden when the log was opened
     std::string log_file, scenario, date;
     double duration_s = 0;
 

@@ -76,7 +76,32 @@ const log::Signal *InputBuilder::motion_signal(std::size_t i, double &angle_scal
     return wheel_signal(i, "speed_rad_s");
 }
 
+double InputBuilder::top_speed_rad_s() const {
+    double top = 0;
+    for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+        double scale = 0;
+        const log::Signal *s = motion_signal(i, scale);
+        if (s == nullptr) continue;
+        std::vector<double> speed;
+        for (std::size_t a = 0, b = 0; b < s->t_s.size(); ++b) {
+            if (scale == 0) {
+                speed.push_back(std::fabs(s->value[b]));
+                continue;
+            }
+            if (s->t_s[b] - s->t_s[a] < 0.1) continue;
+            speed.push_back(std::fabs(scale * (s->value[b] - s->value[a]) / (s->t_s[b] - s->t_s[a])));
+            a = b;
+        }
+        if (speed.empty()) continue;
+        const auto at = speed.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(speed.size() - 1));
+        std::nth_element(speed.begin(), at, speed.end());
+        top = std::max(top, *at);
+    }
+    return top;
+}
+
 bool InputBuilder::grid_and_wheels() {
+    if (const double top = top_speed_rad_s(); top > 0) data.standstill_rad_s = standstill_share * top;
     const auto wheels = [this](double step_s) {
         data.wheel.assign(model.wheel.size(), {});
         if (!set_grid(step_s)) return false;
@@ -124,6 +149,12 @@ bool InputBuilder::set_grid(double step_s) {
     data.independent_rows = model.motion == BodyMotion::imposed && period >= 0.5;
     data.start_s = first;
     data.step_s = data.independent_rows ? period : std::max(step_s, (last - first) / 30000);
+    if (!data.independent_rows && data.step_s > step_s) {
+        char text[160];
+        std::snprintf(text, sizeof text, "the log is %.0f s long: the model is integrated in steps of %.0f ms, not %.0f ms", last - first,
+                      1e3 * data.step_s, 1e3 * step_s);
+        say(text);
+    }
     data.count = static_cast<std::size_t>((last - first) / data.step_s + 1e-6) + 1;
     data.gap.assign(data.count, 0);
     return data.count >= 3;
@@ -144,7 +175,7 @@ void InputBuilder::wheel_motion(std::size_t i) {
     if (scale != 0) {
         std::vector<double> angle(s->value);
         for (double &a : angle) a *= scale;
-        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, standstill_rad_s); wide > 1.2 * half) {
+        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, data.standstill_rad_s); wide > 1.2 * half) {
             half = wide;
             char text[160];
             std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s",
@@ -200,7 +231,7 @@ void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, doub
     std::vector<double> size, moving;
     for (std::size_t k = 0; k < data.count; ++k) {
         size.push_back(std::fabs(sharp.accel_rad_s2[k] - input.accel_rad_s2[k]));
-        if (std::fabs(input.speed_rad_s[k]) > standstill_rad_s) moving.push_back(size[k]);
+        if (std::fabs(input.speed_rad_s[k]) > data.standstill_rad_s) moving.push_back(size[k]);
     }
     if (moving.empty()) return;
     const auto place = moving.begin() + static_cast<std::ptrdiff_t>(calm * static_cast<double>(moving.size()));
@@ -221,8 +252,8 @@ void InputBuilder::travel(WheelInput &input) const {
     double from = input.angle_rad.empty() ? 0 : input.angle_rad[0], way = 0;
     for (std::size_t k = 0; k < input.angle_rad.size(); ++k) {
         const double w = input.speed_rad_s[k];
-        if (std::fabs(w) > standstill_rad_s && w * way < 0) from = input.angle_rad[k];
-        if (std::fabs(w) > standstill_rad_s) way = w;
+        if (std::fabs(w) > data.standstill_rad_s && w * way < 0) from = input.angle_rad[k];
+        if (std::fabs(w) > data.standstill_rad_s) way = w;
         input.travel_rad.push_back(input.angle_rad[k] - from);
     }
 }

@@ -8,7 +8,9 @@
 
 namespace traction::lab {
 
-inline constexpr double standstill_rad_s = 0.15; // below it friction is indeterminate: the torque balance says nothing
+// Below this share of the log's own top speed a wheel stands: friction is indeterminate there. 0.15 rad/s of a small rover's 12, and a
+// linear axis whose radius is one metre is read like the same axis with a radius of a decimetre.
+inline constexpr double standstill_share = 0.0125;
 
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
@@ -31,6 +33,7 @@ struct InputBuilder {
     bool set_grid(double step_s);
     // Steps of 20 ms, of 10 ms where the wheels swing so quickly that the integration would lose more of it than it may. False: no grid.
     bool grid_and_wheels();
+    double top_speed_rad_s() const; // of the fastest wheel, 98 % quantile over tenths of a second; 0: unknown
     double
     swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
     double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel

@@ -67,6 +67,8 @@ struct Reader {
                     p.maximum = number(item, path);
                 else if (name == "prior")
                     p.prior = number(item, path);
+                else if (name == "each_wheel")
+                    p.each_wheel = number(item, path);
                 else if (name == "low")
                     p.low = number(item, path);
                 else if (name == "high")
@@ -78,11 +80,15 @@ struct Reader {
                 else if (name == "unit")
                     check_unit(item, path, p);
                 else
-                    fail(item, path, "is not known", "a parameter may have value, unit, min, max, prior, fixed, source, low, high");
+                    fail(item, path, "is not known",
+                         "a parameter may have value, unit, min, max, prior, each_wheel, fixed, source, low, high");
             }
             if (!has_value) fail(node, key, "has no value", "add value = NUMBER to the table");
         }
         if (p.prior < 0) fail(node, key, "has a negative prior", "prior is a standard deviation: give 0 or more");
+        if (!(p.each_wheel >= 0 && p.each_wheel < 1))
+            fail(node, key, "has each_wheel = " + number_text(p.each_wheel),
+                 "give the standard deviation of one wheel's value as a share of the value, such as 0.01");
         if (p.minimum > p.maximum) fail(node, key, "has min > max", "exchange the two");
         if (p.value < p.minimum || p.value > p.maximum)
             fail(node, key, number_text(p.value) + " is outside " + number_text(p.minimum) + " to " + number_text(p.maximum),
@@ -118,10 +124,15 @@ struct Reader {
             p.maximum = found->maximum;
             p.prior = -1;
             const bool own_prior = node.is_table() && node.as_table()->contains("prior");
+            const bool own_each = node.is_table() && node.as_table()->contains("each_wheel");
+            if (own_each && (known.data() == rover_keys().data() || known.data() == sensor_keys().data()))
+                fail(node, where + "." + name, "has each_wheel, but there is one for all wheels", "leave each_wheel out here");
             p.prior = 0;
+            p.each_wheel = found->each_wheel;
             parameter(node, where + "." + name, p);
             if (!own_prior) p.prior = std::max(found->relative_prior * std::fabs(p.value), found->absolute_prior);
-            if (p.fixed) p.prior = 0;
+            if (!own_each && own_prior && p.prior == 0) p.each_wheel = 0;
+            if (p.fixed) p.prior = p.each_wheel = 0;
             into[prefix + name] = p;
         }
     }
@@ -156,6 +167,7 @@ void fill_defaults(std::span<const ModelKey> known, Parameters &into) {
         p.minimum = k.minimum;
         p.maximum = k.maximum;
         p.prior = std::max(k.relative_prior * std::fabs(k.value), k.absolute_prior);
+        p.each_wheel = k.each_wheel;
         p.source = "default of the program";
         into[std::string(k.key)] = p;
     }
@@ -176,6 +188,7 @@ void put(Parameters &into, const Reader &reader, const toml::table &source, cons
     p.value = value;
     p.given = true;
     p.prior = std::max(found->relative_prior * std::fabs(value), found->absolute_prior);
+    p.each_wheel = found->each_wheel;
     p.source = how;
     if (!(value >= p.minimum && value <= p.maximum))
         reader.fail(source, where + "." + key, "comes out as " + number_text(value), "check the values it is computed from");
@@ -381,6 +394,7 @@ void read_lineage(const toml::table &root, Model &model) {
         entry.train = (*table)["train"].value_or(std::nan(""));
         entry.heldout = (*table)["heldout"].value_or(std::nan(""));
         entry.floor = (*table)["floor"].value_or(std::nan(""));
+        entry.despite = (*table)["despite"].value_or(std::string());
         model.lineage.push_back(std::move(entry));
     }
 }

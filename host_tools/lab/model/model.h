@@ -24,8 +24,9 @@ struct Parameter {
     std::string unit; // SI; "1" where dimensionless
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
-    double prior = 0;   // standard deviation around value, in the same unit; 0: not adjusted while an effect is sought
-    bool fixed = false; // never fitted
+    double prior = 0;      // standard deviation around value, in the same unit; 0: not adjusted while an effect is sought
+    double each_wheel = 0; // standard deviation of one wheel's value around what the wheels share, as a share of the value
+    bool fixed = false;    // never fitted
     std::string source;
     double low = std::numeric_limits<double>::quiet_NaN(); // 95 % interval of a fit, where there was one
     double high = std::numeric_limits<double>::quiet_NaN();
@@ -69,6 +70,7 @@ struct LineageEntry {
     double train = std::numeric_limits<double>::quiet_NaN(); // error in units of noise
     double heldout = std::numeric_limits<double>::quiet_NaN();
     double floor = std::numeric_limits<double>::quiet_NaN();
+    std::string despite = {}; // errors of the check that were overridden, separated by blanks
 };
 
 struct Model {

@@ -2,6 +2,7 @@
 #include "model.h"
 
 #include "host_tools/log/write_file.h"
+#include "model_keys.h"
 
 #include <charconv>
 #include <cmath>
@@ -30,29 +31,32 @@ std::string quoted(const std::string &text) {
     return out + "\"";
 }
 
-std::string parameter_text(const Parameter &p, bool with_prior) {
+std::string parameter_text(const Parameter &p, bool with_prior, const std::string &key) {
     std::string out = "{ value = " + number(p.value);
     if (!p.unit.empty()) out += ", unit = " + quoted(p.unit);
     if (std::isfinite(p.minimum)) out += ", min = " + number(p.minimum);
     if (std::isfinite(p.maximum)) out += ", max = " + number(p.maximum);
     if (with_prior) out += ", prior = " + number(p.prior);
+    if (with_prior && (p.each_wheel > 0 || (p.prior > 0 && default_each_wheel(key) > 0))) out += ", each_wheel = " + number(p.each_wheel);
     if (p.fixed) out += ", fixed = true";
     if (std::isfinite(p.low) && std::isfinite(p.high)) out += ", low = " + number(p.low) + ", high = " + number(p.high);
     if (!p.source.empty()) out += ", source = " + quoted(p.source);
     return out + " }";
 }
 
-bool same(const Parameter &a, const Parameter &b) { return a.value == b.value && a.prior == b.prior && a.fixed == b.fixed; }
+bool same(const Parameter &a, const Parameter &b) {
+    return a.value == b.value && a.prior == b.prior && a.each_wheel == b.each_wheel && a.fixed == b.fixed;
+}
 
 void write_table(std::string &out, const Parameters &table) {
     for (const auto &[key, p] : table)
-        if (p.given || std::isfinite(p.low)) out += key + " = " + parameter_text(p, true) + "\n";
+        if (p.given || std::isfinite(p.low)) out += key + " = " + parameter_text(p, true, key) + "\n";
 }
 
 void write_overrides(std::string &out, const std::string &heading, const Parameters &table, const Parameters &shared) {
     std::string body;
     for (const auto &[key, p] : table)
-        if ((p.given || std::isfinite(p.low)) && !same(p, shared.at(key))) body += key + " = " + parameter_text(p, true) + "\n";
+        if ((p.given || std::isfinite(p.low)) && !same(p, shared.at(key))) body += key + " = " + parameter_text(p, true, key) + "\n";
     if (!body.empty()) out += heading + "\n" + body;
 }
 
@@ -60,6 +64,7 @@ void write_lineage(std::string &out, const Model &model) {
     for (const LineageEntry &entry : model.lineage) {
         out += "\n[[lineage]]\nlabel = " + quoted(entry.label) + "\nlog = " + quoted(entry.log) + "\n";
         if (!entry.date.empty()) out += "date = " + quoted(entry.date) + "\n";
+        if (!entry.despite.empty()) out += "despite = " + quoted(entry.despite) + "\n";
         if (std::isfinite(entry.train)) out += "train = " + number(entry.train) + "\n";
         if (std::isfinite(entry.heldout)) out += "heldout = " + number(entry.heldout) + "\n";
         if (std::isfinite(entry.floor)) out += "floor = " + number(entry.floor) + "\n";
@@ -97,13 +102,13 @@ std::string model_text(const Model &model) {
             if (with_flag) out += "unsigned = true\n";
         }
         sensor = name;
-        out += key.substr(key.find('.') + 1) + " = " + parameter_text(p, true) + "\n";
+        out += key.substr(key.find('.') + 1) + " = " + parameter_text(p, true, key) + "\n";
     }
     for (const EffectUse &use : model.effects) {
         out += "\n[[effect]]\nname = " + quoted(use.name) + "\n";
         if (use.wheel >= 0) out += "wheel = " + std::to_string(use.wheel) + "\n";
         if (!use.expression.empty()) out += "acts_on = " + quoted(use.acts_on) + "\nexpression = " + quoted(use.expression) + "\n";
-        for (const auto &[key, p] : use.parameters) out += key + " = " + parameter_text(p, false) + "\n";
+        for (const auto &[key, p] : use.parameters) out += key + " = " + parameter_text(p, false, key) + "\n";
     }
     write_lineage(out, model);
     return out;

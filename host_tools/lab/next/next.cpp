@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -22,7 +23,8 @@ constexpr double noticed_at = 4.588; // 2/sqrt(1 - 0.9^2): at this size |cos| = 
 constexpr int most_manoeuvres = 3;
 
 struct Asked {
-    std::vector<int> members; // of the plan's candidates
+    std::vector<int> members;                               // of the plan's candidates
+    double known = std::numeric_limits<double>::infinity(); // d' that the diagnosis of the log found for it
 };
 
 // What is asked, of which model, on top of which log.
@@ -87,6 +89,17 @@ const CandidateResult *find_result(const Diagnosis &d, const std::string &label)
         for (const CandidateResult &r : *list)
             if (r.candidate.label() == label) return &r;
     return nullptr;
+}
+
+// d' of three sizes of interest by the diagnosis's own standard error.
+double found_of(const Diagnosis &d, const Candidate &c) {
+    const CandidateResult *r = find_result(d, c.label());
+    double most = 0;
+    for (std::size_t j = 0; r != nullptr && j < r->value.size() && j < c.of_interest.size(); ++j) {
+        const double error = (r->high[j] - r->low[j]) / (2 * 1.96);
+        if (error > 0 && std::isfinite(error)) most = std::max(most, sizes_of_interest * c.of_interest[j] / error);
+    }
+    return r != nullptr ? most : std::numeric_limits<double>::infinity();
 }
 
 // d' of one role, less where the forward model's own error on these drives looks like the effect: it must not be taken for it.
@@ -184,7 +197,15 @@ struct Table {
     std::vector<double> before;
     std::vector<bool> answerable; // by all manoeuvres together
 
-    double at(const Eigen::MatrixXd &gram, std::size_t q) const { return distance(plan, gram, precision, plan.asked[q]); }
+    std::vector<double> by_log = {}; // of each question, by the log's information alone
+
+    double distance_at(const Eigen::MatrixXd &gram, std::size_t q) const { return distance(plan, gram, precision, plan.asked[q]); }
+    // Where the diagnosis found less in the log than its information promises, a drive adds to what was found.
+    double at(const Eigen::MatrixXd &gram, std::size_t q) const {
+        const double d = distance_at(gram, q), known = plan.asked[q].known;
+        if (!(known < by_log[q])) return d;
+        return std::sqrt(known * known + std::max(0.0, d * d - by_log[q] * by_log[q]));
+    }
 };
 
 // Effects that the model's own parameters would hide at three sizes of interest are asked for at the size that stands out.
@@ -202,6 +223,7 @@ void judge_alone(Table &table, const Eigen::MatrixXd &everything, NextExperiment
     const std::vector<Manoeuvre> &list = manoeuvres();
     for (std::size_t q = 0; q < next.questions.size(); ++q) {
         Question &one = next.questions[q];
+        table.by_log.push_back(table.distance_at(table.log, q));
         table.before.push_back(one.before = table.at(table.log, q));
         for (const Eigen::MatrixXd &gram : table.grams) one.best = std::max(one.best, table.at(table.log + gram, q));
         table.answerable.push_back(answers(table.plan, one.before, std::max(one.best, table.at(everything, q))));
@@ -322,7 +344,8 @@ NextExperiment next_experiment(const Diagnosis &d, const Model &model, const Dat
     }
     if (plan.asked.empty() || all)
         for (const auto &[effect, why] : d.not_excited)
-            if (const auto c = catalogue_candidate(effect, -1, plan.base)) plan.asked.push_back({{place_of(plan, of_interest(*c))}});
+            if (const auto c = catalogue_candidate(effect, -1, plan.base))
+                plan.asked.push_back({{place_of(plan, of_interest(*c))}, found_of(d, *c)});
     return solve(plan, d.model, drive);
 }
 

@@ -1,5 +1,6 @@
 #include "addition.h"
 
+#include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/screen.h"
 #include "result.h"
 
@@ -18,7 +19,9 @@ void append_lineage(Model &model, const Dataset &data, const std::vector<LadderS
         if (i == 0 && !model.lineage.empty()) continue; // the baseline is the last entry already
         const bool last = i + 1 == ladder.size();
         const LadderStep &r = last && std::isfinite(final_step.train) ? final_step : ladder[i];
-        model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor});
+        std::string despite;
+        for (const std::string &id : data.despite) despite += (despite.empty() ? "" : " ") + id;
+        model.lineage.push_back({ladder[i].label, data.log_file, data.date, r.train, r.heldout, ladder[i].floor, despite});
     }
 }
 
@@ -52,8 +55,7 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
             throw ModelError(model.file, 0, effect, "is no effect of the catalogue",
                              "`traction effects` lists them; for your own use --effect-file");
         if (wheel >= 0 && !known->per_wheel) throw ModelError(model.file, 0, effect, "cannot be confined to a wheel", "leave --wheel out");
-        Problem problem(data, make_physics(model), free_parameters(model, make_physics(model)));
-        problem.fit({.iterations = 6, .reweight = true});
+        Problem problem = fitted_problem(model, data);
         const Screen screen(problem);
         double best = -1e300;
         EffectUse use;
@@ -80,14 +82,21 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
                              "drive further, or give its parameters in the model file");
         added.model.effects.push_back(use);
     }
-    Model baseline = model;
-    added.ladder.push_back(fit_model(baseline, data, "baseline"));
     const std::string label = "+ " + effect + (wheel >= 0 ? " on wheel " + std::to_string(wheel) : "");
-    added.ladder.push_back(fit_model(added.model, data, label));
-    added.helps = added.ladder[1].heldout < added.ladder[0].heldout;
-    char buffer[200];
-    std::snprintf(buffer, sizeof buffer, "held-out error %.3f -> %.3f x noise: %s", added.ladder[0].heldout, added.ladder[1].heldout,
-                  added.helps ? "it helps" : "it does not help");
+    const Problem before = fitted_problem(model, data), after = fitted_problem(added.model, data);
+    const HeldOut left_before = held_out(before), left_after = held_out(after);
+    const Fall fall = fall_between(left_before, left_after, noise_weight(before));
+    Model baseline = model;
+    added.ladder.push_back(store_fit(baseline, before, "baseline"));
+    added.ladder.push_back(store_fit(added.model, after, label));
+    added.limits = limits_of(after);
+    added.helps = fall.sure() && added.ladder[1].train < added.ladder[0].train;
+    const char *words = added.helps    ? "it helps"
+                        : fall.sum > 0 ? "it does not help: the fall is less than its own standard error over 5 s blocks"
+                                       : "it does not help";
+    char buffer[300];
+    std::snprintf(buffer, sizeof buffer, "held-out error %.3f -> %.3f x noise (5 s blocks, each predicted by a refit to the others): %s",
+                  added.ladder[0].heldout, added.ladder[1].heldout, words);
     added.text = buffer;
     append_lineage(added.model, data, added.ladder, {label, std::nan(""), std::nan(""), 1});
     added.model.name = model.name;
@@ -103,7 +112,7 @@ std::string added_text(const Added &added) {
                       p.unit.c_str(), p.fixed ? " (shape)" : "");
         text += buffer;
     }
-    return text + ladder_text(added.ladder) + added.text + "\n";
+    return text + limits_text(added.limits) + ladder_text(added.ladder) + added.text + "\n";
 }
 
 } // namespace traction::lab

@@ -11,7 +11,8 @@ namespace traction::lab {
 struct Added {
     Model model;
     std::vector<LadderStep> ladder; // baseline, + effect
-    bool helps = false;             // the held-out error fell
+    bool helps = false;             // the held-out error fell by more than its standard error, that of the fit too
+    std::vector<Limit> limits;      // at which parameters stand with the effect in
     std::string text;
 };
 

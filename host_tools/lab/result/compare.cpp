@@ -175,8 +175,8 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     else
         problem.cost();
     out.error = overall_error(problem);
-    Problem adjusted(data, physics, problem.parameters);
-    adjusted.fit({.iterations = 4});
+    Problem adjusted = fitted_problem(model, data);
+    for (const Limit &limit : limits_of(adjusted)) out.limits.push_back(limit);
     out.adjusted = overall_error(adjusted);
     Problem &shown = as_is ? problem : adjusted;
     for (std::size_t b = 0; b < data.balance.size(); ++b) out.balances.push_back(compare_balance(shown, b));

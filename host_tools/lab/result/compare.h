@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/problem.h"
 #include "host_tools/lab/inputs/dataset.h"
 
@@ -44,6 +45,7 @@ struct Comparison {
     double floor = 1;
     std::string verdict;
     std::vector<std::string> messages;
+    std::vector<Limit> limits; // of the adjusted fit
 };
 
 // `error` and `adjusted` always; balances and regimes show the model as it stands (as_is), else after its parameters moved within their

@@ -2,6 +2,7 @@
 
 #include "append.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -70,14 +71,27 @@ std::string strengths_text(const CandidateResult &r) {
 
 } // namespace
 
+// The verdict of a candidate for people.
+static std::string verdict_words(const CandidateResult &r, const Diagnosis &d) {
+    std::string names;
+    for (const std::string &name : d.effects) names += (names.empty() ? "" : ", ") + name;
+    if (r.verdict == "not_needed" && !names.empty()) return "not needed beside " + names;
+    if (r.verdict == "not_needed" && d.unknown) return "not needed beside " + d.unknown->balance;
+    if (r.verdict == "not_held_out") return "predicts blocks left out no better";
+    std::string words = r.verdict;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    return words;
+}
+
 json head_json(const std::string &verb, const Model &model, const Dataset &data) {
     json effects = json::array();
     for (const EffectUse &use : model.effects) effects.push_back(effect_json(use));
-    return {{"schema", "traction.lab/1"},
-            {"verb", verb},
-            {"title", verb + ": " + model.name + " against " + data.log_file},
-            {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}}},
-            {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
+    return {
+        {"schema", "traction.lab/1"},
+        {"verb", verb},
+        {"title", verb + ": " + model.name + " against " + data.log_file},
+        {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}, {"despite", data.despite}}},
+        {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
 }
 
 void put_comparison(json &out, const Comparison &c) {
@@ -122,7 +136,58 @@ void put_comparison(json &out, const Comparison &c) {
                            {"count", count}});
     }
     out["regimes"] = regimes;
+    out["limits"] = limits_json(c.limits);
     out["messages"] = c.messages;
+}
+
+json identifiability_json(const Identifiability &told, const std::vector<Resonance> &peaks) {
+    json pairs = json::array(), resonances = json::array();
+    for (const Identifiability::Pair &p : told.correlated)
+        pairs.push_back({{"a", p.a}, {"b", p.b}, {"correlation", finite(p.correlation)}});
+    for (const Resonance &r : peaks)
+        resonances.push_back({{"balance", r.balance}, {"frequency_Hz", finite(r.frequency_Hz)}, {"times", finite(r.times)}});
+    return {{"dead", told.dead},
+            {"flat", told.flat},
+            {"prior_alone", told.prior_alone},
+            {"correlated", pairs},
+            {"condition", finite(told.condition)},
+            {"resonances", resonances}};
+}
+
+std::string identifiability_text(const Identifiability &told, const std::vector<Resonance> &peaks) {
+    std::string text;
+    const auto list = [&](const char *words, const std::vector<std::string> &names) {
+        for (std::size_t i = 0; i < names.size(); ++i) append(text, "%s%s", i == 0 ? words : ", ", names[i].c_str());
+        if (!names.empty()) text += "\n";
+    };
+    list("this log cannot move: ", told.dead);
+    list("hardly held by this log: ", told.flat);
+    list("decided by the prior alone: ", told.prior_alone);
+    for (const Identifiability::Pair &p : told.correlated)
+        append(text, "go together (correlation %.3f): %s and %s\n", p.correlation, p.a.c_str(), p.b.c_str());
+    append(text, "condition number %.3g\n", told.condition);
+    for (const Resonance &r : peaks)
+        append(text,
+               "resonance: the residual of %s has a peak at %.2f Hz, %.0f times its surroundings: nothing in the model swings there\n",
+               r.balance.c_str(), r.frequency_Hz, r.times);
+    return text;
+}
+
+json limits_json(const std::vector<Limit> &limits) {
+    json out = json::array();
+    for (const Limit &l : limits)
+        out.push_back({{"parameter", l.parameter},
+                       {"value", finite(l.value)},
+                       {"unit", l.unit},
+                       {"of", l.of_prior ? "prior" : "range"},
+                       {"text", limit_text(l)}});
+    return out;
+}
+
+std::string limits_text(const std::vector<Limit> &limits) {
+    std::string text;
+    for (const Limit &l : limits) append(text, "at its limit: %s\n", limit_text(l).c_str());
+    return text;
 }
 
 json ladder_json(const std::vector<LadderStep> &ladder) {
@@ -153,6 +218,7 @@ void put_diagnosis(json &out, const Diagnosis &d) {
     }
     out["verdict"] = {{"kind", d.kind}, {"effects", d.effects}, {"nearest", d.nearest}, {"text", d.text}};
     out["ladder"] = ladder_json(d.ladder);
+    out["limits"] = limits_json(d.limits);
     out["messages"] = d.messages;
 }
 
@@ -165,6 +231,7 @@ std::string comparison_text(const Comparison &c) {
         if (!b.worst.empty()) append(text, "  %.1f to %.1f s", b.worst[0].t0_s, b.worst[0].t1_s);
         append(text, " %s\n", b.unit.c_str());
     }
+    text += limits_text(c.limits);
     append(text, "%s\n", c.verdict.c_str());
     return text;
 }
@@ -186,7 +253,7 @@ std::string diagnosis_text(const Diagnosis &d) {
     for (const CandidateResult &r : d.ranking) {
         if (++shown > 8) break;
         append(text, "%-34s %7.1f %% %8.1f to %5.1f %% %9.1e  %s, %s\n", r.candidate.label().c_str(), 100 * r.heldout_gain,
-               100 * r.gain_low, 100 * r.gain_high, r.p_value, r.verdict.c_str(), strengths_text(r).c_str());
+               100 * r.gain_low, 100 * r.gain_high, r.p_value, verdict_words(r, d).c_str(), strengths_text(r).c_str());
     }
     for (const ConfoundedClass &c : d.classes) {
         append(text, "cannot be told apart in this log:");
@@ -202,6 +269,7 @@ std::string diagnosis_text(const Diagnosis &d) {
         append(text, "\n");
     }
     for (const CandidateResult &r : d.accepted) append(text, "found: %s: %s\n", r.candidate.label().c_str(), strengths_text(r).c_str());
+    text += limits_text(d.limits);
     text += ladder_text(d.ladder);
     append(text, "%s\n", d.text.c_str());
     return text;

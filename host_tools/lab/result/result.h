@@ -13,6 +13,10 @@ namespace traction::lab {
 nlohmann::json head_json(const std::string &verb, const Model &model, const Dataset &data);
 void put_comparison(nlohmann::json &json, const Comparison &comparison);
 void put_diagnosis(nlohmann::json &json, const Diagnosis &diagnosis);
+nlohmann::json identifiability_json(const Identifiability &told, const std::vector<Resonance> &peaks);
+std::string identifiability_text(const Identifiability &told, const std::vector<Resonance> &peaks);
+nlohmann::json limits_json(const std::vector<Limit> &limits);
+std::string limits_text(const std::vector<Limit> &limits);
 nlohmann::json ladder_json(const std::vector<LadderStep> &ladder);
 
 std::string comparison_text(const Comparison &comparison);

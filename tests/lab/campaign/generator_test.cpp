@@ -88,6 +88,26 @@ TEST(IndependentRover, repeats_to_the_last_digit_and_differs_by_seed) {
     EXPECT_NE(signal_of(first, "imu.accel_x_m_s2").value, signal_of(generate(config), "imu.accel_x_m_s2").value);
 }
 
+TEST(IndependentRover, draws_every_wheel_for_itself_by_its_tolerances_and_leaves_the_rest_of_the_machine_as_it_was) {
+    GeneratorConfig config;
+    double squares = 0, friction = 0;
+    constexpr int machines = 200;
+    for (config.seed = 1; config.seed <= machines; ++config.seed) {
+        config.apart = false;
+        const Machine alike = machine_of(config);
+        config.apart = true;
+        const Machine apart = machine_of(config);
+        EXPECT_EQ(alike.KG_each, (PerWheel{1, 1, 1, 1}));
+        EXPECT_EQ(alike.KG, apart.KG); // the same machine of the same type, on the same ground
+        EXPECT_EQ(alike.mu, apart.mu);
+        for (std::size_t i = 0; i < wheels; ++i)
+            squares += std::pow(apart.KG_each[i] - 1, 2), friction += std::pow(apart.coulomb_each[i] - 1, 2);
+    }
+    // 800 draws of a normal cut off at 2.5 sigma (its deviation 0.977 of it): the estimate is within 3 * 0.977/sqrt(1600) of that
+    EXPECT_NEAR(std::sqrt(squares / (4 * machines)) / WheelSpread().KG, 0.977, 0.074);
+    EXPECT_NEAR(std::sqrt(friction / (4 * machines)) / WheelSpread().friction, 0.977, 0.074);
+}
+
 TEST(IndependentRover, a_repeat_run_differs_in_noise_alone) {
     GeneratorConfig config;
     config.duration_s = 5;

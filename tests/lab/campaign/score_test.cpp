@@ -89,6 +89,8 @@ TEST(Judge, accepts_a_class_that_holds_the_truth_once) {
 TEST(Judge, a_clean_log_must_stay_silent) {
     const Score named = judge({{"a", seal("clean", ""), answer("named", {"grade"}), 0.5}});
     EXPECT_EQ(line(named, "clean_named").value, 1);
+    const Score wrong = judge({{"a", seal("clean", ""), answer("wrong_model", {}), 0.5}});
+    EXPECT_EQ(line(wrong, "clean_named").value, 1); // a false alarm, too
     const Score silent = judge({{"a", seal("clean", ""), answer("nothing", {}), 0.5}});
     EXPECT_EQ(line(silent, "clean_named").value, 0);
 }
@@ -103,6 +105,61 @@ TEST(Judge, outside_the_catalogue_a_bare_name_is_the_worst_answer) {
     EXPECT_EQ(line(flagged, "outside_misnamed").value, 0);
     EXPECT_EQ(line(flagged, "outside_flagged").value, 1);
     EXPECT_EQ(line(flagged, "outside_variable").value, 1);
+}
+
+TEST(Judge, a_silent_log_whose_first_candidate_is_right_does_not_count_as_named) {
+    json silent = answer("nothing", {});
+    silent["candidates"].push_back({{"effect", "grade"}, {"wheel", -1}, {"detectability", 3.0}});
+    silent["detectability_with_truth"] = 3.0;
+    const Score score = judge({{"a", seal("one", "grade"), silent, 0.5}, {"b", seal("one", "grade"), answer("named", {"grade"}), 0.5}});
+    EXPECT_EQ(line(score, "named_first_detectable").value, 0.5);
+    EXPECT_EQ(line(score, "silent_detectable").value, 0.5);
+    EXPECT_EQ(line(score, "right_first_detectable").value, 1);
+}
+
+TEST(Judge, an_effect_that_no_candidate_stands_for_is_judged_visible_by_the_fit_that_was_given_the_truth) {
+    json silent = answer("nothing", {});
+    silent["detectability_with_truth"] = 5.0;
+    EXPECT_EQ(line(judge({{"a", seal("one", "grade"), silent, 0.5}}), "named_first_detectable").count, 1);
+    silent["detectability_with_truth"] = 1.0;
+    EXPECT_EQ(line(judge({{"a", seal("one", "grade"), silent, 0.5}}), "named_first_detectable").count, 0);
+}
+
+TEST(Judge, a_law_that_the_catalogue_has_learnt_may_be_called_by_its_name) {
+    json hidden = seal("outside", "water_drag", -1, "speed");
+    hidden["effects"][0]["law"] = "drag_squared|rolling_squared";
+    const Score named = judge({{"a", hidden, answer("named", {"drag_squared"}), 0.5}});
+    EXPECT_EQ(line(named, "outside_flagged").value, 1);
+    EXPECT_EQ(line(named, "outside_variable").value, 1);
+    EXPECT_EQ(line(named, "outside_misnamed").value, 0);
+    EXPECT_EQ(line(named, "false_discoveries").value, 0);
+    EXPECT_EQ(line(judge({{"a", hidden, answer("named", {"drag"}), 0.5}}), "outside_misnamed").value, 1); // the whole name counts
+}
+
+TEST(Judge, what_is_true_of_the_sensors_is_no_false_name_and_no_answer) {
+    json clean = seal("clean", "");
+    EXPECT_EQ(line(judge({{"a", clean, answer("named", {"accel_delay"}), 0.5}}), "clean_named").value, 1);
+    clean["chain"] = {{"accel_late_s", 0.02}};
+    EXPECT_EQ(line(judge({{"a", clean, answer("named", {"accel_delay"}), 0.5}}), "clean_named").value, 0);
+}
+
+TEST(Judge, intervals_that_always_hold_the_truth_are_too_wide) {
+    std::vector<Judged> logs;
+    for (int i = 0; i < 20; ++i) logs.push_back({"a", seal("one", "grade"), answer("named", {"grade"}), 0.5});
+    EXPECT_EQ(line(judge(logs), "coverage").value, 1);
+    EXPECT_FALSE(line(judge(logs), "coverage").met);
+}
+
+TEST(Judge, tells_sizes_and_sensor_chains_apart_and_seconds_by_two_minutes_of_log) {
+    json small = seal("clean", ""), large = seal("clean", "");
+    small["size"] = "small", small["chain"] = json::object(), small["duration_s"] = 60;
+    large["size"] = "large", large["chain"] = {{"angle_only", true}}, large["duration_s"] = 240;
+    const Score score = judge({{"a", small, answer("nothing", {}), 1}, {"b", large, answer("named", {"grade"}), 2}});
+    EXPECT_EQ(score.by_group.count("small") + score.by_group.count("large") + score.by_group.count("chain 1") +
+                  score.by_group.count("chain 2"),
+              4U);
+    EXPECT_NE(table_text(score).find("chain 2"), std::string::npos);
+    EXPECT_EQ(line(score, "seconds_median").value, 1.5); // 2 s for two minutes and 1 s for two minutes
 }
 
 TEST(Judge, a_lab_that_fails_is_counted) {

@@ -52,10 +52,66 @@ std::vector<Segment> full_plan() {
     };
 }
 
+// One manoeuvre of a kind, or a few that belong together.
+void add_mixed(std::vector<Segment> &plan, Random &random) {
+    const double way = random.sign(), speed = random.uniform(0.1, 0.5);
+    switch (random.below(8)) {
+    case 0:
+        plan.push_back(go(random.uniform(2, 6), way * speed, random.log_uniform(0.2, 6)));
+        break;
+    case 1:
+        plan.insert(plan.end(), {go(random.uniform(2, 4), way * speed, 3), go(1.2, 0, 6), go(2.5, -way * speed, 6)});
+        break;
+    case 2:
+        plan.push_back({K::front_sweep, random.uniform(10, 18), random.uniform(0.2, 0.3), 1});
+        plan.push_back(go(1, 0, 3));
+        break;
+    case 3:
+        plan.push_back({K::rear_sweep, random.uniform(10, 18), random.uniform(0.2, 0.3), 1});
+        plan.push_back(go(1, 0, 3));
+        break;
+    case 4:
+        plan.push_back({K::drag_one, random.uniform(2, 4), 0.25, 1, 0, random.below(wheels), random.uniform(0.3, 0.7)});
+        break;
+    case 5:
+        plan.push_back(go(random.uniform(2, 5), speed, 1, random.sign() * random.uniform(0.3, 0.8)));
+        break;
+    case 6:
+        plan.insert(plan.end(), {go(2, way * speed, 8), {K::coast, 1.5}});
+        break;
+    default:
+        plan.push_back(go(random.uniform(1, 2), 0, 2));
+    }
+}
+
+void add_drawn(const std::string &name, std::vector<Segment> &plan, Random &random) {
+    if (name == "mixed") return add_mixed(plan, random);
+    const double speed = random.uniform(0.15, 0.5);
+    if (name == "stop_and_go")
+        plan.insert(plan.end(), {go(random.uniform(2, 5), random.uniform() < 0.3 ? -speed : speed, random.log_uniform(0.5, 6)),
+                                 go(random.uniform(0.8, 3), 0, random.log_uniform(1, 8))});
+    else if (name == "slow")
+        plan.push_back(go(random.uniform(3, 8), random.uniform(-0.12, 0.15), random.log_uniform(0.1, 1)));
+    else if (name == "curves")
+        plan.push_back(go(random.uniform(2, 6), speed, 1, random.uniform(-0.8, 0.8)));
+    else // slopes
+        plan.insert(plan.end(), {go(random.uniform(4, 9), speed, 2), go(1.5, 0, 3), go(random.uniform(3, 6), -speed, 2), go(1.5, 0, 3),
+                                 go(3.5, 0, 1, 0.9)});
+}
+
 } // namespace
 
-std::vector<Segment> make_plan(const std::string &name, double duration_s, Random &random) {
+std::vector<Segment> make_plan(const std::string &name, double duration_s, Random &random, double speed) {
     std::vector<Segment> plan;
+    if (name == "mixed" || name == "stop_and_go" || name == "slow" || name == "curves" || name == "slopes") {
+        plan.push_back(go(1.5, 0, 1));
+        for (double total = 0; total < duration_s;) {
+            const std::size_t before = plan.size();
+            add_drawn(name, plan, random);
+            for (std::size_t i = before; i < plan.size(); ++i) total += plan[i].duration_s, plan[i].speed_m_s *= speed;
+        }
+        return plan;
+    }
     if (name == "full")
         plan = full_plan();
     else if (name == "cruise")
@@ -65,11 +121,12 @@ std::vector<Segment> make_plan(const std::string &name, double duration_s, Rando
     else if (name == "sweep")
         plan = {go(2, 0, 1), {K::front_sweep, 20, 0.3, 1}, go(2, 0, 2), {K::rear_sweep, 20, 0.3, 1}, go(2, 0, 2)};
     else
-        throw std::invalid_argument("unknown drive \"" + name + "\"; use full, cruise, stairs or sweep");
+        throw std::invalid_argument("unknown drive \"" + name +
+                                    "\"; use full, cruise, stairs, sweep, mixed, stop_and_go, slow, curves or slopes");
     double total = 0;
     for (Segment &segment : plan) { // nobody drives the same plan twice
         segment.duration_s *= random.uniform(0.9, 1.1);
-        segment.speed_m_s *= random.uniform(0.88, 1.12);
+        segment.speed_m_s *= speed * random.uniform(0.88, 1.12);
         segment.yaw_rate_rad_s *= random.uniform(0.85, 1.15);
         total += segment.duration_s;
     }
@@ -78,8 +135,8 @@ std::vector<Segment> make_plan(const std::string &name, double duration_s, Rando
     return plan;
 }
 
-Driver::Driver(std::vector<Segment> plan, double radius_m, double half_track_m)
-    : plan_(std::move(plan)), radius_(radius_m), half_track_(half_track_m) {}
+Driver::Driver(std::vector<Segment> plan, double radius_m, double half_track_m, LoopTune tune)
+    : plan_(std::move(plan)), radius_(radius_m), half_track_(half_track_m), tune_(tune) {}
 
 PerWheel Driver::command(double t_s, const PerWheel &w, double estimate, double battery_V) {
     while (index_ + 1 < plan_.size() && t_s >= segment_start_ + plan_[index_].duration_s) segment_start_ += plan_[index_++].duration_s;
@@ -114,10 +171,10 @@ PerWheel Driver::command(double t_s, const PerWheel &w, double estimate, double 
             continue; // bridge at zero: the winding is shorted
         }
         const double error = set_[i] - w[i];
-        const double raw = 0.265 / std::max(battery_V, 4.0) * set_[i] + 0.045 * error + integral_[i];
+        const double raw = tune_.back_emf_Vs_rad / std::max(battery_V, 4.0) * set_[i] + tune_.duty_per_rad_s * error + integral_[i];
         duty[i] = std::clamp(raw, -1.0, 1.0);
-        if (raw == duty[i]) integral_[i] += 0.25 * error * tick_s; // no wind-up
-        duty[i] = std::round(duty[i] * 2000) / 2000;               // 0.05 % PWM steps
+        if (raw == duty[i]) integral_[i] += tune_.duty_per_rad * error * tick_s; // no wind-up
+        duty[i] = std::round(duty[i] * 2000) / 2000;                             // 0.05 % PWM steps
     }
     return duty;
 }

@@ -15,7 +15,7 @@ namespace traction::generator {
 namespace {
 
 constexpr double h_s = 1e-3, tick_s = 0.01, g_m_s2 = 9.81;
-constexpr double current_noise_A = 0.015, current_step_A = 0.002, accel_noise = 0.2, accel_bias_sd = 0.05, gyro_noise = 0.01;
+constexpr double accel_noise = 0.2, accel_bias_sd = 0.05, gyro_noise = 0.01;
 constexpr double battery_noise_V = 0.01, radar_relative = 0.07, radar_floor_m_s = 0.005, radar_window_s = 0.5, radar_every_s = 0.125;
 constexpr double camera_noise_m = 0.001, camera_noise_rad = 0.004, camera_hz = 7;
 constexpr double counts_per_turn = 6000;
@@ -23,16 +23,16 @@ constexpr double counts_per_turn = 6000;
 // Turns the world into the columns of a log.
 class Recorder {
   public:
-    Recorder(const GeneratorConfig &config, const Hidden &hidden, Random noise)
-        : c_(config), h_(hidden), noise_(noise), scale_(config.quiet ? 0 : 1), accel_offset_(scale_ * accel_bias_sd * noise_.normal()),
-          gyro_offset_(scale_ * 0.003 * noise_.normal()) {
+    Recorder(const GeneratorConfig &config, const Machine &machine, const Hidden &hidden, Random noise)
+        : c_(config), m_(machine), h_(hidden), noise_(noise), scale_(config.quiet ? 0 : 1),
+          accel_offset_(scale_ * accel_bias_sd * noise_.normal()), gyro_offset_(scale_ * 0.003 * noise_.normal()) {
         for (int k = 0; k < 5; ++k) radar_parts_.push_back(noise_.normal());
     }
 
     // every 1 ms
     void watch(const World &world) {
         for (std::size_t i = 0; i < wheels; ++i) current_sum_[i] += world.wheel[i].current;
-        accel_sum_ += world.specific_force;
+        accel_sum_ += felt(world.specific_force);
         battery_sum_ += world.battery;
         for (int k = 0; k < wheels; ++k) seen_[at(k)] += h_s * world.motor_speed(k) * (1 - h_.missed[at(k)]);
         leaned_ += h_s / 0.1 * (world.accel - leaned_);
@@ -43,27 +43,32 @@ class Recorder {
         if (past_.size() > 501) past_.pop_front();
     }
 
-    PerWheel tick(const World &world) { // every 10 ms; returns the encoder speeds
+    PerWheel tick(const World &world, double length_s) { // at the end of every tick; returns the encoder speeds
         const double n = samples_;
+        stamp_ = c_.chain.jitter_s > 0 ? std::max(stamp_ + 1e-3, world.t + 0.2 * c_.chain.jitter_s * noise_.normal()) : world.t;
         PerWheel speed{};
         for (std::size_t i = 0; i < wheels; ++i) {
             const double count = c_.quiet ? seen_[i] * counts_per_turn / (2 * std::numbers::pi)
                                           : std::floor(seen_[i] * counts_per_turn / (2 * std::numbers::pi));
-            speed[i] = (count - count_[i]) * 2 * std::numbers::pi / counts_per_turn / tick_s;
+            speed[i] = (count - count_[i]) * 2 * std::numbers::pi / counts_per_turn / length_s;
             count_[i] = count;
-            put(wheel_name(i, "encoder_count"), world.t, count);
-            const double I =
-                current_sum_[i] / n * (1 + h_.current_gain[i]) + h_.current_offset[i] + scale_ * current_noise_A * noise_.normal();
-            put(wheel_name(i, "current_A"), world.t, c_.quiet ? I : current_step_A * std::round(I / current_step_A));
+            if (c_.chain.angle_only)
+                put(wheel_name(i, "angle_rad"), stamp_, count * 2 * std::numbers::pi / counts_per_turn);
+            else
+                put(wheel_name(i, "encoder_count"), stamp_, count);
+            const double mean = c_.chain.current_at_end ? world.wheel[i].current : current_sum_[i] / n;
+            const double I = mean * (1 + h_.current_gain[i] + h_.gain_drift[i] * world.t / 120) + h_.current_offset[i] +
+                             scale_ * m_.current_noise_A * noise_.normal();
+            put(wheel_name(i, "current_A"), stamp_, c_.quiet ? I : m_.current_step_A * std::round(I / m_.current_step_A));
             current_sum_[i] = 0;
         }
         const double tilt = g_m_s2 * h_.accel_tilt * leaned_;
-        put("imu.accel_x_m_s2", world.t,
+        put("imu.accel_x_m_s2", stamp_,
             accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt + accel_offset_ +
                 scale_ * accel_noise * noise_.normal());
-        put("imu.gyro_z_rad_s", world.t, world.yaw_rate() + gyro_offset_ + scale_ * gyro_noise * noise_.normal());
+        put("imu.gyro_z_rad_s", stamp_, world.yaw_rate() + gyro_offset_ + scale_ * gyro_noise * noise_.normal());
         battery_now_ = battery_sum_ / n * (1 + h_.voltage_gain) + scale_ * battery_noise_V * noise_.normal();
-        if (c_.battery) put("battery.voltage_V", world.t, battery_now_);
+        if (c_.battery) put("battery.voltage_V", stamp_, battery_now_);
         accel_sum_ = battery_sum_ = 0;
         samples_ = 0;
         if (c_.radar) radar(world);
@@ -71,10 +76,10 @@ class Recorder {
         return speed;
     }
 
-    void commands(double t, const PerWheel &duty, const PerWheel &set) {
+    void commands(const PerWheel &duty, const PerWheel &set) {
         for (std::size_t i = 0; i < wheels; ++i) {
-            put(wheel_name(i, "duty"), t, duty[i]);
-            put(wheel_name(i, "set_speed_rad_s"), t, set[i]);
+            put(wheel_name(i, "duty"), stamp_, duty[i]);
+            put(wheel_name(i, "set_speed_rad_s"), stamp_, set[i]);
         }
     }
 
@@ -91,6 +96,15 @@ class Recorder {
     struct Pose {
         double x, y, yaw;
     };
+    // What the accelerometer's own filter and its way to the log leave of the specific force.
+    double felt(double force) {
+        if (c_.chain.accel_cutoff_Hz > 0)
+            filtered_ += (1 - std::exp(-2 * std::numbers::pi * c_.chain.accel_cutoff_Hz * h_s)) * (force - filtered_), force = filtered_;
+        if (!(c_.chain.accel_late_s > 0)) return force;
+        waiting_.push_back(force);
+        if (waiting_.size() > static_cast<std::size_t>(std::lround(c_.chain.accel_late_s / h_s)) + 1) waiting_.pop_front();
+        return waiting_.front();
+    }
     static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
     static std::string wheel_name(std::size_t i, const char *what) { return "wheel" + std::to_string(i) + "." + what; }
 
@@ -112,7 +126,7 @@ class Recorder {
         mean /= static_cast<double>(radar_.size());
         for (std::size_t k = 1; k < 5; ++k) wobble += radar_parts_[k] / 2;
         if (mean < 0.05) return; // below the band-pass of 3 Hz
-        put("radar.speed_m_s", world.t, std::max(0.0, mean + scale_ * std::hypot(radar_relative * mean, radar_floor_m_s) * wobble));
+        put("radar.speed_m_s", stamp_, std::max(0.0, mean + scale_ * std::hypot(radar_relative * mean, radar_floor_m_s) * wobble));
     }
 
     void camera(const World &world) {
@@ -120,18 +134,20 @@ class Recorder {
         next_camera_ += 1 / camera_hz;
         const auto late = std::min(past_.size() - 1, static_cast<std::size_t>(std::lround(h_.camera_delay / h_s)));
         const Pose &pose = past_[past_.size() - 1 - late];
-        put("camera.x_m", world.t, pose.x * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal());
-        put("camera.y_m", world.t, pose.y * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal());
-        put("camera.yaw_rad", world.t, pose.yaw + scale_ * camera_noise_rad * noise_.normal());
+        put("camera.x_m", stamp_, pose.x * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal());
+        put("camera.y_m", stamp_, pose.y * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal());
+        put("camera.yaw_rad", stamp_, pose.yaw + scale_ * camera_noise_rad * noise_.normal());
     }
 
     const GeneratorConfig &c_;
+    const Machine &m_;
     const Hidden &h_;
     Random noise_;
     double scale_, accel_offset_, gyro_offset_, accel_sum_ = 0, battery_sum_ = 0, battery_now_ = 7.2, leaned_ = 0, samples_ = 0;
     double next_radar_ = 0, next_camera_ = 0;
     PerWheel current_sum_{}, seen_{}, count_{};
-    std::deque<double> radar_, radar_parts_;
+    double stamp_ = 0, filtered_ = 0; // time that the log writes; state of the accelerometer's filter
+    std::deque<double> radar_, radar_parts_, waiting_;
     std::deque<Pose> past_;
     std::vector<log::Signal> signals_;
 };
@@ -143,13 +159,13 @@ std::string number(double value) {
     return text;
 }
 
-void write_header(const GeneratorConfig &config, log::Log &log) {
+void write_header(const GeneratorConfig &config, const Machine &machine, log::Log &log) {
     auto &header = log.header;
     header["scenario"] = "identification drive on " + name_of(config.soil); // never what is hidden
     header["soil"] = name_of(config.soil);
     header["seed"] = std::to_string(config.seed);
     header["generator"] = "independent planar rover";
-    for (int i = 0; i < wheels; ++i) header["noise.wheel" + std::to_string(i) + ".current_A"] = number(current_noise_A);
+    for (int i = 0; i < wheels; ++i) header["noise.wheel" + std::to_string(i) + ".current_A"] = number(machine.current_noise_A);
     header["noise.imu.accel_x_m_s2"] = number(accel_noise);
     header["bias.imu.accel_x_m_s2"] = number(accel_bias_sd);
     header["noise.imu.gyro_z_rad_s"] = number(gyro_noise);
@@ -159,50 +175,80 @@ void write_header(const GeneratorConfig &config, log::Log &log) {
     header["noise.camera.x_m"] = header["noise.camera.y_m"] = number(camera_noise_m);
     header["noise.camera.yaw_rad"] = number(camera_noise_rad);
     header["window.radar.speed_m_s"] = number(radar_window_s); // a value is the mean of the window that ends at its time
-    header["window.wheel.current_A"] = number(tick_s);         // likewise: current is averaged over the control period
+    if (!config.chain.current_at_end) header["window.wheel.current_A"] = number(tick_s); // likewise: averaged over the control period
     header["window.imu.accel_x_m_s2"] = number(tick_s);
     header["counts_per_turn"] = number(counts_per_turn);
-    header["ground.grip_noise"] = config.soil == Soil::concrete ? "0.02" : "0.06";
+    if (config.chain.angle_only)
+        for (int i = 0; i < wheels; ++i)
+            header["quantum.wheel" + std::to_string(i) + ".angle_rad"] = number(2 * std::numbers::pi / counts_per_turn);
+    header["ground.grip_noise"] = config.soil == Soil::concrete                              ? "0.02"
+                                  : config.soil == Soil::sand || config.soil == Soil::gravel ? "0.06"
+                                                                                             : "0.05";
 }
 
 } // namespace
 
-std::string name_of(Soil soil) { return soil == Soil::sand ? "sand" : soil == Soil::gravel ? "gravel" : "concrete"; }
+std::string name_of(Soil soil) {
+    constexpr const char *names[] = {"sand", "gravel", "concrete", "loam", "snow"};
+    return names[static_cast<std::size_t>(soil)];
+}
 
 Soil soil_of(const std::string &name) {
-    for (const Soil soil : {Soil::sand, Soil::gravel, Soil::concrete})
+    for (const Soil soil : {Soil::sand, Soil::gravel, Soil::concrete, Soil::loam, Soil::snow})
         if (name_of(soil) == name) return soil;
-    throw std::invalid_argument("unknown soil \"" + name + "\"; use sand, gravel or concrete");
+    throw std::invalid_argument("unknown soil \"" + name + "\"; use sand, gravel, concrete, loam or snow");
+}
+
+std::string name_of(Size size) { return size == Size::small ? "small" : size == Size::medium ? "medium" : "large"; }
+
+Size size_of(const std::string &name) {
+    for (const Size size : {Size::small, Size::medium, Size::large})
+        if (name_of(size) == name) return size;
+    throw std::invalid_argument("unknown size \"" + name + "\"; use small, medium or large");
 }
 
 Machine machine_of(const GeneratorConfig &config) {
     Random random(config.seed, 11);
-    Machine machine = config.exact ? nominal(config.soil) : draw(config.soil, random);
+    Machine machine = config.exact ? nominal(config.soil, config.size) : draw(config.soil, random, config.size);
     if (config.exact) machine.grip_noise = 0;
+    if (config.apart && !config.exact) {
+        Random wheel_random(config.seed, 15); // a stream of its own: the rest of the machine stays as it was
+        draw_apart(machine, WheelSpread(), wheel_random);
+    }
     return machine;
 }
 
 log::Log generate(const GeneratorConfig &config) {
     Hidden hidden;
     for (const Setting &setting : config.hidden) apply(setting, hidden);
-    Random ground(config.seed, 12), plan_random(config.seed, 13);
+    const std::uint64_t place = config.seed + 7000003ULL * static_cast<std::uint64_t>(config.run); // run 0: the seed itself
+    Random ground(place, 12), plan_random(place, 13), clock(place, 16);
     const Machine machine = machine_of(config);
     World world(machine, hidden, ground);
-    const Machine believed = nominal(config.soil); // the operator knows the data sheet
-    Driver driver(make_plan(config.drive, config.duration_s, plan_random), believed.radius, believed.half_track);
-    Recorder recorder(config, hidden, Random(config.seed + 1000003 * config.noise_seed, 14));
+    const Machine believed = nominal(config.soil, config.size); // the operator knows the data sheet
+    const Machine first = nominal(config.soil);
+    const auto pull = [](const Machine &m) { return m.J * m.Ra / (m.KG * m.battery_V); }; // duty for a given wheel acceleration
+    LoopTune tune;
+    tune.back_emf_Vs_rad = believed.ke;
+    tune.duty_per_rad_s *= pull(believed) / pull(first);
+    tune.duty_per_rad *= pull(believed) / pull(first);
+    const double faster = std::sqrt(believed.radius / first.radius);
+    Driver driver(make_plan(config.drive, config.duration_s, plan_random, faster), believed.radius, believed.half_track, tune);
+    Recorder recorder(config, machine, hidden, Random(place + 1000003 * config.noise_seed, 14));
 
     PerWheel duty{}, speed{};
     double estimate = 0;
     const long ticks = std::lround(config.duration_s / tick_s);
     for (long tick = 0; tick < ticks; ++tick) {
         duty = driver.command(world.t, speed, estimate, recorder.battery_V());
-        recorder.commands(world.t, duty, driver.set_speed()); // takes effect from this row's time to the next
-        for (int sub = 0; sub < 10; ++sub) {
+        recorder.commands(duty, driver.set_speed()); // takes effect from this row's time to the next
+        const int late = config.chain.jitter_s > 0 ? static_cast<int>(std::lround(config.chain.jitter_s / h_s * clock.normal())) : 0;
+        const int steps = std::clamp(10 + late, 6, 14);
+        for (int sub = 0; sub < steps; ++sub) {
             world.step(duty);
             recorder.watch(world);
         }
-        speed = recorder.tick(world);
+        speed = recorder.tick(world, late == 0 ? tick_s : steps * h_s);
         estimate += 0.05 * (world.v() - estimate); // a slow outside estimate of ground speed, 0.2 s
         if (!std::isfinite(world.v())) throw std::runtime_error("the generator's world diverged");
         if (config.truth) recorder.truth(world);
@@ -210,34 +256,35 @@ log::Log generate(const GeneratorConfig &config) {
     log::Log log;
     log.signals = recorder.take();
     log.source = "generator";
-    write_header(config, log);
+    write_header(config, machine, log);
     return log;
 }
 
 namespace {
 
-Setting draw_setting(bool outside, Random &random, const std::string &not_this) {
+// The first sets know neither the newer kinds nor single wheels outside the catalogue: their draws stay as they were.
+Setting draw_setting(bool outside, Random &random, const std::string &not_this, bool fleet = false, Size size = Size::small) {
     std::vector<const Kind *> pool;
     for (const Kind &kind : kinds())
-        if (kind.outside == outside && kind.name != not_this) pool.push_back(&kind);
+        if (kind.outside == outside && kind.name != not_this && (fleet || kind.first_sets)) pool.push_back(&kind);
     const Kind &kind = *pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))];
     Setting setting;
     setting.name = kind.name;
-    if (kind.per_wheel() && random.uniform() < 0.5) setting.wheel = random.below(wheels);
+    if (kind.per_wheel() && (fleet || !outside) && random.uniform() < 0.5) setting.wheel = random.below(wheels);
     for (const KindParameter &parameter : kind.parameters) {
         double value = 0;
         if (parameter.strength)
             value = random.log_uniform(parameter.low, parameter.high) * (parameter.either_sign ? random.sign() : 1.0);
         else
             value = parameter.choices[static_cast<std::size_t>(random.below(static_cast<int>(parameter.choices.size())))];
-        setting.values.emplace_back(parameter.name, value);
+        setting.values.emplace_back(parameter.name, value * scale_of(parameter.name, size));
     }
     return setting;
 }
 
 } // namespace
 
-BlindCase draw_case(std::uint64_t seed, double duration_s) {
+BlindCase draw_case(std::uint64_t seed, double duration_s, const std::string &wanted) {
     Random random(seed, 21);
     BlindCase blind;
     blind.config.seed = seed;
@@ -253,8 +300,46 @@ BlindCase draw_case(std::uint64_t seed, double duration_s) {
         blind.category = "two";
     else
         blind.category = "outside";
+    if (!wanted.empty()) blind.category = wanted;
     if (blind.category != "clean") blind.config.hidden.push_back(draw_setting(blind.category == "outside", random, ""));
     if (blind.category == "two") blind.config.hidden.push_back(draw_setting(false, random, blind.config.hidden.front().name));
+    return blind;
+}
+
+BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category) {
+    Random random(seed, 31);
+    BlindCase blind;
+    GeneratorConfig &config = blind.config;
+    config.seed = seed;
+    config.apart = true;
+    const double size = random.uniform(), soil = random.uniform(), drive = random.uniform(), what = random.uniform();
+    config.size = size < 0.4 ? Size::small : size < 0.7 ? Size::medium : Size::large;
+    config.soil = soil < 0.3 ? Soil::sand : soil < 0.5 ? Soil::gravel : soil < 0.8 ? Soil::concrete : soil < 0.9 ? Soil::loam : Soil::snow;
+    config.drive = drive < 0.35   ? "full"
+                   : drive < 0.65 ? "mixed"
+                   : drive < 0.8  ? "stop_and_go"
+                   : drive < 0.88 ? "curves"
+                   : drive < 0.94 ? "slopes"
+                                  : "slow";
+    config.duration_s = std::round(random.log_uniform(60, 300));
+    if (random.uniform() < 0.5) { // the second chain, or parts of it
+        SensorChain &chain = config.chain;
+        if (random.uniform() < 0.5) chain.accel_cutoff_Hz = random.log_uniform(8, 25), chain.accel_late_s = random.uniform(0.005, 0.03);
+        chain.current_at_end = random.uniform() < 0.5;
+        chain.angle_only = random.uniform() < 0.5;
+        if (random.uniform() < 0.5) chain.jitter_s = random.log_uniform(3e-4, 1.5e-3);
+        chain.foreign = random.uniform() < 0.5;
+    }
+    config.camera = random.uniform() < 0.8;
+    config.radar = !config.camera || random.uniform() < 0.8;
+    const std::string drawn = what < 0.15 ? "clean" : what < 0.65 ? "one" : what < 0.8 ? "two" : "outside";
+    blind.category = category.empty() ? drawn : category;
+    if (blind.category == "clean") return blind;
+    config.hidden.push_back(draw_setting(blind.category == "outside", random, "", true, config.size));
+    if (config.drive == "slopes" && blind.category == "two" && config.hidden.front().name != "grade")
+        config.hidden.push_back({"grade", -1, {{"slope_rad", random.sign() * random.log_uniform(0.02, 0.12)}, {"direction_rad", 0}}});
+    else if (blind.category == "two")
+        config.hidden.push_back(draw_setting(false, random, config.hidden.front().name, true, config.size));
     return blind;
 }
 

@@ -12,13 +12,27 @@
 
 namespace traction::generator {
 
+// How the world reaches the log. All zero: the chain of the first blind sets (counts, means over the tick, an even clock).
+struct SensorChain {
+    double accel_cutoff_Hz = 0;  // first-order low pass in the accelerometer
+    double accel_late_s = 0;     // its samples are this old
+    bool current_at_end = false; // sampled once at the end of the PWM period, not averaged over the tick
+    bool angle_only = false;     // wheel angles in steps, no counts
+    double jitter_s = 0;         // standard deviation of a tick's length; the stamps are right to a fifth of it
+    bool foreign = false;        // a CSV of its own: units, names, signs and order of wheels need a map
+};
+
 struct GeneratorConfig {
     Soil soil = Soil::sand;
-    std::string drive = "full"; // full, cruise, stairs, sweep
+    Size size = Size::small;
+    SensorChain chain;
+    int run = 0;                // another drive of the same machine: other plan, place and noise
+    std::string drive = "full"; // see make_plan
     double duration_s = 120;
     std::uint64_t seed = 1;       // machine, drive, ground and noise
     std::uint64_t noise_seed = 0; // another value: the same run with other sensor noise (a repeat run)
     std::vector<Setting> hidden;
+    bool apart = false; // every wheel drawn for itself (WheelSpread); false: the logs of the first blind sets, to the last digit
     bool exact = false; // nominal machine, no ground noise (for checks)
     bool quiet = false; // no sensor noise (for checks)
     bool camera = true, radar = true, battery = true;
@@ -31,14 +45,27 @@ log::Log generate(const GeneratorConfig &config);
 // The machine that `config` draws (the seal keeps it, so that a judge can tell which nuisance was off).
 Machine machine_of(const GeneratorConfig &config);
 
+// The model that the operator would write: the data sheet's values, one for all wheels, and its tolerances.
+std::string data_sheet(const GeneratorConfig &config);
+
 Soil soil_of(const std::string &name); // throws std::invalid_argument
 std::string name_of(Soil soil);
 
-// What a blind campaign hides under this seed: clean, one, two (of the catalogue) or outside; soil drawn too.
+// Writes the log as the machine's own program would (chain.foreign): milliseconds, milliamperes, degrees, right motors mounted the other
+// way round, wheels in an order of their own; and the map that reads it. Without `foreign`: our CSV, and no map.
+void write_log(const log::Log &log, const GeneratorConfig &config, const std::string &csv, const std::string &map);
+
+// What a blind campaign hides under this seed: clean, one, two (of the catalogue) or outside; soil drawn too. category: that one instead.
 struct BlindCase {
     std::string category; // "clean", "one", "two", "outside"
     GeneratorConfig config;
 };
-BlindCase draw_case(std::uint64_t seed, double duration_s);
+BlindCase draw_case(std::uint64_t seed, double duration_s, const std::string &category = "");
+
+// The fleet: wheels apart, three sizes, five soils, sensor chains, plans and lengths (60 to 300 s) of their own, laws on single wheels.
+// category: one of the four, or empty to draw it.
+BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category = "");
+std::string name_of(Size size);
+Size size_of(const std::string &name); // throws std::invalid_argument
 
 } // namespace traction::generator

@@ -26,10 +26,13 @@ struct Hidden {
     // sensors and actuation
     double accel_bias = 0, accel_drift = 0, accel_scale = 0, accel_tilt = 0, radar_scale = 0, radar_pitch = 0;
     double voltage_gain = 0, camera_delay = 0, camera_scale = 0, actuation_delay = 0;
-    // outside the catalogue
-    double friction_squared = 0, dead_band = 0, hysteresis = 0, hysteresis_angle = 0.3, place_wave = 0, place_length = 0.6;
-    double turn_resistance = 0, coupling = 0, torque_limit = 0, friction_drift = 0, reverse_friction = 0, resonance = 0;
-    double resonance_speed = 5, grip_speed = 0, grip_drift = 0, friction_step = 0, friction_step_time = 60, water = 0;
+    // outside the catalogue, on wheels
+    PerWheel friction_squared{}, dead_band{}, hysteresis{}, torque_limit{}, friction_drift{}, reverse_friction{}, resonance{};
+    PerWheel resonance_speed{5, 5, 5, 5}, friction_step{}, friction_step_time{60, 60, 60, 60}, wear_in{}, wear_in_time{30, 30, 30, 30};
+    PerWheel tooth{}, speed_loss{}, gain_drift{};
+    // outside the catalogue, of the machine and its ground
+    double hysteresis_angle = 0.3, place_wave = 0, place_length = 0.6, turn_resistance = 0, coupling = 0, grip_speed = 0, grip_drift = 0;
+    double water = 0, rolling_squared = 0, shear_peak = 0, mud = 0, mud_start = 0, mud_length = 1;
 };
 
 struct KindParameter {
@@ -47,6 +50,8 @@ struct Kind {
     bool outside = false;
     std::string_view variable; // outside the catalogue: what the residual really depends on; several accepted, by '|'
     std::vector<KindParameter> parameters;
+    bool first_sets = true;    // drawn in the first blind sets too; false: in the sets of the fleet alone
+    std::string_view law = {}; // outside: the catalogue's name for this law where it has learnt it since; several, by '|'
     bool per_wheel() const { return parameters.front().per_wheel != nullptr; }
 };
 

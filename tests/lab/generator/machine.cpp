@@ -19,33 +19,86 @@ double soft_sign(double x, double width) { return std::tanh(x / width); }
 
 } // namespace
 
-Machine nominal(Soil soil) {
-    Machine m;
-    m.soil = soil;
-    const double Fn = 7.0; // [N] the load for which the paper states Fm
-    if (soil == Soil::sand) {
-        m.mu = 5.1 / Fn;
-        m.sc = 0.27;
-        m.rolling = 0.05;
-        m.grip_noise = 0.06;
-    } // table III
-    if (soil == Soil::gravel) {
-        m.mu = 6.8 / Fn;
-        m.sc = 0.088;
-        m.rolling = 0.03;
-        m.grip_noise = 0.06;
-    } // table III
-    if (soil == Soil::concrete) {
-        m.mu = 0.8;
-        m.sc = 0.05;
-        m.rolling = 0.01;
-        m.grip_noise = 0.02;
-    }         // (21); sc assumed
-    return m; // rolling resistance and ground noise: assumed
+namespace {
+
+// The two larger rovers: lengths, motors and gears as machines of that weight have them (assumed): stall torque two to three times what the
+// ground can hold, no-load speed two to four times the driven one, friction of the gear a tenth of the torque that the ground can hold.
+void resize(Machine &m, Size size) {
+    if (size == Size::medium) {
+        m.mass = 12, m.yaw_inertia = 0.42, m.radius = 0.10, m.half_base = 0.17, m.half_track = 0.21;
+        m.KG = m.ke = 1.2, m.Ra = 4.0, m.J = 0.04, m.viscous = 8e-3, m.coulomb = 0.18, m.battery_V = 24, m.battery_ohm = 0.08;
+        m.current_noise_A = 0.04, m.current_step_A = 0.006;
+    }
+    if (size == Size::large) {
+        m.mass = 60, m.yaw_inertia = 6.2, m.radius = 0.18, m.half_base = 0.32, m.half_track = 0.36;
+        m.KG = m.ke = 3.5, m.Ra = 3.0, m.J = 0.3, m.viscous = 0.09, m.coulomb = 1.5, m.battery_V = 48, m.battery_ohm = 0.05;
+        m.current_noise_A = 0.1, m.current_step_A = 0.015;
+    }
+    const double heavier = m.J / 5e-3;
+    m.tooth_stiffness *= heavier;
+    m.tooth_damping *= heavier;
 }
 
-Machine draw(Soil soil, Random &random) {
-    Machine m = nominal(soil);
+} // namespace
+
+Machine nominal(Soil soil, Size size) {
+    struct Ground { // mu, shear slip, rolling resistance, rms of the grip's field
+        double mu, sc, rolling, noise;
+    };
+    const auto ground = [&]() -> Ground {
+        switch (soil) {
+        case Soil::sand:
+            return {5.1 / 7.0, 0.27, 0.05, 0.06}; // table III: Fm at the load of 7 N for which the paper states it
+        case Soil::gravel:
+            return {6.8 / 7.0, 0.088, 0.03, 0.06}; // table III
+        case Soil::concrete:
+            return {0.8, 0.05, 0.01, 0.02}; // (21); shear slip assumed
+        case Soil::loam:
+            return {0.6, 0.16, 0.08, 0.05}; // assumed, as the next
+        case Soil::snow:
+            break;
+        }
+        return {0.35, 0.1, 0.06, 0.05};
+    }(); // rolling resistance and ground noise: assumed
+    Machine m;
+    resize(m, size);
+    m.soil = soil;
+    m.mu = ground.mu;
+    m.sc = ground.sc;
+    m.rolling = ground.rolling;
+    m.grip_noise = ground.noise;
+    return m;
+}
+
+double scale_of(std::string_view name, Size size) {
+    if (size == Size::small) return 1;
+    const Machine one = nominal(Soil::sand), m = nominal(Soil::sand, size);
+    const double mass = m.mass / one.mass, length = m.radius / one.radius, speed = std::sqrt(length), turning = speed / length;
+    const double torque = mass * length, current = torque / (m.KG / one.KG);
+    const auto ends = [&](std::string_view unit) { return name.size() >= unit.size() && name.substr(name.size() - unit.size()) == unit; };
+    if (ends("_Nms2")) return torque / (turning * turning);
+    if (ends("_Nms")) return torque / turning;
+    if (ends("_Nm")) return torque;
+    if (ends("_per_rad_s")) return 1 / turning;
+    if (ends("_rad_s")) return turning;
+    if (ends("_ohm") || name == "ohm") return m.Ra / one.Ra;
+    if (ends("_V")) return m.battery_V / one.battery_V;
+    if (ends("_A")) return current;
+    if (ends("_K_W")) return 1 / (m.Ra / one.Ra * current * current); // as many degrees at that machine's current
+    if (ends("_Ns2_m2")) return mass / (speed * speed);
+    if (ends("_N_m")) return mass / length;
+    if (ends("_s2_m2")) return 1 / (speed * speed);
+    if (ends("_s2_m")) return 1; // per acceleration, which is the same
+    if (ends("_s_m")) return 1 / speed;
+    if (ends("_per_m")) return 1 / length;
+    if (ends("_m") && !ends("_rad_s2_m")) return length;
+    if (ends("_N")) return mass;
+    if (name == "coefficient_s") return 1 / turning;
+    return 1; // shares, angles, times, accelerations
+}
+
+Machine draw(Soil soil, Random &random, Size size) {
+    Machine m = nominal(soil, size);
     const auto spread = [&](double &value, double relative) { value *= 1 + relative * std::clamp(random.normal(), -2.5, 2.5); };
     spread(m.mass, 0.003); // a rover is weighed
     spread(m.yaw_inertia, 0.03);
@@ -64,6 +117,17 @@ Machine draw(Soil soil, Random &random) {
     m.grip_noise *= random.uniform(0.85, 1.3); // 5 to 8 % on soil
     m.grip_length = random.uniform(0.1, 0.3);
     return m;
+}
+
+void draw_apart(Machine &machine, const WheelSpread &spread, Random &random) {
+    const auto shares = [&](PerWheel &share, double relative) {
+        for (double &one : share) one = 1 + relative * std::clamp(random.normal(), -2.5, 2.5);
+    };
+    shares(machine.KG_each, spread.KG);
+    shares(machine.Ra_each, spread.Ra);
+    shares(machine.coulomb_each, spread.friction);
+    shares(machine.viscous_each, spread.friction);
+    shares(machine.radius_each, spread.radius);
 }
 
 GroundField::GroundField(double rms, double length_m, Random &random) : amplitude_(0) {
@@ -94,7 +158,7 @@ World::World(const Machine &machine, const Hidden &hidden, Random &random)
     }
     state_ = Vector::Zero(size);
     battery = m_.battery_V;
-    for (std::size_t i = 0; i < wheels; ++i) radius_[i] = m_.radius * (1 + h_.radius_change[i]);
+    for (std::size_t i = 0; i < wheels; ++i) radius_[i] = m_.radius * m_.radius_each[i] * (1 + h_.radius_change[i]);
     delayed_.assign(static_cast<std::size_t>(std::lround(h_.actuation_delay / h_s)), PerWheel{});
     set_loads();
 }
@@ -108,13 +172,16 @@ double World::shear(double s) const {
 double World::friction(int wheel_index, double w) const {
     const std::size_t i = at(wheel_index);
     const double theta = wheel[i].angle, size = std::fabs(w);
-    double g = m_.coulomb + h_.coulomb[i] + h_.friction_drift * t / 120 + (t > h_.friction_step_time ? h_.friction_step : 0);
-    g += (m_.viscous + h_.viscous[i]) * size + h_.friction_squared * size * size;
+    double g = m_.coulomb * m_.coulomb_each[i] + h_.coulomb[i] + h_.friction_drift[i] * t / 120 +
+               (t > h_.friction_step_time[i] ? h_.friction_step[i] : 0);
+    g += (m_.viscous * m_.viscous_each[i] + h_.viscous[i]) * size + h_.friction_squared[i] * size * size;
     g += h_.stribeck[i] * std::exp(-(w * w) / (h_.stribeck_speed[i] * h_.stribeck_speed[i]));
     g += h_.ripple_cos[i] * std::cos(h_.ripple_order[i] * theta) + h_.ripple_sin[i] * std::sin(h_.ripple_order[i] * theta);
-    if (w < 0) g += h_.reverse_friction;
-    if (h_.resonance > 0) g += h_.resonance * std::exp(-std::pow((size - h_.resonance_speed) / 0.7, 2));
-    return g * soft_sign(w, 0.03) + h_.hysteresis * wheel[i].bristle;
+    if (w < 0) g += h_.reverse_friction[i];
+    if (h_.resonance[i] > 0) g += h_.resonance[i] * std::exp(-std::pow((size - h_.resonance_speed[i]) / 0.7, 2));
+    if (h_.wear_in[i] > 0) g += h_.wear_in[i] * std::exp(-t / h_.wear_in_time[i]);
+    if (h_.tooth[i] > 0) g += h_.tooth[i] * std::exp(8 * (std::cos(theta) - 1)); // once a turn, over some 40 degrees
+    return g * soft_sign(w, 0.03) + h_.hysteresis[i] * wheel[i].bristle;
 }
 
 double World::current(int wheel_index, double w) const {
@@ -122,6 +189,12 @@ double World::current(int wheel_index, double w) const {
     const double u = voltage_[i] - h_.coupling * current_now_[i ^ 1U]; // the other motor of the same axle shares a lead
     const double e = u - ke_[i] * w, open = std::fabs(e) - h_.dead_voltage[i];
     return open > 0 ? std::copysign(open, e) / (Ra_[i] + h_.wiring[i]) : 0;
+}
+
+// Rolling resistance of a soft place on the travelled path, each wheel at its own.
+double World::muddy(std::size_t i) const {
+    const double place = path + along[i] * m_.half_base;
+    return h_.mud != 0 && place >= h_.mud_start && place < h_.mud_start + h_.mud_length ? h_.mud : 0;
 }
 
 void World::rate(const Vector &s, Vector &d) {
@@ -139,9 +212,9 @@ void World::rate(const Vector &s, Vector &d) {
         }
         const double Fm = m_.mu * state.load * state.grip * std::exp(-h_.sliding_loss * std::fabs(creep)) *
                           std::max(0.1, 1 - h_.grip_speed * std::fabs(vw));
-        state.force = Fm * shear(slip) * (slip < 0 ? -1 : 1);
+        state.force = Fm * shear(slip) * (slip < 0 ? -1 : 1) * (1 - h_.shear_peak * std::max(0.0, std::fabs(slip) - 2 * m_.sc));
         const double Q = (m_.rolling + h_.rolling[i] + h_.sinkage * std::min(1.0, std::fabs(slip)) + h_.speed_resistance * std::fabs(vw) +
-                          h_.turn_resistance * std::fabs(r)) *
+                          h_.turn_resistance * std::fabs(r) + h_.rolling_squared * vw * vw + muddy(i)) *
                          state.load;
         const double net = state.force - Q * soft_sign(vw, 0.008);
         force += net;
@@ -151,14 +224,15 @@ void World::rate(const Vector &s, Vector &d) {
         const double wm = backlash_ ? s[motor_at_ + k] : w;
         state.current = current(k, wm);
         double torque = KG_[i] * state.current;
-        if (h_.torque_limit > 0) torque = h_.torque_limit * std::tanh(torque / h_.torque_limit);
+        if (h_.torque_limit[i] > 0) torque = h_.torque_limit[i] * std::tanh(torque / h_.torque_limit[i]);
+        torque *= std::max(0.2, 1 - h_.speed_loss[i] * std::fabs(wm)); // a gear that loses more the faster it turns
         const double drag = friction(k, wm) + h_.mesh * std::fabs(radius_[i] * state.force) * soft_sign(wm, 0.03);
         if (!backlash_) {
             d[2 + k] = (torque - drag - radius_[i] * state.force) / m_.J;
-        } else { // teeth as a stiff spring behind the play (assumed 80 N m/rad, damping 0.05 N m s)
+        } else { // teeth as a stiff spring behind the play
             const double gap = s[gear_at_ + k], half = h_.play[i] / 2;
             const double bite = gap > half ? gap - half : gap < -half ? gap + half : 0;
-            const double teeth = bite == 0 ? 0 : 80 * bite + 0.05 * (wm - w);
+            const double teeth = bite == 0 ? 0 : m_.tooth_stiffness * bite + m_.tooth_damping * (wm - w);
             d[motor_at_ + k] = (torque - drag - teeth) / (m_.motor_share * m_.J);
             d[2 + k] = (teeth - radius_[i] * state.force) / ((1 - m_.motor_share) * m_.J);
             d[gear_at_ + k] = wm - w;
@@ -206,13 +280,13 @@ void World::step(const PerWheel &wanted) {
     }
     double drawn = 0;
     for (std::size_t i = 0; i < wheels; ++i) {
-        if (std::fabs(duty[i]) < h_.dead_band) duty[i] = 0;
+        if (std::fabs(duty[i]) < h_.dead_band[i]) duty[i] = 0;
         drawn += std::fabs(duty[i] * wheel[i].current);
         current_now_[i] = wheel[i].current;
         const double hot = wheel[i].heat, constant = (1 + h_.constant_change[i]) * (1 - magnet_1_K * hot);
-        KG_[i] = m_.KG * constant;
-        ke_[i] = m_.ke * constant;
-        Ra_[i] = m_.Ra * (1 + copper_1_K * hot);
+        KG_[i] = m_.KG * m_.KG_each[i] * constant;
+        ke_[i] = m_.ke * m_.KG_each[i] * constant; // the same magnets
+        Ra_[i] = m_.Ra * m_.Ra_each[i] * (1 + copper_1_K * hot);
     }
     battery = m_.battery_V * (1 - 0.012 * t / 120) - m_.battery_ohm * drawn; // discharges 1.2 % in two minutes (assumed)
     for (std::size_t i = 0; i < wheels; ++i) voltage_[i] = duty[i] * battery;

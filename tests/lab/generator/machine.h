@@ -14,11 +14,13 @@
 #include <Eigen/Core>
 
 #include <deque>
+#include <string_view>
 #include <vector>
 
 namespace traction::generator {
 
-enum class Soil { sand, gravel, concrete };
+enum class Soil { sand, gravel, concrete, loam, snow };
+enum class Size { small, medium, large }; // 2.9, 12, 60 kg
 
 // One machine: table I and (17)-(21) of docs/sources.md, then spread by `draw` as real machines are.
 struct Machine {
@@ -26,15 +28,31 @@ struct Machine {
     double radius = 0.057, half_base = 0.083, half_track = 0.12, gravity = 9.81;
     double KG = 0.265, ke = 0.265, Ra = 3.24, J = 5e-3;
     double viscous = 1.6e-3, coulomb = 0.03;
-    double battery_V = 7.2, battery_ohm = 0.06; // internal resistance assumed
-    double motor_share = 0.9;                   // of J on the motor's side of the gear, assumed
+    double battery_V = 7.2, battery_ohm = 0.06;             // internal resistance assumed
+    double motor_share = 0.9;                               // of J on the motor's side of the gear, assumed
+    double tooth_stiffness = 80, tooth_damping = 0.05;      // [N m/rad, N m s] behind the play, assumed
+    double current_noise_A = 0.015, current_step_A = 0.002; // of the motor's bridge: about 1 % of the stall current
     Soil soil = Soil::sand;
     double mu = 0, sc = 0, rolling = 0;
     double grip_noise = 0, grip_length = 0.2; // random field, relative rms and correlation length [m]
+    // each wheel's share of the value above; 1 where all wheels are alike
+    PerWheel KG_each{1, 1, 1, 1}, Ra_each{1, 1, 1, 1}, coulomb_each{1, 1, 1, 1}, viscous_each{1, 1, 1, 1}, radius_each{1, 1, 1, 1};
 };
 
-Machine nominal(Soil soil);
-Machine draw(Soil soil, Random &random); // 1-3 % off nominal, as machines of one type are
+Machine nominal(Soil soil, Size size = Size::small);
+
+// What a quantity of the small rover becomes on another size: by the unit in its name ("torque_Nm", "resistance_ohm", "start_m"), so that
+// what is hidden is as large beside the machine as it was. 1 on the small one.
+double scale_of(std::string_view name, Size size);
+Machine draw(Soil soil, Random &random, Size size = Size::small); // 1-3 % off nominal, as machines of one type are
+
+// How far the wheels of one machine are from each other (standard deviations, relative): magnets and windings of one batch, grease and
+// bearings, rims. After issue 12; motor constants of a batch are within 1 to 3 %, resistances within 5 % of the sheet, friction differs
+// most.
+struct WheelSpread {
+    double KG = 0.01, Ra = 0.05, friction = 0.15, radius = 0.002;
+};
+void draw_apart(Machine &machine, const WheelSpread &spread, Random &random);
 
 // Grip over the ground: a sum of plane waves with Gaussian wave numbers, so Gaussian correlation (spectral method, Shinozuka).
 class GroundField {
@@ -74,6 +92,7 @@ class World {
     double friction(int i, double w) const;
     double current(int i, double w) const;
     double shear(double s) const;
+    double muddy(std::size_t i) const;
     void set_loads();
     void set_grip();
     void integrate_slow(double v_mid, double r_mid);

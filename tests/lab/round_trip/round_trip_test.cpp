@@ -21,20 +21,45 @@ std::map<std::string, Tally> sample(Source source, std::uint64_t first, std::uin
     return tally(all);
 }
 
-double share(const Tally &t) { return static_cast<double>(t.inside) / t.count; }
-
-TEST(RoundTrip, intervals_hold_the_truth_of_the_independent_rover_about_as_often_as_published) {
-    const auto tallies = sample(Source::independent, 201, 206); // seeds that the published rates do not hold
-    // published 0.81 of 1000; 60 of them, in logs of ten that err together (design effect 2): 3 sigma is 0.22
-    EXPECT_GT(share(tallies.at("all parameters")), 0.59) << table(tallies);
-    EXPECT_LT(tallies.at("all parameters").squares / tallies.at("all parameters").count, 9) << table(tallies); // published rms 1.8
-    EXPECT_GE(tallies.at("all effects").inside, 4) << table(tallies); // published 0.91: 3 of 6 or fewer in 1 of 80
+// What is claimed is 95 %: 0.92 to 0.98 of the intervals hold the truth. A sample cannot show it closer than its own error, which is asked
+// of whole logs, for the numbers of one log err together (round_trip.h). The same over a hundred logs: lab_round_trip,
+// docs/lab_benchmark.md.
+void holds_what_is_claimed(const std::map<std::string, Tally> &tallies) {
+    for (const char *what : {"all parameters", "all effects"}) {
+        const Tally &t = tallies.at(what);
+        EXPECT_TRUE(t.as_claimed()) << what << ": " << t.share() << " of " << t.count << ", standard error " << t.share_error() << "\n"
+                                    << table(tallies);
+    }
 }
 
-TEST(RoundTrip, intervals_hold_the_truth_of_the_plant_about_as_often_as_published) {
-    const auto tallies = sample(Source::plant, 201, 204);
-    EXPECT_GT(share(tallies.at("all parameters")), 0.36)
-        << table(tallies); // published 0.67 of 900; 36 of them, design effect 2: 3 sigma is 0.33
+TEST(RoundTrip, intervals_of_95_percent_hold_the_truth_of_the_independent_rover_as_often_as_they_say) {
+    holds_what_is_claimed(sample(Source::independent, 201, 208)); // seeds that the published rates do not hold
+}
+
+TEST(RoundTrip, intervals_of_95_percent_hold_the_truth_of_a_rover_whose_wheels_differ_as_often_as_they_say) {
+    holds_what_is_claimed(sample(Source::apart, 201, 206));
+}
+
+TEST(RoundTrip, intervals_of_95_percent_hold_the_truth_of_the_plant_as_often_as_they_say) {
+    holds_what_is_claimed(sample(Source::plant, 201, 206));
+}
+
+Tally of(int logs, int inside, int count) {
+    std::vector<Estimate> all;
+    for (int log = 0; log < logs; ++log)
+        for (int i = 0; i < count; ++i)
+            all.push_back(
+                {"x", 0, i < inside ? 0.0 : 9.0, i < inside ? -1.0 : 8.0, i < inside ? 1.0 : 10.0, static_cast<std::uint64_t>(log)});
+    return tally(all).at("x");
+}
+
+TEST(Coverage, is_judged_by_what_a_sample_can_show) {
+    EXPECT_TRUE(of(10, 19, 20).as_claimed());   // 0.95 of 200
+    EXPECT_TRUE(of(10, 9, 10).as_claimed());    // 0.90 of 100: 2.58 * 0.027 below 0.92 would be 0.85
+    EXPECT_FALSE(of(10, 17, 20).as_claimed());  // 0.85 of 200: its limit is 0.87
+    EXPECT_FALSE(of(10, 4, 10).as_claimed());   // 0.40, which the bounds of old let pass
+    EXPECT_TRUE(of(10, 20, 20).as_claimed());   // all of 200 may be 0.98
+    EXPECT_FALSE(of(100, 20, 20).as_claimed()); // all of 2000 may not: such intervals are too wide
 }
 
 // Drives the identification plan as this machine and returns the log.

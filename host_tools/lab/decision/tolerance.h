@@ -1,0 +1,30 @@
+// tolerance.h - the rival of every effect: a data sheet that is wrong by more than it states.
+//
+// A stated deviation (of a parameter that the wheels share, of what one wheel's differs from it, or all of the soil's together) is made
+// three times as wide, up to nine stated deviations, and the model is fitted again without the effect and with it. Where the effect then
+// predicts blocks left out no better, by two standard errors of the paired blocks or four squared deviations, the log cannot tell the two
+// apart.
+#pragma once
+
+#include "host_tools/lab/fit/heldout.h"
+#include "host_tools/lab/fit/problem.h"
+
+#include <optional>
+#include <string>
+
+namespace traction::lab {
+
+inline constexpr double opened = 3; // how many times wider a stated deviation may be: assumed
+
+struct ToleranceRival {
+    std::string name;           // "tolerance of motor.coulomb_Nm on wheel 2", "tolerance of the soil"
+    double deviations = 0;      // of the stated kind that it takes
+    double lead = 0, error = 0; // what the effect still explains beside it: held-out squares and priors, and its standard error
+    bool explains_as_much() const;
+};
+
+// The nearest rival of an effect. `before`: the model without it, linearised at its optimum; `with`: with it, on the same scales, its
+// strengths the last parameters. Nothing where no stated deviation does a quarter of what the effect does.
+std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths);
+
+} // namespace traction::lab

@@ -1,0 +1,155 @@
+// The gate: what learns refuses a spoilt log and says why, goes on only aloud, and lets every sound log pass. The whole corpus and 300
+// sound logs: ninja -C build/host gate_campaign (docs/lab_benchmark.md).
+#include "spoil.h"
+
+#include "host_tools/check/check.h"
+#include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/gate.h"
+#include "host_tools/lab/session.h"
+#include "host_tools/lab/validate.h"
+#include "tests/log/files.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace traction::gate {
+namespace {
+
+const Base &sound(const std::string &name) {
+    static const std::vector<Base> bases = {base("plant", 120), base("angle", 120), base("counts", 120)};
+    return *std::find_if(bases.begin(), bases.end(), [&](const Base &b) { return b.name == name; });
+}
+
+std::string errors(const check::Report &report) {
+    std::string out;
+    for (const check::Finding &f : report.findings)
+        if (f.severity == check::Severity::error) out += f.id + " [" + f.signal + "] " + f.text + "\n";
+    return out;
+}
+
+// Mistakes that pass the check by what they are: a scale within what effects reach, a current that noise may have made. The lab's own
+// verdict is asked for these in the campaign.
+const std::vector<std::string> left_to_the_lab = {"counts x 1.45", "currents backwards in time", "wheels backwards in time"};
+
+class Corpus : public testing::TestWithParam<std::string> {};
+
+TEST_P(Corpus, every_spoilt_log_is_refused_and_the_sound_one_passes) {
+    const Base &b = sound(GetParam());
+    for (const bool known : {false, true})
+        EXPECT_EQ(errors(check::check(b.log, {}, known ? lab::machine_of(b.model) : check::Machine{})), "") << "sound";
+    for (const Row &row : spoilt_logs()) {
+        if (std::find(left_to_the_lab.begin(), left_to_the_lab.end(), row.name) != left_to_the_lab.end()) continue;
+        EXPECT_TRUE(judge(b, row, true).good()) << row.name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Corpus, testing::Values("plant", "angle", "counts"), [](const auto &name) { return name.param; });
+
+TEST(Gate, no_sound_log_is_refused) {
+    // seeds 1 to 300 are the campaign's; these were seen to be refused while the rules were made, and one of each kind beside them
+    for (const std::uint64_t seed : {44U, 89U, 104U, 217U, 222U, 301U, 302U, 303U, 304U, 305U}) {
+        const Sound log = sound_log(seed, 90);
+        for (const bool known : {false, true})
+            EXPECT_EQ(errors(check::check(log.log, {}, known ? lab::machine_of(log.model) : check::Machine{})), "") << log.about;
+    }
+}
+
+TEST(Gate, a_signed_radar_passes_and_its_magnitude_is_compared) {
+    Base b = sound("plant");
+    for (log::Signal &s : b.log.signals) {
+        if (s.name != "radar.speed_m_s") continue;
+        const log::Signal *wheel = b.log.find("wheel0.speed_rad_s");
+        for (std::size_t i = 0; i < s.value.size(); ++i) { // the direction of the middle of its half second
+            const auto at = std::lower_bound(wheel->t_s.begin(), wheel->t_s.end(), s.t_s[i] - 0.25);
+            const double w = at == wheel->t_s.end() ? 0 : wheel->value[static_cast<std::size_t>(at - wheel->t_s.begin())];
+            s.value[i] *= w < 0 ? -1 : 1;
+        }
+    }
+    EXPECT_EQ(errors(check::check(b.log, {}, lab::machine_of(b.model))), "");
+    const test::File csv("signed_radar.csv", ""), model("signed_radar.toml", lab::model_text(b.model));
+    log::write_csv(b.log, csv.path());
+    const lab::Session session = lab::open_session({.model = model.path(), .log = csv.path(), .map = "", .repeat = ""});
+    const auto radar = std::find_if(session.data.balance.begin(), session.data.balance.end(),
+                                    [](const lab::Balance &one) { return one.kind == lab::BalanceKind::radar; });
+    ASSERT_NE(radar, session.data.balance.end());
+    EXPECT_GE(*std::min_element(radar->measured.begin(), radar->measured.end()), 0);
+    EXPECT_TRUE(std::any_of(session.data.messages.begin(), session.data.messages.end(),
+                            [](const std::string &m) { return m.find("carries a sign") != std::string::npos; }));
+}
+
+TEST(Gate, what_learns_refuses_and_goes_on_only_aloud) {
+    Base b = sound("plant");
+    for (log::Signal &s : b.log.signals)
+        if (s.name == "wheel1.current_A")
+            for (double &v : s.value) v *= -1;
+    const test::File csv("negated.csv", ""), model("negated.toml", lab::model_text(b.model));
+    log::write_csv(b.log, csv.path());
+    lab::Request request{.model = model.path(), .log = csv.path(), .map = "", .repeat = ""};
+    try {
+        lab::open_session(request);
+        ADD_FAILURE() << "not refused";
+    } catch (const lab::Refused &refused) {
+        const std::string text = refused.what();
+        for (const char *word : {"negated.csv", "error sign [wheel1.current_A]", "mend:", "--despite sign"})
+            EXPECT_NE(text.find(word), std::string::npos) << text;
+    }
+    request.despite = {"unit"}; // another error is no licence
+    EXPECT_THROW(lab::open_session(request), lab::Refused);
+    request.despite = {"nonsense"};
+    EXPECT_THROW(lab::open_session(request), lab::ModelError);
+    request.despite = {"sign"};
+    const lab::Session session = lab::open_session(request);
+    EXPECT_EQ(session.data.despite, std::vector<std::string>{"sign"});
+    EXPECT_TRUE(std::any_of(session.data.messages.begin(), session.data.messages.end(),
+                            [](const std::string &m) { return m.rfind("DESPITE", 0) == 0; }));
+}
+
+// Two runs of one machine, one log cut in two: read together they are judged as the whole, and each is judged by what the other says.
+TEST(Runs, two_runs_are_one_data_set_and_judge_each_other) {
+    const Base &b = sound("counts");
+    log::Log halves[2] = {b.log, b.log};
+    for (int i = 0; i < 2; ++i)
+        for (log::Signal &s : halves[i].signals) {
+            log::Signal part{s.name, {}, {}};
+            for (std::size_t k = 0; k < s.t_s.size(); ++k)
+                if ((s.t_s[k] < 60) == (i == 0)) part.t_s.push_back(s.t_s[k]), part.value.push_back(s.value[k]);
+            s = std::move(part);
+        }
+    const test::File first("first.csv", ""), second("second.csv", ""), model("runs.toml", lab::model_text(b.model));
+    log::write_csv(halves[0], first.path()), log::write_csv(halves[1], second.path());
+    lab::Request request{.model = model.path(), .log = first.path(), .map = "", .repeat = ""};
+    request.logs = {second.path()};
+    const lab::Session session = lab::open_session(request);
+    ASSERT_EQ(session.data.run_start_s.size(), 2U);
+    EXPECT_NEAR(session.data.duration_s, b.log.duration_s(), 0.1);
+    const lab::Dataset whole = lab::make_dataset(session.model, b.log);
+    lab::Model joined_model = session.model, whole_model = session.model;
+    const lab::LadderStep joined = lab::fit_model(joined_model, session.data, "joined"),
+                          single = lab::fit_model(whole_model, whole, "whole");
+    EXPECT_NEAR(joined.train, single.train, 0.05 * single.train); // rows are lost where it is cut
+    const std::vector<lab::Validation> judged = lab::validate(session, request, session.model);
+    ASSERT_EQ(judged.size(), 2U);
+    for (const lab::Validation &v : judged) {
+        EXPECT_TRUE(v.left_out);
+        EXPECT_LT(v.fitted, 2 * single.train) << v.log; // the same machine, whose grip wanders
+        EXPECT_NEAR(v.fitted, v.result, 1e-9) << v.log; // no effect was added
+    }
+}
+
+TEST(Gate, a_wrong_model_gets_no_name) {
+    for (const Row &row : wrong_models()) {
+        if (row.name != "mass x 5" && row.name != "radius x 2" && row.name != "one wheel of four") continue;
+        const Outcome end = judge(sound("plant"), row, false);
+        EXPECT_TRUE(end.good()) << row.name << ": " << end.end << " " << end.text;
+        if (row.name == "mass x 5") {
+            EXPECT_NE(end.text.find("the mass"), std::string::npos) << end.text;
+        }
+    }
+}
+
+} // namespace
+} // namespace traction::gate

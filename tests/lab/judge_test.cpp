@@ -1,0 +1,396 @@
+// The lab's decision rules one by one, on trials made by hand and on a log of a few seconds: the answer follows from the rule's own words
+// (docs/lab_method.md), so that a rule which is changed by accident is noticed within seconds.
+#include "host_tools/lab/decision/classes.h"
+#include "host_tools/lab/decision/trial.h"
+#include "host_tools/lab/fit/distribution.h"
+#include "host_tools/lab/forward/make_dataset.h"
+#include "sim/physics/effects/catalogue.h"
+#include "tests/lab/generator/generator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace traction::lab {
+namespace {
+
+constexpr double base_error = 1000;
+
+// A candidate of one strength between 0 and 1, worth knowing from 0.1 on.
+Candidate candidate(const std::string &effect, int wheel = -1) {
+    Candidate c;
+    c.effect = effect;
+    c.wheel = wheel;
+    FreeParameter p;
+    p.key = "size";
+    p.minimum = 0, p.maximum = 1;
+    c.strengths = {p};
+    c.of_interest = {0.1};
+    c.minimum = {0}, c.maximum = {1};
+    return c;
+}
+
+// Explains a tenth of the held-out error, evenly over ten blocks, and is sure: it passes.
+Trial good(const std::string &effect, int wheel = -1) {
+    Trial t;
+    t.candidate = candidate(effect, wheel);
+    t.value = {0.5}, t.error = {0.05}, t.half_width = {0.11};
+    t.gain = 100, t.gain_error = 10, t.best_balance_gain = 0.1;
+    t.error_reduction = 110;
+    t.p_value = t.own_p_value = 1e-6;
+    t.block_gain = Eigen::VectorXd::Constant(10, 10.0);
+    t.assessment.projected = Eigen::VectorXd::Unit(3, 0);
+    t.refitted = true;
+    return t;
+}
+
+std::string verdict_of(Trial t, const DiagnoseOptions &options = {}) {
+    judge(t, base_error, options);
+    return t.verdict;
+}
+
+TEST(Judge, passes_what_is_sure_large_and_helps) { EXPECT_EQ(verdict_of(good("a")), "passes"); }
+
+TEST(Judge, asks_for_the_corrected_p_of_its_limit) {
+    const DiagnoseOptions options;
+    Trial t = good("a");
+    t.p_value = 0.99 * options.p_limit;
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.p_value = options.p_limit; // strictly below
+    EXPECT_EQ(verdict_of(t), "not_significant");
+    EXPECT_LE(options.p_limit, 0.003); // docs/evidence.md, section 5: at 0.01 uneven ground is named as soil effects
+}
+
+TEST(Judge, asks_for_a_fall_of_the_held_out_error_in_all_or_one_balance_or_of_the_priors) {
+    const DiagnoseOptions options;
+    Trial t = good("a");
+    t.gain = 1.01 * options.least_gain * base_error, t.best_balance_gain = 0;
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.gain = 0.99 * options.least_gain * base_error;
+    EXPECT_EQ(verdict_of(t), "not_significant");
+    t.best_balance_gain = 1.01 * options.least_gain_one;
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.best_balance_gain = 0.99 * options.least_gain_one;
+    EXPECT_EQ(verdict_of(t), "not_significant");
+    t.assessment.prior_reduction = 1.01 * options.least_prior_reduction;
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.assessment.prior_reduction = 0.99 * options.least_prior_reduction;
+    EXPECT_EQ(verdict_of(t), "not_significant");
+}
+
+TEST(Judge, believes_no_relief_of_priors_and_no_single_balance_where_the_held_out_error_rises) {
+    Trial t = good("a");
+    t.gain = -1, t.best_balance_gain = 0.5, t.assessment.prior_reduction = 100;
+    EXPECT_EQ(verdict_of(t), "not_significant");
+    t.gain = 0;
+    EXPECT_EQ(verdict_of(t), "not_significant");
+}
+
+// Ranks of the held-out falls know nothing of the priors: where only the priors are relieved, the coefficient's own test decides.
+TEST(Judge, lets_the_ranks_speak_only_where_rows_fell) {
+    Trial t = good("a");
+    t.own_p_value = 0.5;
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.gain = 1, t.best_balance_gain = 0, t.assessment.prior_reduction = 100;
+    EXPECT_EQ(verdict_of(t), "not_significant");
+    t.own_p_value = 1e-6;
+    EXPECT_EQ(verdict_of(t), "passes");
+}
+
+TEST(Judge, refuses_a_wrong_sign_a_size_of_no_interest_and_one_at_its_bound) {
+    Trial t = good("a");
+    t.value = {-0.5};
+    EXPECT_EQ(verdict_of(t), "wrong_sign");
+    t.candidate.minimum = {-1}, t.candidate.strengths[0].minimum = -1; // a size that may be either
+    EXPECT_EQ(verdict_of(t), "passes");
+    t = good("a");
+    t.value = {0.0999};
+    EXPECT_EQ(verdict_of(t), "too_small");
+    t.value = {0.1};
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.value = {1.0};
+    EXPECT_EQ(verdict_of(t), "beyond_range");
+    t.refitted = false; // a linear step that leaves the range is no fit yet
+    EXPECT_EQ(verdict_of(t), "passes");
+}
+
+TEST(Size, of_two_strengths_is_their_root_of_squares_and_must_reach_the_larger_size_of_interest) {
+    Candidate c = candidate("ripple");
+    c.strengths.push_back(c.strengths[0]);
+    c.of_interest = {0.1, 0.2};
+    EXPECT_TRUE(large_enough(c, {0.16, 0.13}));  // 0.206
+    EXPECT_FALSE(large_enough(c, {0.15, 0.13})); // 0.198
+}
+
+TEST(Size, is_beyond_its_range_at_a_bound_that_is_no_natural_end) {
+    Candidate c = candidate("a");
+    EXPECT_FALSE(beyond_range(c, {0.0})); // no effect at all is no bound
+    EXPECT_FALSE(beyond_range(c, {0.999}));
+    EXPECT_TRUE(beyond_range(c, {1.0}));
+    c.strengths[0].minimum = -1;
+    EXPECT_TRUE(beyond_range(c, {-1.0}));
+    EXPECT_FALSE(beyond_range(c, {-0.999}));
+}
+
+std::vector<std::size_t> class_of(const Trial &winner, const Trial &other) {
+    return confounded({winner, other}, 0, base_error, DiagnoseOptions{});
+}
+
+// Alike in the log: the same residual, almost the same gain.
+TEST(Class, holds_what_cannot_be_told_from_the_winner) {
+    Trial other = good("b");
+    other.gain = 95;
+    EXPECT_EQ(class_of(good("a"), other), std::vector<std::size_t>{1});
+}
+
+TEST(Class, holds_nothing_that_explains_clearly_less) {
+    Trial other = good("b");
+    other.gain = 89, other.error_reduction = 100; // more than a tenth less
+    EXPECT_TRUE(class_of(good("a"), other).empty());
+}
+
+// 95 of 100, but 0.5 less in each of ten blocks: the difference is sure, unless the two leave the same trace in the residual.
+TEST(Class, tells_two_apart_by_blocks_that_agree_unless_their_traces_are_one) {
+    Trial other = good("b");
+    other.gain = 95, other.error_reduction = 104;
+    other.block_gain = Eigen::VectorXd::Constant(10, 9.5);
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U); // one trace
+    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
+    EXPECT_TRUE(class_of(good("a"), other).empty());
+    other.assessment.projected = Eigen::Vector3d(-0.95, 0.31, 0); // nearly parallel, whatever its sign
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
+    for (int b = 0; b < 10; ++b) other.block_gain[b] += b % 2 == 0 ? 5 : -5; // blocks disagree: the difference may be chance
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+}
+
+TEST(Class, holds_what_explains_more_than_the_winner) {
+    Trial other = good("b");
+    other.gain = 60, other.error_reduction = 200;
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+}
+
+TEST(Class, holds_no_one_that_did_not_pass_or_was_not_fitted) {
+    Trial other = good("b");
+    other.refitted = false;
+    EXPECT_TRUE(class_of(good("a"), other).empty());
+    other = good("b");
+    other.p_value = 0.04; // not by the limit of names; nearly: only where it explains more
+    EXPECT_EQ(class_of(good("a"), other).size(), 0U);
+    other.error_reduction = 200;
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    other.p_value = 0.06;
+    EXPECT_TRUE(class_of(good("a"), other).empty());
+}
+
+TEST(Class, of_one_effect_on_two_wheels_is_a_question_on_all_or_one_is_not) {
+    EXPECT_EQ(class_of(good("a", 1), good("a", 3)).size(), 1U);
+    EXPECT_TRUE(class_of(good("a"), good("a", 3)).empty());
+    EXPECT_TRUE(class_of(good("a", 3), good("a")).empty());
+}
+
+// What only the data sheet's tolerances decide: rivals may explain half as much.
+TEST(Class, is_wider_where_only_priors_decide) {
+    Trial winner = good("a"), other = good("b");
+    winner.assessment.prior_reduction = 95, winner.best_balance_gain = 0;
+    other.gain = 55, other.error_reduction = 60, other.p_value = 0.04;
+    EXPECT_EQ(class_of(winner, other).size(), 1U);
+    other.gain = 45;
+    EXPECT_TRUE(class_of(winner, other).empty());
+    winner.best_balance_gain = 0.1; // one balance fell: rows decide, too
+    other.gain = 55;
+    EXPECT_TRUE(class_of(winner, other).empty());
+}
+
+Diagnosis with_class(const std::vector<std::string> &members, const std::vector<std::string> &accepted) {
+    Diagnosis d;
+    d.classes.push_back({members, ""});
+    for (const std::string &name : accepted) {
+        CandidateResult r;
+        r.candidate = candidate(name);
+        r.verdict = name == members.front() ? "class" : "named";
+        if (name == members.front()) r.class_index = 0;
+        d.accepted.push_back(r);
+    }
+    d.ranking = d.accepted;
+    return d;
+}
+
+TEST(Class, of_which_all_were_accepted_is_none) {
+    Diagnosis d = with_class({"a", "b"}, {"a", "b"});
+    separate_accepted(d);
+    EXPECT_TRUE(d.classes.empty());
+    EXPECT_EQ(d.accepted[0].verdict, "named");
+    EXPECT_FALSE(d.accepted[0].class_index);
+}
+
+TEST(Class, keeps_the_members_that_were_not_accepted_beside_it) {
+    Diagnosis d = with_class({"a", "b", "c"}, {"a", "b"});
+    separate_accepted(d);
+    ASSERT_EQ(d.classes.size(), 1U);
+    EXPECT_EQ(d.classes[0].members, (std::vector<std::string>{"a", "c"}));
+    EXPECT_EQ(d.accepted[0].verdict, "class");
+    EXPECT_EQ(*d.accepted[0].class_index, 0);
+}
+
+TEST(Class, that_goes_leaves_the_numbers_of_the_others_right) {
+    Diagnosis d = with_class({"a", "b"}, {"a"});
+    d.classes.push_back({{"x", "y"}, ""});
+    CandidateResult r;
+    r.candidate = candidate("x");
+    r.verdict = "class";
+    r.class_index = 1;
+    d.accepted.push_back(r);
+    remove_class(d, "a");
+    ASSERT_EQ(d.classes.size(), 1U);
+    EXPECT_EQ(d.classes[0].members.front(), "x");
+    EXPECT_FALSE(d.accepted[0].class_index);
+    EXPECT_EQ(*d.accepted[1].class_index, 0);
+    remove_class(d, "not there");
+    EXPECT_EQ(d.classes.size(), 1U);
+}
+
+// 40 s of sand: enough blocks for statistics, little work.
+struct Short {
+    Model model = read_model("models/rover_sand.toml");
+    Dataset data;
+    Short() {
+        generator::GeneratorConfig config;
+        config.duration_s = 40;
+        config.seed = 3;
+        config.hidden = {generator::parse_setting("coulomb_friction:torque_Nm=0.02")};
+        data = make_dataset(model, generator::generate(config));
+    }
+};
+
+const Short &short_log() {
+    static const Short one;
+    return one;
+}
+
+Problem fitted() {
+    const Physics physics = make_physics(short_log().model);
+    Problem problem(short_log().data, physics, free_parameters(short_log().model, physics));
+    problem.fit({});
+    return problem;
+}
+
+// Half of the catalogue's effects count as tried: 40 effects, of which near copies of one another count once. A p that is corrected for
+// clearly fewer would name one log in seven for each factor of seven.
+TEST(Screening, corrects_its_p_for_about_half_of_the_catalogue_and_every_shape_of_an_effect) {
+    Problem problem = fitted();
+    const Screen screen(problem);
+    Columns::Cache cache;
+    Columns columns(problem, cache);
+    const auto classes = static_cast<double>(sim::catalogue().size());
+    int judged = 0;
+    for (const Candidate &c : catalogue_candidates(short_log().model, short_log().data, problem.forward().motion())) {
+        if (c.strengths.size() != 1) continue;
+        const Trial t = screen_candidate(c, screen, columns);
+        if (!(t.own_p_value < 1) || !(t.assessment.p_value > 0)) continue;
+        const double tried = t.own_p_value / (1.25 * t.assessment.p_value * c.variants); // 1.25: the other fifth is the ranks' share
+        EXPECT_GT(tried, 0.35 * classes) << c.label();
+        EXPECT_LT(tried, 0.65 * classes) << c.label();
+        EXPECT_LE(t.p_value, t.own_p_value) << c.label();
+        ++judged;
+    }
+    EXPECT_GE(judged, 2); // those whose corrected p is below 1
+}
+
+TEST(Screening, states_intervals_of_95_percent_by_students_t) {
+    Problem problem = fitted();
+    const Screen screen(problem);
+    Columns::Cache cache;
+    Columns columns(problem, cache);
+    for (const Candidate &c : catalogue_candidates(short_log().model, short_log().data, problem.forward().motion())) {
+        if (c.wheel >= 0) continue;
+        const Trial t = screen_candidate(c, screen, columns);
+        for (std::size_t j = 0; j < t.error.size(); ++j) {
+            if (!(t.error[j] > 0) || !std::isfinite(t.error[j])) continue;
+            EXPECT_GE(t.half_width[j], 1.9599 * t.error[j]) << c.label(); // never narrower than the normal's
+            EXPECT_NEAR(t.half_width[j] / t.error[j], t_quantile(0.05, std::max(1.0, t.assessment.freedom)), 1e-9) << c.label();
+        }
+        EXPECT_EQ(t.gain_error, t.assessment.gain_error) << c.label();
+        EXPECT_EQ(t.block_gain, t.assessment.block_gain) << c.label();
+        const CandidateResult r = result_of(t, screen.heldout_error(), screen);
+        EXPECT_EQ(r.candidate.label(), c.label());
+        for (std::size_t j = 0; j < t.value.size(); ++j) {
+            EXPECT_DOUBLE_EQ(r.low[j], t.value[j] - t.half_width[j]);
+            EXPECT_DOUBLE_EQ(r.high[j], t.value[j] + t.half_width[j]);
+        }
+        const bool known = t.value.size() == 1 && t.error[0] > 0 && std::isfinite(t.error[0]);
+        EXPECT_DOUBLE_EQ(known ? r.detectability : 0, known ? std::fabs(t.value[0]) / t.error[0] : 0);
+        EXPECT_NEAR(r.gain_high - r.heldout_gain, 1.96 * t.gain_error / screen.heldout_error(), 1e-12);
+        EXPECT_NEAR(r.heldout_gain - r.gain_low, 1.96 * t.gain_error / screen.heldout_error(), 1e-12);
+    }
+}
+
+TEST(Screening, evidence_is_the_three_blocks_that_gain_most_with_their_shares) {
+    Problem problem = fitted();
+    const Screen screen(problem);
+    Trial t = good("a");
+    t.block_gain = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(screen.blocks().size()));
+    ASSERT_GE(t.block_gain.size(), 6);
+    t.block_gain[1] = 6, t.block_gain[2] = -100, t.block_gain[3] = 3, t.block_gain[4] = 1, t.block_gain[5] = 10;
+    const CandidateResult r = result_of(t, base_error, screen);
+    ASSERT_EQ(r.evidence.size(), 3U);
+    EXPECT_EQ(r.evidence[0].first, screen.blocks()[5]);
+    EXPECT_DOUBLE_EQ(r.evidence[0].second, 0.5);
+    EXPECT_EQ(r.evidence[1].first, screen.blocks()[1]);
+    EXPECT_DOUBLE_EQ(r.evidence[1].second, 0.3);
+    EXPECT_EQ(r.evidence[2].first, screen.blocks()[3]);
+    t.block_gain.setConstant(-1);
+    EXPECT_TRUE(result_of(t, base_error, screen).evidence.empty());
+}
+
+TEST(Refit, finds_the_hidden_size_and_its_gain_is_the_fall_of_the_held_out_error) {
+    const Problem base = fitted();
+    const Screen screen(base);
+    Problem columns_of = fitted();
+    Columns::Cache cache;
+    Columns columns(columns_of, cache);
+    for (const Candidate &c : catalogue_candidates(short_log().model, short_log().data, columns_of.forward().motion())) {
+        if (c.wheel >= 0 || c.effect != "slip_sinkage") continue; // moves the body: fitted in full
+        Trial t = screen_candidate(c, screen, columns);
+        refit(t, base, screen, short_log().model, short_log().data);
+        EXPECT_TRUE(t.refitted);
+        EXPECT_EQ(t.value.size(), c.strengths.size());
+        EXPECT_LE(t.error_reduction, screen.error()); // a fall of the error, never more than the error
+        EXPECT_EQ(t.baseline.size(), base.theta.size());
+        EXPECT_NEAR(t.block_gain.sum(), t.gain - t.assessment.prior_reduction, 1e-6 * screen.heldout_error() + 1e-6);
+        EXPECT_NEAR(t.gain_error, sum_error(t.block_gain), 1e-9);
+        EXPECT_LE(t.gain, screen.heldout_error());
+    }
+}
+
+TEST(SumError, is_the_scatter_of_the_blocks_by_the_root_of_their_number) {
+    EXPECT_DOUBLE_EQ(sum_error(Eigen::VectorXd::Constant(8, 3.0)), 0);
+    const Eigen::VectorXd v = (Eigen::VectorXd(4) << 1, 3, 1, 3).finished(); // variance 4/3 of each, four of them
+    EXPECT_NEAR(sum_error(v), std::sqrt(4 * 4.0 / 3), 1e-12);
+}
+
+TEST(Words, say_what_was_found_and_what_was_not) {
+    Diagnosis d;
+    d.ladder = {{"baseline", 2, 2.5, 1}, {"+ a", 1, 1.25, 1}};
+    d.kind = "nothing";
+    d.not_excited = {{"x", ""}, {"y", ""}};
+    EXPECT_NE(verdict_text(d).find("2.50"), std::string::npos);
+    EXPECT_NE(verdict_text(d).find("2 effects"), std::string::npos);
+    d = with_class({"a", "b", "c"}, {"a"});
+    d.kind = "class";
+    d.ladder = {{"baseline", 2, 2.5, 1}, {"+ a", 1, 1.25, 1}};
+    const std::string text = verdict_text(d);
+    EXPECT_NE(text.find("2.500 -> 1.250"), std::string::npos) << text;
+    EXPECT_NE(text.find("tell a, b from c."), std::string::npos) << text;
+    d.unknown = UnknownShape{};
+    d.unknown->variable = "time", d.unknown->balance = "friction of the wheels";
+    d.nearest = {"p", "q"};
+    EXPECT_NE(verdict_text(d).find("only partly: what is left depends on time: friction of the wheels."), std::string::npos)
+        << verdict_text(d);
+    EXPECT_NE(verdict_text(d).find("not the cause: p, q."), std::string::npos) << verdict_text(d);
+    d.accepted.clear(), d.classes.clear();
+    EXPECT_EQ(verdict_text(d).find("Unknown: no effect of the catalogue"), 0U) << verdict_text(d);
+}
+
+} // namespace
+} // namespace traction::lab
