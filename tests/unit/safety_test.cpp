@@ -232,7 +232,7 @@ TEST_F(DrivingRover, a_radar_faster_than_every_wheel_explains_releases_the_motor
     for (auto &speed : command.wheel_speed_rad_s) {
         speed = 0;
     }
-    config.safety.sigmas = 0; // as if the estimate were sure of it
+    config.safety.sigmas = 0;                 // as if the estimate were sure of it
     config.ground_speed.gate_patience = 1000; // and believed nothing else
     config.ground_speed.agile_sure = config.ground_speed.agile_limit = 1e9f;
     for (int k = 0; k < 150 && trace.faults == 0u; ++k) {
@@ -384,7 +384,7 @@ TEST(Disagreement, is_measured_against_the_fastest_wheel) {
         for (const int pulses : {43, 36}) { // 4.5 and 3.8 rad/s: 1.5 R w + 0.15 is 0.535 and 0.472 m/s
             control_config_t config = rover_config_default();
             config.safety.required = 0;
-            config.safety.sigmas = 0; // as if the estimate were sure of it
+            config.safety.sigmas = 0;                  // as if the estimate were sure of it
             config.ground_speed.wheel_noise_m_s = 100; // and the wheels told nothing
             control_state_t state;
             control_reset(&config, &state);
