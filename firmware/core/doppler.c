@@ -239,12 +239,21 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     }
 }
 
+// What the sum of a window can be. It is that anyway: a bound that needs no relation between the sum and the samples.
+static int32_t held_sum(int32_t sum)
+{
+    const int32_t most = FFT_LENGTH * 32767;
+    return sum > most ? most : sum < -most ? -most : sum;
+}
+
 // Drops the oldest `hop` samples.
 static void slide(doppler_state_t *state, int32_t hop)
 {
+    int32_t gone = 0;
     for (int32_t j = 0; j < hop; j++) {
-        state->sum -= state->window.sample[j];
+        gone += state->window.sample[j];
     }
+    state->sum = held_sum(state->sum - gone);
     if (hop % 4 == 0) {
         for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
             state->window.four[j - hop / 4] = state->window.four[j];
@@ -327,7 +336,7 @@ static void take(const doppler_config_t *config, doppler_state_t *state, int16_t
     state->railed[state->block] += railed ? 1 : 0;
     state->last = value;
     state->window.sample[state->filled] = value;
-    state->sum += value;
+    state->sum = held_sum(state->sum + value);
     if (state->full) {
         state->filled++;
     } else {

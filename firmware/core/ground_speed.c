@@ -203,7 +203,7 @@ static float wheel_odds(const ground_speed_config_t *config, float measured, flo
     if (!fixed_greater(rim, config->still_m_s)) {
         return 0.0f;
     }
-    const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.15f * rim, measured); // slip of -0.15 to 0.5
+    const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.5f * rim, measured); // slip of -0.33 to 0.5
     const float odds = match ? config->wheel_match : config->wheel_odds;
     return wheel_m_s < 0.0f ? -odds : odds;
 }
@@ -213,6 +213,29 @@ static void split(ground_speed_state_t *state, ground_speed_side_t *side, const 
     side->at = *track;
     side->ticks = 0;
     side->q20 = state->integral_q20[state->head];
+}
+
+// 1 where the wheels turn with the track at a speed that agrees with the radar's, -1 where they turn against it, else 0.
+static int32_t with_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float measured, float wheel_m_s)
+{
+    const bool rolls = fixed_greater(1.15f * fabsf(wheel_m_s), measured); // what overtakes its wheels is not pushed by them
+    const bool match = rolls && fabsf(wheel_odds(config, measured, wheel_m_s)) >= config->wheel_match;
+    return !match ? 0 : (wheel_m_s < 0.0f) == (state->speed_m_s < 0.0f) ? 1 : -1;
+}
+
+// A sign that was lost at a restart is the same at constant speed as the right one; wheels that turn against it all the time ask anew.
+static void ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s)
+{
+    state->against = with_wheels(config, state, measured, wheel_m_s) >= 0 ? 0 : state->against + (state->against < 1000 ? 1 : 0);
+    if (state->against >= config->against_values && !state->other_alive) {
+        const ground_speed_track_t best = best_of(state);
+        split(state, &state->other, &best);
+        state->other.at.speed_m_s = -best.speed_m_s;
+        state->other.at.p_vb = 0.0f;
+        state->odds = config->against_odds;
+        state->other_alive = true;
+        state->against = 0;
+    }
 }
 
 // (9): takes the likelier sign, and follows the other too where it may be the right one.
@@ -283,6 +306,7 @@ static void update_doppler(const ground_speed_config_t *config, ground_speed_sta
     state->waits = 2;
     correct(config, &track, state->value_sign * measured - middle, window.tau_s, noise);
     keep_best(state, &track);
+    ask_again(config, state, measured, input->wheel_m_s);
 }
 
 static void move_side(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, int32_t ticks_ago)
@@ -337,7 +361,8 @@ static void update_other(const ground_speed_config_t *config, ground_speed_state
     const bool sure = fabsf(expected.told) >= config->sign_sure;
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const float cost = see(config, state, &state->other, &expected, sign);
-    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told);
+    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
+                   config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s);
     if (state->odds < 0.0f) {
         const ground_speed_track_t best = best_of(state);
         move_side(config, state, &state->other, 0);
@@ -376,7 +401,7 @@ static ground_speed_track_t to_middle(const ground_speed_track_t *track, float t
 static int32_t middle_q20(const ground_speed_state_t *state)
 {
     const int32_t then = state->integral_q20[((uint32_t)state->head - 2u) % GROUND_SPEED_HISTORY];
-    return (int32_t)((uint32_t)then - (uint32_t)(int32_t)(state->value_change_m_s * 1048576.0f));
+    return (int32_t)((uint32_t)then - (uint32_t)(int32_t)(fixed_clamp(state->value_change_m_s, -1000.0f, 1000.0f) * 1048576.0f));
 }
 
 static void start_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -582,7 +607,7 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
     state->wheel_ticks += state->wheel_ticks < 1000 ? 1 : 0;
     state->speed_m_s += (accel - state->bias_m_s2) * config->tick_s; // (2)
-    state->behind_ticks++;
+    state->behind_ticks += state->behind_ticks < 1000 ? 1 : 0;
     state->behind_noise_m2_s2 = noise;
 }
 

@@ -4,22 +4,26 @@
 //   ours:  v[k+1] = v[k] + (a - b) T,  b[k+1] = b[k]                                  (2)
 //          z + sum_j w_j (V(t) - V(t - s_j)) = v + tau b + n,  tau = sum_j w_j s_j    (3)
 //
-//   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance       (4)
+//   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance      (4)
 //   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
 //   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
-//   L = max(0, L + min(c_best - c_agile, most) - drift), c = e^2/S + ln S; L > limit: best = agile  (7)  a second filter, whose bias may
-//   jump: a steep slope R *= f,  f += c f (min(e^2/S, g^2) - 1)                                            (8)  values that scatter more
-//   than they should sign: odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S), m the speed that (3) expects    (9) X[k] =
-//   (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s);  variance += share (X^2 - least^2)                        (10) z = sqrt(d^2 -
-//   min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration            (11)
+//   L = max(0, L + min(c_best - c_agile, most) - drift),  c = e^2/S + ln S              (7)
+//   R = f R0,  f *= 1 + share (min(e^2/S, gate^2) - 1)                                  (8)
+//   odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S)                   (9)  m: the speed that (3) expects
+//   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s)                     (10)
+//   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration      (11)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
-// (7): the cumulative sum of Page for a change from one model to another. (9): a mixer tells |v| alone. Where one sign is not far more
-// likely than the other, both are followed, each with its own [v, b], until the values tell (derived here; docs/firmware.md).
-// (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean is 0.
-// (10): what the accelerometer lets the speed change and the wheels do not, within what no Doppler value tells yet, is slip or a slope.
 // (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
+// (7): Page's cumulative sum for a change from one model to another. The other is a second filter whose bias may jump, as it does where a
+// slope begins; when L passes its limit, it is taken.
+// (8): values that scatter more than they should are trusted less.
+// (9): a mixer tells |v| alone. Where one sign is not far more likely than the other, both are followed, each with its own [v, b], until
+// the values tell; the wheels' sign is a weak witness. While both live, the standard deviation holds both. (10): what the accelerometer
+// lets the speed change and the wheels do not, as long as no Doppler value tells of it, is slip or a slope: the variance grows by a share
+// of X^2 - least^2, and (7) needs less. (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean
+// is 0.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -79,6 +83,9 @@ typedef struct {
     float slow_m_s;                // |v| below which standing needs no quiet echo
     float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
     float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
+    float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
+    int32_t against_values;        // values against which they turn before the other sign is asked anew
+    float against_odds;            // and the odds that it then starts with
     float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
     float wheel_slip;
 } ground_speed_config_t;
@@ -119,6 +126,7 @@ typedef struct {
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
+    int32_t against;
     int32_t still_ticks;
     bool standstill;
     ground_speed_side_t other; // the other sign, (9)

@@ -211,27 +211,7 @@ int main(int argc, char **argv) {
         if (std::strcmp(argv[i], "--first") == 0) first = std::atoi(argv[i + 1]);
         if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
     }
-    control_config_t config = rover_config_default();
-    if (const char *text = std::getenv("OUT_SET")) {
-        std::string all = text;
-        while (!all.empty()) {
-            const auto comma = all.find(',');
-            const std::string one = all.substr(0, comma);
-            all = comma == std::string::npos ? "" : all.substr(comma + 1);
-            const auto eq = one.find('=');
-            const std::string k = one.substr(0, eq);
-            const float v = std::strtof(one.substr(eq + 1).c_str(), nullptr);
-            auto &g = config.ground_speed;
-#define S(x)                                                                                                                               \
-    if (k == #x) g.x = static_cast<decltype(g.x)>(v);
-            S(agile_limit)
-            S(apart_noise)
-            S(doppler_spread_s) S(agile_sure) S(apart_told_m_s) S(agile_drift) S(agile_most) S(apart_share) S(apart_least_m_s)
-                S(agile_m2_s4) S(agile_values) S(doppler_noise_m_s) S(doppler_noise_m2_s2) S(doppler_accel_s2) S(bias_noise_m2_s4)
-                    S(jump_limit) S(jump_share) S(jump_m2_s4) S(misfit_share) S(bias_start_m_s2) S(gate_sigma) S(wheel_match) S(wheel_odds)
-                        S(sign_sure) S(speed_noise_m2_s2) S(wheel_slip) S(wheel_noise_m_s)
-        }
-    }
+    const control_config_t config = rover_config_default();
     std::printf("%-10s %-38s | %6s %7s %6s %6s %6s | %s\n", "group", "row", "RMSE", "NEES", "sign s", "worst", "p95 %", "faults, first at");
     bool all_met = true;
     double calm_square = 0, nees_sum = 0;

@@ -12,10 +12,12 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
 
 // The invariant: every whole number that something is indexed with or added to. Bytes that it does not name are unknown.
 /*@ predicate in_window(doppler_state_t *d) =
-      0 <= d->filled < 256 && -64 <= d->late_samples <= 7 &&
+      0 <= d->filled < 256 && -64 <= d->late_samples <= 160 && -8388352 <= d->sum <= 8388352 && 0 <= d->block < 5 && 0 <= d->in_block <= 64
+   && 0 <= d->dead_blocks <= 2 && -65536 <= d->owed_q8 <= 65536 && 0 <= d->due <= 5 &&
+      (\forall integer n; 0 <= n < 5 ==> 0 <= d->made[n] <= 64 && 0 <= d->railed[n] <= 64) &&
       \forall integer n; 0 <= n < 256 ==> -16384 <= d->window.sample[n] <= 16352 && -16384 <= d->twice[n] <= 16352;
-    predicate in_order(control_state_t *s) = in_window(&s->doppler) && 0 <= s->sense.head < 16 && 0 <= s->ground_speed.head < 64 &&
-      0 <= s->ground_speed.refused <= 8 && 0 <= s->ground_speed.quiet <= 1000 && 0 <= s->ground_speed.still_ticks <= 1000 &&
+    predicate in_order(control_state_t *s) = in_window(&s->doppler) && 0 <= s->sense.head < 16 && 0 <= s->ground_speed.head < 128 && 0 <=
+   s->beyond <= 3 && 0 <= s->ground_speed.refused <= 8 && 0 <= s->ground_speed.quiet <= 1000 && 0 <= s->ground_speed.still_ticks <= 1000 &&
       0 <= s->safety.turn < 4;
 */
 
@@ -28,13 +30,45 @@ static control_state_t any_state_in_order(void) {
         state.doppler.twice[n] = any_sample(-16384, 16352);
     }
     state.doppler.filled = Frama_C_interval(0, 255);
-    state.doppler.late_samples = Frama_C_interval(-64, 7);
+    state.doppler.late_samples = Frama_C_interval(-64, 160);
+    state.doppler.sum = Frama_C_interval(-8388352, 8388352);
+    state.doppler.block = Frama_C_interval(0, 4);
+    state.doppler.in_block = Frama_C_interval(0, 64);
+    state.doppler.dead_blocks = Frama_C_interval(0, 2);
+    state.doppler.owed_q8 = Frama_C_interval(-65536, 65536);
+    state.doppler.due = Frama_C_interval(0, 5);
+    state.doppler.last = any_sample(-16384, 16352);
+    for (int n = 0; n < DOPPLER_BLOCKS; n++) {
+        state.doppler.made[n] = Frama_C_interval(0, 64);
+        state.doppler.railed[n] = Frama_C_interval(0, 64);
+    }
+    state.doppler.started = Frama_C_interval(0, 1) != 0;
+    state.doppler.hold = Frama_C_interval(0, 1) != 0;
+    state.doppler.leveled = Frama_C_interval(0, 1) != 0;
+    state.heard.fresh = Frama_C_interval(0, 1) != 0;
+    state.heard.busy = Frama_C_interval(0, 1) != 0;
+    state.heard.quiet = Frama_C_interval(0, 1) != 0;
+    state.heard.dead = Frama_C_interval(0, 1) != 0;
+    state.heard.beyond = Frama_C_interval(0, 1) != 0;
+    state.heard.strange = Frama_C_interval(0, 1) != 0;
+    state.heard.spoilt = Frama_C_interval(0, 1) != 0;
+    state.heard.late_samples = Frama_C_interval(-64, 320);
+    state.beyond = Frama_C_interval(0, 3);
     state.doppler.pending = Frama_C_interval(0, 1) != 0;
     state.doppler.full = Frama_C_interval(0, 1) != 0;
     state.doppler.halved = Frama_C_interval(0, 1) != 0;
     state.sense.head = Frama_C_interval(0, 15);
     state.sense.timed = Frama_C_interval(0, 1) != 0;
-    state.ground_speed.head = Frama_C_interval(0, 63);
+    state.ground_speed.head = Frama_C_interval(0, 127);
+    state.ground_speed.loud = Frama_C_interval(0, 1000);
+    state.ground_speed.against = Frama_C_interval(0, 1000);
+    state.ground_speed.other_alive = Frama_C_interval(0, 1) != 0;
+    state.ground_speed.other.ticks = Frama_C_interval(0, 1000);
+    state.ground_speed.agile.ticks = Frama_C_interval(0, 1000);
+    state.ground_speed.wheel_ticks = Frama_C_interval(0, 1000);
+    state.ground_speed.behind_ticks = Frama_C_interval(0, 1000);
+    state.ground_speed.agile_left = Frama_C_interval(0, 4);
+    state.ground_speed.waits = Frama_C_interval(0, 2);
     state.ground_speed.refused = Frama_C_interval(0, 8);
     state.ground_speed.quiet = Frama_C_interval(0, 1000);
     state.ground_speed.still_ticks = Frama_C_interval(0, 1000);

@@ -149,7 +149,7 @@ TEST(GroundSpeed, a_slope_of_one_degree_settles_within_two_and_a_half_seconds) {
 // With exact sensors the filter's delay compensation has nothing left to hide behind.
 TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag) {
     control_config_t config = rover_config_default();
-    config.ground_speed.doppler_spread_s = 0; // this radar gives the window's mean, not what the likelihood makes of its fastest part
+    config.ground_speed.doppler_spread_s = 0;   // this radar gives the window's mean, not what the likelihood makes of its fastest part
     config.ground_speed.bias_start_m_s2 = 0.1f; // and it knows that this accelerometer is good: the rest of its doubt would be 0.5 mm/s
     for (const double a : {0.2, -0.2, 1.0}) {
         ground_speed_state_t state;
@@ -363,8 +363,8 @@ TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels) {
             ground_speed_state_t state;
             ground_speed_reset(&config, &state);
             const ground_speed_input_t input = with_radar(0, 0.35, false, wheel);
-            // P = (1 m/s)^2, and a bias of +-1 m/s^2 makes 0.249 m/s of the window's age: the gain is 1/(1 + 0.249^2), less 4e-4
-            const double gain = paper ? 1 : 1 / (1 + 0.249 * 0.249);
+            // P = (1 m/s)^2, and a bias of +-0.3 m/s^2 makes 0.075 m/s of the window's age: the gain is 1/(1 + 0.075^2), less 4e-4
+            const double gain = paper ? 1 : 1 / (1 + 0.075 * 0.075);
             EXPECT_NEAR(ground_speed_step(&config, &state, &input).speed_m_s, (wheel < 0 ? -0.35 : 0.35) * gain, 0.35 * 0.01) << paper;
         }
     }

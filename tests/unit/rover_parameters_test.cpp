@@ -76,7 +76,7 @@ static ground_speed_config_t ground_speed_default() {
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
-        .bias_start_m_s2 = 1.0f,        // 6 deg of slope, assumed; 10 deg are 1.7 of it
+        .bias_start_m_s2 = 0.3f,        // as rover_config.c has it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
@@ -110,6 +110,9 @@ static ground_speed_config_t ground_speed_default() {
         .sign_sure = 18.0f, // exp(9) to one
         .wheel_odds = 2.0f, // e to one, assumed
         .wheel_match = 14.0f,
+        .wheel_pull = 0.5f,
+        .against_values = 4,
+        .against_odds = 4.0f,
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
     };
