@@ -31,7 +31,7 @@ struct RadarConfig {
     double flicker_count = 0.5;         // [ADC count] rms 1/f, assumed
     double offset_count = 512;          // [ADC count] mid-scale of 10 bits, as the description has it
     double offset_error_count = 0;      // [ADC count] added to it: where the converter really rests
-    std::vector<RadarLine> interference;
+    std::vector<RadarLine> interference = {};
     int max_count = 1023;     // [ADC count] the converter's rail
     double dropout_per_s = 0; // [1/s] how often the echo fades out altogether
     double dropout_s = 0.3;   // [s] for how long

@@ -69,14 +69,14 @@ TEST(Sensors, each_has_the_noise_that_it_states) {
     };
     check(moments(all, [](const auto &m) { return m.current_A[1]; }), 0.5, current_noise_A);
     check(moments(all, [](const auto &m) { return m.battery_V; }), 7, battery_noise_V);
-    check(moments(all, [](const auto &m) { return m.accel_x_m_s2; }), 0.3, accel_noise_m_s2);
-    check(moments(all, [](const auto &m) { return m.gyro_z_rad_s; }), 0.1, gyro_noise_rad_s);
+    check(moments(all, [](const auto &m) { return m.accel_m_s2[0]; }), 0.3, accel_noise_m_s2);
+    check(moments(all, [](const auto &m) { return m.gyro_rad_s[2]; }), 0.1, gyro_noise_rad_s);
 }
 
 TEST(Sensors, driving_shakes_the_accelerometer) {
     const auto all = glide(default_sensors(), 7, 0.8, 100);
     const double sigma = std::hypot(accel_noise_m_s2, accel_vibration_1_s * 0.8);
-    EXPECT_NEAR(moments(all, [](const auto &m) { return m.accel_x_m_s2; }).deviation, sigma, 3 * 0.0071 * sigma);
+    EXPECT_NEAR(moments(all, [](const auto &m) { return m.accel_m_s2[0]; }).deviation, sigma, 3 * 0.0071 * sigma);
 }
 
 TEST(Sensors, the_camera_looks_seven_times_a_second_with_a_millimetre) {
@@ -93,14 +93,14 @@ TEST(Sensors, the_camera_looks_seven_times_a_second_with_a_millimetre) {
 
 TEST(Sensors, an_effect_acts_on_its_sensor_by_its_amount) {
     const double n = std::sqrt(4000.0); // values averaged
-    EXPECT_NEAR(moments(glide_with(effect("accel_bias", 0.2)), [](const auto &m) { return m.accel_x_m_s2; }).mean, 0.5, 3 * 0.032 / n);
-    EXPECT_NEAR(moments(glide_with(effect("accel_scale", 0.2)), [](const auto &m) { return m.accel_x_m_s2; }).mean, 0.36, 3 * 0.032 / n);
+    EXPECT_NEAR(moments(glide_with(effect("accel_bias", 0.2)), [](const auto &m) { return m.accel_m_s2[0]; }).mean, 0.5, 3 * 0.032 / n);
+    EXPECT_NEAR(moments(glide_with(effect("accel_scale", 0.2)), [](const auto &m) { return m.accel_m_s2[0]; }).mean, 0.36, 3 * 0.032 / n);
     EXPECT_NEAR(moments(glide_with(effect("voltage_gain", -0.1)), [](const auto &m) { return m.battery_V; }).mean, 6.3, 3 * 0.01 / n);
     EXPECT_NEAR(moments(glide_with(effect("current_gain", 0.2, 2)), [](const auto &m) { return m.current_A[2]; }).mean, 0.6, 3 * 0.01 / n);
     EXPECT_NEAR(moments(glide_with(effect("current_gain", 0.2, 2)), [](const auto &m) { return m.current_A[1]; }).mean, 0.5, 3 * 0.01 / n);
     EXPECT_NEAR(moments(glide_with(effect("current_offset", -0.1)), [](const auto &m) { return m.current_A[0]; }).mean, 0.4, 3 * 0.01 / n);
     const auto drift = glide_with(effect("accel_drift", 0.005));
-    EXPECT_NEAR(moments(drift, [](const auto &m) { return m.accel_x_m_s2; }).mean, 0.3 + 0.005 * 20, 3 * 0.032 / n); // mean time 20 s
+    EXPECT_NEAR(moments(drift, [](const auto &m) { return m.accel_m_s2[0]; }).mean, 0.3 + 0.005 * 20, 3 * 0.032 / n); // mean time 20 s
     // 0.5 m/s for 40 s: 20 m, 55846.9 pulses; a fifth is lost
     EXPECT_NEAR(glide_with(effect("encoder_missed", 0.2, 0)).back().encoder_count[0], 0.8 * 20 / 0.057 / encoder_rad_per_count, 1);
 }
@@ -143,7 +143,7 @@ TEST(Sensors, repeat_by_seed_and_differ_between_seeds) {
     for (std::size_t i = 0; i < a.size(); i++) {
         EXPECT_EQ(a[i].current_A, b[i].current_A);
         EXPECT_EQ(a[i].radar_count, b[i].radar_count);
-        same_as_c += a[i].accel_x_m_s2 == c[i].accel_x_m_s2 ? 1 : 0;
+        same_as_c += a[i].accel_m_s2[0] == c[i].accel_m_s2[0] ? 1 : 0;
     }
     EXPECT_EQ(same_as_c, 0);
 }

@@ -35,9 +35,9 @@ ActiveEffect effect(const char *name, double value) { return {find_effect(name),
 TEST(SensorEffects, a_rocking_body_adds_gravity_a_tenth_of_a_second_late) {
     const auto seen = spurt(default_sensors(), effect("accel_tilt", 0.012), 0.5, 3);
     const double full = law::accel_tilt(0.5, 9.81, 0.012, 0.5);
-    EXPECT_NEAR(seen.back().accel_x_m_s2, full, 1e-9); // rounding; the lags are over, exp(-29) is left
+    EXPECT_NEAR(seen.back().accel_m_s2[0], full, 1e-9); // rounding; the lags are over, exp(-29) is left
     // the tick that ends at 0.11 s averages 0.1 to 0.11 s: 1 - exp(-t'/0.1), t' later by the 10 ms smoothing of the acceleration
-    const double share = (seen[10].accel_x_m_s2 - 0.5) / (full - 0.5);
+    const double share = (seen[10].accel_m_s2[0] - 0.5) / (full - 0.5);
     EXPECT_NEAR(share, 1 - std::exp(-0.95), 0.02); // two lags of 0.1 and 0.01 s in series, against their sum's delay: 0.01
 }
 
