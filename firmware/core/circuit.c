@@ -58,6 +58,24 @@ static bool agreed(uint8_t *looks, bool bad, uint32_t needed)
     return *looks >= needed;
 }
 
+static float across_V(const circuit_config_t *config, const circuit_input_t *input, const sense_output_t *sense, int i)
+{
+    return fixed_finite(input->duty[i] * sense->battery_V - config->back_emf_Vs * sense->speed_rad_s[i]);
+}
+
+// (3), its second half: another motor draws current on no more voltage than this one has. A dead band of all bridges is no open winding.
+static bool others_draw(const circuit_config_t *config, const circuit_input_t *input, const sense_output_t *sense, int i, float mine_V)
+{
+    for (int other = 0; other < WHEEL_COUNT; other++) {
+        const bool draws = other != i && (sense->usable & ((uint32_t)FRAME_CURRENT_0 << (uint32_t)other)) != 0u &&
+                           fixed_greater(fabsf(sense->current_A[other]), 2.0f * config->open_A);
+        if (draws && fixed_greater(mine_V, fabsf(across_V(config, input, sense, other)))) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // (2) and (3) for one wheel.
 static void look(const circuit_config_t *config, circuit_state_t *state, const circuit_input_t *input, const sense_output_t *sense, int i,
                  circuit_output_t *out)
@@ -69,12 +87,13 @@ static void look(const circuit_config_t *config, circuit_state_t *state, const c
     if (known) {
         const float emf_V = config->back_emf_Vs * sense->speed_rad_s[i];
         const float drop_V = config->resistance_ohm * sense->current_A[i];
-        const float across_V = fixed_finite(input->duty[i] * sense->battery_V - emf_V);
+        const float mine_V = across_V(config, input, sense, i);
         const float about_V = config->contradict_speed * fabsf(emf_V);
-        broken = fixed_greater(config->open_A, fabsf(sense->current_A[i])) &&
-                 fixed_greater(fabsf(across_V), config->open_V + config->open_speed * fabsf(emf_V));
+        const float over_V = fabsf(mine_V) - config->open_speed * fabsf(emf_V);
+        broken = fixed_greater(config->open_A, fabsf(sense->current_A[i])) && fixed_greater(over_V, config->open_V) &&
+                 (fixed_greater(over_V, config->dead_V) || others_draw(config, input, sense, i, fabsf(mine_V)));
         contradicts =
-            !broken && fixed_greater(fabsf(across_V - drop_V), config->contradict_V + config->contradict_current * fabsf(drop_V) + about_V);
+            !broken && fixed_greater(fabsf(mine_V - drop_V), config->contradict_V + config->contradict_current * fabsf(drop_V) + about_V);
     }
     const uint32_t bit = 1u << (uint32_t)i;
     out->contradict |= agreed(&state->contradict_looks[i], contradicts, config->contradict_looks) ? bit : 0u;

@@ -3,14 +3,16 @@
 //   duty V = Ra I + ke w                                                                                   (a) of motor.h
 //   w_c = (duty V - Ra I)/ke                         speed by the circuit                                  (1)
 //   r = duty V - Ra I - ke w,  |r| > r0 + a |Ra I| + b |ke w|      the encoder contradicts the circuit     (2)
-//   |I| < I_open and |duty V - ke w| > V_open + c |ke w|           no current where one must flow          (3)
+//   |I| < I_open and |duty V - ke w| > V_dead + c |ke w|, or > V_open + c |ke w| where another motor draws current
+//   on less                                                        no current where one must flow          (3)
 //   |dw| > T KG V/(Ra J)                             more than stall torque does to a free wheel in a tick (4)
 //
 // A speed that jumps by more than (4) is believed if (1) jumps by at least half as much. Otherwise the wheel's speed is its last one and
 // what (1) has changed since, until the encoder agrees again; constant errors of Ra, ke and V cancel there. Where no motor
 // drives there is no (1), and a jump is held for a few ticks. (2) and (3) look at one wheel a
 // tick and name it when all looks of 0.3 s agree. r0, a, b cover a winding 95 K warm (37 % of Ra), a magnet as warm and a divider (10 %
-// each), and the drop of a bridge; derived here. What they cost: an encoder that loses less than about a third of its pulses is not seen.
+// each), and a bridge that loses 1.6 V of 7.2 by drop and dead time; derived here. What they cost: an encoder that loses less than about a
+// third of its pulses is not seen.
 #ifndef TRACTION_FIRMWARE_CORE_CIRCUIT_H
 #define TRACTION_FIRMWARE_CORE_CIRCUIT_H
 
@@ -29,6 +31,7 @@ typedef struct {
     float contradict_speed;    // b
     float open_A;              // I_open
     float open_V;              // V_open
+    float dead_V;              // V_dead: no bridge loses more
     float open_speed;          // c
     float jump_rad_s;          // (4)
     uint32_t hold_ticks;       // a jump is held so long where no motor drives

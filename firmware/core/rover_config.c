@@ -64,12 +64,13 @@ static void build_circuit(const float *v, circuit_config_t *circuit, sense_confi
         .resistance_ohm = Ra,
         .back_emf_Vs = v[ROVER_back_emf_Vs_rad],
         .per_back_emf_1_Vs = 1.0f / v[ROVER_back_emf_Vs_rad],
-        .contradict_V = 0.07f * V,   // half a volt of 7.2: drop of a bridge and of brushes, assumed
+        .contradict_V = 0.22f * V, // 1.6 V of 7.2: drop of bridge and brushes, and a bridge's dead time, of which 1.5 V are known: assumed
         .contradict_current = 0.35f, // a winding of copper 95 K warmer: 37 %
         .contradict_speed = 0.25f,   // a magnet as warm, a divider 10 % off, rounded up: assumed
         .open_A = 0.02f * V / Ra,    // four sigma of the current sensor's noise, assumed
-        .open_V = 0.07f * V,
-        .open_speed = 0.1f, // a current of nothing has no winding to be wrong by
+        .open_V = 0.07f * V,         // half a volt of 7.2: drop of a bridge and of brushes, assumed
+        .dead_V = 0.22f * V,         // as above: behind a dead band no current flows either
+        .open_speed = 0.1f,          // a current of nothing has no winding to be wrong by
         .jump_rad_s = tick_s * v[ROVER_torque_constant_Nm_A] * V / (Ra * v[ROVER_inertia_kg_m2]), // (4)
         .hold_ticks = 3,
         .refused_ticks = 30,
