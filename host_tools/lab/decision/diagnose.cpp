@@ -247,6 +247,11 @@ class Search {
         Model model = d_.model;
         model.effects.push_back(effect_of(t.candidate, t.value));
         Problem problem = fitted(model, &before);
+        if (t.refitted && t.baseline.size() == before.theta.size()) { // the other start: where the candidate's own refit ended
+            Problem there = before;
+            there.theta = t.baseline;
+            if (Problem other = fitted(model, &there); overall_error(other) < overall_error(problem)) problem = std::move(other);
+        }
         std::vector<double> value;
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);

@@ -19,8 +19,9 @@ struct Suspect {
     std::string quantity; // "rover.mass_kg"
     double stated = 0, fitted = 0;
     std::string unit;
-    double error = 0; // of the model so changed, with no effect, in units of noise
-    double gross = 0; // ratio from which it is no tolerance
+    double error = 0;               // of the model so changed, with no effect, in units of noise
+    double gross = 0;               // ratio from which it is no tolerance
+    bool more_is_an_effect = false; // of the catalogue: judged there
 };
 
 struct Doubt {
