@@ -38,11 +38,12 @@ table) # an effective radius of 36.4 mm, or the camera's scale: one ratio, seen 
     ;;
 carpet) # what pushes against the robot grows with its weight or drags at its body
     "$traction" diagnose --model "$root/models/robotino_carpet.toml" --map "$map" --log "$robot/one_gray_v0.1_dir090.csv" >said
-    says said rolling_resistance named
-    says said body_drag beyond_range
+    says said rolling_resistance nearest
+    says said body_drag nearest
+    says said at its limit motor.torque_constant_Nm_A
     # read off the currents: 27 N of a weight of 123 N, with the data sheet's torque constant (10 %) less 0.08 in the baseline at most
     within "rolling resistance over load" "$(size_of said rolling_resistance)" 0.12 0.26
-    "$traction" add rolling_resistance --model "$root/models/robotino_carpet.toml" --map "$map" --log "$robot/one_gray_v0.1_dir090.csv" --out carpet.toml >/dev/null
+    "$traction" add rolling_resistance --model "$root/models/robotino_carpet.toml" --map "$map" --log "$robot/one_gray_v0.1_dir090.csv" --out carpet.toml >/dev/null || [ $? -eq 1 ] # 1: beside what the wheels may differ by it does not help on this run
     for direction in 000 060 180 270; do
         run=$robot/one_gray_v0.1_dir$direction.csv
         before=$(error_of "$root/models/robotino_carpet.toml" "$map" "$run") after=$(error_of carpet.toml "$map" "$run")
