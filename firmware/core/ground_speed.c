@@ -489,14 +489,17 @@ static void update_quiet(const ground_speed_config_t *config, ground_speed_state
     }
 }
 
-// Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once.
+// Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once; or wheels at rest for long
+// while nothing that the radar says tells of a speed: the accelerometer alone must not drive a parked rover away.
 static bool is_standing(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
-    if (state->still_ticks < config->still_needed || state->loud >= config->loud_needed) {
+    const bool heard = state->unheard_ticks < config->parked_needed; // what was loud before that tells nothing any more
+    if (state->still_ticks < config->still_needed || (heard && state->loud >= config->loud_needed)) {
         return false;
     }
     const bool slow = fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < square(config->slow_m_s);
-    return slow || state->quiet >= config->quiet_needed;
+    const bool parked = state->still_ticks >= config->parked_needed && (!heard || state->loud == 0);
+    return slow || parked || state->quiet >= config->quiet_needed;
 }
 
 static const float ears_open_m_s = 0.1f; // [m/s] rim speed above which a front end without any noise is dead, not a rover that stands
@@ -628,6 +631,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
+    state->unheard_ticks = fresh ? 0 : state->unheard_ticks + (state->unheard_ticks < 1000 ? 1 : 0);
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     const float noise = input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2;
     const bool first = fixed_bits(state->std_m_s) == 0u; // nothing was missed before

@@ -78,6 +78,7 @@ typedef struct {
     float quiet_noise_m2_s2;       // R of that speed, taken as 0
     float still_m_s;               // rim speed below which the wheels are at rest
     int32_t still_needed;          // ticks of rest before the rover can be standing
+    int32_t parked_needed;         // and before it is, where the radar tells of no speed
     int32_t loud_needed;           // loud Doppler values in a row that end a standing
     float standing_noise_m2_s2;    // R of speed 0 in each standing tick
     float slow_m_s;                // |v| below which standing needs no quiet echo
@@ -126,6 +127,7 @@ typedef struct {
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
+    int32_t unheard_ticks; // since the last Doppler value, quiet or not
     int32_t against;
     int32_t still_ticks;
     bool standstill;

@@ -136,6 +136,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
+        .parked_needed = 100,          // 1 s: eight values of the radar that tell of no speed, assumed
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
         .slow_m_s = 0.12f,
         .loud_needed = 3,

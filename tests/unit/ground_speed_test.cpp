@@ -287,6 +287,23 @@ TEST(GroundSpeed, three_quiet_echoes_mean_a_low_speed_when_the_prediction_allows
     }
 }
 
+// After a stop on a slope that it does not know yet: no radar value, wheels at rest. Loud values (a slide on blocked wheels) keep it
+// moving.
+TEST(GroundSpeed, a_parked_rover_does_not_drive_away_by_its_accelerometer) {
+    for (const bool slides : {false, true}) {
+        const ground_speed_config_t config = rover_config_default().ground_speed;
+        ground_speed_state_t state = settled(config, 0.3);
+        ground_speed_output_t out = {};
+        for (int k = 0; k < 300; ++k) {
+            const double accel = slides ? 0 : 0.3;
+            const ground_speed_input_t input = slides && k % 12 == 11 ? with_radar(accel, 0.3, false, 0) : only_accel(accel, 0);
+            out = ground_speed_step(&config, &state, &input);
+        }
+        EXPECT_EQ(out.standstill, !slides);
+        EXPECT_NEAR(out.speed_m_s, slides ? 0.3 : 0, 0.03);
+    }
+}
+
 TEST(GroundSpeed, stands_from_the_third_quiet_echo_on_and_slides_while_the_echo_is_loud) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     ground_speed_state_t state = settled(config, 0.5);
