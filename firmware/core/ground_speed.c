@@ -253,8 +253,8 @@ static float choose_sign(const ground_speed_config_t *config, ground_speed_state
     return odds < 0.0f ? -1.0f : 1.0f;
 }
 
-// ln x to within 0.06, x > 0: exponent, and mantissa as a straight line.
-static float ln_rough(float x) { return (float)((int32_t)fixed_bits(x) - 0x3f800000) * (0.693147f / 8388608.0f); }
+// ln |x| to within 0.06: exponent, and mantissa as a straight line; -88 for 0.
+static float ln_rough(float x) { return (float)((int32_t)(fixed_bits(x) & 0x7fffffffu) - 0x3f800000) * (0.693147f / 8388608.0f); }
 
 static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
