@@ -130,6 +130,8 @@ typedef enum {
     FAULT_SPEED_BEYOND = 1u << 19,    // faster than the radar's band holds: the estimate is not to be used
 } fault_t;
 
+enum { FAULT_COUNT = 20 }; // bits of fault_t
+
 typedef struct {
     float speed_rad_s;     // encoder speed
     float accel_rad_s2;    // causal derivative of the encoder speed

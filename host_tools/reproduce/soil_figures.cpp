@@ -92,15 +92,16 @@ Identified identify(const ReproduceSettings &settings, const Ground &ground, boo
     sim::Scenario scenario = sim::read_scenario(settings.scenarios + "/sweep_" + ground.name + ".toml");
     scenario.firmware = {.config = paper ? "paper" : "default", .doppler_scale = paper ? scale : 0, .believes = {}};
     Identified all;
-    simulate_batch(scenario, {}, 1, static_cast<std::uint64_t>(settings.seeds), settings.jobs,
-                   [&](std::uint64_t seed, SimulationResult &&result) {
-                       const Pairs pairs = paper ? paper_pairs(result.log, 5.5, 25) : our_pairs(result.log, 5.5, 25);
-                       const SoilFit fit = fit_soil(ground.law, pairs.slip, pairs.force_N);
-                       all.fm_N.push_back(fit.fm_N);
-                       all.sc.push_back(fit.shear_slip);
-                       if (seed == 1) all.example = pairs;
-                       if (settings.after_run) settings.after_run();
-                   });
+    simulate_batch(
+        scenario, [](std::uint64_t) { return SimulateOptions{}; }, 1, static_cast<std::uint64_t>(settings.seeds), settings.jobs,
+        [&](std::uint64_t seed, SimulationResult &&result) {
+            const Pairs pairs = paper ? paper_pairs(result.log, 5.5, 25) : our_pairs(result.log, 5.5, 25);
+            const SoilFit fit = fit_soil(ground.law, pairs.slip, pairs.force_N);
+            all.fm_N.push_back(fit.fm_N);
+            all.sc.push_back(fit.shear_slip);
+            if (seed == 1) all.example = pairs;
+            if (settings.after_run) settings.after_run();
+        });
     return all;
 }
 

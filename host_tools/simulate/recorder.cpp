@@ -12,16 +12,10 @@ double tidy(float value) { return std::nearbyint(static_cast<double>(value) * 1e
 } // namespace
 
 std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
-    Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .absent_is_zero = absent_is_zero};
-    if (name.rfind("camera", 0) != 0) {
-        fresh.signal.t_s.reserve(expected_);
-        fresh.signal.value.reserve(expected_);
-    }
-    columns_.push_back(std::move(fresh));
-    return columns_.size() - 1;
+    return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
 }
 
-Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
+Recorder::Recorder(std::uint64_t expected_ticks, const std::string &path) : expected_(expected_ticks), spool_(path) {
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const std::string name = "wheel" + std::to_string(i) + '.';
         wheel_[i] = {.speed = column(name + "speed_rad_s"),
@@ -76,12 +70,6 @@ Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
            .gyro_x = column("imu.gyro_x_count"),
            .gyro_y = column("imu.gyro_y_count"),
            .fault_wheels = column("control.fault_wheels", true)};
-}
-
-void Recorder::put(std::size_t column, double t_s, double value) {
-    log::Signal &signal = columns_[column].signal;
-    signal.t_s.push_back(t_s);
-    signal.value.push_back(value);
 }
 
 // A double whose shortest text reads back to this very float.
@@ -189,35 +177,22 @@ void Recorder::add_camera(std::span<const sim::Pose> poses) {
     }
 }
 
-log::Log Recorder::take() {
-    log::Log result;
-    for (Column &column : columns_) {
-        bool all_zero = true;
-        for (const double value : column.signal.value) all_zero = all_zero && value == 0;
-        if (column.signal.value.empty() || (column.absent_is_zero && all_zero)) continue;
-        result.signals.push_back(std::move(column.signal));
-    }
-    return result;
-}
-
-TruthRecorder::TruthRecorder() {
+TruthRecorder::TruthRecorder(const std::string &path) : spool_(path) {
     for (const char *name : {"truth.x_m", "truth.y_m", "truth.yaw_rad", "truth.pitch_rad", "truth.speed_m_s", "truth.path_m",
                              "truth.accel_x_m_s2", "truth.battery_voltage_V"})
-        log_.signals.push_back({.name = name, .t_s = {}, .value = {}});
+        spool_.add(name);
     for (int i = 0; i < sim::wheel_count; i++)
         for (const char *name : {"speed_rad_s", "current_A", "duty", "slip", "traction_N", "rolling_N", "lateral_N", "normal_N",
                                  "sinkage_m", "ground_speed_m_s", "temperature_degC"})
-            log_.signals.push_back({.name = "truth.wheel" + std::to_string(i) + '.' + name, .t_s = {}, .value = {}});
+            spool_.add("truth.wheel" + std::to_string(i) + '.' + name);
 }
 
 void TruthRecorder::add(const sim::Truth &truth) {
     std::size_t next = 0;
     const double t_s = std::nearbyint(truth.t_s * 1000) / 1000;
     const auto put = [&](double value) {
-        log::Signal &signal = log_.signals[next++];
-        if (!std::isfinite(value)) return;
-        signal.t_s.push_back(t_s);
-        signal.value.push_back(std::nearbyint(value * 1e9) / 1e9 + 0.0);
+        const std::size_t column = next++;
+        if (std::isfinite(value)) spool_.put(column, t_s, std::nearbyint(value * 1e9) / 1e9 + 0.0);
     };
     put(truth.position_m[0]);
     put(truth.position_m[1]);

@@ -8,10 +8,11 @@ namespace traction::sim {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> sensor_names{"encoder", "current", "battery", "accel",         "gyro",
-                                                       "radar",   "camera",  "bridge",  "emergency_stop"};
-constexpr std::array<std::string_view, 11> kind_names{"stuck", "noisy", "dropped", "delayed",  "timeout", "offset",
-                                                      "drift", "spike", "dead",    "slipping", "lost"};
+constexpr std::array<std::string_view, faulty_sensor_count> sensor_names{"encoder", "current", "battery", "accel",         "gyro",
+                                                                         "radar",   "camera",  "bridge",  "emergency_stop"};
+constexpr std::array<std::string_view, fault_kind_count> kind_names{"stuck", "noisy", "dropped", "delayed",  "timeout", "offset",
+                                                                    "drift", "spike", "dead",    "slipping", "lost"};
+static_assert(!sensor_names.back().empty() && !kind_names.back().empty(), "each has a name");
 
 // [sensors.accel] and its like: offset, drift, gain, noise in the sensor's unit.
 void read_analog(Keys &parent, std::string_view key, const std::string &unit, const std::string &drift_unit, double largest,
