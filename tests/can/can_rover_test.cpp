@@ -109,10 +109,12 @@ TEST(can_rover, a_dead_bus_releases_every_bridge_in_fifty_milliseconds_and_is_na
 }
 
 TEST(can_rover, answers_that_are_always_late_are_no_answers_and_the_rover_brakes) {
-    const auto result = drive(on_can, can("late", "all", "share = 1.0\n"));
+    const auto result = drive(on_can, can("late", "wheel1", "share = 1.0\n"));
     EXPECT_LE(named_s(result, wheel_lost), 0.08 + 1e-6);
+    EXPECT_EQ(result.log.find("control.fault_wheels")->value.back(), 2);
     EXPECT_EQ(last_drive(result), 2.0);
     EXPECT_NEAR(last_speed(result), 0, 0.02);
+    EXPECT_GT(current_A(result, 1, from_s + 0.1), 0.01); // it hears its orders, and brakes too
 }
 
 TEST(can_rover, a_silent_wheel_node_lets_its_own_wheel_go_and_the_others_brake) {
