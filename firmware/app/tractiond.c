@@ -182,7 +182,8 @@ static int report(const options_t *options, const hal_opened_t *world, const dae
     if (result->ended_by < 0) {
         (void)fprintf(stderr, "tractiond: %s; motors stopped after %" PRIu32 " ticks\n", *trouble != '\0' ? trouble : "a device was lost",
                       result->ticks);
-        return *trouble != '\0' ? EXIT_INPUT : EXIT_DEVICE_LOST;
+        const bool input = *trouble != '\0' && (!world->devices || result->ended_by == HAL_ERR_CONFIG);
+        return input ? EXIT_INPUT : EXIT_DEVICE_LOST;
     }
     if (result->self_test.failures != 0u) {
         for (int32_t i = 0; i < SELF_TEST_FAILURES; i++) {
