@@ -13,7 +13,7 @@ int watchdog_open(const char *path, int timeout_s) {
         return -errno;
     }
     int asked_s = timeout_s;
-    if (ioctl(fd, WDIOC_SETTIMEOUT, &asked_s) != 0 && errno != ENOTTY && errno != EOPNOTSUPP) {
+    if (ioctl(fd, WDIOC_SETTIMEOUT, &asked_s) != 0 && errno == EINVAL) {
         const int result = -errno;
         (void)write(fd, "V", 1);
         (void)close(fd);

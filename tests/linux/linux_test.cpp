@@ -209,7 +209,7 @@ TEST(can_socket, asks_for_a_restart_as_rtnetlink_lays_it_out) {
     ifinfomsg link;
     std::memcpy(&link, message + NLMSG_HDRLEN, sizeof link);
     EXPECT_EQ(link.ifi_index, 3);
-    const auto *info = reinterpret_cast<const rtattr *>(message + NLMSG_SPACE(sizeof(ifinfomsg)));
+    const auto *info = static_cast<const rtattr *>(static_cast<const void *>(message + NLMSG_SPACE(sizeof(ifinfomsg))));
     int left = static_cast<int>(length - NLMSG_SPACE(sizeof(ifinfomsg)));
     ASSERT_TRUE(RTA_OK(info, left));
     ASSERT_EQ(info->rta_type, IFLA_LINKINFO);
