@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // if_nametoindex, SOCK_CLOEXEC
 #include "can_socket.h"
 
 #include <errno.h>

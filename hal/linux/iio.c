@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // O_CLOEXEC
 #include "iio.h"
 
 #include "sysfs.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // clock_nanosleep, ppoll, mlockall
 #include "linux_hal.h"
 
 #include "sysfs.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // access's unistd
 #include "pwm_wheels.h"
 
 #include "sysfs.h"
