@@ -5,6 +5,7 @@
 #include "hal/replay/frames.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,7 @@ typedef struct {
     FILE *commands;      // null: none, or over
     const char *path;
     long line;
+    bool noted; // what is not permitted was told
 } rover_t;
 
 // The next recorded command. What is not one ends the plan, and the rover stands.
@@ -22,6 +24,10 @@ static void command(void *context, const sensor_frame_t *frame, command_t *out) 
     rover_t *rover = context;
     char text[FRAMES_LINE], why[FRAMES_WHY];
     sensor_frame_t recorded;
+    if (!rover->noted && rover->devices.note[0] != '\0') {
+        (void)fprintf(stderr, "tractiond: %s\n", rover->devices.note);
+    }
+    rover->noted = true;
     while (rover->commands != NULL) {
         const bool have = fgets(text, sizeof text, rover->commands) != NULL;
         rover->line++;
@@ -43,8 +49,26 @@ static void command(void *context, const sensor_frame_t *frame, command_t *out) 
 
 static const char *trouble(void *context) { return ((rover_t *)context)->devices.trouble; }
 
+// What the bus and the converter lost on the way, where they did.
+static void tell_losses(const linux_hal_t *devices) {
+    const can_master_counts_t *counts = &devices->master.counts;
+    const can_socket_t *bus = &devices->bus;
+    if ((counts->refused_crc | counts->refused_age | bus->bus_offs | bus->overflows | devices->lost_writes | devices->overruns) != 0u) {
+        (void)fprintf(stderr,
+                      "tractiond: late ticks %" PRIu32 ", lost orders %" PRIu32 "; bus: refused by checksum %" PRIu32 ", by age %" PRIu32
+                      ", bus-offs %" PRIu32 ", restarts %" PRIu32 ", overflows %" PRIu32 "\n",
+                      devices->overruns, devices->lost_writes, counts->refused_crc, counts->refused_age, bus->bus_offs, bus->restarts,
+                      bus->overflows);
+    }
+    const uint32_t samples = counts->radar_lost + devices->radar.lost;
+    if (samples != 0u) {
+        (void)fprintf(stderr, "tractiond: radar samples lost: %" PRIu32 "\n", samples);
+    }
+}
+
 static void close_rover(void *context) {
     rover_t *rover = context;
+    tell_losses(&rover->devices);
     if (rover->commands != NULL) {
         (void)fclose(rover->commands);
     }
