@@ -156,10 +156,10 @@ void Nodes::run() {
             const wheel_node_input_t input{100 * i, static_cast<std::uint16_t>(2048 + i), 0};
             const std::size_t count = wheel_node_receive(&config, &wheel[i], now_ms(), &input, &frame, answer);
             if ((silent & 1u << i) == 0) answer_with(answer, count);
-            off = off && wheel_node_output(&wheel[i], now_ms()).drive == DRIVE_OFF;
+            off = off && wheel[i].drive == DRIVE_OFF; // as ordered last; nothing here lets go by itself
         }
         all_off = off;
-        duty_0 = wheel[0].duty_q15;
+        if (frame.id == CAN_ORDER) last_duty_0 = wheel[0].duty_q15;
         orders += frame.id >= CAN_ORDER && frame.id - CAN_ORDER < WHEEL_COUNT ? 1 : 0;
         sensor_frame_t devices{};
         devices.present = FRAME_ALL;

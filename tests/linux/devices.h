@@ -51,9 +51,9 @@ class Nodes {
     ~Nodes();
     Nodes(const Nodes &) = delete;
     Nodes &operator=(const Nodes &) = delete;
-    std::atomic<unsigned> silent{0}; // bit i: wheel node i; bit 4: the sensor node
-    std::atomic<bool> all_off{true}; // every wheel's last order was DRIVE_OFF
-    std::atomic<int> orders{0}, duty_0{0};
+    std::atomic<unsigned> silent{0};            // bit i: wheel node i; bit 4: the sensor node
+    std::atomic<bool> all_off{true};            // every wheel's last order was DRIVE_OFF
+    std::atomic<int> orders{0}, last_duty_0{0}; // of wheel 0's last order, released or not
 
   private:
     void run();
