@@ -130,6 +130,7 @@ RoverDescription parse_rover(const std::string &text, const std::string &file) {
     rover.name = top.text("name", file);
     top.text("about", "");
     read_sections(top, rover, true);
+    if (const toml::table *hardware = top.table("hardware")) rover.hardware_line = hardware->source().begin.line;
     top.finish();
     return rover;
 }
