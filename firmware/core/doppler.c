@@ -102,11 +102,22 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, uin
 // exp(x) for |x| <= 0.05: error below 3e-7.
 static float exp_small(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
 
-static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white, bool *top, float *fit)
+// Spectra narrower than four steps of the grid are missed between two of them: the largest power tells the place, to a bin.
+static int32_t peak_speed(const doppler_template_t *beam, const int16_t *reduced)
 {
     int32_t best = 0;
-    int32_t least = INT32_MAX;
-    for (int32_t i = COARSE / 2; i < beam->speeds; i += COARSE) {
+    for (int32_t k = 1; k < beam->bins; k++) {
+        best = reduced[k] > reduced[best] ? k : best;
+    }
+    const int32_t at = beam->start[best];
+    return at < 0 ? 0 : at >= beam->speeds ? beam->speeds - 1 : at;
+}
+
+static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white, bool *top, float *fit)
+{
+    int32_t best = beam->from_peak ? peak_speed(beam, reduced) : 0;
+    int32_t least = beam->from_peak ? cost(beam, reduced, total, best) : INT32_MAX;
+    for (int32_t i = COARSE / 2; i < beam->speeds && !beam->from_peak; i += COARSE) {
         const int32_t J = cost(beam, reduced, total, i);
         if (J < least) {
             least = J;
@@ -138,7 +149,8 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
             offset = 0.5f * (left - right) / (left + right); // vertex of the parabola, within +-1/2
         }
     }
-    return beam->speed_m_s[low + fine] * exp_small(offset * beam->log_step);
+    const float at = beam->speed_m_s[low + fine];
+    return beam->line ? at + offset * beam->log_step : at * exp_small(offset * beam->log_step);
 }
 
 static const float made_trust = 0.05f; // [1] per filled sample of 320
@@ -447,13 +459,13 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         measure(config, state, &out);
         if (state->halved) {
             out.speed_m_s *= 2.0f;
-            out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
+            out.quiet = out.quiet || fixed_greater(halved_least_m_s * config->beam->deaf, out.speed_m_s);
         }
         out.trust += made_trust * (float)made + railed_trust * (float)railed;
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
         out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
-        state->due = state->halved || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
+        state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
         state->pending = false;
     }
     if (state->due > 0 && --state->due == 0) {

@@ -31,7 +31,7 @@ enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
 
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
-enum { DOPPLER_WINDOW_TICKS_MAX = 64, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32, DOPPLER_SAMPLES_MAX = 64 };
+enum { DOPPLER_WINDOW_TICKS_MAX = 128, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32, DOPPLER_SAMPLES_MAX = 64 };
 
 // Which past a Doppler value tells of: the weight of each tick in the window's mean, newest first.
 typedef struct {
@@ -43,7 +43,7 @@ typedef struct {
 } doppler_window_t;
 
 // Arrays, not pointers: a pointer in a constant must be relocated, hence lies in writable memory.
-// Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
+// Spectra of the echo on a grid of log-spaced speeds, made from a radar's geometry (firmware/template): a template is data.
 typedef struct {
     float log_step;         // ln of the ratio of neighbouring grid speeds
     float paper_m_s_per_Hz; // c / (2 f0 cos theta_d) of (11)
@@ -58,6 +58,11 @@ typedef struct {
     int32_t quiet[DOPPLER_SPEEDS_MAX];  // q * expected J/a of an echo of which half is white noise
     int32_t exact;                      // q * bins: expected (J/a - q sum ln S_v) of an echo of the template's own spectrum
     doppler_window_t window;            // at sample_rate_Hz, for ground_speed
+    float spread;                       // variance of a value over that of the reference radar's at the same speed [1]
+    float deaf;                         // speed below which the radar is deaf, over that of the reference radar [1], 1 or more
+    bool line;                          // of a point target: the grid is even in the speed, by log_step [m/s]
+    bool from_peak;                     // spectra narrower than the first search's steps: it begins at the largest power
+    int8_t start[DOPPLER_BINS_MAX];     // grid speed whose spectrum peaks in first_bin + k
 } doppler_template_t;
 
 typedef struct {

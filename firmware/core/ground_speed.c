@@ -5,8 +5,7 @@
 #include <math.h>
 
 static const float early_accel_m_s2 = 0.2f; // [m/s^2] assumed: the speed changes by 0.05 m/s at most in the first half window
-static const float speed_max_m_s = 10.0f;
-static const float p_vv_max = 4.0f; // [m^2/s^2] (2 m/s)^2: beyond it nothing more is unknown, assumed
+static const float p_vv_max = 4.0f;         // [m^2/s^2] (2 m/s)^2: beyond it nothing more is unknown, assumed
 static const float p_vv_min = 1e-8f;
 static const float p_bb_min = 1e-8f;
 
@@ -39,7 +38,7 @@ static void keep_best(ground_speed_state_t *state, const ground_speed_track_t *t
 static void hold(const ground_speed_config_t *config, ground_speed_track_t *track)
 {
     const float bb_max = config->bias_max_m_s2 * config->bias_max_m_s2;
-    track->speed_m_s = fixed_clamp(track->speed_m_s, -speed_max_m_s, speed_max_m_s);
+    track->speed_m_s = fixed_clamp(track->speed_m_s, -config->speed_max_m_s, config->speed_max_m_s);
     track->bias_m_s2 = fixed_clamp(track->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fixed_greater(track->p_vv, p_vv_max)) {
         track->p_vb *= p_vv_max / track->p_vv;
@@ -144,7 +143,7 @@ static void update_paper(const ground_speed_config_t *config, ground_speed_state
 {
     const float sign = fixed_greater(0.0f, wheel_m_s) ? -1.0f : 1.0f;
     const float gain = state->p_vv / (state->p_vv + config->doppler_noise_m2_s2); // (1)
-    state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, 10.0f) - state->speed_m_s);
+    state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, config->speed_max_m_s) - state->speed_m_s);
     state->p_vv -= gain * state->p_vv;
     state->p_vb = 0.0f;
     state->p_bb = 0.0f;
@@ -259,7 +258,7 @@ static float ln_rough(float x) { return (float)((int32_t)(fixed_bits(x) & 0x7fff
 static void update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const window_t window = look_back(config, state, input->doppler_late_s);
-    const float heard = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
+    const float heard = fixed_clamp(input->doppler_m_s, 0.0f, config->speed_max_m_s);
     ground_speed_track_t track = best_of(state);
     const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
@@ -527,13 +526,13 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
 // (10), over the ticks since the last time: it waits in ticks that are busy.
 static void watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
-    const float wheel = fixed_clamp(fixed_finite(wheel_m_s), -speed_max_m_s, speed_max_m_s);
+    const float wheel = fixed_clamp(fixed_finite(wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s);
     const int32_t now = state->integral_q20[state->head];
     const float ticks = (float)state->wheel_ticks;
     const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) -
                          state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
-    state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -speed_max_m_s, speed_max_m_s);
+    state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
     state->wheel_m_s = wheel;
     state->wheel_q20 = now;
     state->wheel_ticks = 0;
@@ -544,7 +543,7 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
     const float unseen =
         config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
-    const float apart2 = fixed_clamp(told_by_wheels(config, state, config->apart_least_m_s), 0.0f, speed_max_m_s);
+    const float apart2 = fixed_clamp(told_by_wheels(config, state, config->apart_least_m_s), 0.0f, config->speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : square(state->alike_m_s);
     const float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
@@ -560,7 +559,7 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
     if (state->chore == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
         watch_noise(config, state);
     } else if (state->chore % CHORES == 3u) {
-        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -speed_max_m_s, speed_max_m_s));
+        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
     } else if (state->chore % CHORES == 5u) {
         state_std(config, state);
     } else if (state->chore % CHORES == 6u) {
@@ -656,7 +655,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     } else {
         step_ours(config, state, input, fresh);
     }
-    state->speed_m_s = fixed_clamp(state->speed_m_s, -speed_max_m_s, speed_max_m_s);
+    state->speed_m_s = fixed_clamp(state->speed_m_s, -config->speed_max_m_s, config->speed_max_m_s);
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || fixed_bits(state->std_m_s) == 0u) { // a root is dear
         state_std(config, state);

@@ -52,6 +52,7 @@ typedef struct {
     float bias_noise_m2_s4;         // Qb per tick
     float bias_start_m_s2;          // standard deviation of the bias at reset
     float bias_max_m_s2;            // |b| limit
+    float speed_max_m_s;            // |v| limit, of what the radar tells too
     float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
     float doppler_noise_m_s;
     float doppler_accel_s2;

@@ -21,7 +21,7 @@ std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
     return columns_.size() - 1;
 }
 
-Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
+Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz) : expected_(expected_ticks), radar_rate_Hz_(radar_rate_Hz) {
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const std::string name = "wheel" + std::to_string(i) + '.';
         wheel_[i] = {.speed = column(name + "speed_rad_s"),
@@ -137,13 +137,13 @@ void Recorder::add_frame(double t_s, const sensor_frame_t &frame) {
         put(at_.gyro_x, t_s, frame.gyro_x_count);
         put(at_.gyro_y, t_s, frame.gyro_y_count);
     }
-    // samples keep the converter's own clock, n/512 s; what was recorded already is not recorded again
+    // samples keep the converter's own clock, n/rate; what was recorded already is not recorded again
     if ((frame.present & FRAME_RADAR) == 0u) return;
     put(at_.sequence, t_s, frame.radar_sequence);
     for (std::uint32_t i = 0; i < frame.radar_samples; i++) {
         const std::uint32_t n = frame.radar_sequence + i;
         if (static_cast<std::int32_t>(n - radar_next_) < 0) continue;
-        put(at_.radar_count, static_cast<double>(n) / 512, frame.radar_count[i]);
+        put(at_.radar_count, static_cast<double>(n) / radar_rate_Hz_, frame.radar_count[i]);
         radar_next_ = n + 1;
     }
 }

@@ -17,7 +17,7 @@ namespace traction {
 
 class Recorder {
   public:
-    explicit Recorder(std::uint64_t expected_ticks);
+    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz);
 
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
     void add_camera(std::span<const sim::Pose> poses);
@@ -37,6 +37,7 @@ class Recorder {
     double exact(float value);
 
     std::uint64_t expected_;
+    double radar_rate_Hz_;
     std::vector<Column> columns_;
     std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick
     float last_float_ = 0;

@@ -145,7 +145,7 @@ TEST(RoverDescription, its_parameter_file_reads_back_bit_for_bit) {
         const std::string text = firmware_text(rover);
         control_config_t read;
         char message[PARAMETERS_MESSAGE];
-        ASSERT_TRUE(parameters_parse(text.data(), text.size(), "x", &read, message)) << message;
+        ASSERT_TRUE(parameters_parse(text.data(), text.size(), "x", &read, nullptr, message)) << message;
         EXPECT_EQ(bits(read), bits(firmware_config(rover))) << file;
     }
     EXPECT_NE(bits(firmware_config(sim::read_rover_file(heavy_file))), bits(rover_config_default()));
