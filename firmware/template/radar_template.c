@@ -436,7 +436,7 @@ radar_geometry_refusal_t radar_geometry_check(const radar_geometry_t *radar)
         {"vertical_deg", radar->vertical_deg, 1, 120, "give the one-way 3 dB width of the beam, up and down, in degrees"},
         {"horizontal_deg", radar->horizontal_deg, 1, 120, "give the one-way 3 dB width of the beam, left and right, in degrees"},
         {"depression_deg", radar->depression_deg, point ? 0 : 5, 70, "give the angle between the axis and the path in degrees"},
-        {"rate_Hz", radar->rate_Hz, 202, 6400, "the firmware holds 127 ticks of window and 64 samples a tick"},
+        {"rate_Hz", radar->rate_Hz, 202, 20000, "a window of 256 samples must last 1.27 s at most, and more than a tick"},
         {"band_low_Hz", radar->band_low_Hz, 0, 0.2 * radar->rate_Hz, "a high-pass above it would leave no echo; 0 where there is none"},
         {"band_high_Hz", radar->band_high_Hz, 2 * radar->band_low_Hz, 1e9, "give a low-pass well above the high-pass"},
         {"speed_high_m_s", radar->speed_high_m_s, 0.05, 100, "give the highest speed of the grid"},

@@ -36,7 +36,7 @@ typedef struct {
     double carrier_Hz;                   // f0, 1e9..200e9
     double vertical_deg, horizontal_deg; // one-way 3 dB beamwidths, 1..120; a point target needs none
     double depression_deg;               // theta_d: axis below horizontal, 0..80; of a point: between its path and the line of sight
-    double rate_Hz;                      // of the converter, 202..6400: what 127 ticks of window and 64 samples a tick hold
+    double rate_Hz;                      // of the converter, 202..20000 (on a rover 6400: 64 samples a tick)
     double band_low_Hz, band_high_Hz;    // second-order band-pass, 0 <= low < high; 0 is none below
     double speed_high_m_s;               // the grid's end, held below 0.46 of the rate
     double ground_exponent;              // n of (1), 0..2

@@ -19,7 +19,7 @@ namespace {
 struct SpeedOptions {
     std::string log, map, column = "radar.adc_count", accel, reference, reference_log, target = "ground", out, plot, report;
     double rate_Hz = 0, carrier_GHz = 0, vertical_deg = 0, horizontal_deg = 0, depression_deg = 0, band_low_Hz = 0, band_high_Hz = 0,
-           speed_high_m_s = 0, scale = 0;
+           speed_high_m_s = 0, scale = 0, agility_m_s2 = 0;
     bool carrier = false, vertical = false, horizontal = false, depression = false, low = false, high = false, highest = false,
          scaled = false;
     int channel = 0;
@@ -144,6 +144,7 @@ void run_speed(const SpeedOptions &options, Outcome &outcome) {
         throw log::LogError(options.log, 0, 0, error.what(), "mend the header, or describe the radar with --rover or --carrier-GHz");
     }
     settings.paper = options.paper;
+    settings.agility_m_s2 = options.agility_m_s2;
     const speed::Recording recording =
         wav ? speed::from_wav(options.log, options.channel, options.rate_Hz) : speed::from_log(log, options.column, options.rate_Hz);
     const double need_Hz = 2 * settings.radar.carrier_Hz / 299792458.0 * settings.radar.speed_high_m_s;

@@ -47,13 +47,14 @@ control_config_t config_of(const doppler_template_t *beam, const Settings &setti
     ground_speed_config_t &filter = config.ground_speed;
     if (!accel) {
         const double agility = settings.agility_m_s2 > 0 ? settings.agility_m_s2 : beam->line ? 3 : 0.5; // assumed: a car's braking
-        filter.blind_noise_m2_s2 = static_cast<float>(agility * agility * 0.3 * tick_s);                 // (1)
-        filter.bias_start_m_s2 = 1e-3F;                                                                  // there is no device to have one
-        filter.bias_noise_m2_s4 = 0;
+        filter.bias_start_m_s2 = static_cast<float>(agility);
+        filter.bias_noise_m2_s4 = static_cast<float>(agility * agility * tick_s); // (1)
+        filter.bias_max_m_s2 = static_cast<float>(std::fmax(3, 4 * agility));
     }
     if (!wheels) {
         filter.still_m_s = 0; // no wheel is at rest
-        filter.sign_sure = 0; // no witness: the likelier sign is taken
+        filter.sign_sure = 0; // no witness: the likelier sign is taken, which an accelerometer carries through zero
+        if (!accel) filter.sign_sure = static_cast<float>(unused), filter.wheel_odds = static_cast<float>(10 * unused); // forward
         filter.wheel_noise_m_s = static_cast<float>(unused / 1000);
         filter.apart_share = 0;
         filter.apart_least_m_s = filter.apart_told_m_s = static_cast<float>(unused);
@@ -179,7 +180,7 @@ Result measure(const Counts &counts, const Helpers &helpers, const Settings &set
         const double at_s = k * tick_s, t_s = counts.start_s + at_s;
         double accel_m_s2 = 0, rim_m_s = 0;
         const bool accel_known = accel.at(t_s, accel_m_s2);
-        if (!rim.at(t_s, rim_m_s)) rim_m_s = 0;
+        if (!rim.at(t_s, rim_m_s)) rim_m_s = out.used_wheels ? 0 : 1e-3; // a hint of forward, where nobody knows
         const std::size_t taken = listener.next();
         const doppler_output_t now = listener.tick(at_s);
         doppler_output_t heard = before; // one tick later, as on the rover: no tick pays for a search and a correction
@@ -190,7 +191,7 @@ Result measure(const Counts &counts, const Helpers &helpers, const Settings &set
             .doppler_m_s = heard.speed_m_s,
             .doppler_late_s = heard.fresh ? static_cast<float>(heard.late_samples) * config.doppler.per_sample_s : 0.0F,
             .wheel_m_s = static_cast<float>(rim_m_s),
-            .accel_valid = accel_known,
+            .accel_valid = accel_known || !out.used_accel, // (1)
             .doppler_fresh = used,
             .doppler_quiet = heard.quiet,
             .doppler_dead = heard.dead,

@@ -2,7 +2,7 @@
 //
 // Every 10 ms of the recording are one tick: its samples go through doppler_missing, doppler_gap and doppler_step, their values with the
 // tick's acceleration through ground_speed_step, one tick later, as control.c does it. What a rover knows and a recording does not:
-//   no accelerometer   the speed walks: Qv = agility^2 0.3 s T per tick                                     (1)
+//   no accelerometer   its place takes a constant 0, whose bias b = -dv/dt walks: Qb = agility^2 T/1 s per tick   (1)
 //   no wheels          the sign is not known: the recording is taken to begin forward, and standing is what is not heard
 //
 // Judged where there is a reference, at every tick from the first speed on:
@@ -26,7 +26,7 @@ struct Settings {
     int offset_count = 512, max_count = 1023;
     double quiet_count2 = 2; // variance below which there is no echo
     bool paper = false;      // the paper's estimator
-    double agility_m_s2 = 0; // of (1); 0: 0.5 of ground, 3 of a point target
+    double agility_m_s2 = 0; // of (1), change of the acceleration within a second; 0: 0.5 of ground, 3 of a point target
     double wheel_radius_m = 0.057;
 };
 
