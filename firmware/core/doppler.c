@@ -6,11 +6,11 @@
 enum { DOPPLER_GAIN = 32 };
 enum { EARLY_TWICE = 128, EARLY_MIRRORED = 192, EARLY_YOUNGER = 64 }; // lengths of the early windows; by how many samples they are younger
 
-// (1): the largest power in the template's band.
+// (1): the largest power of all bins but zero, as section 4 has it.
 static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 {
-    int32_t best = beam->first_bin;
-    for (int32_t k = beam->first_bin; k < beam->first_bin + beam->bins && k < FFT_BINS; k++) {
+    int32_t best = 1;
+    for (int32_t k = 2; k < FFT_BINS; k++) {
         if (power[k] > power[best]) {
             best = k;
         }
@@ -288,13 +288,17 @@ static void mirror(doppler_state_t *state)
     }
 }
 
-static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
+static void transform(const doppler_config_t *config, doppler_state_t *state, bool halved, int32_t late_samples)
 {
     const int32_t sum = state->sum;
     const int32_t mean = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
                          : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
                                                            : sum / FFT_LENGTH;
-    fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
+    if (config->method == DOPPLER_ARGMAX) {
+        fft_power_flat(state->window.sample, mean, state->power); // the paper windows nothing
+    } else {
+        fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
+    }
     state->pending = true;
     state->due = 0; // the powers of the window before are gone
     state->halved = halved;
@@ -305,7 +309,7 @@ static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 // shift, so the template holds (but for the band-pass, whose lower edge lies at half the frequency too). Of 192 the missing part is
 // the mirror image of what there is: the same frequencies, no step, no influence of the offset. Either has a smaller mean age over the
 // square of the Hann window, 63.25 and 63.9 samples of 127.5.
-static void transform_early(doppler_state_t *state, int32_t late_samples)
+static void transform_early(const doppler_config_t *config, doppler_state_t *state, int32_t late_samples)
 {
     if (state->full || (state->filled != EARLY_TWICE && state->filled != EARLY_MIRRORED)) {
         return;
@@ -313,7 +317,7 @@ static void transform_early(doppler_state_t *state, int32_t late_samples)
     if (state->filled == EARLY_MIRRORED) {
         mirror(state);
     }
-    transform(state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
+    transform(config, state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
 }
 
 // Noise of 1 count rms spans 5 counts in 64 samples, of 0.3 counts 2: below that the converter hears nothing that is alive (assumed).
@@ -358,11 +362,11 @@ static void take(const doppler_config_t *config, doppler_state_t *state, int16_t
         }
         state->filled++;
         if (config->method == DOPPLER_LIKELIHOOD) {
-            transform_early(state, late_samples);
+            transform_early(config, state, late_samples);
         }
     }
     if (state->filled == FFT_LENGTH) {
-        transform(state, false, late_samples);
+        transform(config, state, false, late_samples);
         state->full = true;
         slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
     }

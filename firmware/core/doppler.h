@@ -3,7 +3,7 @@
 //   paper: v = f_peak c / (2 f0 cos theta_d)                                         (1)  = (11), zero frequency excluded
 //   ours:  v = argmin over v of J(v) = sum_k P[k] / S_v[k]  +  a sum_k ln S_v[k],  a = sum_k P[k]     (2)
 //
-// Source: (11) Lhomme-Desages. (2), derived here: powers of a noise-like echo are exponentially distributed around a S_v[k] with
+// Source: (11) Lhomme-Desages; without a window, over all bins but zero. (2), derived here: powers of a noise-like echo are exponentially distributed around a S_v[k] with
 // sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
 // geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
 // ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is

@@ -59,12 +59,11 @@ static inline uint64_t square_sum(int32_t re, int32_t im) { return (uint64_t)((i
 #endif
 
 // Stage 1: window, and 64 transforms of length 4 over x[n], x[n + 64], x[n + 128], x[n + 192]. h[n + 128] = 1 - h[n].
-static void window_and_first_stage(const int16_t *sample, int32_t mean, word_t *out)
+static inline void window_and_first_stage(const int16_t *sample, int32_t mean, const int32_t *hann, int32_t step, word_t *out)
 {
     const int32_t one_q28 = 1 << 28;
-    const int32_t *hann = fft_hann_q28;
     //@ loop unroll 64;
-    for (const int16_t *end = sample + 64; sample != end; sample++, out += 2, hann += 2) {
+    for (const int16_t *end = sample + 64; sample != end; sample++, out += 2, hann += step) {
         const int32_t h0 = hann[0];
         const int32_t h1 = hann[1];
         const int32_t x0 = fixed_mul(h0, (int16_t)(sample[0] - mean));
@@ -193,11 +192,9 @@ static void combine_to_power(const word_t *in, uint64_t *power)
 
 void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]) { fft_power_about(sample, 0, power); }
 
-void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
+static void power_of(word_t *even, uint64_t *power)
 {
-    word_t even[FFT_LENGTH / 2];
     word_t odd[FFT_LENGTH / 2];
-    window_and_first_stage(sample, mean, even);
     //@ loop unroll 16;
     for (int group = 0; group < 16; group++) {
         combine(even + 2 * group, odd + 8 * group, 4, fft_twiddle_4_q15);
@@ -207,4 +204,19 @@ void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t po
         combine(odd + 8 * group, even + 32 * group, 16, fft_twiddle_16_q15);
     }
     combine_to_power(even, power);
+}
+
+void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
+{
+    word_t even[FFT_LENGTH / 2];
+    window_and_first_stage(sample, mean, fft_hann_q28, 2, even);
+    power_of(even, power);
+}
+
+void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
+{
+    static const int32_t half_q28[2] = {1 << 27, 1 << 27};
+    word_t even[FFT_LENGTH / 2];
+    window_and_first_stage(sample, mean, half_q28, 0, even);
+    power_of(even, power);
 }

@@ -457,6 +457,7 @@ void control_config_make_paper(control_config_t *config)
     config->ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
     config->ground_speed.bias_start_m_s2 = 0.0f;
     config->wheel_pid.slew_T_rad_s = 1e6f;
+    config->wheel_pid.kd_s2 = 0.005f * config->wheel_pid.kp_s; // the paper names a PID, no gains: 5 ms of derivative time, assumed
     config->feed_forward = false;
     config->speed_control.ki_T_rad_m = 0.0f; // (22) has no integral
     config->slip_pi.per_speed_s_m = 0.0f;    // (23) has no schedule
