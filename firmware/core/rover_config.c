@@ -292,6 +292,9 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     build_ground_speed(v, config->doppler.beam, &config->ground_speed);
     config->slip.wheel_radius_m = v[ROVER_wheel_radius_m];
     config->slip.valid_m_s = v[ROVER_slip_valid_m_s];
+    config->slip.valid_std = 0.25f; // [1] assumed: beyond it slip does not tell a gripping wheel from a spinning one
+    config->slip.rim_std_m_s =
+        0.40824829f * config->sense.speed_rad_s_per_count * v[ROVER_wheel_radius_m]; // q/(T sqrt 6): docs/log_format.md
     build_motor(v, &config->motor);
     build_control(v, config);
     build_safety(v, &config->safety);

@@ -33,6 +33,7 @@ Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz) : expecte
                      .slip = column(name + "slip"),
                      .torque = column(name + "motor_torque_Nm"),
                      .traction = column(name + "traction_N"),
+                     .slip_std = column(name + "slip_std"),
                      .slip_valid = column(name + "slip_valid"),
                      .saturated = column(name + "saturated"),
                      .refused = column(name + "encoder_refused", true),
@@ -112,6 +113,7 @@ void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, con
     put(at.slip, t_s, tidy(trace.slip));
     put(at.torque, t_s, tidy(trace.torque_Nm));
     put(at.traction, t_s, tidy(trace.traction_N));
+    put(at.slip_std, t_s, tidy(trace.slip_std));
     put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
     put(at.saturated, t_s, trace.saturated ? 1 : 0);
     put(at.refused, t_s, trace.encoder_refused ? 1 : 0);

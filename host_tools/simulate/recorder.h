@@ -44,8 +44,8 @@ class Recorder {
     double last_exact_ = 0;
 
     struct Wheel {
-        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated, refused, bridge,
-            command_speed, command_duty;
+        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_std, slip_valid, saturated,
+            refused, bridge, command_speed, command_duty;
     } wheel_[WHEEL_COUNT]{};
     struct {
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,

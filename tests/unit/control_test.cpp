@@ -183,7 +183,8 @@ TEST_F(Rolling, every_wheel_of_the_slip_servo_is_driven_by_its_own_slip_loop_and
     pulses[2] = 40;
     run(300);
     for (int i = 0; i < WHEEL_COUNT; ++i) {
-        EXPECT_TRUE(trace.wheel[i].slip_valid);
+        EXPECT_FALSE(trace.wheel[i].slip_valid); // no echo: the ground speed is hardly known, nor is the slip
+        EXPECT_GT(trace.wheel[i].slip_std, 0.25f);
         EXPECT_EQ(trace.wheel[i].duty, 1.0f) << i; // 2 * 1.5 * 0.9 at least: far beyond the limit
         EXPECT_TRUE(trace.wheel[i].saturated) << i;
         EXPECT_EQ(trace.wheel[i].set_speed_rad_s, 0.0f) << i; // no speed loop beside it

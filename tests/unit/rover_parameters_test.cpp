@@ -177,7 +177,11 @@ control_config_t written_out() {
                     .open_looks = 6},
         .doppler = doppler_default(),
         .ground_speed = ground_speed_default(),
-        .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
+        .slip = {.wheel_radius_m = wheel_radius_m,
+                 .valid_m_s = 0.05f,
+                 .valid_std = 0.25f,
+                 .rim_std_m_s =
+                     0.40824829f * (6.28318531f / 6000.0f / tick_s) * wheel_radius_m}, // [m/s] the band-pass blinds the radar below
         .motor = {.torque_constant_Nm_A = torque_constant_Nm_A,
                   .volt_per_speed_Vs = resistance_ohm * viscous_Nms / torque_constant_Nm_A + torque_constant_Nm_A,
                   .volt_dry_V = resistance_ohm * dry_Nm / torque_constant_Nm_A,
