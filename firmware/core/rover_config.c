@@ -108,7 +108,7 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
-        .bias_start_m_s2 = 0.3f,        // assumed: 3 deg of slope at the start; what is steeper is found by (7)
+        .bias_start_m_s2 = 1.0f,        // 6 deg: slopes to 10 are 1.7 of it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
