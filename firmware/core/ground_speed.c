@@ -22,7 +22,7 @@ static bool is_standing(const ground_speed_config_t *config, const ground_speed_
     if (state->still_ticks < config->still_needed || (heard && state->loud >= config->loud_needed)) {
         return false;
     }
-    const bool slow = fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < ground_speed_square(config->slow_m_s);
+    const bool slow = state->heard && fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < ground_speed_square(config->slow_m_s);
     const bool parked = state->still_ticks >= config->parked_needed && (!heard || state->loud == 0);
     return slow || parked || state->quiet >= config->quiet_needed;
 }
@@ -33,15 +33,20 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
 {
     const bool loud = !input->doppler_quiet && fixed_greater(input->doppler_m_s, config->slow_m_s);
     const bool deaf = input->doppler_dead && fixed_greater(fabsf(input->wheel_m_s), ears_open_m_s);
+    state->heard = true;
     state->quiet = input->doppler_quiet && !deaf ? state->quiet + (state->quiet < 1000 ? 1 : 0) : 0;
     state->loud = loud ? state->loud + (state->loud < 1000 ? 1 : 0) : 0;
 }
 
-// Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips.
+enum { SILENT_TICKS = 25 }; // two values missed
+
+// Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
 static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
-    const float noise = ground_speed_square(config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s));
-    if (fixed_greater(state->p_vv, 1.2f * noise)) {
+    const float spread = config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
+    const float noise = ground_speed_square(spread);
+    const bool denied = state->unheard_ticks < SILENT_TICKS && fixed_greater(fabsf(state->value_m_s - fabsf(wheel_m_s)), 2.0f * spread);
+    if (!denied && fixed_greater(state->p_vv, 1.2f * noise)) {
         ground_speed_track_t track = ground_speed_best_of(state);
         ground_speed_correct(config, &track, wheel_m_s - track.speed_m_s, 0.0f, noise);
         ground_speed_keep_best(state, &track);

@@ -12,6 +12,7 @@
 //   odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S)                   (9)  m: the speed that (3) expects
 //   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s)                     (10)
 //   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration      (11)
+//   cost of a sign: (f/s_f)^2 g(|u|) where f u < 0,  u = R w - v,  f the raw accelerometer's mean  (12)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
@@ -23,7 +24,9 @@
 // the values tell; the wheels' sign is a weak witness. While both live, the standard deviation holds both. (10): what the accelerometer
 // lets the speed change and the wheels do not, as long as no Doppler value tells of it, is slip or a slope: the variance grows by a share
 // of X^2 - least^2, and (7) needs less. (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean
-// is 0.
+// is 0. (12): an accelerometer feels no gravity that the body gives way to; it feels what the wheels do to the body, and dry friction acts
+// along the slip's velocity u on any ground and any slope. A sign for which it would act against it is the less likely, beyond what the
+// device's own bias may be; g goes from 0 for what rolling and its slip may be to 1.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -87,6 +90,8 @@ typedef struct {
     float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
     int32_t against_values;        // values against which they turn before the other sign is asked anew
     float against_odds;            // and the odds that it then starts with
+    float force_per_s2_m;          // 1/standard deviation of the device's bias, against which (12) is judged
+    float force_most, force_pull;  // of (12): at most; its share per value while both signs live
     float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
     float wheel_slip;
 } ground_speed_config_t;
@@ -131,6 +136,8 @@ typedef struct {
     int32_t against;
     int32_t still_ticks;
     bool standstill;
+    bool heard;                // a Doppler value has come since the reset
+    bool accepted;             // and one has corrected
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
     float odds;                // 2 ln of the odds against it
@@ -143,6 +150,7 @@ typedef struct {
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
     float value_cost;                    // e^2/S + ln S of the best
     float value_sign, value_wheel_m_s;
+    float value_force; // (12) as 2 ln of the odds of +
 } ground_speed_state_t;
 
 typedef struct {

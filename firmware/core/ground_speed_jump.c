@@ -72,7 +72,8 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
     const float spread = at->p_vv + state->value_noise_m2_s2;
     const float told = 4.0f * state->value_m_s * at->speed_m_s / spread;
     const bool sure = fabsf(told) >= config->sign_sure;
-    const float odds = told + (sure ? 0.0f : ground_speed_wheel_odds(config, state->value_m_s, state->value_wheel_m_s));
+    const float odds =
+        told + (sure ? 0.0f : ground_speed_wheel_odds(config, state->value_m_s, state->value_wheel_m_s) + state->value_force);
     const float sign = odds < 0.0f ? -1.0f : 1.0f;
     const float innovation = sign * state->value_m_s - at->speed_m_s;
     ground_speed_track_t mirrored = *at;

@@ -16,6 +16,31 @@ float ground_speed_wheel_odds(const ground_speed_config_t *config, float measure
     return wheel_m_s < 0.0f ? -odds : odds;
 }
 
+// g of (12): whether the wheels slip so fast that friction has no other direction.
+static float slips(const ground_speed_config_t *config, float slip_m_s, float rim_m_s)
+{
+    const float rolling = config->wheel_noise_m_s + config->wheel_slip * rim_m_s;
+    const float beyond = fabsf(slip_m_s) - rolling;
+    return !fixed_greater(beyond, 0.0f) ? 0.0f : fixed_greater(beyond, rolling) ? 1.0f : beyond / rolling;
+}
+
+float ground_speed_force_odds(const ground_speed_config_t *config, float measured, float wheel_m_s, float force_m_s2)
+{
+    const float rim = fabsf(wheel_m_s);
+    const float told = ground_speed_square(force_m_s2 * config->force_per_s2_m);
+    const float most = fixed_greater(told, config->force_most) ? config->force_most : told;
+    const float forth = wheel_m_s - measured; // u of +, and of -
+    const float back = wheel_m_s + measured;
+    float odds = 0.0f;
+    if ((forth < 0.0f) != (force_m_s2 < 0.0f)) {
+        odds -= most * slips(config, forth, rim);
+    }
+    if ((back < 0.0f) != (force_m_s2 < 0.0f)) {
+        odds += most * slips(config, back, rim);
+    }
+    return odds;
+}
+
 void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track)
 {
     side->at = *track;
@@ -54,7 +79,7 @@ float ground_speed_choose_sign(const ground_speed_config_t *config, ground_speed
     if (fabsf(told) >= config->sign_sure || state->other_alive) {
         return middle < 0.0f ? -1.0f : 1.0f;
     }
-    const float odds = told + ground_speed_wheel_odds(config, measured, wheel_m_s);
+    const float odds = told + ground_speed_wheel_odds(config, measured, wheel_m_s) + state->value_force;
     ground_speed_split(state, &state->other, track);
     state->odds = fabsf(odds);
     state->other_alive = state->odds < config->sign_sure;
@@ -114,7 +139,8 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const float cost = see(config, state, &state->other, &expected, sign);
     state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
-                   config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s);
+                   config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) +
+                   config->force_pull * (state->speed_m_s < 0.0f ? -state->value_force : state->value_force);
     if (state->odds < 0.0f) {
         const ground_speed_track_t best = ground_speed_best_of(state);
         move_side(config, state, &state->other, 0);

@@ -72,19 +72,22 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
     state->value_wheel_m_s = input->wheel_m_s;
+    state->value_force = ground_speed_force_odds(config, measured, input->wheel_m_s, window.accel_m_s2);
     watch_bias(config, state, &track, nearest, spread);
     if (cost > ground_speed_square(config->gate_sigma)) {
-        if (state->refused < config->gate_patience) {
+        if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little
             state->refused++;
             return;
         }
         track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
         track.p_vb = 0.0f;
         spread = ground_speed_spread_of(&track, window.tau_s) + noise;
+        state->value_cost = ground_speed_square(nearest) / spread + ground_speed_ln_rough(spread);
     } else {
         watch_misfit(config, state, cost);
     }
     state->refused = 0;
+    state->accepted = true;
     state->value_sign = ground_speed_choose_sign(config, state, &track, measured, middle, spread, input->wheel_m_s);
     state->waits = 2;
     ground_speed_correct(config, &track, state->value_sign * measured - middle, window.tau_s, noise);

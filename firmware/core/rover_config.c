@@ -146,6 +146,9 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .wheel_pull = 0.5f,
         .against_values = 4, // half a second
         .against_odds = 4.0f,
+        .force_per_s2_m = 4.0f,  // 1/(0.25 m/s^2), assumed: 25 mg of a small MEMS part
+        .force_most = 12.0f,     // assumed: as a value of the radar
+        .force_pull = 0.25f,     // four values share their samples
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
     };
