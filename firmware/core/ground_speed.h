@@ -140,12 +140,13 @@ typedef struct {
     bool accepted;             // and one has corrected
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
-    float odds;                // 2 ln of the odds against it
-    float doubt_m2_s2;         // what it adds to the variance
-    ground_speed_side_t agile; // (7)
-    float agile_sum;           // of (7)
-    int32_t agile_left;        // values until it starts anew
-    int32_t waits;             // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
+    float odds;                                           // 2 ln of the odds against it
+    float doubt_m2_s2;                                    // what it adds to the variance
+    ground_speed_side_t agile;                            // (7)
+    float agile_sum;                                      // of (7)
+    int32_t agile_left;                                   // values until it starts anew
+    int32_t waits;                                        // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
+    float value_heard_m_s, value_accel_m_s2, value_trust; // the value as it came, the raw acceleration in its window
     float value_m_s, value_noise_m2_s2;
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
     float value_cost;                    // e^2/S + ln S of the best

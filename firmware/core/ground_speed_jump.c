@@ -69,16 +69,16 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
                       ticks * state->speed_noise_m2_s2, config->agile_m2_s4);
     state->agile.q20 = q20;
     state->agile.ticks = 2;
-    const float spread = at->p_vv + state->value_noise_m2_s2;
-    const float told = 4.0f * state->value_m_s * at->speed_m_s / spread;
+    const ground_speed_value_t value = ground_speed_value_for(config, state, at);
+    const float spread = at->p_vv + value.noise_m2_s2;
+    const float told = 4.0f * value.speed_m_s * at->speed_m_s / spread;
     const bool sure = fabsf(told) >= config->sign_sure;
-    const float odds =
-        told + (sure ? 0.0f : ground_speed_wheel_odds(config, state->value_m_s, state->value_wheel_m_s) + state->value_force);
+    const float odds = told + (sure ? 0.0f : ground_speed_wheel_odds(config, value.speed_m_s, state->value_wheel_m_s) + state->value_force);
     const float sign = odds < 0.0f ? -1.0f : 1.0f;
-    const float innovation = sign * state->value_m_s - at->speed_m_s;
+    const float innovation = sign * value.speed_m_s - at->speed_m_s;
     ground_speed_track_t mirrored = *at;
     const float cost = ground_speed_square(innovation) / spread + ground_speed_ln_rough(spread);
-    ground_speed_correct(config, at, innovation, 0.0f, state->value_noise_m2_s2);
+    ground_speed_correct(config, at, innovation, 0.0f, value.noise_m2_s2);
     state->agile_sum = fixed_clamp(
         state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, config->agile_most) - config->agile_drift, 0.0f, 1000.0f);
     const bool apart = ground_speed_told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
@@ -87,7 +87,7 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
         state->other_alive = fabsf(odds) < config->sign_sure;
         if (state->other_alive) {
             const ground_speed_track_t best = ground_speed_best_of(state);
-            ground_speed_correct(config, &mirrored, -sign * state->value_m_s - mirrored.speed_m_s, 0.0f, state->value_noise_m2_s2);
+            ground_speed_correct(config, &mirrored, -sign * value.speed_m_s - mirrored.speed_m_s, 0.0f, value.noise_m2_s2);
             take_agile(config, state, &mirrored);
             const ground_speed_track_t other = ground_speed_best_of(state);
             ground_speed_split(state, &state->other, &other);

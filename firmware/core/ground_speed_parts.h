@@ -59,6 +59,14 @@ ground_speed_past_t ground_speed_look_back(const ground_speed_config_t *config, 
 
 // --- ground_speed_value.c
 
+// The last value as a track sees it, whose acceleration smears the window: (11).
+typedef struct {
+    float speed_m_s;
+    float noise_m2_s2;
+} ground_speed_value_t;
+
+ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
+                                            const ground_speed_track_t *track);
 void ground_speed_update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s, float wheel_m_s);
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);

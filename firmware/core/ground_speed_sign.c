@@ -98,6 +98,7 @@ static void move_side(const ground_speed_config_t *config, const ground_speed_st
 
 typedef struct {
     float middle_m_s, spread_m2_s2;
+    ground_speed_value_t value;
     float told; // 2 ln of the odds of +
 } expected_t;
 
@@ -107,9 +108,10 @@ static expected_t expect(const ground_speed_config_t *config, const ground_speed
 {
     move_side(config, state, side, ticks_ago);
     expected_t out;
+    out.value = ground_speed_value_for(config, state, &side->at);
     out.middle_m_s = side->at.speed_m_s + state->value_tau_s * side->at.bias_m_s2 - state->value_change_m_s;
-    out.spread_m2_s2 = ground_speed_spread_of(&side->at, state->value_tau_s) + state->value_noise_m2_s2;
-    out.told = 4.0f * state->value_m_s * out.middle_m_s / out.spread_m2_s2;
+    out.spread_m2_s2 = ground_speed_spread_of(&side->at, state->value_tau_s) + out.value.noise_m2_s2;
+    out.told = 4.0f * out.value.speed_m_s * out.middle_m_s / out.spread_m2_s2;
     return out;
 }
 
@@ -117,8 +119,8 @@ static expected_t expect(const ground_speed_config_t *config, const ground_speed
 static float see(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side,
                  const expected_t *expected, float sign)
 {
-    const float innovation = sign * state->value_m_s - expected->middle_m_s;
-    ground_speed_correct(config, &side->at, innovation, state->value_tau_s, state->value_noise_m2_s2);
+    const float innovation = sign * expected->value.speed_m_s - expected->middle_m_s;
+    ground_speed_correct(config, &side->at, innovation, state->value_tau_s, expected->value.noise_m2_s2);
     return ground_speed_square(innovation) / expected->spread_m2_s2 + ground_speed_ln_rough(expected->spread_m2_s2);
 }
 

@@ -39,6 +39,22 @@ static void watch_misfit(const ground_speed_config_t *config, ground_speed_state
     state->misfit = fixed_clamp(state->misfit * (1.0f + config->misfit_share * (limited - 1.0f)), 1.0f, config->misfit_max);
 }
 
+ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
+                                            const ground_speed_track_t *track)
+{
+    const float own_accel = state->value_accel_m_s2 - track->bias_m_s2;
+    const float heard = state->value_heard_m_s;
+    const float accel2 = fixed_clamp(own_accel * own_accel - track->p_bb, 0.0f, 100.0f);
+    const float heard2 = heard * heard;
+    const float less2 = fixed_clamp(ground_speed_square(config->doppler_spread_s) * accel2, 0.0f, 0.5f * heard2);
+    const ground_speed_value_t out = {
+        .speed_m_s = fixed_greater(less2, 0.0f) ? sqrtf(heard2 - less2) : heard, // (11)
+        .noise_m2_s2 =
+            state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2,
+    };
+    return out;
+}
+
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
@@ -54,13 +70,12 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
         early ? 2.5f
               : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
     state->alike_m_s += 0.25f * (fixed_clamp(fixed_finite(input->doppler_misfit), 0.0f, 10.0f) * heard - state->alike_m_s);
-    const float trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit;
-    const float accel2 = fixed_clamp(own_accel * own_accel - track.p_bb, 0.0f, 100.0f);
-    const float heard2 = heard * heard;
-    const float less2 = fixed_clamp(ground_speed_square(config->doppler_spread_s) * accel2, 0.0f, 0.5f * heard2);
-    const float measured = fixed_greater(less2, 0.0f) ? sqrtf(heard2 - less2) : heard; // (11)
-    const float noise =
-        trust * shorter * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2;
+    state->value_heard_m_s = heard;
+    state->value_accel_m_s2 = window.accel_m_s2;
+    state->value_trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit * shorter;
+    const ground_speed_value_t value = ground_speed_value_for(config, state, &track);
+    const float measured = value.speed_m_s;
+    const float noise = value.noise_m2_s2;
     float spread = ground_speed_spread_of(&track, window.tau_s) + noise;
     const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
     const float cost = ground_speed_square(nearest) / spread;
