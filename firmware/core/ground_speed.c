@@ -54,27 +54,14 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     }
 }
 
-// (10), over the ticks since the last time: it waits in ticks that are busy.
-static void watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
-{
-    const float wheel = fixed_clamp(fixed_finite(wheel_m_s), -ground_speed_max_m_s, ground_speed_max_m_s);
-    const int32_t now = state->integral_q20[state->head];
-    const float ticks = (float)state->wheel_ticks;
-    const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) -
-                         state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
-    const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
-    state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -ground_speed_max_m_s, ground_speed_max_m_s);
-    state->wheel_m_s = wheel;
-    state->wheel_q20 = now;
-    state->wheel_ticks = 0;
-}
-
 static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
     const float unseen =
         config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
-    const float apart2 = fixed_clamp(ground_speed_told_by_wheels(config, state, config->apart_least_m_s), 0.0f, ground_speed_max_m_s);
+    const float told = ground_speed_told_by_wheels(config, state, config->apart_least_m_s);
+    const float shaken = told + state->apart_m2_s2 - ground_speed_square(state->apart_m_s); // by a body that sways on its wheels
+    const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, ground_speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
     const float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
@@ -111,7 +98,9 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         }
     } else if (state->waits > 0) {
         state->waits = 0;
-        ground_speed_update_agile(config, state);
+        if (state->rolls_ticks == 0) { // (3) knows no jump within its window
+            ground_speed_update_agile(config, state);
+        }
     } else if (!input->busy) {
         do_chore(config, state, input);
     }
@@ -176,7 +165,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     tick(config, state, accel, noise);
     if (!input->busy || fresh) {
         catch_up(config, state);
-        watch_wheels(config, state, input->wheel_m_s);
+        ground_speed_watch_wheels(config, state, input);
     }
     if (config->method == GROUND_SPEED_PAPER) {
         state->standstill = false;

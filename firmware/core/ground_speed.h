@@ -27,6 +27,10 @@
 // is 0. (12): an accelerometer feels no gravity that the body gives way to; it feels what the wheels do to the body, and dry friction acts
 // along the slip's velocity u on any ground and any slope. A sign for which it would act against it is the less likely, beyond what the
 // device's own bias may be; g goes from 0 for what rolling and its slip may be to 1.
+// (13): where (10) passes its limit, slip is the reason only if the force pushes along the slip that it would be, -X: f sign(-X) > least.
+// Else it is a slope that begins, under wheels that roll on: the best track keeps to the wheels' changes of speed for a window's length,
+// its bias free to jump, and the one that believes the accelerometer is followed beside it, as the other sign is, until the radar's values
+// tell.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -74,6 +78,12 @@ typedef struct {
     float apart_share;             // of (10), squared
     float apart_least_m_s;         // of (10): what slip makes
     float apart_noise;             // of (10): Qv of its noise, nine times
+    float roll_told_m_s;           // of (13): its limit
+    float slip_force_m_s2;         // of (13): the least force of wheels that slip
+    float roll_odds;               // 2 ln of the odds that (13) starts with
+    float roll_noise_m2_s2;        // Qv per tick of a speed that changes as the wheels' does
+    float roll_share;              // of a tick's rest that enters the bias
+    float roll_bias_m2_s4;         // its variance then
     int32_t agile_values;          // after which (7) starts from the best anew
     float misfit_share;            // c of (8)
     float misfit_max;              // limit of (8)
@@ -128,6 +138,10 @@ typedef struct {
     float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
+    float apart_m2_s2;    // mean of X^2 over a quarter of a second
+    float wheel_mean_m_s; // over a quarter of a second
+    int32_t rolls_ticks;  // for which (13) still holds the wheels' word, and until it may begin again
+    int32_t rolls_wait;
     int32_t refused;
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
@@ -159,6 +173,7 @@ typedef struct {
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
+    bool wheels_part;     // they turn at speeds so different that their mean tells little
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;

@@ -4,12 +4,6 @@
 
 #include <math.h>
 
-// X^2 of (10) beyond `least` and twice what the accelerometer's noise makes of it: Qv T/(2 (T/0.25 s)) = 12.5 Qv.
-float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s)
-{
-    return ground_speed_square(state->apart_m_s) - ground_speed_square(least_m_s) - config->apart_noise * state->speed_noise_m2_s2;
-}
-
 // (7), two ticks later. Its state is that of the window's middle, [v + tau b - change, b], which Doppler values see alone: a bias that
 // jumps within the window enters it as the window does.
 static ground_speed_track_t to_middle(const ground_speed_track_t *track, float tau, float change_m_s)
@@ -55,6 +49,12 @@ static void take_agile(const ground_speed_config_t *config, ground_speed_state_t
     ground_speed_keep_best(state, &track);
 }
 
+void ground_speed_forget_agile(ground_speed_state_t *state)
+{
+    state->agile_sum = 0.0f;
+    state->agile_left = 0;
+}
+
 void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     if (state->agile_left <= 0) {
@@ -69,7 +69,7 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
                       ticks * state->speed_noise_m2_s2, config->agile_m2_s4);
     state->agile.q20 = q20;
     state->agile.ticks = 2;
-    const ground_speed_value_t value = ground_speed_value_for(config, state, at);
+    const ground_speed_value_t value = ground_speed_value_for(config, state, at, state->value_accel_m_s2);
     const float spread = at->p_vv + value.noise_m2_s2;
     const float told = 4.0f * value.speed_m_s * at->speed_m_s / spread;
     const bool sure = fabsf(told) >= config->sign_sure;

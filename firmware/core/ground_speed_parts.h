@@ -4,7 +4,8 @@
 //   ground_speed_track.c  one track [v, b]: prediction (2), correction, bounds; V and what a window remembers (3); noise (6)
 //   ground_speed_value.c  a Doppler value on the best track: (1), (3), (4), (5), (8), (11); a quiet one
 //   ground_speed_sign.c   the other sign, (9)
-//   ground_speed_jump.c   the track whose bias may jump, (7), and what the wheels tell of it, (10)
+//   ground_speed_jump.c   the track whose bias may jump, (7)
+//   ground_speed_wheels.c where accelerometer and wheels part: (10), and whether it is slip or a slope, (13)
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 
@@ -59,14 +60,14 @@ ground_speed_past_t ground_speed_look_back(const ground_speed_config_t *config, 
 
 // --- ground_speed_value.c
 
-// The last value as a track sees it, whose acceleration smears the window: (11).
+// The last value as a track sees it that moves on with the raw acceleration `accel`: its own smears the window, (11).
 typedef struct {
     float speed_m_s;
     float noise_m2_s2;
 } ground_speed_value_t;
 
 ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
-                                            const ground_speed_track_t *track);
+                                            const ground_speed_track_t *track, float accel_m_s2);
 void ground_speed_update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s, float wheel_m_s);
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
@@ -85,7 +86,15 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
 
 // --- ground_speed_jump.c
 
-float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s);
+void ground_speed_forget_agile(ground_speed_state_t *state);
 void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed_state_t *state);
+
+// --- ground_speed_wheels.c
+
+float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s);
+void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
+// What a track that rolls needs of the past in place of (3): the wheels' speed, and its mean over about the window.
+ground_speed_past_t ground_speed_rolled(const ground_speed_state_t *state);
+void ground_speed_no_rolling(ground_speed_state_t *state);
 
 #endif

@@ -108,7 +108,7 @@ static expected_t expect(const ground_speed_config_t *config, const ground_speed
 {
     move_side(config, state, side, ticks_ago);
     expected_t out;
-    out.value = ground_speed_value_for(config, state, &side->at);
+    out.value = ground_speed_value_for(config, state, &side->at, state->value_accel_m_s2);
     out.middle_m_s = side->at.speed_m_s + state->value_tau_s * side->at.bias_m_s2 - state->value_change_m_s;
     out.spread_m2_s2 = ground_speed_spread_of(&side->at, state->value_tau_s) + out.value.noise_m2_s2;
     out.told = 4.0f * out.value.speed_m_s * out.middle_m_s / out.spread_m2_s2;
@@ -143,7 +143,8 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
                    config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) +
                    config->force_pull * (state->speed_m_s < 0.0f ? -state->value_force : state->value_force);
-    if (state->odds < 0.0f) {
+    const bool won = state->odds < 0.0f;
+    if (won) {
         const ground_speed_track_t best = ground_speed_best_of(state);
         move_side(config, state, &state->other, 0);
         ground_speed_keep_best(state, &state->other.at);
@@ -153,6 +154,9 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const float apart = state->speed_m_s - state->other.at.speed_m_s;
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
     state->other_alive = !one && state->odds < config->sign_sure;
+    if (won) {
+        ground_speed_no_rolling(state);
+    }
     const float doubt = doubt_of(state->odds);
     state->doubt_m2_s2 = state->other_alive ? doubt * (1.0f - doubt) * apart * apart : 0.0f;
 }

@@ -40,9 +40,9 @@ static void watch_misfit(const ground_speed_config_t *config, ground_speed_state
 }
 
 ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
-                                            const ground_speed_track_t *track)
+                                            const ground_speed_track_t *track, float accel_m_s2)
 {
-    const float own_accel = state->value_accel_m_s2 - track->bias_m_s2;
+    const float own_accel = accel_m_s2 - track->bias_m_s2;
     const float heard = state->value_heard_m_s;
     const float accel2 = fixed_clamp(own_accel * own_accel - track->p_bb, 0.0f, 100.0f);
     const float heard2 = heard * heard;
@@ -60,7 +60,10 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
     const float heard = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
     ground_speed_track_t track = ground_speed_best_of(state);
-    const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s; // (3)
+    const bool rolls = state->rolls_ticks > 0;
+    ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
+    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                        // a track that rolls has none of its own
+    const float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
     const bool early = input->doppler_late_s < 0.0f;
     if (early && fabsf(own_accel) > early_accel_m_s2) {
@@ -73,10 +76,10 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_heard_m_s = heard;
     state->value_accel_m_s2 = window.accel_m_s2;
     state->value_trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit * shorter;
-    const ground_speed_value_t value = ground_speed_value_for(config, state, &track);
+    const ground_speed_value_t value = ground_speed_value_for(config, state, &track, own.accel_m_s2);
     const float measured = value.speed_m_s;
     const float noise = value.noise_m2_s2;
-    float spread = ground_speed_spread_of(&track, window.tau_s) + noise;
+    float spread = ground_speed_spread_of(&track, own.tau_s) + noise;
     const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
     const float cost = ground_speed_square(nearest) / spread;
     state->waits = 2;
@@ -96,7 +99,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
         }
         track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
         track.p_vb = 0.0f;
-        spread = ground_speed_spread_of(&track, window.tau_s) + noise;
+        spread = ground_speed_spread_of(&track, own.tau_s) + noise;
         state->value_cost = ground_speed_square(nearest) / spread + ground_speed_ln_rough(spread);
     } else {
         watch_misfit(config, state, cost);
@@ -105,7 +108,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->accepted = true;
     state->value_sign = ground_speed_choose_sign(config, state, &track, measured, middle, spread, input->wheel_m_s);
     state->waits = 2;
-    ground_speed_correct(config, &track, state->value_sign * measured - middle, window.tau_s, noise);
+    ground_speed_correct(config, &track, state->value_sign * measured - middle, own.tau_s, noise);
     ground_speed_keep_best(state, &track);
     ground_speed_ask_again(config, state, measured, input->wheel_m_s);
 }
