@@ -10,6 +10,8 @@ float ground_speed_told_by_wheels(const ground_speed_config_t *config, const gro
     return ground_speed_square(state->apart_m_s) - ground_speed_square(least_m_s) - config->apart_noise * state->speed_noise_m2_s2;
 }
 
+static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: the first count after a start
+
 enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100 };
 
 // f of (13), over the last ticks.
@@ -59,7 +61,9 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) -
                          state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
-    state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -ground_speed_max_m_s, ground_speed_max_m_s);
+    if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
+        state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -ground_speed_max_m_s, ground_speed_max_m_s);
+    }
     state->apart_m2_s2 +=
         config->apart_forget * (ticks < 10.0f ? ticks : 10.0f) * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);
     state->wheel_m_s = wheel;
@@ -73,8 +77,9 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     if (state->rolls_ticks > 0) {
         state->rolls_ticks -= state->rolls_ticks > passed ? passed : state->rolls_ticks;
         roll(config, state, ticks);
-    } else if (fixed_greater(bias_known_m2_s4, state->p_bb) && state->rolls_wait == 0 && !state->other_alive && input->accel_valid &&
-               !input->wheels_part && fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f)) {
+    } else if (!input->doppler_fresh && fixed_greater(bias_known_m2_s4, state->p_bb) && state->rolls_wait == 0 && !state->other_alive &&
+               input->accel_valid && !input->wheels_part &&
+               fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f)) {
         const float force = force_now(config, state);
         const float along = state->apart_m_s < 0.0f ? force : -force; // along the slip that X would be
         if (!fixed_greater(along, config->slip_force_m_s2)) {
