@@ -76,6 +76,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_heard_m_s = heard;
     state->value_accel_m_s2 = window.accel_m_s2;
     state->value_trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit * shorter;
+    ground_speed_watch_radar(config, state);
     const ground_speed_value_t value = ground_speed_value_for(config, state, &track, own.accel_m_s2);
     const float measured = value.speed_m_s;
     const float noise = value.noise_m2_s2;

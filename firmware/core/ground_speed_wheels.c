@@ -12,6 +12,10 @@ float ground_speed_told_by_wheels(const ground_speed_config_t *config, const gro
 
 static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: the first count after a start
 
+static const float rolling_slip_m2_s2 = 9e-4f; // (3 cm/s)^2: what slip changes by where a slope begins, assumed
+static const float refuted = 100.0f;           // 2 ln of odds: for certain
+static const float beside_share = 0.25f;       // [1] of a value that enters its mean: half a second
+
 enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100 };
 
 // f of (13), over the last ticks.
@@ -23,6 +27,30 @@ static float force_now(const ground_speed_config_t *config, const ground_speed_s
 }
 
 static const float bias_known_m2_s4 = 0.09f; // (0.3 m/s^2)^2: a bias that is not known has no jump to be told by, assumed
+
+// Whether the radar's last value, less the wheels' mean of its window, has left its own mean by more than noise and `slip` explain.
+static bool radar_departs(const ground_speed_config_t *config, const ground_speed_state_t *state, float slip_m2_s2)
+{
+    const float left = state->value_beside_m_s - state->beside_mean_m_s;
+    const float noise = state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * state->value_heard_m_s);
+    return fixed_greater(ground_speed_square(left), config->roll_odds * (noise + slip_m2_s2));
+}
+
+// To be called at every value. While the best track rolls, the mean is that of before; a value that leaves it by more than slip may change
+// by tells that it does not roll.
+void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    const float before = state->value_beside_m_s;
+    state->value_beside_m_s = state->value_heard_m_s - fabsf(state->wheel_mean_m_s);
+    if (state->rolls_ticks > 0) {
+        if (radar_departs(config, state, rolling_slip_m2_s2)) {
+            state->odds -= refuted;
+        }
+    } else {
+        state->beside_mean_m_s =
+            state->accepted ? state->beside_mean_m_s + beside_share * (before - state->beside_mean_m_s) : state->value_beside_m_s;
+    }
+}
 
 // (13): the best track rolls from here on, what the accelerometer alone would have is the other one.
 static void begin_rolling(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -82,7 +110,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
                fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f)) {
         const float force = force_now(config, state);
         const float along = state->apart_m_s < 0.0f ? force : -force; // along the slip that X would be
-        if (!fixed_greater(along, config->slip_force_m_s2)) {
+        if (!fixed_greater(along, config->slip_force_m_s2) && !radar_departs(config, state, 0.0f)) {
             begin_rolling(config, state);
         }
     }
