@@ -138,7 +138,7 @@ typedef struct {
     float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
-    float apart_m2_s2;                       // mean of X^2 over a quarter of a second
+    float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second
     float value_beside_m_s, beside_mean_m_s; // the last value less the wheels' mean, and the mean of those before
     float wheel_mean_m_s;                    // over a quarter of a second
     int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again

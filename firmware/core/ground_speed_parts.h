@@ -13,6 +13,7 @@
 #include "ground_speed.h"
 
 static const float ground_speed_max_m_s = 10.0f;
+static const float ground_speed_bias_known_m2_s4 = 0.09f; // (0.3 m/s^2)^2: what is not known has no jump to be told by, assumed
 
 static inline float ground_speed_square(float x) { return x * x; }
 

@@ -13,6 +13,7 @@ float ground_speed_told_by_wheels(const ground_speed_config_t *config, const gro
 static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: the first count after a start
 
 static const float rolling_slip_m2_s2 = 9e-4f; // (3 cm/s)^2: what slip changes by where a slope begins, assumed
+static const float sway_times = 2.0f;          // a sine's peak over its mean square
 static const float refuted = 100.0f;           // 2 ln of odds: for certain
 static const float beside_share = 0.25f;       // [1] of a value that enters its mean: half a second
 
@@ -25,8 +26,6 @@ static float force_now(const ground_speed_config_t *config, const ground_speed_s
     const int32_t then = state->integral_q20[((uint32_t)state->head - FORCE_TICKS) % GROUND_SPEED_HISTORY];
     return (float)fixed_wrap_difference(now, then) * (config->per_tick_1_s / (1048576.0f * FORCE_TICKS));
 }
-
-static const float bias_known_m2_s4 = 0.09f; // (0.3 m/s^2)^2: a bias that is not known has no jump to be told by, assumed
 
 // Whether the radar's last value, less the wheels' mean of its window, has left its own mean by more than noise and `slip` explain.
 static bool radar_departs(const ground_speed_config_t *config, const ground_speed_state_t *state, float slip_m2_s2)
@@ -51,6 +50,9 @@ void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_
             state->accepted ? state->beside_mean_m_s + beside_share * (before - state->beside_mean_m_s) : state->value_beside_m_s;
     }
 }
+
+// Variance of X over the last quarter of a second: of a body that sways on its wheels, not of a slope that begins.
+static float sway_m2_s2(const ground_speed_state_t *state) { return state->apart_m2_s2 - ground_speed_square(state->apart_mean_m_s); }
 
 // (13): the best track rolls from here on, what the accelerometer alone would have is the other one.
 static void begin_rolling(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -92,10 +94,11 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
         state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -ground_speed_max_m_s, ground_speed_max_m_s);
     }
-    state->apart_m2_s2 +=
-        config->apart_forget * (ticks < 10.0f ? ticks : 10.0f) * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);
+    const float share = 1.0f - keep;
+    state->apart_m2_s2 += share * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);
+    state->apart_mean_m_s += share * (state->apart_m_s - state->apart_mean_m_s);
     state->wheel_m_s = wheel;
-    state->wheel_mean_m_s += config->apart_forget * (ticks < 10.0f ? ticks : 10.0f) * (wheel - state->wheel_mean_m_s);
+    state->wheel_mean_m_s += share * (wheel - state->wheel_mean_m_s);
     state->wheel_q20 = now;
     state->wheel_ticks = 0;
     if (config->method == GROUND_SPEED_PAPER) {
@@ -105,9 +108,9 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     if (state->rolls_ticks > 0) {
         state->rolls_ticks -= state->rolls_ticks > passed ? passed : state->rolls_ticks;
         roll(config, state, ticks);
-    } else if (!input->doppler_fresh && fixed_greater(bias_known_m2_s4, state->p_bb) && state->rolls_wait == 0 && !state->other_alive &&
-               input->accel_valid && !input->wheels_part &&
-               fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f)) {
+    } else if (!input->doppler_fresh && fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb) && state->rolls_wait == 0 &&
+               !state->other_alive && input->accel_valid && !input->wheels_part &&
+               fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), sway_times * sway_m2_s2(state))) {
         const float force = force_now(config, state);
         const float along = state->apart_m_s < 0.0f ? force : -force; // along the slip that X would be
         if (!fixed_greater(along, config->slip_force_m_s2) && !radar_departs(config, state, 0.0f)) {
