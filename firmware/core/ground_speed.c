@@ -60,7 +60,9 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     const float unseen =
         config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
     const float told = ground_speed_told_by_wheels(config, state, config->apart_least_m_s);
-    const float shaken = told + state->apart_m2_s2 - ground_speed_square(state->apart_m_s); // by a body that sways on its wheels
+    // of a body that sways on its wheels: the mean square, less what noise makes on average, a ninth of what it may make
+    const float shaken =
+        state->apart_m2_s2 - ground_speed_square(config->apart_least_m_s) - (1.0f / 9.0f) * config->apart_noise * state->speed_noise_m2_s2;
     const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, ground_speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
