@@ -40,6 +40,20 @@ static float rim_hint_m_s(const control_config_t *config, const sense_output_t *
     return 0.25f * sum * config->slip.wheel_radius_m;
 }
 
+// [rad/s] assumed: half a rim speed of 0.11 m/s of the reference. A wheel that is blocked or spins alone, or a turn on the spot.
+static const float part_rad_s = 2.0f;
+
+static bool wheels_part(const sense_output_t *sense)
+{
+    float low = sense->speed_rad_s[0];
+    float high = low;
+    for (int i = 1; i < WHEEL_COUNT; i++) {
+        low = fixed_greater(low, sense->speed_rad_s[i]) ? sense->speed_rad_s[i] : low;
+        high = fixed_greater(sense->speed_rad_s[i], high) ? sense->speed_rad_s[i] : high;
+    }
+    return fixed_greater(high - low, part_rad_s);
+}
+
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
                                             const sensor_frame_t *frame, trace_t *trace)
 {
@@ -60,6 +74,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
         .wheel_m_s = rim_hint_m_s(config, sense),
+        .wheels_part = wheels_part(sense),
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,

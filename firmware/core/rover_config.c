@@ -122,7 +122,7 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
-        .bias_start_m_s2 = 0.3f,        // assumed: 3 deg of slope at the start; what is steeper is found by (7)
+        .bias_start_m_s2 = 1.0f,        // 6 deg: slopes to 10 are 1.7 of it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
         .speed_max_m_s = beam->speed_m_s[beam->speeds - 1] < 9.0f ? 10.0f : 100.0f, // no rover; cars that a roadside module hears
         .doppler_noise_m2_s2 = 3e-5f * (deaf * deaf),
@@ -141,10 +141,16 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .agile_most = 10.0f,
         .apart_told_m_s = 0.06f,
         .apart_forget = 0.04f,
-        .apart_share = 0.5f,
+        .apart_share = 1.0f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
-        .agile_values = 4, // half a second: a window's length
+        .roll_told_m_s = 0.1f,       // a step of 2.5 deg and more: what is gentler, (5) and (7) find
+        .slip_force_m_s2 = 0.3f,     // a friction of 0.03, and more than the device's bias
+        .roll_odds = 6.0f,           // exp(3) to one, assumed: an obstacle that stops the rover looks the same at first
+        .roll_noise_m2_s2 = 1.5e-5f, // slip changes by 1.4 cm/s within a value's time, assumed
+        .roll_share = 0.1f,          // 0.1 s
+        .roll_bias_m2_s4 = 0.01f,    // the accelerometer's noise over that time: (0.06 m/s^2)^2, and the wheels'
+        .agile_values = 4,           // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
         .quiet_needed = 3,
@@ -161,6 +167,9 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .wheel_pull = 0.5f,
         .against_values = 4, // half a second
         .against_odds = 4.0f,
+        .force_per_s2_m = 4.0f,  // 1/(0.25 m/s^2), assumed: 25 mg of a small MEMS part
+        .force_most = 12.0f,     // assumed: as a value of the radar
+        .force_pull = 0.25f,     // four values share their samples
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
     };

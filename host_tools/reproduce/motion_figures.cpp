@@ -141,18 +141,13 @@ double time_constant_s(const control_config_t &config) {
     constexpr double before_m_s = 0.3, step_m_s = 0.02;
     constexpr int settled = 6000;
     for (int k = 0; k < 2 * settled; k++) {
-        const ground_speed_input_t input = {.accel_x_m_s2 = 0,
-                                            .doppler_m_s = static_cast<float>(k < settled ? before_m_s : before_m_s + step_m_s),
-                                            .doppler_late_s = 0,
-                                            .wheel_m_s = static_cast<float>(before_m_s),
-                                            .accel_valid = true,
-                                            .doppler_fresh = k % every == 0,
-                                            .doppler_quiet = false,
-                                            .doppler_dead = false,
-                                            .busy = false,
-                                            .doppler_trust = 1,
-                                            .doppler_misfit = 0,
-                                            .elapsed_ticks = 1};
+        ground_speed_input_t input{};
+        input.doppler_m_s = static_cast<float>(k < settled ? before_m_s : before_m_s + step_m_s);
+        input.wheel_m_s = static_cast<float>(before_m_s);
+        input.accel_valid = true;
+        input.doppler_fresh = k % every == 0;
+        input.doppler_trust = 1;
+        input.elapsed_ticks = 1;
         const double speed = static_cast<double>(ground_speed_step(&config.ground_speed, &state, &input).speed_m_s);
         if (k >= settled && speed > before_m_s + 0.632 * step_m_s) return 0.01 * (k - settled + 1);
     }

@@ -56,7 +56,8 @@ control_config_t config_of(const doppler_template_t *beam, const Settings &setti
         filter.sign_sure = 0; // no witness: the likelier sign is taken, which an accelerometer carries through zero
         if (!accel) filter.sign_sure = static_cast<float>(unused), filter.wheel_odds = static_cast<float>(10 * unused); // forward
         filter.wheel_noise_m_s = static_cast<float>(unused / 1000);
-        filter.apart_share = 0;
+        filter.apart_share = filter.force_most = filter.force_pull = 0;
+        filter.roll_told_m_s = static_cast<float>(unused);
         filter.apart_least_m_s = filter.apart_told_m_s = static_cast<float>(unused);
     }
     return config;
@@ -186,20 +187,19 @@ Result measure(const Counts &counts, const Helpers &helpers, const Settings &set
         doppler_output_t heard = before; // one tick later, as on the rover: no tick pays for a search and a correction
         heard.late_samples += listener.taken_since(taken);
         const bool used = heard.fresh && !heard.beyond && !heard.spoilt;
-        const ground_speed_input_t input = {
-            .accel_x_m_s2 = static_cast<float>(accel_m_s2),
-            .doppler_m_s = heard.speed_m_s,
-            .doppler_late_s = heard.fresh ? static_cast<float>(heard.late_samples) * config.doppler.per_sample_s : 0.0F,
-            .wheel_m_s = static_cast<float>(rim_m_s),
-            .accel_valid = accel_known || !out.used_accel, // (1)
-            .doppler_fresh = used,
-            .doppler_quiet = heard.quiet,
-            .doppler_dead = heard.dead,
-            .busy = now.busy || now.fresh,
-            .doppler_trust = heard.trust,
-            .doppler_misfit = heard.misfit,
-            .elapsed_ticks = 1,
-        };
+        ground_speed_input_t input{};
+        input.accel_x_m_s2 = static_cast<float>(accel_m_s2);
+        input.doppler_m_s = heard.speed_m_s;
+        input.doppler_late_s = heard.fresh ? static_cast<float>(heard.late_samples) * config.doppler.per_sample_s : 0.0F;
+        input.wheel_m_s = static_cast<float>(rim_m_s);
+        input.accel_valid = accel_known || !out.used_accel;
+        input.doppler_fresh = used;
+        input.doppler_quiet = heard.quiet;
+        input.doppler_dead = heard.dead;
+        input.busy = now.busy || now.fresh;
+        input.doppler_trust = heard.trust;
+        input.doppler_misfit = heard.misfit;
+        input.elapsed_ticks = 1;
         const ground_speed_output_t speed = ground_speed_step(&config.ground_speed, &state, &input);
         keep(heard, used && !heard.quiet, t_s, out);
         if (used && !heard.quiet && std::isnan(out.first_s)) out.first_s = at_s;
