@@ -128,6 +128,8 @@ TEST(Speed, of_any_radar_at_any_rate_is_found_with_and_without_an_accelerometer)
         const std::vector<double> count = echo_of(beam, drive, 3, 1.5);
         const Judgement with = judged(beam, log_of(beam, drive, count, true, 3), true);
         const Judgement without = judged(beam, log_of(beam, drive, count, false, 3), false);
+        std::printf("| %s | %.0f Hz | %.1f, %.2f | %.1f, %.2f |\n", beam.name, beam.rate_Hz, 100 * with.rmse_m_s, with.nees,
+                    100 * without.rmse_m_s, without.nees);
         EXPECT_LE(with.rmse_m_s, 0.04);
         EXPECT_LE(with.nees, 2);
         EXPECT_GT(with.ticks, 1850u); // of 2000: heard within 1.5 s, the longest window and a half
