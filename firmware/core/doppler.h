@@ -3,14 +3,13 @@
 //   paper: v = f_peak c / (2 f0 cos theta_d)                                         (1)  = (11), zero frequency excluded
 //   ours:  v = argmin over v of J(v) = sum_k P[k] / S_v[k]  +  a sum_k ln S_v[k],  a = sum_k P[k]     (2)
 //
-// Source: (11) Lhomme-Desages; without a window, over all bins but zero. (2), derived here: powers of a noise-like echo are exponentially distributed around a S_v[k] with
-// sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
-// geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
-// ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
-// below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each
-// taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours
-// alone).
-// An interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
+// Source: (11) Lhomme-Desages; without a window, over all bins but zero. (2), derived here: powers of a noise-like echo are exponentially
+// distributed around a S_v[k] with sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v
+// comes from the beam's geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a
+// parabola in ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is below
+// a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each taken
+// twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours alone). An
+// interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
 //   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
 // The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
 // be, is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to

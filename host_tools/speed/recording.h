@@ -1,8 +1,8 @@
 // recording.h - what a radar's converter delivered, from a log or from a WAV file, as counts that the firmware takes.
 //
-// Here the firmware takes 10-bit counts at 202 to 20000 Hz. Whole numbers of 0 to 1023 pass as they are; anything else (volts, 16-bit audio) is
-// scaled by one factor for the whole recording, so that its loudest thousandth reaches 400 counts from the middle. A faster recording is
-// filtered and thinned by a whole number: a windowed-sinc low-pass of 16 new samples' length, without delay.
+// Here the firmware takes 10-bit counts at 202 to 20000 Hz. Whole numbers of 0 to 1023 pass as they are; anything else (volts, 16-bit
+// audio) is scaled by one factor for the whole recording, so that its loudest thousandth reaches 400 counts from the middle. A faster
+// recording is filtered and thinned by a whole number: a windowed-sinc low-pass of 16 new samples' length, without delay.
 #pragma once
 
 #include "host_tools/log/log.h"

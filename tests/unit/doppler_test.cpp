@@ -200,7 +200,7 @@ TEST(Doppler, every_hop_gives_what_a_fresh_window_of_the_same_samples_gives) {
                     sum += value;
                 }
                 fft_power_flat(window, sum / 256, power); // the paper's method
-                if (real > 1) { // at hop 1 the powers are already the next window's
+                if (real > 1) {                           // at hop 1 the powers are already the next window's
                     ASSERT_TRUE(std::equal(power, power + FFT_BINS, state.power)) << hop << " " << n;
                 }
                 ++values;
