@@ -66,6 +66,10 @@ static control_state_t any_state_in_order(void) {
     state.ground_speed.other.ticks = Frama_C_interval(0, 1000);
     state.ground_speed.agile.ticks = Frama_C_interval(0, 1000);
     state.ground_speed.wheel_ticks = Frama_C_interval(0, 1000);
+    state.ground_speed.rolls_ticks = Frama_C_interval(0, 60);
+    state.ground_speed.rolls_wait = Frama_C_interval(0, 100);
+    state.ground_speed.heard = Frama_C_interval(0, 1) != 0;
+    state.ground_speed.accepted = Frama_C_interval(0, 1) != 0;
     state.ground_speed.behind_ticks = Frama_C_interval(0, 1000);
     state.ground_speed.agile_left = Frama_C_interval(0, 4);
     state.ground_speed.waits = Frama_C_interval(0, 2);
