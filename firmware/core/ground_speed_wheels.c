@@ -112,8 +112,11 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
                !state->other_alive && input->accel_valid && !input->wheels_part &&
                fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), sway_times * sway_m2_s2(state))) {
         const float force = force_now(config, state);
-        const float along = state->apart_m_s < 0.0f ? force : -force; // along the slip that X would be
-        if (!fixed_greater(along, config->slip_force_m_s2) && !radar_departs(config, state, 0.0f)) {
+        const float departs = force - state->bias_m_s2;
+        const bool back = state->apart_m_s < 0.0f;
+        const bool felt = fixed_greater(back ? -departs : departs, config->slip_force_m_s2); // else it is the wheels that depart: they spin
+        const bool pushed = fixed_greater(back ? force : -force, config->slip_force_m_s2);   // along the slip that X would be
+        if (felt && !pushed && !radar_departs(config, state, 0.0f)) {
             begin_rolling(config, state);
         }
     }
