@@ -305,8 +305,9 @@ int main(int argc, char **argv)
         return fflush(stdout) == 0 ? EXIT_DONE : EXIT_FILE;
     }
     control_config_t config = strcmp(options.firmware, "paper") == 0 ? rover_config_paper() : rover_config_default();
+    static doppler_template_t beam; // of an own radar, as long as the process; 25 kB: not on the stack
     char refused[PARAMETERS_MESSAGE];
-    if (options.parameters != NULL && !parameters_read(options.parameters, &config, refused)) {
+    if (options.parameters != NULL && !parameters_read(options.parameters, &config, &beam, refused)) {
         (void)fprintf(stderr, "tractiond: %s\n", refused);
         return EXIT_INPUT;
     }

@@ -140,8 +140,9 @@ typedef struct {
     float torque_Nm;       // KG*I
     float traction_N;      // (19)
     float slip;            // (1), extended
+    float slip_std;        // its standard deviation; made anew within 80 ms
     float duty;            // after safety, what was written
-    bool slip_valid;       // fast enough for slip to mean something
+    bool slip_valid;       // fast enough, and known well enough, for slip to mean something
     bool saturated;        // the controller wanted more duty than it got: full duty, or what a limiter left
     bool encoder_refused;  // the speed is the motor circuit's: the encoder's was impossible
 } wheel_trace_t;

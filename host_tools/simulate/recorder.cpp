@@ -15,7 +15,8 @@ std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
     return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
 }
 
-Recorder::Recorder(std::uint64_t expected_ticks, const std::string &path) : expected_(expected_ticks), spool_(path) {
+Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path)
+    : expected_(expected_ticks), spool_(path), radar_rate_Hz_(radar_rate_Hz) {
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const std::string name = "wheel" + std::to_string(i) + '.';
         wheel_[i] = {.speed = column(name + "speed_rad_s"),
@@ -27,6 +28,7 @@ Recorder::Recorder(std::uint64_t expected_ticks, const std::string &path) : expe
                      .slip = column(name + "slip"),
                      .torque = column(name + "motor_torque_Nm"),
                      .traction = column(name + "traction_N"),
+                     .slip_std = column(name + "slip_std"),
                      .slip_valid = column(name + "slip_valid"),
                      .saturated = column(name + "saturated"),
                      .refused = column(name + "encoder_refused", true),
@@ -100,6 +102,7 @@ void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, con
     put(at.slip, t_s, tidy(trace.slip));
     put(at.torque, t_s, tidy(trace.torque_Nm));
     put(at.traction, t_s, tidy(trace.traction_N));
+    put(at.slip_std, t_s, tidy(trace.slip_std));
     put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
     put(at.saturated, t_s, trace.saturated ? 1 : 0);
     put(at.refused, t_s, trace.encoder_refused ? 1 : 0);
@@ -125,13 +128,13 @@ void Recorder::add_frame(double t_s, const sensor_frame_t &frame) {
         put(at_.gyro_x, t_s, frame.gyro_x_count);
         put(at_.gyro_y, t_s, frame.gyro_y_count);
     }
-    // samples keep the converter's own clock, n/512 s; what was recorded already is not recorded again
+    // samples keep the converter's own clock, n/rate; what was recorded already is not recorded again
     if ((frame.present & FRAME_RADAR) == 0u) return;
     put(at_.sequence, t_s, frame.radar_sequence);
     for (std::uint32_t i = 0; i < frame.radar_samples; i++) {
         const std::uint32_t n = frame.radar_sequence + i;
         if (static_cast<std::int32_t>(n - radar_next_) < 0) continue;
-        put(at_.radar_count, static_cast<double>(n) / 512, frame.radar_count[i]);
+        put(at_.radar_count, static_cast<double>(n) / radar_rate_Hz_, frame.radar_count[i]);
         radar_next_ = n + 1;
     }
 }

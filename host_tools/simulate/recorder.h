@@ -18,7 +18,7 @@ namespace traction {
 class Recorder {
   public:
     // path: of the log, for write; empty: it stays in memory, for take.
-    explicit Recorder(std::uint64_t expected_ticks, const std::string &path = "");
+    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path = "");
 
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
     void add_camera(std::span<const sim::Pose> poses);
@@ -37,13 +37,14 @@ class Recorder {
 
     std::uint64_t expected_;
     log::Spool spool_;
+    double radar_rate_Hz_;
     std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick
     float last_float_ = 0;
     double last_exact_ = 0;
 
     struct Wheel {
-        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated, refused, bridge,
-            command_speed, command_duty;
+        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_std, slip_valid, saturated,
+            refused, bridge, command_speed, command_duty;
     } wheel_[WHEEL_COUNT]{};
     struct {
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,

@@ -62,8 +62,11 @@ void read_radar(const toml::table &table, const std::string &file, Scenario &sce
     static const auto models = radar_models();
     std::array<std::string_view, models.size()> names;
     std::transform(models.begin(), models.end(), names.begin(), [](const RadarModel &model) { return model.name; });
-    config.model = names[keys.word("model", config.model, names)];
-    scenario.rover.radar = config.model; // which radar is mounted is known to the firmware
+    if (keys.has("model")) { // else the rover's
+        config.model = names[keys.word("model", "", names)];
+        config.frequency_Hz = config.vertical_deg = config.horizontal_deg = 0;
+        scenario.rover.radar = config.model; // which radar is mounted is known to the firmware
+    }
     config.mounting_error_deg = keys.number("mounting_error_deg", config.mounting_error_deg, {-10, 10});
     config.height_m = keys.number("height_m", config.height_m, {0.1, 1});
     config.ground_exponent = keys.number("ground_exponent", config.ground_exponent, {0, 2});
