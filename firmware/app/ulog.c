@@ -66,8 +66,9 @@ static const char *const topic_format[TOPICS] = {
     "command:uint64_t timestamp;float platform_speed_m_s;float yaw_rate_rad_s;float[4] wheel_speed_rad_s;float[4] duty;float "
     "slip_ref;uint32_t age_ticks;uint8_t mode;uint8_t slip_wheels;",
     "trace:uint64_t timestamp;uint32_t faults;uint32_t fault_wheels;float[4] speed_rad_s;float[4] accel_rad_s2;float[4] set_speed_rad_s;"
-    "float[4] current_A;float[4] torque_Nm;float[4] traction_N;float[4] slip;float[4] duty;float battery_voltage_V;float accel_x_m_s2;"
-    "float gyro_z_rad_s;float radar_speed_m_s;float speed_m_s;float speed_std_m_s;float accel_bias_m_s2;uint32_t order_sequence;"
+    "float[4] current_A;float[4] torque_Nm;float[4] traction_N;float[4] slip;float[4] slip_std;float[4] duty;float battery_voltage_V;"
+    "float accel_x_m_s2;float gyro_z_rad_s;float radar_speed_m_s;float speed_m_s;float speed_std_m_s;float accel_bias_m_s2;uint32_t "
+    "order_sequence;"
     "int16_t[4] duty_q15;uint8_t mode;uint8_t drive;uint8_t slip_valid;uint8_t saturated;uint8_t encoder_refused;bool radar_fresh;"
     "bool standstill;bool status_led;",
 };
@@ -195,7 +196,7 @@ static void put_trace(writer_t *w, const trace_t *trace)
     static const size_t members[] = {
         offsetof(wheel_trace_t, speed_rad_s), offsetof(wheel_trace_t, accel_rad_s2), offsetof(wheel_trace_t, set_speed_rad_s),
         offsetof(wheel_trace_t, current_A),   offsetof(wheel_trace_t, torque_Nm),    offsetof(wheel_trace_t, traction_N),
-        offsetof(wheel_trace_t, slip),        offsetof(wheel_trace_t, duty)};
+        offsetof(wheel_trace_t, slip),        offsetof(wheel_trace_t, slip_std),     offsetof(wheel_trace_t, duty)};
     for (size_t m = 0; m < sizeof members / sizeof *members; m++) {
         for (int i = 0; i < WHEEL_COUNT; i++) {
             float value = 0;

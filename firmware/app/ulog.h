@@ -17,7 +17,7 @@ extern "C" {
 
 enum {
     ULOG_HEAD = 4096, // [byte] room for what a file begins with; it takes 1.7 kB
-    ULOG_TICK = 1024, // [byte] room for one tick: 348 to 678
+    ULOG_TICK = 1024, // [byte] room for one tick: 364 to 694
     ULOG_TEXT = 256,  // [byte] room for one line of text
 };
 

@@ -149,6 +149,7 @@ void read_trace(const Row &row, const sensor_frame_t &frame, trace_t &trace) {
         row.take(wheel.torque_Nm, "torque_Nm", i);
         row.take(wheel.traction_N, "traction_N", i);
         row.take(wheel.slip, "slip", i);
+        row.take(wheel.slip_std, "slip_std", i);
         row.take(wheel.duty, "duty", i);
         row.take(trace.actuator.duty_q15[i], "duty_q15", i);
         wheel.slip_valid = flag("slip_valid", i);
@@ -268,7 +269,7 @@ BoardLog read_board_log(const std::string &path) {
 }
 
 log::Log to_log(const BoardLog &board, const sim::RoverDescription &rover) {
-    Recorder recorder(board.ticks.size());
+    Recorder recorder(board.ticks.size(), rover.at("radar", "rate_Hz"));
     for (const BoardTick &tick : board.ticks) recorder.add(tick.frame, tick.command, tick.trace);
     log::Log log = recorder.take();
     sim::Scenario scenario;

@@ -139,8 +139,18 @@ Tick random_tick(std::uint32_t tick, std::mt19937 &random) {
         f.bridge_status[i] = static_cast<std::uint8_t>(bits() & 31u);
         out.command.wheel_speed_rad_s[i] = real();
         out.command.duty[i] = real();
-        out.trace.wheel[i] = {
-            real(), real(), real(), real(), real(), real(), real(), real(), (bits() & 1u) != 0, (bits() & 1u) != 0, (bits() & 1u) != 0};
+        out.trace.wheel[i] = {real(),
+                              real(),
+                              real(),
+                              real(),
+                              real(),
+                              real(),
+                              real(),
+                              real(),
+                              real(),
+                              (bits() & 1u) != 0,
+                              (bits() & 1u) != 0,
+                              (bits() & 1u) != 0};
         out.trace.actuator.duty_q15[i] = static_cast<std::int16_t>(bits());
     }
     f.battery_count = static_cast<std::uint16_t>(bits());
@@ -232,6 +242,7 @@ TEST(ulog, holds_every_tick_bit_for_bit) {
             EXPECT_EQ(value<std::uint8_t>(log, "frame", n, "bridge", i), tick.frame.bridge_status[i]);
             EXPECT_TRUE(same(value<float>(log, "command", n, "duty", i), tick.command.duty[i]));
             EXPECT_TRUE(same(value<float>(log, "trace", n, "slip", i), tick.trace.wheel[i].slip));
+            EXPECT_TRUE(same(value<float>(log, "trace", n, "slip_std", i), tick.trace.wheel[i].slip_std));
             EXPECT_TRUE(same(value<float>(log, "trace", n, "accel_rad_s2", i), tick.trace.wheel[i].accel_rad_s2));
             EXPECT_EQ(value<std::int16_t>(log, "trace", n, "duty_q15", i), tick.trace.actuator.duty_q15[i]);
             EXPECT_EQ((value<std::uint8_t>(log, "trace", n, "saturated") >> i & 1) != 0, tick.trace.wheel[i].saturated);
