@@ -15,8 +15,9 @@ namespace {
 
 // The widest scale of the catalogue is 0.4 (current_gain), of radii and voltages 0.3; beyond 1.6 it is a mistake.
 constexpr double widest_scale = 1.6;
-constexpr double widest_winding = 4; // wiring_resistance may nearly double Ra, noise of the current may halve what a fit finds of it
-constexpr double most_slip = 0.5;    // [1] through a whole drive, where slip is least: beyond, the radius is wrong
+constexpr double widest_back_emf = 1.4; // of the back-EMF alone, downwards: voltage_gain takes the winding with it, lost counts raise it
+constexpr double widest_winding = 4;    // wiring_resistance may nearly double Ra, noise of the current may halve what a fit finds of it
+constexpr double most_slip = 0.5;       // [1] through a whole drive, where slip is least: beyond, the radius is wrong
 
 void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
     findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
@@ -49,8 +50,8 @@ void motor_scale(const Grid &grid, const Machine &machine, Findings &findings) {
     }
     if (ke.empty()) return;
     const double a = middle(ke), b = Ra.empty() ? not_known : middle(Ra);
-    if (beyond(a, widest_scale)) {
-        const bool both = std::isfinite(b) && !beyond(a / b, 1.25);
+    const bool both = std::isfinite(b) && !beyond(a / b, 1.25);
+    if (beyond(a, widest_scale) || (a < 1 / widest_back_emf && std::isfinite(b) && !both && b > 0.8)) {
         if (both) {
             add(findings, "scale", grid.battery.empty() ? "wheel.duty" : "battery.voltage_V",
                 say("the motors' voltage is %.3g times what their back-EMF and winding together need (medians of %zu wheels)", a,
@@ -88,7 +89,7 @@ void odd_motor(const Grid &grid, Findings &findings) {
         const std::string current = "wheel" + std::to_string(one.wheel->index) + ".current_A";
         if (ke.size() < 2 || has_error(findings, "wheel" + std::to_string(one.wheel->index) + ".")) continue;
         const double a = middle(ke) / one.law.a, b = middle(Ra) / one.law.b;
-        if (beyond(a, 2)) // a wheel that a sweep drags was seen at 1.64
+        if (beyond(a, 1.8)) // a wheel that a sweep drags was seen at 1.64; every second count is 2
             add(findings, "scale", one.wheel->speed_column,
                 say("'%s' is %.3g times as large as its motor's back-EMF allows beside those of the other wheels",
                     one.wheel->speed_column.c_str(), a),
