@@ -95,14 +95,14 @@ void gyro(const Grid &grid, Findings &findings) {
         return;
     }
     double best = 0;
-    for (int shift = -40; shift <= 40; ++shift) { // 2 s: what is only late is told as that, or borne
+    for (int shift = -15; shift <= 15; ++shift) { // what is later is told as that
         std::vector<double> moved(rate.size(), not_known);
         for (std::size_t k = 0; k < rate.size(); ++k)
             if (const auto from = static_cast<std::ptrdiff_t>(k) + shift; from >= 0 && from < static_cast<std::ptrdiff_t>(rate.size()))
                 moved[k] = rate[static_cast<std::size_t>(from)];
         best = std::max(best, std::fabs(correlation(moved, seen)));
     }
-    if (best < 0.4)
+    if (best < 0.75)
         add(findings, "unrelated", "imu.gyro_z_rad_s",
             say("the gyro has nothing to do with the turns that the camera sees (correlation %.2f at best)", best),
             "check that it is the rate about the vertical axis, of this run and of this time", best);
