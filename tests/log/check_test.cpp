@@ -371,3 +371,18 @@ TEST(MeasuredData, robotino_and_cmu_logs_pass_the_check) {
         EXPECT_TRUE(report.passed()) << file << "\n" << listed(report, Severity::warning);
     }
 }
+
+TEST(MeasuredData, the_linear_axis_and_the_skid_steer_pass_the_check) {
+    const std::filesystem::path data = "../shared/data";
+    if (!std::filesystem::exists(data / "husky")) GTEST_SKIP() << "the measured data (" << data << ") is not here";
+    for (const auto &[file, map] :
+         {std::pair{"emps/emps_estimation.csv", "emps.toml"}, std::pair{"husky/ASPHALT_pro_03.csv", "husky.toml"},
+          std::pair{"husky/FLOORING_pro_01.csv", "husky.toml"}, std::pair{"husky/SNOW_pro_02.csv", "husky.toml"}}) {
+        const check::Report report = check::check_file((data / file).string(), std::string("models/maps/") + map);
+        EXPECT_TRUE(report.passed()) << file << "\n" << listed(report, Severity::warning);
+    }
+    // all its wheels stand at one value, and nothing else tells whether that is true: said, not refused
+    const check::Report snow = check::check_file((data / "husky/SNOW_pro_02.csv").string(), "models/maps/husky.toml");
+    ASSERT_NE(snow.find("dead_sensor", "wheel0.speed_rad_s"), nullptr);
+    EXPECT_EQ(snow.find("dead_sensor", "wheel0.speed_rad_s")->severity, Severity::warning);
+}

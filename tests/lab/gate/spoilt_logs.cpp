@@ -260,6 +260,17 @@ const std::vector<Row> &spoilt_logs() {
         {"accelerometer stands for half the drive", [](Log &l) { hold(l, "imu.accel_x", "_m_s2", 20, 60); }},
         {"gyro stands for half the drive", [](Log &l) { hold(l, "imu.gyro_z", "_rad_s", 20, 60); }},
         {"one duty stands for half the drive", [](Log &l) { hold(l, "wheel1", ".duty", 20, 60); }},
+        {"all encoders stand",
+         [](Log &l) {
+             scale_motion(l, "wheel", 0);
+             add(l, "wheel", ".speed_rad_s", 3);
+         }},
+        {"all speeds stand at one value, no voltage",
+         [](Log &l) {
+             if (l.find("wheel0.speed_rad_s") == nullptr) return;
+             for (const char *tail : {".duty", ".set_speed_rad_s", ".command_speed_rad_s", ".encoder_count", ".angle_rad"}) erase(l, "wheel", tail);
+             scale(l, "wheel", ".speed_rad_s", 0), add(l, "wheel", ".speed_rad_s", 3);
+         }},
         {"one encoder dead", [](Log &l) { scale_motion(l, "wheel2", 0); }},
         {"currents through a filter of 2 s", [](Log &l) { low_pass(l, "wheel", ".current_A", 2); }},
         {"duties through a filter of 2 s", [](Log &l) { low_pass(l, "wheel", ".duty", 2); }},
