@@ -264,8 +264,10 @@ void check_drives(const Grid &grid, const Machine &machine, Findings &findings) 
     check_units(laws, grid, machine, findings);
     for (const Law &law : laws) {
         if (!law.fit.good || law.fit.y_rms == 0) continue;
-        const double share = share_explained(law.fit), best = share > well_explained ? share : best_share(*law.wheel);
-        const double tells = current_beside_voltage(*law.wheel);
+        Wheel wheel = *law.wheel; // without wild samples: a spike is told as that
+        wheel.voltage = tame(wheel.voltage), wheel.speed = tame(wheel.speed), wheel.current = tame(wheel.current);
+        const double share = share_explained(law.fit), best = share > well_explained ? share : best_share(wheel);
+        const double tells = current_beside_voltage(wheel);
         if (share > 0.8 && best > well_explained && tells > current_tells) continue;
         const bool explained = std::any_of(findings.begin(), findings.end(), [&](const Finding &f) {
             return f.severity == Severity::error && f.signal.rfind("wheel" + std::to_string(law.wheel->index) + ".", 0) == 0;
@@ -273,7 +275,7 @@ void check_drives(const Grid &grid, const Machine &machine, Findings &findings) 
         const bool swapped = std::any_of(findings.begin(), findings.end(), [](const Finding &f) { return f.id == "swapped_wheels"; });
         if (explained || swapped) continue;
         // a motor that moves obeys this equation whatever the ground does
-        const bool noisy = best > 0.4 && 1 - best < 4 * unexplained_by_noise(*law.wheel);
+        const bool noisy = best > 0.4 && 1 - best < 4 * unexplained_by_noise(wheel);
         const std::string current = name_of(*law.wheel, "current_A");
         if (tells < current_tells && best > 0.4) {
             add(findings, "unrelated", Severity::error, current,

@@ -80,7 +80,7 @@ void buffers(const log::Log &log, Findings &findings) {
 // A gyro beside the camera's heading, both over half a second.
 void gyro(const Grid &grid, Findings &findings) {
     if (grid.gyro.empty() || grid.camera_yaw_rate.empty() || has_error(findings, "imu.gyro") || has_error(findings, "camera")) return;
-    const std::vector<double> rate = smooth(grid.gyro, 5), seen = smooth(grid.camera_yaw_rate, 5);
+    const std::vector<double> rate = smooth(tame(grid.gyro), 5), seen = smooth(tame(grid.camera_yaw_rate), 5);
     std::vector<double> before(seen.size(), not_known), size = seen;
     constexpr std::size_t lag = 16; // [cells] 0.8 s: no sample of the camera is in both
     for (std::size_t k = lag; k < seen.size(); ++k) before[k] = seen[k - lag];

@@ -61,6 +61,9 @@ std::vector<double> slope(const std::vector<double> &x, std::size_t half_span);
 // The same, averaged over +-half_span samples.
 std::vector<double> smooth(const std::vector<double> &x, std::size_t half_span);
 
+// The same without single wild samples: held within the middle 99 %, widened by its width on either side.
+std::vector<double> tame(std::vector<double> x);
+
 // A wheel angle that jumps back by a turn instead of going on.
 bool wraps(const log::Signal &angle);
 

@@ -256,6 +256,9 @@ TEST(Check, names_clipping_outliers_and_coarse_steps) {
     log = good();
     at(log, "imu.gyro_z_rad_s").value[1234] = 327.67;
     expect_only(log, "outlier", "imu.gyro_z_rad_s", Severity::warning);
+    log = good(); // an interference in a current, a speed and the supply is told, and refuses nothing
+    at(log, "wheel0.current_A").value[2345] = 80, at(log, "wheel1.speed_rad_s").value[3456] = -900;
+    EXPECT_TRUE(check::check(log, {}).passed()) << listed(check::check(log, {}), Severity::note);
     log = good();
     for (double &v : at(log, "wheel0.speed_rad_s").value) v = std::round(v);
     const check::Report report = check::check(log, {});
