@@ -18,6 +18,7 @@ constexpr double several_names = 1.1;     // one wrong number is simpler than tw
 constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
 constexpr double much_better = 0.5;       // of the error as stated
 constexpr double better = 0.75;           // the same, where an effect was named
+constexpr double sure = 2;                // standard errors of the blocks' differences
 constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
 
 // What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
@@ -173,12 +174,12 @@ bool strained(const Problem &problem) {
     return false;
 }
 
-// Does the freed datum predict blocks left out better than the model with what was named, by two standard errors?
-bool predicts_better(const Problem &last, Problem &datum) {
+// By how many standard errors the freed datum predicts blocks left out better than the model with what was named.
+double lead_of(const Problem &last, Problem &datum) {
     datum.keep_scales(last);
     datum.gauss_newton(2);
     const Fall fall = fall_between(held_out(last), held_out(datum), noise_weight(last));
-    return fall.sum > 2 * fall.error;
+    return fall.error > 0 ? fall.sum / fall.error : fall.sum;
 }
 
 } // namespace
@@ -214,10 +215,16 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     const double left = after * (1 - shape_gain);
     for (Freed &f : freed(stated, data)) {
         const Suspect &s = f.suspect;
+        // more of it is an effect, unless it alone does what took two names: then one of them is none
+        if (accepted >= 2 && s.more_is_an_effect && s.fitted > s.stated * s.gross && s.error < better * before &&
+            s.error < several_names * left && lead_of(last, *f.problem) > 0) {
+            out.suspects.push_back(std::move(f.suspect));
+            continue;
+        }
         if (!is_gross(s) || !(s.error < (accepted > 0 ? better : much_better) * before)) continue;
         const bool alone = s.error < (accepted >= 2 ? several_names : one_name) * left; // one number against all that was named
         if (alone || (accepted == 1 && s.error < several_names * left &&
-                      ((strained(last) && !strained(*f.problem)) || predicts_better(last, *f.problem))))
+                      ((strained(last) && !strained(*f.problem)) || lead_of(last, *f.problem) > sure)))
             out.suspects.push_back(std::move(f.suspect));
     }
     std::stable_sort(out.suspects.begin(), out.suspects.end(), [](const Suspect &x, const Suspect &y) { return x.error < y.error; });
