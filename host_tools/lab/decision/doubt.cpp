@@ -18,6 +18,7 @@ constexpr double several_names = 1.1;     // one wrong number is simpler than tw
 constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
 constexpr double much_better = 0.5;       // of the error as stated
 constexpr double better = 0.75;           // the same, where an effect was named
+constexpr double as_much = 1.02;          // of the error that what was named leaves
 constexpr double sure = 2;                // standard errors of the blocks' differences
 constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
 
@@ -182,6 +183,17 @@ double lead_of(const Problem &last, Problem &datum) {
     return fall.error > 0 ? fall.sum / fall.error : fall.sum;
 }
 
+// An effect of the catalogue that is the datum by another name: of the two the effect is told.
+bool is_its_law(const Problem &last, const Datum &datum) {
+    static constexpr const char *laws[][2] = {
+        {"torque_constant", "torque_constant_Nm_A"}, {"current_gain", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"},
+        {"shear_stiffness", "shear_slip"},           {"voltage_gain", "back_emf_Vs_rad"},      {"voltage_gain", "torque_constant_Nm_A"}};
+    return std::any_of(last.parameters.begin(), last.parameters.end(), [&](const FreeParameter &p) {
+        return std::any_of(std::begin(laws), std::end(laws),
+                           [&](const auto &law) { return p.owner == law[0] && law[1] == std::string(datum.key); });
+    });
+}
+
 } // namespace
 
 std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
@@ -221,11 +233,15 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
             out.suspects.push_back(std::move(f.suspect));
             continue;
         }
-        if (!is_gross(s) || !(s.error < (accepted > 0 ? better : much_better) * before)) continue;
+        if (!is_gross(s)) continue;
+        const bool helps = s.error < (accepted > 0 ? better : much_better) * before;
         const bool alone = s.error < (accepted >= 2 ? several_names : one_name) * left; // one number against all that was named
-        if (alone || (accepted == 1 && s.error < several_names * left &&
-                      ((strained(last) && !strained(*f.problem)) || lead_of(last, *f.problem) > sure)))
-            out.suspects.push_back(std::move(f.suspect));
+        // one number against one effect: what is named leaves the sheet contradicted and the datum does not, or it predicts at least as
+        // well
+        const bool rivals =
+            accepted == 1 && s.error < as_much * left &&
+            ((strained(last) && !strained(*f.problem)) || lead_of(last, *f.problem) > (is_its_law(last, *f.datum) ? sure : 0));
+        if ((helps && alone) || rivals) out.suspects.push_back(std::move(f.suspect));
     }
     std::stable_sort(out.suspects.begin(), out.suspects.end(), [](const Suspect &x, const Suspect &y) { return x.error < y.error; });
     std::vector<Suspect> once;
