@@ -19,6 +19,7 @@ constexpr double one_name = 0.9;          // it must explain more than one effec
 constexpr double much_better = 0.5;       // of the error as stated
 constexpr double better = 0.75;           // the same, where an effect was named
 constexpr double as_much = 1.02;          // of the error that what was named leaves
+constexpr double notable = 0.95;          // of the error as stated: a mass that a log hardly tells wanders for less
 constexpr double sure = 2;                // standard errors of the blocks' differences
 constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
 
@@ -239,7 +240,7 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
         // one number against one effect: what is named leaves the sheet contradicted and the datum does not, or it predicts at least as
         // well
         const bool rivals =
-            accepted == 1 && s.error < as_much * left &&
+            accepted == 1 && s.error < as_much * left && s.error < notable * before &&
             ((strained(last) && !strained(*f.problem)) || lead_of(last, *f.problem) > (is_its_law(last, *f.datum) ? sure : 0));
         if ((helps && alone) || rivals) out.suspects.push_back(std::move(f.suspect));
     }
