@@ -4,6 +4,7 @@
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/inputs/smooth.h"
+#include "host_tools/lab/inputs/stretch.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
@@ -111,6 +112,33 @@ TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
         const double by_hand = 0.25 * (8 * change - 0.05 * change * change) + 0.75 * (8 * rest - 0.05 * (t * t - change * change));
         EXPECT_NEAR(now[j], by_hand, 1e-9);
         EXPECT_NEAR(late[j], by_hand - 0.1 * lag * (0.25 * change + 0.75 * rest), 1e-9);
+    }
+}
+
+TEST(Inputs, a_stretch_of_a_log_keeps_its_times_and_predicts_what_the_whole_does_there) {
+    const Model model = bench();
+    const Dataset whole = make_dataset(model, motor(accel_rad_s2)), part = stretch(whole, 2.005, 4.5);
+    ASSERT_GE(part.start_s, 2.005);
+    EXPECT_LE(part.time(part.count - 1), 4.5 + 1e-9);
+    EXPECT_NEAR(2.495 / whole.step_s, static_cast<double>(part.count), 2); // both ends on the grid
+    const Physics physics = make_physics(model);
+    const Eigen::VectorXd all = Forward(whole).predict(physics), some = Forward(part).predict(physics);
+    Eigen::Index at = 0, row = 0;
+    for (std::size_t b = 0; b < whole.balance.size();
+         ++b) { // a motor alone remembers nothing: the same rows to the last digit but for sums
+        std::size_t kept = 0;
+        for (std::size_t r = 0; r < whole.balance[b].measured.size(); ++r, ++at) {
+            if (whole.balance[b].t0_s[r] < part.start_s || whole.balance[b].t1_s[r] > part.time(part.count - 1)) continue;
+            EXPECT_EQ(part.balance[b].t0_s[kept], whole.balance[b].t0_s[r]);
+            EXPECT_EQ(part.balance[b].measured[kept], whole.balance[b].measured[r]);
+            if (!whole.balance[b].smoothing_bias.empty()) {
+                EXPECT_EQ(part.balance[b].smoothing_bias[kept], whole.balance[b].smoothing_bias[r]);
+            }
+            EXPECT_NEAR(some[row++], all[at], 1e-9);
+            ++kept;
+        }
+        EXPECT_EQ(kept, part.balance[b].measured.size());
+        EXPECT_GT(kept, 40u); // 2.4 s of rows of 50 ms
     }
 }
 

@@ -1,6 +1,8 @@
 #include "doubt.h"
 
 #include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/inputs/smooth.h"
+#include "host_tools/lab/inputs/stretch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +18,8 @@ constexpr double never_nothing = 25;      // times noise: uneven ground leaves 3
 constexpr double several_names = 1.1;     // one wrong number is simpler than two effects
 constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
 constexpr double much_better = 0.5;       // of the error as stated
+constexpr double looked_at_s = 20;        // what is grossly wrong shows wherever the model fails: there each datum is tried first,
+constexpr double promising = 0.75;        // and on the whole log where that takes so much of the error there; well above much_better
 
 // What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
 struct Datum {
@@ -112,12 +116,12 @@ Suspect gross_error(const Model &stated, const Dataset &data, const Datum &datum
 
 bool is_gross(const Suspect &s) { return s.fitted < s.stated / s.gross || (!s.more_is_an_effect && s.fitted > s.stated * s.gross); }
 
-} // namespace
+using Found = std::pair<Suspect, const Datum *>;
 
-std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
-    std::vector<std::pair<Suspect, const Datum *>> found;
-    for (const Datum &datum : data_of_a_model)
-        if (Suspect s = gross_error(stated, data, datum, 1); !s.quantity.empty()) found.emplace_back(std::move(s), &datum);
+std::vector<Found> search(const Model &stated, const Dataset &data, const std::vector<const Datum *> &asked) {
+    std::vector<Found> found;
+    for (const Datum *datum : asked)
+        if (Suspect s = gross_error(stated, data, *datum, 1); !s.quantity.empty()) found.emplace_back(std::move(s), datum);
     const auto less = [](const auto &a, const auto &b) { return a.first.error < b.first.error; };
     std::stable_sort(found.begin(), found.end(), less);
     for (std::size_t i = 0; i < found.size() && i < 3; ++i) // a valley that a search from where it stands does not see
@@ -125,8 +129,87 @@ std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
             if (Suspect s = gross_error(stated, data, *found[i].second, start); !s.quantity.empty() && s.error < found[i].first.error)
                 found[i].first = std::move(s);
     std::stable_sort(found.begin(), found.end(), less);
+    return found;
+}
+
+std::vector<const Datum *> all_data() {
+    std::vector<const Datum *> list;
+    for (const Datum &datum : data_of_a_model) list.push_back(&datum);
+    return list;
+}
+
+// The part of the log where the model leaves the most, balance by balance; a row counts as four times its balance's mean at most.
+Dataset worst_stretch(const Problem &first) {
+    const Dataset &data = first.data();
+    const double end = data.time(data.count - 1), step = 0.25 * looked_at_s;
+    if (data.independent_rows || end - data.start_s < 2 * looked_at_s) return data;
+    const Eigen::VectorXd squares = first.residual.cwiseQuotient(first.noise_rows()).cwiseAbs2();
+    std::vector<double> left(static_cast<std::size_t>((end - data.start_s) / step) + 1, 0); // of each quarter of a stretch
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        const double mean = squares.segment(row, n).mean();
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            const double place =
+                std::clamp((0.5 * (b.t0_s[r] + b.t1_s[r]) - data.start_s) / step, 0.0, static_cast<double>(left.size() - 1));
+            left[static_cast<std::size_t>(place)] += std::min(4 * mean, squares[row]) / static_cast<double>(n);
+        }
+    }
+    std::size_t best = 0;
+    double most = 0;
+    for (std::size_t i = 0; i + 4 <= left.size(); ++i)
+        if (const double sum = left[i] + left[i + 1] + left[i + 2] + left[i + 3]; sum > most) most = sum, best = i;
+    const double from = std::min(data.start_s + static_cast<double>(best) * step, end - looked_at_s);
+    return stretch(data, from, from + looked_at_s);
+}
+
+// Of a fitted model on the rows of a part of its log, in units of noise, as overall_error() has it.
+double error_within(const Problem &fitted, const Dataset &part) {
+    const Eigen::VectorXd squares = fitted.residual.cwiseQuotient(fitted.noise_rows()).cwiseAbs2();
+    const double from = part.start_s, to = part.time(part.count - 1);
+    double sum = 0, balances = 0;
+    Eigen::Index row = 0;
+    for (const Balance &b : fitted.data().balance) {
+        double own = 0, n = 0;
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row)
+            if (b.t0_s[r] >= from && b.t1_s[r] <= to) own += squares[row], ++n;
+        if (n > 0) sum += own / n, ++balances;
+    }
+    return balances > 0 ? std::sqrt(sum / balances) : 0;
+}
+
+// Those that may halve the error: what does not on the worst stretch does not on the whole log.
+std::vector<const Datum *> promising_data(const Model &stated, const Problem &first) {
+    const Dataset part = worst_stretch(first);
+    if (part.count == first.data().count) return all_data();
+    const double before = error_within(first, part);
+    std::vector<const Datum *> list;
+    for (const Found &f : search(stated, part, all_data()))
+        if (f.first.error < promising * before) list.push_back(f.second);
+    return list;
+}
+
+// What no model goes below: the scatter of the residuals from row to row, which a prediction has no part in, for it follows the wheels.
+double scatter_of(const Problem &fitted) {
+    const Eigen::VectorXd e = fitted.residual.cwiseQuotient(fitted.noise_rows());
+    double sum = 0;
+    Eigen::Index row = 0;
+    for (const Balance &b : fitted.data().balance) {
+        std::vector<double> bend; // second differences: of white noise, sqrt(6) times it
+        for (std::size_t r = 2; r < b.measured.size(); ++r)
+            bend.push_back(std::fabs(e[row + static_cast<Eigen::Index>(r)] - 2 * e[row + static_cast<Eigen::Index>(r) - 1] +
+                                     e[row + static_cast<Eigen::Index>(r) - 2]));
+        sum += bend.empty() ? 0 : std::pow(1.4826 * median(bend), 2) / 6;
+        row += static_cast<Eigen::Index>(b.measured.size());
+    }
+    return fitted.data().balance.empty() ? 0 : std::sqrt(sum / static_cast<double>(fitted.data().balance.size()));
+}
+
+} // namespace
+
+std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
     std::vector<Suspect> out;
-    for (auto &[suspect, datum] : found) out.push_back(std::move(suspect));
+    for (Found &f : search(stated, data, all_data())) out.push_back(std::move(f.first));
     return out;
 }
 
@@ -150,7 +233,12 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     if (!at_bound && worst_of(first) < suspicious && !(accepted >= 2 && before > 1.3 * after)) return std::nullopt;
     Doubt out;
     const double left = after * (1 - shape_gain);
-    for (Suspect &s : gross_errors(stated, data)) {
+    std::vector<Found> found; // what may halve the error, looked for where that is cheap; all where nothing is known of so large a one
+    if (before > never_nothing)
+        found = search(stated, data, all_data());
+    else if (data.independent_rows || scatter_of(first) < much_better * before)
+        found = search(stated, data, promising_data(stated, first));
+    for (auto &[s, datum] : found) {
         const double needed = accepted >= 2 ? several_names : one_name;
         if (is_gross(s) && s.error < needed * left && s.error < much_better * before) out.suspects.push_back(std::move(s));
     }
