@@ -3,6 +3,7 @@
 #include "host_tools/lab/forward/forward.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/dataset.h"
+#include "host_tools/lab/inputs/long_log.h"
 #include "host_tools/lab/inputs/smooth.h"
 #include "host_tools/lab/inputs/stretch.h"
 #include "host_tools/simulate/simulate.h"
@@ -140,6 +141,27 @@ TEST(Inputs, a_stretch_of_a_log_keeps_its_times_and_predicts_what_the_whole_does
         EXPECT_EQ(kept, part.balance[b].measured.size());
         EXPECT_GT(kept, 40u); // 2.4 s of rows of 50 ms
     }
+}
+
+TEST(Inputs, of_a_long_log_the_part_where_the_wheels_change_their_speeds_is_kept_at_the_full_grid_and_it_says_so) {
+    log::Log log;
+    log::Signal speed{"wheel0.speed_rad_s", {}, {}}, current{"wheel0.current_A", {}, {}};
+    for (int i = 0; i < 20000; ++i) { // 2000 s: steady, but for 500 s
+        const double t = 0.1 * i;
+        speed.t_s.push_back(t), speed.value.push_back(t > 1200 && t < 1700 ? 3 + std::sin(t) : 3);
+        current.t_s.push_back(t), current.value.push_back(0.1);
+    }
+    log.signals = {speed, current};
+    log::Log part = log, shorter = log;
+    const std::string told = keep_busiest(bench(), part);
+    EXPECT_NE(told.find("the log is 2000 s long"), std::string::npos) << told;
+    EXPECT_LE(part.signals[0].t_s.front(), 1200);
+    EXPECT_GE(part.signals[0].t_s.back(), 1700 - 0.1); // all of it, in 600 s
+    EXPECT_LE(part.duration_s(), longest_log_s + 0.1);
+    EXPECT_DOUBLE_EQ(measured_data(bench(), part).step_s, 0.02);
+    EXPECT_GT(measured_data(bench(), log).step_s, 0.06); // whole: 30000 steps at most
+    keep_part(shorter, 0.05, 600);
+    EXPECT_EQ(keep_busiest(bench(), shorter), "");
 }
 
 TEST(Inputs, wheels_that_swing_at_4_Hz_are_integrated_in_steps_of_10_ms) {
