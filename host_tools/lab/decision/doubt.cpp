@@ -2,6 +2,8 @@
 
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/inputs/smooth.h"
+#include "host_tools/lab/inputs/stretch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +24,8 @@ constexpr double as_much = 1.02;          // of the error that what was named le
 constexpr double notable = 0.95;          // of the error as stated: a mass that a log hardly tells wanders for less
 constexpr double sure = 2;                // standard errors of the blocks' differences
 constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
+
+constexpr double looked_at_s = 20; // what is grossly wrong shows wherever the model fails: there each datum is tried first
 
 // What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
 struct Datum {
@@ -130,15 +134,15 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
 
 bool is_gross(const Suspect &s) { return s.fitted < s.stated / s.gross || (!s.more_is_an_effect && s.fitted > s.stated * s.gross); }
 
-std::vector<Freed> freed(const Model &stated, const Dataset &data) {
+std::vector<Freed> freed(const Model &stated, const Dataset &data, const std::vector<const Datum *> &asked) {
     std::vector<Freed> found;
     const auto less = [](const Freed &a, const Freed &b) { return a.suspect.error < b.suspect.error; };
     const auto from = [&](Freed &f, double start) {
         if (Freed other = gross_error(stated, data, *f.datum, start); !other.suspect.quantity.empty() && less(other, f))
             f = std::move(other);
     };
-    for (const Datum &datum : data_of_a_model)
-        if (Freed f = gross_error(stated, data, datum, 1); !f.suspect.quantity.empty()) found.push_back(std::move(f));
+    for (const Datum *datum : asked)
+        if (Freed f = gross_error(stated, data, *datum, 1); !f.suspect.quantity.empty()) found.push_back(std::move(f));
     std::stable_sort(found.begin(), found.end(), less);
     for (std::size_t i = 0; i < found.size(); ++i) { // a valley that a search from where it stands does not see
         if (i < 3)
@@ -147,6 +151,80 @@ std::vector<Freed> freed(const Model &stated, const Dataset &data) {
     }
     std::stable_sort(found.begin(), found.end(), less);
     return found;
+}
+
+std::vector<const Datum *> all_data() {
+    std::vector<const Datum *> list;
+    for (const Datum &datum : data_of_a_model) list.push_back(&datum);
+    return list;
+}
+
+// The part of the log where the model leaves the most, balance by balance; a row counts as four times its balance's mean at most.
+Dataset worst_stretch(const Problem &first) {
+    const Dataset &data = first.data();
+    const double end = data.time(data.count - 1), step = 0.25 * looked_at_s;
+    if (data.independent_rows || end - data.start_s < 2 * looked_at_s) return data;
+    const Eigen::VectorXd squares = first.residual.cwiseQuotient(first.noise_rows()).cwiseAbs2();
+    std::vector<double> left(static_cast<std::size_t>((end - data.start_s) / step) + 1, 0); // of each quarter of a stretch
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        const double mean = squares.segment(row, n).mean();
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            const double place =
+                std::clamp((0.5 * (b.t0_s[r] + b.t1_s[r]) - data.start_s) / step, 0.0, static_cast<double>(left.size() - 1));
+            left[static_cast<std::size_t>(place)] += std::min(4 * mean, squares[row]) / static_cast<double>(n);
+        }
+    }
+    std::size_t best = 0;
+    double most = 0;
+    for (std::size_t i = 0; i + 4 <= left.size(); ++i)
+        if (const double sum = left[i] + left[i + 1] + left[i + 2] + left[i + 3]; sum > most) most = sum, best = i;
+    const double from = std::min(data.start_s + static_cast<double>(best) * step, end - looked_at_s);
+    return stretch(data, from, from + looked_at_s);
+}
+
+// Of a fitted model on the rows of a part of its log, in units of noise, as overall_error() has it.
+double error_within(const Problem &fitted, const Dataset &part) {
+    const Eigen::VectorXd squares = fitted.residual.cwiseQuotient(fitted.noise_rows()).cwiseAbs2();
+    const double from = part.start_s, to = part.time(part.count - 1);
+    double sum = 0, balances = 0;
+    Eigen::Index row = 0;
+    for (const Balance &b : fitted.data().balance) {
+        double own = 0, n = 0;
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row)
+            if (b.t0_s[r] >= from && b.t1_s[r] <= to) own += squares[row], ++n;
+        if (n > 0) sum += own / n, ++balances;
+    }
+    return balances > 0 ? std::sqrt(sum / balances) : 0;
+}
+
+// Those that may bring the error below `need` times what it is, on the whole log: a datum that does not go half of that way where the model
+// fails most does not go all of it on the whole log.
+std::vector<const Datum *> promising_data(const Model &stated, const Problem &first, double need) {
+    const Dataset part = worst_stretch(first);
+    if (part.count == first.data().count) return all_data();
+    const double before = error_within(first, part);
+    std::vector<const Datum *> list;
+    for (const Freed &f : freed(stated, part, all_data()))
+        if (f.suspect.error < 0.5 * (1 + need) * before) list.push_back(f.datum);
+    return list;
+}
+
+// What no model goes below: the scatter of the residuals from row to row, which a prediction has no part in, for it follows the wheels.
+double scatter_of(const Problem &fitted) {
+    const Eigen::VectorXd e = fitted.residual.cwiseQuotient(fitted.noise_rows());
+    double sum = 0;
+    Eigen::Index row = 0;
+    for (const Balance &b : fitted.data().balance) {
+        std::vector<double> bend; // second differences: of white noise, sqrt(6) times it
+        for (std::size_t r = 2; r < b.measured.size(); ++r)
+            bend.push_back(std::fabs(e[row + static_cast<Eigen::Index>(r)] - 2 * e[row + static_cast<Eigen::Index>(r) - 1] +
+                                     e[row + static_cast<Eigen::Index>(r) - 2]));
+        sum += bend.empty() ? 0 : std::pow(1.4826 * median(bend), 2) / 6;
+        row += static_cast<Eigen::Index>(b.measured.size());
+    }
+    return fitted.data().balance.empty() ? 0 : std::sqrt(sum / static_cast<double>(fitted.data().balance.size()));
 }
 
 // Data that the fit within the priors has itself moved grossly: the sheet's deviation was too wide to hold them.
@@ -199,7 +277,7 @@ bool is_its_law(const Problem &last, const Datum &datum) {
 
 std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
     std::vector<Suspect> out;
-    for (Freed &f : freed(stated, data)) out.push_back(std::move(f.suspect));
+    for (Freed &f : freed(stated, data, all_data())) out.push_back(std::move(f.suspect));
     return out;
 }
 
@@ -226,7 +304,16 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     if (!at_bound && worst_of(first) < suspicious && !far_off && out.suspects.empty() && !(accepted >= 2 && before > 1.3 * after))
         return std::nullopt;
     const double left = after * (1 - shape_gain);
-    for (Freed &f : freed(stated, data)) {
+    // the largest share of the error that a rule below lets a datum leave
+    const double need = accepted == 0   ? std::min(much_better, one_name * left / before)
+                        : accepted == 1 ? std::min(notable, as_much * left / before)
+                                        : std::min(better, several_names * left / before);
+    std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
+    if (before > never_nothing)
+        found = freed(stated, data, all_data());
+    else if (data.independent_rows || scatter_of(first) < need * before)
+        found = freed(stated, data, promising_data(stated, first, need));
+    for (Freed &f : found) {
         const Suspect &s = f.suspect;
         // more of it is an effect, unless it alone does what took two names: then one of them is none
         if (accepted >= 2 && s.more_is_an_effect && s.fitted > s.stated * s.gross && s.error < better * before &&
