@@ -12,7 +12,8 @@ float ground_speed_wheel_odds(const ground_speed_config_t *config, float measure
         return 0.0f;
     }
     const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.5f * rim, measured); // slip of -0.33 to 0.5
-    const float odds = match ? config->wheel_match : config->wheel_odds;
+    const bool spins = fixed_greater(rim, measured); // slip of 0 to 1 the wheels' way, or of more than 1 against it
+    const float odds = match ? config->wheel_match : spins ? config->wheel_spins : config->wheel_odds;
     return wheel_m_s < 0.0f ? -odds : odds;
 }
 
