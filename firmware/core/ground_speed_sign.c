@@ -65,7 +65,9 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
         const ground_speed_track_t best = ground_speed_best_of(state);
         ground_speed_split(state, &state->other, &best);
         state->other.at.speed_m_s = -best.speed_m_s;
+        state->other.at.bias_m_s2 = 2.0f * state->value_accel_m_s2 - best.bias_m_s2; // (2) of the mirror image
         state->other.at.p_vb = 0.0f;
+        ground_speed_hold(config, &state->other.at);
         state->odds = config->against_odds;
         state->other_alive = true;
         state->against = 0;
