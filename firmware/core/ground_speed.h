@@ -97,6 +97,7 @@ typedef struct {
     float standing_noise_m2_s2;    // R of speed 0 in each standing tick
     float slow_m_s;                // |v| below which standing needs no quiet echo
     float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
+    float wheel_spins;             // 2 ln of the odds that the sign of wheels has that outrun the radar's value
     float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
     float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
     int32_t against_values;        // values against which they turn before the other sign is asked anew

@@ -12,7 +12,8 @@ float ground_speed_wheel_odds(const ground_speed_config_t *config, float measure
         return 0.0f;
     }
     const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.5f * rim, measured); // slip of -0.33 to 0.5
-    const float odds = match ? config->wheel_match : config->wheel_odds;
+    const bool spins = fixed_greater(rim, measured); // slip of 0 to 1 the wheels' way, or of more than 1 against it
+    const float odds = match ? config->wheel_match : spins ? config->wheel_spins : config->wheel_odds;
     return wheel_m_s < 0.0f ? -odds : odds;
 }
 
@@ -64,7 +65,9 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
         const ground_speed_track_t best = ground_speed_best_of(state);
         ground_speed_split(state, &state->other, &best);
         state->other.at.speed_m_s = -best.speed_m_s;
+        state->other.at.bias_m_s2 = 2.0f * state->value_accel_m_s2 - best.bias_m_s2; // (2) of the mirror image
         state->other.at.p_vb = 0.0f;
+        ground_speed_hold(config, &state->other.at);
         state->odds = config->against_odds;
         state->other_alive = true;
         state->against = 0;

@@ -115,8 +115,9 @@ static ground_speed_config_t ground_speed_default() {
         .loud_needed = 3,
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
         .slow_m_s = 0.12f,
-        .sign_sure = 18.0f, // exp(9) to one
-        .wheel_odds = 2.0f, // e to one, assumed
+        .sign_sure = 18.0f,  // exp(9) to one
+        .wheel_spins = 6.0f, // exp(3) to one, assumed
+        .wheel_odds = 2.0f,  // e to one, assumed
         .wheel_match = 14.0f,
         .wheel_pull = 0.5f,
         .against_values = 4,
