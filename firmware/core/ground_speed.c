@@ -63,7 +63,7 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     // of a body that sways on its wheels: the mean square, less what noise makes on average, a ninth of what it may make
     const float shaken =
         state->apart_m2_s2 - ground_speed_square(config->apart_least_m_s) - (1.0f / 9.0f) * config->apart_noise * state->speed_noise_m2_s2;
-    const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, ground_speed_max_m_s);
+    const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, config->speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
     const float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
@@ -79,7 +79,7 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
     if (state->chore == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
         ground_speed_watch_noise(config, state);
     } else if (state->chore % CHORES == 3u) {
-        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -ground_speed_max_m_s, ground_speed_max_m_s));
+        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
     } else if (state->chore % CHORES == 5u) {
         state_std(config, state);
     } else if (state->chore % CHORES == 6u) {
@@ -167,7 +167,9 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     tick(config, state, accel, noise);
     if (!input->busy || fresh) {
         catch_up(config, state);
-        ground_speed_watch_wheels(config, state, input);
+        if (!fresh || state->rolls_ticks > 0) { // a value's tick is dear
+            ground_speed_watch_wheels(config, state, input);
+        }
     }
     if (config->method == GROUND_SPEED_PAPER) {
         state->standstill = false;
@@ -177,7 +179,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     } else {
         step_ours(config, state, input, fresh);
     }
-    state->speed_m_s = fixed_clamp(state->speed_m_s, -ground_speed_max_m_s, ground_speed_max_m_s);
+    state->speed_m_s = fixed_clamp(state->speed_m_s, -config->speed_max_m_s, config->speed_max_m_s);
     state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fresh || state->standstill || fixed_bits(state->std_m_s) == 0u) { // a root is dear
         state_std(config, state);

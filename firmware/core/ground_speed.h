@@ -59,6 +59,7 @@ typedef struct {
     float bias_noise_m2_s4;         // Qb per tick
     float bias_start_m_s2;          // standard deviation of the bias at reset
     float bias_max_m_s2;            // |b| limit
+    float speed_max_m_s;            // |v| limit, of what the radar tells too
     float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
     float doppler_noise_m_s;
     float doppler_accel_s2;
@@ -167,7 +168,6 @@ typedef struct {
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
     float value_cost;                    // e^2/S + ln S of the best
     float value_sign, value_wheel_m_s;
-    float value_force; // (12) as 2 ln of the odds of +
 } ground_speed_state_t;
 
 typedef struct {

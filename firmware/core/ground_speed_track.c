@@ -10,7 +10,7 @@ static const float p_bb_min = 1e-8f;
 void ground_speed_hold(const ground_speed_config_t *config, ground_speed_track_t *track)
 {
     const float bb_max = config->bias_max_m_s2 * config->bias_max_m_s2;
-    track->speed_m_s = fixed_clamp(track->speed_m_s, -ground_speed_max_m_s, ground_speed_max_m_s);
+    track->speed_m_s = fixed_clamp(track->speed_m_s, -config->speed_max_m_s, config->speed_max_m_s);
     track->bias_m_s2 = fixed_clamp(track->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     if (fixed_greater(track->p_vv, p_vv_max)) {
         track->p_vb *= p_vv_max / track->p_vv;

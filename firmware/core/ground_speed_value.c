@@ -11,7 +11,7 @@ void ground_speed_update_paper(const ground_speed_config_t *config, ground_speed
 {
     const float sign = fixed_greater(0.0f, wheel_m_s) ? -1.0f : 1.0f;
     const float gain = state->p_vv / (state->p_vv + config->doppler_noise_m2_s2); // (1)
-    state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, 10.0f) - state->speed_m_s);
+    state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, config->speed_max_m_s) - state->speed_m_s);
     state->p_vv -= gain * state->p_vv;
     state->p_vb = 0.0f;
     state->p_bb = 0.0f;
@@ -58,7 +58,7 @@ ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config,
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
-    const float heard = fixed_clamp(input->doppler_m_s, 0.0f, 10.0f);
+    const float heard = fixed_clamp(input->doppler_m_s, 0.0f, config->speed_max_m_s);
     ground_speed_track_t track = ground_speed_best_of(state);
     const bool rolls = state->rolls_ticks > 0;
     ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
@@ -91,7 +91,6 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
     state->value_wheel_m_s = input->wheel_m_s;
-    state->value_force = ground_speed_force_odds(config, measured, input->wheel_m_s, window.accel_m_s2);
     watch_bias(config, state, &track, nearest, spread);
     if (cost > ground_speed_square(config->gate_sigma)) {
         if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little

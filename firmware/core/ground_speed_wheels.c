@@ -84,7 +84,7 @@ static void roll(const ground_speed_config_t *config, ground_speed_state_t *stat
 // (10), over the ticks since the last time: it waits in ticks that are busy.
 void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
-    const float wheel = fixed_clamp(fixed_finite(input->wheel_m_s), -ground_speed_max_m_s, ground_speed_max_m_s);
+    const float wheel = fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s);
     const int32_t now = state->integral_q20[state->head];
     const int32_t passed = state->wheel_ticks;
     const float ticks = (float)passed;
@@ -92,7 +92,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
                          state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
     if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
-        state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -ground_speed_max_m_s, ground_speed_max_m_s);
+        state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
     }
     const float share = 1.0f - keep;
     state->apart_m2_s2 += share * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);

@@ -93,7 +93,7 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
     const double step_m = (truth.path_m - last_.path_m) * stretch + hop_m;
     const double step_s = truth.t_s - last_.t_s;
     for (;;) {
-        const double due_s = static_cast<double>(radar_samples_) / Radar::rate_Hz;
+        const double due_s = static_cast<double>(radar_samples_) / config_.radar.rate_Hz;
         if (due_s > truth.t_s + 1e-9) break; // 1 ns: both clocks are sums
         const double u = step_s > 0 ? (due_s - last_.t_s) / step_s : 1;
         pending_.radar_count.push_back(radar_.sample(radar_path_m_ + u * step_m));

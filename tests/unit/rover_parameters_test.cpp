@@ -78,6 +78,7 @@ static ground_speed_config_t ground_speed_default() {
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .bias_start_m_s2 = 1.0f,        // as rover_config.c has it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
+        .speed_max_m_s = 10.0f,
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
         .doppler_accel_s2 = 0.004f,
@@ -186,7 +187,11 @@ control_config_t written_out() {
                     .open_looks = 6},
         .doppler = doppler_default(),
         .ground_speed = ground_speed_default(),
-        .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
+        .slip = {.wheel_radius_m = wheel_radius_m,
+                 .valid_m_s = 0.05f,
+                 .valid_std = 0.25f,
+                 .rim_std_m_s =
+                     0.40824829f * (6.28318531f / 6000.0f / tick_s) * wheel_radius_m}, // [m/s] the band-pass blinds the radar below
         .motor = {.torque_constant_Nm_A = torque_constant_Nm_A,
                   .volt_per_speed_Vs = resistance_ohm * viscous_Nms / torque_constant_Nm_A + torque_constant_Nm_A,
                   .volt_dry_V = resistance_ohm * dry_Nm / torque_constant_Nm_A,
@@ -274,7 +279,7 @@ TEST(ControlConfig, the_window_of_512_Hz_is_the_one_the_estimator_had) {
         1044, 1184, 1317, 1440, 1551, 1632, 1695, 1733, 1745, 1728, 1685, 1617, 1532, 1417, 1291, 1157, 1016,
         874,  736,  604,  484,  375,  281,  203,  140,  91,   55,   31,   15,   6,    2,    0,    0,    0,
     };
-    for (int radar = 0; radar < ROVER_RADAR_COUNT; ++radar) {
+    for (int radar = 0; radar < ROVER_RADAR_LINKED; ++radar) {
         const doppler_window_t &window = doppler_template_of(radar)->window;
         ASSERT_EQ(window.ticks, 51);
         EXPECT_EQ(window.tau_s, 0.249f);
