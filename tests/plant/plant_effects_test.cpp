@@ -129,6 +129,11 @@ const std::map<std::string, std::vector<Balance>> &claims() {
         {"viscous_friction", {torque}},
         {"stribeck_friction", {torque}},
         {"mesh_loss", {torque}},
+        {"wear_in", {torque}},
+        {"reverse_friction", {torque}},
+        {"churning_friction", {torque}},
+        {"gear_speed_loss", {torque}},
+        {"shared_lead", {voltage}},
         {"backlash", {torque}},
         {"torque_ripple", {torque}},
         {"winding_heating", {torque, voltage}},
@@ -138,6 +143,9 @@ const std::map<std::string, std::vector<Balance>> &claims() {
         {"rolling_resistance", {rolling}},
         {"slip_sinkage", {rolling}},
         {"speed_resistance", {rolling}},
+        {"squared_resistance", {rolling}},
+        {"resistance_patch", {rolling}},
+        {"shear_peak", {strength}},
         {"multi_pass", {strength}},
         {"load_transfer", {load}},
         {"mass_offset_x", {load}},
@@ -152,6 +160,7 @@ const std::map<std::string, std::vector<Balance>> &claims() {
         {"grade", {body}},
         {"tether_drag", {body}},
         {"body_drag", {body}},
+        {"fluid_drag", {body}},
     };
     return all;
 }

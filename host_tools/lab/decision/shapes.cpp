@@ -15,8 +15,8 @@ namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
 constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spent on shapes of one wheel or axle
-constexpr double some_wheels_tried = 100; // electric shapes x wheels and axles
-constexpr double shapes_tried = 72;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
+constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -63,6 +63,20 @@ class ShapeColumns {
         Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
         for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
         return columns;
+    }
+
+    // Of a shape that moves the body, on each wheel alone; empty where that is not to be had in one pass.
+    std::vector<Eigen::MatrixXd> of_each_wheel(const Candidate &c) {
+        const std::size_t count = c.strengths.size(), wheels = physics_.wheel.size();
+        std::vector<Eigen::MatrixXd> list;
+        if (!plain_ || c.touched != stage_motion || wheels < 2 || wheels * count > most_shapes) return list;
+        Physics at = physics_;
+        c.prepare(at);
+        const Eigen::MatrixXd columns =
+            problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), *at.terms.back().term, count, true);
+        for (std::size_t i = 0; i < wheels; ++i)
+            list.push_back(columns.middleCols(static_cast<Eigen::Index>(i * count), static_cast<Eigen::Index>(count)));
+        return list;
     }
 
     // Of waves, which come many and alike: as many as one pass holds.
@@ -130,6 +144,9 @@ ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Scre
     return s;
 }
 
+// Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
+bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
+
 // One value between two that are nothing: a resonance. What a curve of many values says of it is less sure.
 bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
 
@@ -149,6 +166,14 @@ std::vector<std::vector<int>> wheel_groups(const Physics &physics) {
     return groups;
 }
 
+Candidate on_wheels(const Candidate &shape, const std::vector<int> &group) {
+    Candidate c = shape;
+    c.some_wheels = true;
+    c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
+    for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
+    return c;
+}
+
 // A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
 void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
                         const Eigen::MatrixXd &columns, bool keep) {
@@ -162,11 +187,20 @@ void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, c
             if (std::find(group.begin(), group.end(), b.wheel) != group.end()) part.middleRows(first, n) = columns.middleRows(first, n);
             first += n;
         }
-        Candidate c = shape;
-        c.some_wheels = true;
-        c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
-        for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
-        list.push_back(scored(c, part, screen, keep));
+        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
+    }
+}
+
+// One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.
+void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
+                               ShapeColumns &columns, bool keep) {
+    if (shape.touched != stage_motion || !is_straight(shape) || shape.order > 0) return;
+    const std::vector<Eigen::MatrixXd> each = columns.of_each_wheel(shape);
+    if (each.empty()) return;
+    for (const std::vector<int> &group : wheel_groups(problem.physics())) {
+        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(each[0].rows(), each[0].cols());
+        for (const int i : group) part += each[static_cast<std::size_t>(i)];
+        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
     }
 }
 
@@ -183,6 +217,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
         const Eigen::MatrixXd C = columns.of(c);
         list.push_back(scored(c, C, screen, keep));
         add_on_some_wheels(list, problem, screen, c, C, keep);
+        add_moving_on_some_wheels(list, problem, screen, c, columns, keep);
         for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
             Candidate bump = c;
             bump.effect += ", a bump";
@@ -273,9 +308,6 @@ Assessment effect_given_shape(const Problem &less, const Eigen::MatrixXd &effect
     with.parameters.insert(with.parameters.end(), shape.candidate.strengths.begin(), shape.candidate.strengths.end());
     return Screen(with).assess(effect, Eigen::VectorXd::Zero(effect.cols()), false);
 }
-
-// Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
-bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
 
 // A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none
 // either: f(X) may stand for anything that differed between them.
