@@ -66,13 +66,12 @@ TEST(Rounding, what_only_smooths_the_encoders_noise_is_not_named) {
 TEST(Rounding, goes_with_the_square_of_the_count) {
     const GeneratorConfig config = rover(Soil::concrete, 7102);
     const Model model = parse_model(generator::data_sheet(config), "sheet");
-    Dataset data = make_dataset(model, generator::generate(config));
+    const Dataset data = make_dataset(model, generator::generate(config));
     const Physics physics = make_physics(model);
     const auto sum = [&](double factor) {
         Dataset scaled = data;
-        for (WheelInput &w : scaled.wheel) w.count_rad *= factor;
-        const Problem problem(scaled, physics, free_parameters(model, physics));
-        return rounding_squares(problem).sum();
+        for (WheelInput &w : scaled.wheel) w.scatter_rad *= factor;
+        return rounding_squares(scaled, physics).sum();
     };
     const double one = sum(1);
     EXPECT_GT(one, 0);

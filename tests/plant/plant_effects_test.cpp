@@ -40,6 +40,7 @@ double duty_at(double t_s, int wheel) {
     if (t_s < 4) return 0.1;
     if (t_s < 6) return left ? 0.3 : 0.6;
     if (t_s < 9) return -0.6;
+    if (t_s > 10.5) return wheel < 2 ? 1.0 : -0.1; // slip beyond 0.6: the knee of sand is at 0.54
     return left ? 0.5 : 0.55;
 }
 

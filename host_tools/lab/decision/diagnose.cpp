@@ -267,7 +267,7 @@ class Search {
         HeldOut held = held_out(compared);
         Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()), noise = fall_between(held_, held, noise_weight(before));
         if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
-            const Eigen::VectorXd smoothed = rounding_squares(before) - rounding_squares(compared);
+            const Eigen::VectorXd smoothed = rounding_squares(data_, before.physics()) - rounding_squares(data_, compared.physics());
             scaled.sum -= smoothed.dot(before.row_scale.cwiseAbs2());
             noise.sum -= smoothed.dot(noise_weight(before));
         }

@@ -2,6 +2,7 @@
 
 #include "candidate.h"
 #include "host_tools/lab/fit/distribution.h"
+#include "host_tools/lab/fit/rounding.h"
 #include "host_tools/lab/fit/screen.h"
 
 #include <algorithm>
@@ -369,6 +370,25 @@ bool repeats(const ShapeScore &s) {
     return s.p_value < 2e-3 && gain.size() > 2 && gain.head(gain.size() - 2).sum() > 0;
 }
 
+// What a shape that moves the body gains by smoothing the encoders' scatter: no evidence (fit/rounding.h).
+class Smoothing {
+  public:
+    explicit Smoothing(const Problem &problem) : problem_(problem) {}
+    double of(const ShapeScore &s) {
+        if ((s.candidate.touched & stage_motion) == 0 || s.candidate.some_wheels) return 0;
+        Physics with = problem_.physics();
+        if (plain_.size() == 0) plain_ = rounding_squares(problem_.data(), with);
+        s.candidate.prepare(with);
+        for (std::size_t j = 0; j < with.terms.back().coefficients.size(); ++j)
+            with.terms.back().coefficients[j] = s.assessment.strength[static_cast<Eigen::Index>(j)];
+        return (plain_ - rounding_squares(problem_.data(), with)).dot(problem_.row_scale.cwiseAbs2());
+    }
+
+  private:
+    const Problem &problem_;
+    Eigen::VectorXd plain_;
+};
+
 } // namespace
 
 ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
@@ -386,8 +406,15 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
     const ShapeScore *best = nullptr;
     double best_gain = 0;
+    Smoothing smoothing(last);
     for (const ShapeScore &s : scores) {
         if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
+        ShapeScore sharp = s;
+        const double smoothed = smoothing.of(s);
+        sharp.assessment.gain -= smoothed;
+        sharp.assessment.block_gain.array() -=
+            smoothed / static_cast<double>(std::max<Eigen::Index>(1, sharp.assessment.block_gain.size()));
+        if (sharp.assessment.gain < s.assessment.gain && (!material(sharp) || !repeats(sharp))) continue;
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
             continue;

@@ -24,12 +24,12 @@ double uniform(std::uint64_t draw, std::uint64_t wheel, std::uint64_t sample) {
 void add_rounding(Dataset &data, std::uint64_t draw) {
     for (std::size_t i = 0; i < data.wheel.size(); ++i) {
         WheelInput &in = data.wheel[i];
-        if (!(in.count_rad > 0) || !(in.sample_s > 0)) continue;
+        if (!(in.scatter_rad > 0) || !(in.sample_s > 0)) continue;
         std::vector<double> t, error;
         const double last = data.time(data.count - 1) + in.half_s;
         for (std::uint64_t j = 0; data.start_s - in.half_s + static_cast<double>(j) * in.sample_s < last; ++j) {
             t.push_back(data.start_s - in.half_s + static_cast<double>(j) * in.sample_s);
-            error.push_back(in.count_rad * uniform(draw, i, j));
+            error.push_back(std::sqrt(12.0) * in.scatter_rad * uniform(draw, i, j));
         }
         const Smooth noise = smooth_at(t, error, data.start_s, data.step_s, data.count, in.half_s, 2);
         for (std::size_t k = 0; k < data.count; ++k)
@@ -39,12 +39,10 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
 
 } // namespace
 
-Eigen::VectorXd rounding_squares(const Problem &problem) {
-    const Dataset &data = problem.data();
-    const Physics physics = problem.physics();
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(problem.residual.size());
-    if (data.independent_rows || data.count < 3) return squares;
+Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
     const Eigen::VectorXd plain = Forward(data).predict(physics);
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(plain.size());
+    if (data.independent_rows || data.count < 3) return squares;
     for (int draw = 0; draw < draws; ++draw) {
         Dataset noisy = data;
         add_rounding(noisy, static_cast<std::uint64_t>(draw));

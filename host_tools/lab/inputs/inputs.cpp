@@ -190,8 +190,9 @@ void InputBuilder::wheel_motion(std::size_t i) {
         WheelInput sharp;
         sharp.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 3).slope;
         slopes_of(sharp);
-        input.count_rad = rounding_of(angle), input.sample_s = sample_period(*s), input.half_s = half;
-        const double noise = rounding_noise(input.count_rad, input.sample_s, half);
+        const double count_rad = rounding_of(angle);
+        input.scatter_rad = scatter_of(angle, count_rad), input.sample_s = sample_period(*s), input.half_s = half;
+        const double noise = rounding_noise(count_rad, input.sample_s, half);
         rounding_rad_s2 = std::max(rounding_rad_s2, noise);
         follow_jumps(input, sharp, noise);
     } else if (data.independent_rows) {
@@ -220,6 +221,14 @@ double InputBuilder::rounding_of(const std::vector<double> &angle) {
         if (const double step = std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]); step > 1e-9 && (count <= 0 || step < count))
             count = step;
     return count;
+}
+
+// Standard deviation of the samples of a wheel that turns: rounding at least, more where their times scatter.
+double InputBuilder::scatter_of(const std::vector<double> &angle, double count) {
+    std::vector<double> bend;
+    for (std::size_t i = 2; i < angle.size(); ++i)
+        if (std::fabs(angle[i] - angle[i - 2]) > 4 * count) bend.push_back(std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]));
+    return std::max(count / std::sqrt(12.0), 1.4826 * median(std::move(bend)) / std::sqrt(6.0));
 }
 
 // What the rounding of an encoder leaves in the difference of two accelerations, by cubics and by parabolas [rad/s^2].

@@ -40,6 +40,7 @@ struct InputBuilder {
     void wheel_motion(std::size_t i);
     void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
     static double rounding_of(const std::vector<double> &angle_rad);
+    static double scatter_of(const std::vector<double> &angle_rad, double count_rad);
     static double rounding_noise(double count_rad, double period_s, double half_s);
     void travel(WheelInput &input) const;
     // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
