@@ -19,6 +19,8 @@ constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spe
 constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
 constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
+constexpr double over_scatter = 1.5; // times what scatter alone would give the best of them, of which one draw is made (assumed)
+
 struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
@@ -389,6 +391,17 @@ class Smoothing {
     Eigen::VectorXd plain_;
 };
 
+// What the best of all shapes gains on the encoders' scatter alone: on stiff ground it is slow (at a steady speed the counts beat with the
+// samples) and stands in few blocks, like a law.
+double most_gain_of_scatter(const Problem &problem) {
+    Problem scatter = problem;
+    scatter.residual = rounding_draw(problem.data(), problem.physics(), 0);
+    double most = 0;
+    const Screen screen(scatter);
+    for (const ShapeScore &s : all_shapes(scatter, screen)) most = std::max(most, s.assessment.gain);
+    return most;
+}
+
 } // namespace
 
 ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
@@ -421,6 +434,7 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
     }
+    if (best != nullptr && !(best->assessment.gain > over_scatter * most_gain_of_scatter(last))) best = nullptr;
     if (best != nullptr) findings.shape = describe(*best, last_screen.heldout_error());
     if (named_count == 0) return findings;
     for (std::size_t i = named_count; i-- > 0 && !findings.proxy;)

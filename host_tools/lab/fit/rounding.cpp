@@ -39,15 +39,17 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
 
 } // namespace
 
-Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
+Eigen::VectorXd rounding_draw(const Dataset &data, const Physics &physics, int draw) {
     const Eigen::VectorXd plain = Forward(data).predict(physics);
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(plain.size());
-    if (data.independent_rows || data.count < 3) return squares;
-    for (int draw = 0; draw < draws; ++draw) {
-        Dataset noisy = data;
-        add_rounding(noisy, static_cast<std::uint64_t>(draw));
-        squares += (Forward(noisy).predict(physics) - plain).cwiseAbs2() / draws;
-    }
+    if (data.independent_rows || data.count < 3) return Eigen::VectorXd::Zero(plain.size());
+    Dataset noisy = data;
+    add_rounding(noisy, static_cast<std::uint64_t>(draw));
+    return Forward(noisy).predict(physics) - plain;
+}
+
+Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
+    Eigen::VectorXd squares = rounding_draw(data, physics, 0).cwiseAbs2() / draws;
+    for (int draw = 1; draw < draws; ++draw) squares += rounding_draw(data, physics, draw).cwiseAbs2() / draws;
     return squares;
 }
 

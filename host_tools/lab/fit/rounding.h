@@ -17,4 +17,7 @@ namespace traction::lab {
 // known.
 Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics);
 
+// One draw of p(w + n) - p(w), of each row.
+Eigen::VectorXd rounding_draw(const Dataset &data, const Physics &physics, int draw);
+
 } // namespace traction::lab
