@@ -267,9 +267,13 @@ class Search {
         HeldOut held = held_out(compared);
         Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()), noise = fall_between(held_, held, noise_weight(before));
         if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
-            const Eigen::VectorXd smoothed = rounding_squares(data_, before.physics()) - rounding_squares(data_, compared.physics());
-            scaled.sum -= smoothed.dot(before.row_scale.cwiseAbs2());
+            const Scatter scatter(before);
+            const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
+            const Eigen::VectorXd smoothed =
+                (rounding_squares(data_, before.physics()) - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
+            scaled.sum -= smoothed.dot(weight);
             noise.sum -= smoothed.dot(noise_weight(before));
+            if (!(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight))) return std::nullopt;
         }
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
         const bool falls = scaled.sure() && noise.sure();

@@ -19,8 +19,6 @@ constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spe
 constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
 constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
-constexpr double over_scatter = 1.5; // times what scatter alone would give the best of them, of which one draw is made (assumed)
-
 struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
@@ -375,7 +373,7 @@ bool repeats(const ShapeScore &s) {
 // What a shape that moves the body gains by smoothing the encoders' scatter: no evidence (fit/rounding.h).
 class Smoothing {
   public:
-    explicit Smoothing(const Problem &problem) : problem_(problem) {}
+    Smoothing(const Problem &problem, const Scatter &scatter) : problem_(problem), scatter_(scatter) {}
     double of(const ShapeScore &s) {
         if ((s.candidate.touched & stage_motion) == 0 || s.candidate.some_wheels) return 0;
         Physics with = problem_.physics();
@@ -383,24 +381,14 @@ class Smoothing {
         s.candidate.prepare(with);
         for (std::size_t j = 0; j < with.terms.back().coefficients.size(); ++j)
             with.terms.back().coefficients[j] = s.assessment.strength[static_cast<Eigen::Index>(j)];
-        return (plain_ - rounding_squares(problem_.data(), with)).dot(problem_.row_scale.cwiseAbs2());
+        return (plain_ - rounding_squares(problem_.data(), with)).cwiseProduct(scatter_.part).dot(problem_.row_scale.cwiseAbs2());
     }
 
   private:
     const Problem &problem_;
+    const Scatter &scatter_;
     Eigen::VectorXd plain_;
 };
-
-// What the best of all shapes gains on the encoders' scatter alone: on stiff ground it is slow (at a steady speed the counts beat with the
-// samples) and stands in few blocks, like a law.
-double most_gain_of_scatter(const Problem &problem) {
-    Problem scatter = problem;
-    scatter.residual = rounding_draw(problem.data(), problem.physics(), 0);
-    double most = 0;
-    const Screen screen(scatter);
-    for (const ShapeScore &s : all_shapes(scatter, screen)) most = std::max(most, s.assessment.gain);
-    return most;
-}
 
 } // namespace
 
@@ -409,17 +397,19 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     ShapeFindings findings;
     Problem at_last = last, at_first = first; // their forward models are moved about
     const Screen last_screen(at_last);
+    const Scatter scatter(last); // slow on stiff ground (at a steady speed counts beat with samples): it stands in few blocks, like a law
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
     // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
     const auto material = [&](const ShapeScore &s) {
         const double share = s.candidate.some_wheels ? 0.5 : 1; // one wheel's rows are few among all
-        return s.assessment.gain > std::max(share * least, uneven(s.candidate) ? least_uneven : 0.0) * last_screen.heldout_error() ||
+        return s.assessment.gain > std::max({share * least, uneven(s.candidate) ? least_uneven : 0.0, of_scatter * scatter.share}) *
+                                       last_screen.heldout_error() ||
                (s.balance_fall > 0.15 && s.p_value < 1e-4);
     };
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
     const ShapeScore *best = nullptr;
     double best_gain = 0;
-    Smoothing smoothing(last);
+    Smoothing smoothing(last, scatter);
     for (const ShapeScore &s : scores) {
         if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
         ShapeScore sharp = s;
@@ -434,7 +424,6 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
     }
-    if (best != nullptr && !(best->assessment.gain > over_scatter * most_gain_of_scatter(last))) best = nullptr;
     if (best != nullptr) findings.shape = describe(*best, last_screen.heldout_error());
     if (named_count == 0) return findings;
     for (std::size_t i = named_count; i-- > 0 && !findings.proxy;)

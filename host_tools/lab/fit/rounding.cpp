@@ -2,6 +2,7 @@
 
 #include "host_tools/lab/inputs/smooth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -39,18 +40,31 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
 
 } // namespace
 
-Eigen::VectorXd rounding_draw(const Dataset &data, const Physics &physics, int draw) {
+Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
     const Eigen::VectorXd plain = Forward(data).predict(physics);
-    if (data.independent_rows || data.count < 3) return Eigen::VectorXd::Zero(plain.size());
-    Dataset noisy = data;
-    add_rounding(noisy, static_cast<std::uint64_t>(draw));
-    return Forward(noisy).predict(physics) - plain;
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(plain.size());
+    if (data.independent_rows || data.count < 3) return squares;
+    for (int draw = 0; draw < draws; ++draw) {
+        Dataset noisy = data;
+        add_rounding(noisy, static_cast<std::uint64_t>(draw));
+        squares += (Forward(noisy).predict(physics) - plain).cwiseAbs2() / draws;
+    }
+    return squares;
 }
 
-Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
-    Eigen::VectorXd squares = rounding_draw(data, physics, 0).cwiseAbs2() / draws;
-    for (int draw = 1; draw < draws; ++draw) squares += rounding_draw(data, physics, draw).cwiseAbs2() / draws;
-    return squares;
+Scatter::Scatter(const Problem &problem) : part(Eigen::VectorXd::Zero(problem.residual.size())) {
+    const Eigen::VectorXd all = rounding_squares(problem.data(), problem.physics()), noise = problem.noise_rows().cwiseAbs2(),
+                          weight = problem.row_scale.cwiseAbs2(), left = problem.residual.cwiseAbs2();
+    Eigen::Index first = 0;
+    for (const Balance &b : problem.data().balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        const auto sum = [&](const Eigen::VectorXd &squares) { return squares.segment(first, n).dot(weight.segment(first, n)); };
+        if (const double most = sum(all); most > 0)
+            part.segment(first, n).setConstant(std::clamp((sum(left) - sum(noise)) / most, 0.0, 1.0));
+        first += n;
+    }
+    const double whole = left.dot(weight);
+    share = whole > 0 ? part.cwiseProduct(all).dot(weight) / whole : 0;
 }
 
 } // namespace traction::lab

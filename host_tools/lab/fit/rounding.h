@@ -17,7 +17,15 @@ namespace traction::lab {
 // known.
 Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics);
 
-// One draw of p(w + n) - p(w), of each row.
-Eigen::VectorXd rounding_draw(const Dataset &data, const Physics &physics, int draw);
+// A shape must explain more than this part of what scatter may be, an effect that moves the body a third of it: assumed.
+inline constexpr double of_scatter = 0.15;
+
+// The same as far as the residual of a fitted problem shows it: per balance no more than it leaves beyond the measurement noise. (Samples
+// of a rounding encoder are not white: what (1) says of them is an upper estimate.)
+struct Scatter {
+    Eigen::VectorXd part; // of (1), row by row, that counts
+    double share = 0;     // of the problem's scaled squares that scatter may be
+    explicit Scatter(const Problem &problem);
+};
 
 } // namespace traction::lab
