@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"accel_delay", Soil::sand, "accel_delay:delay_s=0.15"}, Case{"radar_delay", Soil::sand, "radar_delay:delay_s=0.4"},
                     Case{"current_delay", Soil::sand, "current_delay:delay_s=0.06"},
                     Case{"gyro_delay", Soil::sand, "gyro_delay:delay_s=0.15"}),
-    [](const testing::TestParamInfo<Case> &info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Case> &one) { return std::string(one.param.name); });
 
 struct ShapeCase {
     const char *name, *key;
@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(ShapeCase{"stribeck_friction", "speed_rad_s", 1.4, Soil::sand, "stribeck_friction:torque_Nm=0.05,speed_rad_s=1.4"},
                     ShapeCase{"wear_in", "time_constant_s", 18, Soil::sand, "wear_in:torque_Nm=0.07,time_s=18"},
                     ShapeCase{"soil_patch", "start_m", 1.33, Soil::sand, "soil_patch:change=-0.5,start_m=1.33,length_m=1.2"}),
-    [](const testing::TestParamInfo<ShapeCase> &info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<ShapeCase> &one) { return std::string(one.param.name); });
 
 } // namespace
 } // namespace traction::lab

@@ -404,7 +404,7 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
         const double share = s.candidate.some_wheels ? 0.5 : 1; // one wheel's rows are few among all
         return s.assessment.gain > std::max({share * least, uneven(s.candidate) ? least_uneven : 0.0, of_scatter * scatter.share}) *
                                        last_screen.heldout_error() ||
-               (s.balance_fall > 0.15 && s.p_value < 1e-4);
+               (s.balance_fall > 0.15 + scatter.share && s.p_value < 1e-4);
     };
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
     const ShapeScore *best = nullptr;
