@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"fluid_drag", Soil::sand, "water_drag:coefficient_Ns2_m2=12"},
                     Case{"wear_in", Soil::sand, "wear_in:torque_Nm=0.05,time_s=20"},
                     Case{"squared_resistance", Soil::concrete, "rolling_grows_with_speed_squared:coefficient_s2_m2=0.5"},
-                    Case{"shear_peak", Soil::sand, "grip_falls_beyond_peak:share=0.6"},
+                    Case{"shear_peak", Soil::gravel, "grip_falls_beyond_peak:share=0.6"},
                     Case{"resistance_patch", Soil::gravel, "soft_place:coefficient=0.15,start_m=1,length_m=1.3"},
                     Case{"accel_delay", Soil::sand, "accel_delay:delay_s=0.15"}, Case{"radar_delay", Soil::sand, "radar_delay:delay_s=0.4"},
                     Case{"current_delay", Soil::sand, "current_delay:delay_s=0.06"},
