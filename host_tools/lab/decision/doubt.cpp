@@ -1,6 +1,8 @@
 #include "doubt.h"
 
+#include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/fit/rounding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -149,7 +151,9 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     for (std::size_t i = 0; i < first.parameters.size(); ++i) at_bound = at_bound || first.at_bound(i);
     if (!at_bound && worst_of(first) < suspicious && !(accepted >= 2 && before > 1.3 * after)) return std::nullopt;
     Doubt out;
-    const double left = after * (1 - shape_gain);
+    const Scatter scatter(last); // a softer soil, too, only smooths what the encoders scatter
+    const double by_scatter = scatter.part.cwiseProduct(rounding_squares(data, last.physics())).dot(noise_weight(last));
+    const double left = std::sqrt(std::max(0.0, after * after - by_scatter)) * (1 - shape_gain);
     for (Suspect &s : gross_errors(stated, data)) {
         const double needed = accepted >= 2 ? several_names : one_name;
         if (is_gross(s) && s.error < needed * left && s.error < much_better * before) out.suspects.push_back(std::move(s));
