@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/build/prove}
 command -v frama-c > /dev/null || { echo "prove: skipped, needs frama-c (apt: frama-c-base)"; exit 0; }
 mkdir -p "$out"
-cc -std=c11 -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
+cc -std=c11 -O2 -o "$out/template_gen" -I"$root" "$root/firmware/template/doppler_template_gen.c" "$root/firmware/template/radar_template.c" -lm
 templates=
 for radar in mdu1130 dj_radar_2 dj_radar_3 drs1000; do
   "$out/template_gen" "$radar" "$out/$radar.c"

@@ -9,12 +9,25 @@
 #ifndef HAL_WITH_SIM
 #define HAL_WITH_SIM 0
 #endif
+// 1: the rover's own devices are; their CAN bus needs cantools at build time.
+#ifndef HAL_WITH_LINUX
+#define HAL_WITH_LINUX 0
+#endif
+#if HAL_WITH_LINUX
+#include "hal/linux/open_linux.h"
+#endif
 #if HAL_WITH_SIM
 #include "hal/sim/open_sim.h"
 #endif
 
 static const hal_entry_t entries[] = {
     {"replay", "FRAMES", "recorded frames and commands (traction simulate --frames, traction replay --frames)", hal_open_replay},
+#if HAL_WITH_LINUX
+    {"linux", "ROVER [commands=FRAMES] [root=FOLDER]", "the rover's own devices, as [hardware] of its description names them",
+     hal_open_linux},
+#else
+    {"linux", "ROVER", "not in this build: there was no cantools; ./traction build brings it", NULL},
+#endif
 #if HAL_WITH_SIM
     {"sim", "SCENARIO [seed=N] [effect=NAME:PARAMETER=VALUE,...]...", "the simulated rover on a scenario's drive, in lockstep",
      hal_open_sim},

@@ -21,6 +21,7 @@ typedef struct {
     void (*command)(void *context, const sensor_frame_t *frame, command_t *command);
     // Why the HAL ended the run with an error, one line; "" when it did not.
     const char *(*trouble)(void *context);
+    bool devices; // what fails while it runs is a device, not an input
     // Gives back what hal_open took. Call safe_stop first (daemon_run does).
     void (*close)(void *context);
 } hal_opened_t;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_MAX_CHARS = 512, FILE_MAX_BYTES = 65536 };
+enum { LINE_MAX_CHARS = TEMPLATE_LINE, FILE_MAX_BYTES = 262144 };
 
 typedef struct {
     const char *file;
@@ -50,6 +50,7 @@ typedef struct {
     int line[ROVER_PARAMETER_COUNT];
     int radar_line;
     bool format_seen;
+    template_reading_t beam;
 } reading_t;
 
 static bool read_radar(const place_t *place, const char *value, reading_t *reading)
@@ -67,7 +68,7 @@ static bool read_radar(const place_t *place, const char *value, reading_t *readi
             return true;
         }
     }
-    return fail(place, "radar", value, "no template is linked; use \"MDU1130\", \"DJ Radar II\", \"DJ Radar III\", \"DRS1000\"");
+    return fail(place, "radar", value, "no template; use \"MDU1130\", \"DJ Radar II\", \"DJ Radar III\", \"DRS1000\", \"own\"");
 }
 
 static bool read_number(const place_t *place, const char *key, const char *value, reading_t *reading)
@@ -117,12 +118,32 @@ static bool read_line(const place_t *place, char *line, reading_t *reading)
         reading->format_seen = strcmp(value, "\"traction.firmware/1\"") == 0;
         return reading->format_seen || fail(place, key, value, "not known here; this firmware reads \"traction.firmware/1\"");
     }
+    if (template_text_key(key)) {
+        const char *wrong = template_text_read(&reading->beam, key, value);
+        return wrong == NULL || fail(place, key, value, wrong);
+    }
     return strcmp(key, "radar") == 0 ? read_radar(place, value, reading) : read_number(place, key, value, reading);
 }
 
-static bool read_text(const char *text, size_t length, place_t *place, reading_t *reading)
+// An own radar needs its template, and nobody else takes one.
+static bool take_template(place_t *place, reading_t *reading)
 {
-    const reading_t nothing = {.radar_line = 0};
+    const bool own = reading->read.rover.radar == ROVER_RADAR_OWN;
+    if (!own && !reading->beam.head) {
+        return true;
+    }
+    place->line = reading->radar_line;
+    const char *wrong = own ? template_text_check(&reading->beam) : "is linked, but a template is given; write \"own\"";
+    if (wrong != NULL) {
+        return fail(place, "radar", rover_radar_name(reading->read.rover.radar), wrong);
+    }
+    reading->read.rover.beam = reading->beam.into;
+    return true;
+}
+
+static bool read_text(const char *text, size_t length, place_t *place, doppler_template_t *beam, reading_t *reading)
+{
+    const reading_t nothing = {.radar_line = 0, .beam = {.into = beam}};
     *reading = nothing;
     rover_parameters_reference(&reading->read.rover);
     place->message[0] = '\0';
@@ -134,7 +155,7 @@ static bool read_text(const char *text, size_t length, place_t *place, reading_t
         place->line++;
         char line[LINE_MAX_CHARS];
         if (end - start >= sizeof line || memchr(text + start, '\0', end - start) != NULL) {
-            return fail(place, "line", "...", "too long or not text; a line has at most 511 characters");
+            return fail(place, "line", "...", "too long or not text; a line has at most 1023 characters");
         }
         memcpy(line, text + start, end - start);
         line[end - start] = '\0';
@@ -146,15 +167,19 @@ static bool read_text(const char *text, size_t length, place_t *place, reading_t
     if (!reading->format_seen) {
         return fail(place, "format", "", "missing; write format = \"traction.firmware/1\"");
     }
+    if (!take_template(place, reading)) {
+        return false;
+    }
     rover_parameters_scale(&reading->read.rover, reading->read.given);
     return true;
 }
 
-bool parameters_parse_rover(const char *text, size_t length, const char *name, parameters_t *out, char message[PARAMETERS_MESSAGE])
+bool parameters_parse_rover(const char *text, size_t length, const char *name, parameters_t *out, doppler_template_t *beam,
+                            char message[PARAMETERS_MESSAGE])
 {
     place_t place = {.file = name, .line = 0, .message = message};
     reading_t reading;
-    const bool read = read_text(text, length, &place, &reading);
+    const bool read = read_text(text, length, &place, beam, &reading);
     if (read) {
         *out = reading.read;
     }
@@ -179,11 +204,12 @@ static bool tell(const place_t *place, const reading_t *reading, const control_r
     return false;
 }
 
-bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, char message[PARAMETERS_MESSAGE])
+bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, doppler_template_t *beam,
+                      char message[PARAMETERS_MESSAGE])
 {
     place_t place = {.file = name, .line = 0, .message = message};
     reading_t reading;
-    if (!read_text(text, length, &place, &reading)) {
+    if (!read_text(text, length, &place, beam, &reading)) {
         return false;
     }
     control_config_t built;
@@ -199,16 +225,19 @@ bool parameters_parse(const char *text, size_t length, const char *name, control
 size_t parameters_write(const parameters_t *parameters, const char *about, char text[PARAMETERS_TEXT])
 {
     int length = snprintf(text, PARAMETERS_TEXT, "# %.200s\nformat = \"traction.firmware/1\"\nradar = \"%s\"\n", about,
-                          rover_radar_name(parameters->rover.radar));
+                          rover_radar_name(parameters->rover.beam != NULL ? ROVER_RADAR_OWN : parameters->rover.radar));
     for (int32_t i = 0; i < ROVER_PARAMETER_COUNT && length < PARAMETERS_TEXT; i++) {
         const bool follows = rover_parameter_scaled(i) && !parameters->given[i];
         length += snprintf(text + length, (size_t)(PARAMETERS_TEXT - length), "%s%s = %.9g%s\n", follows ? "# " : "",
                            rover_parameter_name(i), (double)parameters->rover.value[i], follows ? " (from the rover's own numbers)" : "");
     }
+    if (parameters->rover.beam != NULL && PARAMETERS_TEXT - length >= TEMPLATE_TEXT) {
+        length += (int)template_text_write(parameters->rover.beam, text + length);
+    }
     return (size_t)length;
 }
 
-bool parameters_read(const char *path, control_config_t *config, char message[PARAMETERS_MESSAGE])
+bool parameters_read(const char *path, control_config_t *config, doppler_template_t *beam, char message[PARAMETERS_MESSAGE])
 {
     FILE *file = fopen(path, "rb");
     char *text = malloc(FILE_MAX_BYTES);
@@ -218,9 +247,9 @@ bool parameters_read(const char *path, control_config_t *config, char message[PA
     } else {
         const size_t length = fread(text, 1, FILE_MAX_BYTES, file);
         if (ferror(file) != 0 || length == FILE_MAX_BYTES) {
-            (void)snprintf(message, PARAMETERS_MESSAGE, "%.120s: cannot be read, or longer than 64 kB", path);
+            (void)snprintf(message, PARAMETERS_MESSAGE, "%.120s: cannot be read, or longer than 256 kB", path);
         } else {
-            done = parameters_parse(text, length, path, config, message);
+            done = parameters_parse(text, length, path, config, beam, message);
         }
     }
     free(text);

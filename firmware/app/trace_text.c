@@ -26,8 +26,8 @@ void trace_text(const trace_t *trace, char line[TRACE_TEXT])
                   trace->fault_wheels, trace->present);
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const wheel_trace_t *w = &trace->wheel[i];
-        const float values[] = {w->speed_rad_s, w->accel_rad_s2, w->set_speed_rad_s, w->current_A, w->torque_Nm, w->traction_N,
-                                w->slip,        w->duty};
+        const float values[] = {w->speed_rad_s, w->accel_rad_s2, w->set_speed_rad_s, w->current_A, w->torque_Nm,
+                                w->traction_N,  w->slip,         w->slip_std,        w->duty};
         at = floats(at, values, sizeof values / sizeof *values);
         at += sprintf(at, " %d%d%d %d", w->slip_valid, w->saturated, w->encoder_refused, trace->actuator.duty_q15[i]);
     }

@@ -1,9 +1,10 @@
 // tractiond - the rover's daemon: opens a HAL by its name and runs daemon_run over it until it ends or is asked to stop.
 //
 // Exit codes: 0 the run ended or was asked to stop (SIGINT, SIGTERM); 1 a device was lost or the self-test failed, the motors are stopped;
-// 2 wrong command line; 3 bad input (parameters, scenario, frames); 4 the trace could not be written.
+// 2 wrong command line; 3 bad input (parameters, scenario, frames); 4 the trace or the log could not be written.
 #define _POSIX_C_SOURCE 200809L // sigaction, getopt_long's unistd
 #include "daemon.h"
+#include "log_ring.h"
 #include "parameters.h"
 #include "store.h"
 #include "trace_queue.h"
@@ -19,6 +20,7 @@
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { EXIT_DONE = 0, EXIT_DEVICE_LOST = 1, EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_FILE = 4 };
@@ -32,7 +34,8 @@ static void ask_to_stop(int signal)
 }
 
 typedef struct {
-    const char *hal, *parameters, *firmware, *trace, *store;
+    const char *hal, *parameters, *firmware, *trace, *store, *log;
+    unsigned long log_budget_MB;
     bool hash, realtime, self_test, help;
 } options_t;
 
@@ -47,6 +50,8 @@ static void print_help(void)
         "  --firmware NAME     default, or paper: the paper's own estimator and gains\n"
         "  --trace FILE        every trace, one line a tick, floats as their bits; - is standard output\n"
         "  --hash              print the FNV-1a hash over all trace lines at the end\n"
+        "  --log FOLDER        on-board log: ULog files, the oldest go when the budget is full; a state dump beside it on a fault\n"
+        "  --log-budget MB     of that folder, 1 to 100000 (64)\n"
         "  --store FILE        what must survive a restart (how warm the motors are); read first, kept while driving\n"
         "  --self-test         radar, accelerometer, battery at rest, a small pulse of every wheel, before anything drives\n"
         "  --realtime          a tick of 10 ms takes 10 ms\n"
@@ -62,6 +67,17 @@ static void print_help(void)
                "written.");
 }
 
+static bool parse_budget(const char *text, unsigned long *megabytes)
+{
+    char *end = NULL;
+    *megabytes = strtoul(text, &end, 10);
+    const bool good = end != text && *end == '\0' && *megabytes >= 1u && *megabytes <= 100000u && text[0] != '-';
+    if (!good) {
+        (void)fprintf(stderr, "tractiond: --log-budget %s: not a size; give whole megabytes from 1 to 100000\n", text);
+    }
+    return good;
+}
+
 // Returns false after telling what is wrong.
 static bool parse(int argc, char **argv, options_t *options)
 {
@@ -69,6 +85,7 @@ static bool parse(int argc, char **argv, options_t *options)
         {"hal", required_argument, NULL, 'H'},      {"parameters", required_argument, NULL, 'p'},
         {"firmware", required_argument, NULL, 'f'}, {"trace", required_argument, NULL, 't'},
         {"hash", no_argument, NULL, 'x'},           {"realtime", no_argument, NULL, 'r'},
+        {"log", required_argument, NULL, 'l'},      {"log-budget", required_argument, NULL, 'b'},
         {"store", required_argument, NULL, 's'},    {"self-test", no_argument, NULL, 'e'},
         {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
     };
@@ -78,6 +95,10 @@ static bool parse(int argc, char **argv, options_t *options)
         options->firmware = letter == 'f' ? optarg : options->firmware;
         options->trace = letter == 't' ? optarg : options->trace;
         options->store = letter == 's' ? optarg : options->store;
+        options->log = letter == 'l' ? optarg : options->log;
+        if (letter == 'b' && !parse_budget(optarg, &options->log_budget_MB)) {
+            return false;
+        }
         options->self_test = options->self_test || letter == 'e';
         options->hash = options->hash || letter == 'x';
         options->realtime = options->realtime || letter == 'r';
@@ -113,6 +134,7 @@ static hal_result_t wait_unless_stopped(void *context)
 
 typedef struct {
     const hal_opened_t *world;
+    log_ring_t ring;
     trace_queue_t queue; // what writes the trace and the store beside the ticks
     uint64_t hash;
     bool hashed;
@@ -130,9 +152,13 @@ static void ask_world(void *context, const sensor_frame_t *frame, command_t *com
 
 static void log_tick(void *context, const sensor_frame_t *frame, const command_t *command, const trace_t *trace)
 {
-    (void)frame;
-    (void)command;
     drive_t *drive = context;
+    if (drive->ring.started) {
+        log_ring_put(&drive->ring, frame, command, trace);
+    }
+    if (drive->queue.file == NULL && !drive->hashed) {
+        return;
+    }
     char line[TRACE_TEXT];
     trace_text(trace, line);
     drive->hash = drive->hashed ? trace_text_hash(drive->hash, line) : 0u;
@@ -162,7 +188,7 @@ static daemon_result_t run(const options_t *options, const control_config_t *con
     stoppable_t stoppable = {.inner = options->realtime ? pace_hal(&pace, &world->hal) : world->hal};
     hal_t hal = hal_forward(&stoppable);
     hal.wait_tick = wait_unless_stopped;
-    const bool logged = drive->queue.file != NULL || drive->hashed;
+    const bool logged = drive->queue.file != NULL || drive->hashed || drive->ring.started;
     const daemon_link_t link = {.context = drive, .command = ask_world, .log = logged ? log_tick : NULL};
     store_t kept;
     char message[STORE_MESSAGE];
@@ -182,7 +208,8 @@ static int report(const options_t *options, const hal_opened_t *world, const dae
     if (result->ended_by < 0) {
         (void)fprintf(stderr, "tractiond: %s; motors stopped after %" PRIu32 " ticks\n", *trouble != '\0' ? trouble : "a device was lost",
                       result->ticks);
-        return *trouble != '\0' ? EXIT_INPUT : EXIT_DEVICE_LOST;
+        const bool input = *trouble != '\0' && (!world->devices || result->ended_by == HAL_ERR_CONFIG);
+        return input ? EXIT_INPUT : EXIT_DEVICE_LOST;
     }
     if (result->self_test.failures != 0u) {
         for (int32_t i = 0; i < SELF_TEST_FAILURES; i++) {
@@ -223,12 +250,12 @@ static bool close_trace(const options_t *options, FILE *file, unsigned long lost
 
 static int drive_world(const options_t *options, const control_config_t *config, const hal_opened_t *world)
 {
-    static drive_t drive; // 160 kB of queue: not on the stack
+    static drive_t drive; // 500 kB of queues: not on the stack
     drive.world = world;
     drive.hash = TRACE_HASH_BEGIN;
     drive.hashed = options->hash;
     drive.store = options->store;
-    drive.queue.patient = !options->realtime; // the world waits: every line is kept
+    drive.queue.patient = !options->realtime && !world->devices; // the world waits: every line is kept
     drive.queue.spare = keep_store;
     drive.queue.spare_context = &drive;
     if (options->trace != NULL && (drive.queue.file = open_trace(options->trace)) == NULL) {
@@ -238,9 +265,22 @@ static int drive_world(const options_t *options, const control_config_t *config,
         (void)fputs("tractiond: no thread for the trace could be started\n", stderr);
         return EXIT_FILE;
     }
+    char refused[LOG_RING_MESSAGE];
+    drive.ring.patient = drive.queue.patient;
+    if (options->log != NULL && !log_ring_start(&drive.ring, options->log, (uint64_t)options->log_budget_MB * 1000000u, refused)) {
+        (void)fprintf(stderr, "tractiond: --log %s\n", refused);
+        (void)trace_queue_finish(&drive.queue);
+        return EXIT_FILE;
+    }
     const daemon_result_t result = run(options, config, world, &drive);
     const unsigned long lines_lost = trace_queue_finish(&drive.queue);
+    const uint32_t ticks_lost = log_ring_finish(&drive.ring);
     int code = report(options, world, &result);
+    if (drive.ring.failed[0] != '\0' || ticks_lost > 0u) {
+        (void)fprintf(stderr, "tractiond: --log: %s%s%" PRIu32 " ticks were lost, the disk was too slow\n", drive.ring.failed,
+                      drive.ring.failed[0] != '\0' ? "; " : "", ticks_lost);
+        code = code == EXIT_DONE ? EXIT_FILE : code;
+    }
     if (options->hash && code == EXIT_DONE) {
         (void)printf("%016" PRIx64 "\n", drive.hash);
     }
@@ -256,7 +296,7 @@ static int drive_world(const options_t *options, const control_config_t *config,
 
 int main(int argc, char **argv)
 {
-    options_t options = {.firmware = "default"};
+    options_t options = {.firmware = "default", .log_budget_MB = 64};
     if (!parse(argc, argv, &options)) {
         return EXIT_USAGE;
     }
@@ -265,8 +305,9 @@ int main(int argc, char **argv)
         return fflush(stdout) == 0 ? EXIT_DONE : EXIT_FILE;
     }
     control_config_t config = strcmp(options.firmware, "paper") == 0 ? rover_config_paper() : rover_config_default();
+    static doppler_template_t beam; // of an own radar, as long as the process; 25 kB: not on the stack
     char refused[PARAMETERS_MESSAGE];
-    if (options.parameters != NULL && !parameters_read(options.parameters, &config, refused)) {
+    if (options.parameters != NULL && !parameters_read(options.parameters, &config, &beam, refused)) {
         (void)fprintf(stderr, "tractiond: %s\n", refused);
         return EXIT_INPUT;
     }

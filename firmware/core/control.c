@@ -19,6 +19,9 @@ void control_reset(const control_config_t *config, control_state_t *state)
 {
     const control_state_t zero = {0};
     *state = zero;
+    for (int32_t i = 0; i < WHEEL_COUNT; i++) {
+        state->slip_std[i] = 1.0f; // nothing is known
+    }
     ground_speed_reset(&config->ground_speed, &state->ground_speed);
 }
 
@@ -35,6 +38,20 @@ static float rim_hint_m_s(const control_config_t *config, const sense_output_t *
 {
     const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
     return 0.25f * sum * config->slip.wheel_radius_m;
+}
+
+// [rad/s] assumed: half a rim speed of 0.11 m/s of the reference. A wheel that is blocked or spins alone, or a turn on the spot.
+static const float part_rad_s = 2.0f;
+
+static bool wheels_part(const sense_output_t *sense)
+{
+    float low = sense->speed_rad_s[0];
+    float high = low;
+    for (int i = 1; i < WHEEL_COUNT; i++) {
+        low = fixed_greater(low, sense->speed_rad_s[i]) ? sense->speed_rad_s[i] : low;
+        high = fixed_greater(sense->speed_rad_s[i], high) ? sense->speed_rad_s[i] : high;
+    }
+    return fixed_greater(high - low, part_rad_s);
 }
 
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
@@ -57,6 +74,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
         .wheel_m_s = rim_hint_m_s(config, sense),
+        .wheels_part = wheels_part(sense),
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,
@@ -84,7 +102,19 @@ static float wheel_ground_m_s(const control_config_t *config, int wheel, float s
     return left ? speed_m_s - offset : speed_m_s + offset;
 }
 
-static void estimate_wheels(const control_config_t *config, estimate_t *estimate, trace_t *trace)
+// A root and a division: of one wheel, in ticks without a transform or a search.
+static void doubt_slip(const control_config_t *config, control_state_t *state, const estimate_t *estimate)
+{
+    if (state->heard.busy || state->heard.fresh) {
+        return;
+    }
+    const int32_t i = state->slip_turn & (WHEEL_COUNT - 1);
+    const float ground_m_s = wheel_ground_m_s(config, i, estimate->speed_m_s, estimate->sense->gyro_z_rad_s);
+    state->slip_std[i] = slip_std(&config->slip, estimate->sense->speed_rad_s[i], ground_m_s, estimate->speed_std_m_s);
+    state->slip_turn = (i + 1) & (WHEEL_COUNT - 1);
+}
+
+static void estimate_wheels(const control_config_t *config, const control_state_t *state, estimate_t *estimate, trace_t *trace)
 {
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
@@ -98,7 +128,8 @@ static void estimate_wheels(const control_config_t *config, estimate_t *estimate
         wheel->torque_Nm = motor.torque_Nm;
         wheel->traction_N = motor.traction_N;
         wheel->slip = estimate->slip[i].slip;
-        wheel->slip_valid = estimate->slip[i].valid;
+        wheel->slip_std = state->slip_std[i];
+        wheel->slip_valid = estimate->slip[i].valid && !fixed_greater(state->slip_std[i], config->slip.valid_std);
         wheel->encoder_refused = (estimate->circuit.refused & (1u << (uint32_t)i)) != 0u;
     }
 }
@@ -307,7 +338,8 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
     const ground_speed_output_t speed = estimate_speed(config, state, &sense, frame, &trace);
     estimate.speed_m_s = speed.speed_m_s;
     estimate.speed_std_m_s = speed.std_m_s;
-    estimate_wheels(config, &estimate, &trace);
+    doubt_slip(config, state, &estimate);
+    estimate_wheels(config, state, &estimate, &trace);
 
     const safety_output_t safety = judge(config, state, &estimate, frame);
     const control_mode_t mode = mode_of(command, safety.motors_off);

@@ -58,18 +58,20 @@ typedef struct {
     speed_control_state_t speed_control;
     soil_sweep_state_t soil_sweep;
     safety_state_t safety;
-    control_mode_t mode;     // in force in the last tick
-    uint8_t slip_active;     // bit i: wheel i was driven by its slip loop in the last tick
-    float duty[WHEEL_COUNT]; // written in the last tick
-    bool driven;             // and the bridges were told to drive or to brake
-    bool saturated;          // a wheel had no duty left in the last tick
-    bool braking;            // a fault stopped the rover, and nothing has driven it since
-    uint32_t sequence;       // of the actuator frame written in the last tick
-    float doppler_m_s;       // last Doppler value
-    float steer_std_m_s;     // standard deviation of the speed for which the next was made
-    float steer_share;       // of an error of the platform's speed that counts [1]
-    doppler_output_t heard;  // by the tick before: no tick pays for a search and a correction
-    int32_t beyond;          // Doppler values in a row that told of more speed than the radar's band holds
+    control_mode_t mode;         // in force in the last tick
+    uint8_t slip_active;         // bit i: wheel i was driven by its slip loop in the last tick
+    float duty[WHEEL_COUNT];     // written in the last tick
+    bool driven;                 // and the bridges were told to drive or to brake
+    bool saturated;              // a wheel had no duty left in the last tick
+    bool braking;                // a fault stopped the rover, and nothing has driven it since
+    uint32_t sequence;           // of the actuator frame written in the last tick
+    float doppler_m_s;           // last Doppler value
+    float slip_std[WHEEL_COUNT]; // one wheel's is made in a tick that has time
+    int32_t slip_turn;           // the wheel whose turn it is
+    float steer_std_m_s;         // standard deviation of the speed for which the next was made
+    float steer_share;           // of an error of the platform's speed that counts [1]
+    doppler_output_t heard;      // by the tick before: no tick pays for a search and a correction
+    int32_t beyond;              // Doppler values in a row that told of more speed than the radar's band holds
 } control_state_t;
 
 void control_reset(const control_config_t *config, control_state_t *state);

@@ -6,11 +6,11 @@
 enum { DOPPLER_GAIN = 32 };
 enum { EARLY_TWICE = 128, EARLY_MIRRORED = 192, EARLY_YOUNGER = 64 }; // lengths of the early windows; by how many samples they are younger
 
-// (1): the largest power in the template's band.
+// (1): the largest power of all bins but zero, as section 4 has it.
 static float argmax_speed(const doppler_template_t *beam, const uint64_t *power)
 {
-    int32_t best = beam->first_bin;
-    for (int32_t k = beam->first_bin; k < beam->first_bin + beam->bins && k < FFT_BINS; k++) {
+    int32_t best = 1;
+    for (int32_t k = 2; k < FFT_BINS; k++) {
         if (power[k] > power[best]) {
             best = k;
         }
@@ -102,11 +102,22 @@ static int32_t reduce(const doppler_template_t *beam, const uint64_t *power, uin
 // exp(x) for |x| <= 0.05: error below 3e-7.
 static float exp_small(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
 
-static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white, bool *top, float *fit)
+// Spectra narrower than four steps of the grid are missed between two of them: the largest power tells the place, to a bin.
+static int32_t peak_speed(const doppler_template_t *beam, const int16_t *reduced)
 {
     int32_t best = 0;
-    int32_t least = INT32_MAX;
-    for (int32_t i = COARSE / 2; i < beam->speeds; i += COARSE) {
+    for (int32_t k = 1; k < beam->bins; k++) {
+        best = reduced[k] > reduced[best] ? k : best;
+    }
+    const int32_t at = beam->start[best];
+    return at < 0 ? 0 : at >= beam->speeds ? beam->speeds - 1 : at;
+}
+
+static float likelihood_speed(const doppler_template_t *beam, const int16_t *reduced, int32_t total, bool *white, bool *top, float *fit)
+{
+    int32_t best = beam->from_peak ? peak_speed(beam, reduced) : 0;
+    int32_t least = beam->from_peak ? cost(beam, reduced, total, best) : INT32_MAX;
+    for (int32_t i = COARSE / 2; i < beam->speeds && !beam->from_peak; i += COARSE) {
         const int32_t J = cost(beam, reduced, total, i);
         if (J < least) {
             least = J;
@@ -138,7 +149,8 @@ static float likelihood_speed(const doppler_template_t *beam, const int16_t *red
             offset = 0.5f * (left - right) / (left + right); // vertex of the parabola, within +-1/2
         }
     }
-    return beam->speed_m_s[low + fine] * exp_small(offset * beam->log_step);
+    const float at = beam->speed_m_s[low + fine];
+    return beam->line ? at + offset * beam->log_step : at * exp_small(offset * beam->log_step);
 }
 
 static const float made_trust = 0.05f; // [1] per filled sample of 320
@@ -276,13 +288,17 @@ static void mirror(doppler_state_t *state)
     }
 }
 
-static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
+static void transform(const doppler_config_t *config, doppler_state_t *state, bool halved, int32_t late_samples)
 {
     const int32_t sum = state->sum;
     const int32_t mean = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
                          : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
                                                            : sum / FFT_LENGTH;
-    fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
+    if (config->method == DOPPLER_ARGMAX) {
+        fft_power_flat(state->window.sample, mean, state->power); // the paper windows nothing
+    } else {
+        fft_power_about(halved ? state->twice : state->window.sample, mean, state->power);
+    }
     state->pending = true;
     state->due = 0; // the powers of the window before are gone
     state->halved = halved;
@@ -293,7 +309,7 @@ static void transform(doppler_state_t *state, bool halved, int32_t late_samples)
 // shift, so the template holds (but for the band-pass, whose lower edge lies at half the frequency too). Of 192 the missing part is
 // the mirror image of what there is: the same frequencies, no step, no influence of the offset. Either has a smaller mean age over the
 // square of the Hann window, 63.25 and 63.9 samples of 127.5.
-static void transform_early(doppler_state_t *state, int32_t late_samples)
+static void transform_early(const doppler_config_t *config, doppler_state_t *state, int32_t late_samples)
 {
     if (state->full || (state->filled != EARLY_TWICE && state->filled != EARLY_MIRRORED)) {
         return;
@@ -301,7 +317,7 @@ static void transform_early(doppler_state_t *state, int32_t late_samples)
     if (state->filled == EARLY_MIRRORED) {
         mirror(state);
     }
-    transform(state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
+    transform(config, state, state->filled == EARLY_TWICE, late_samples - EARLY_YOUNGER);
 }
 
 // Noise of 1 count rms spans 5 counts in 64 samples, of 0.3 counts 2: below that the converter hears nothing that is alive (assumed).
@@ -346,11 +362,11 @@ static void take(const doppler_config_t *config, doppler_state_t *state, int16_t
         }
         state->filled++;
         if (config->method == DOPPLER_LIKELIHOOD) {
-            transform_early(state, late_samples);
+            transform_early(config, state, late_samples);
         }
     }
     if (state->filled == FFT_LENGTH) {
-        transform(state, false, late_samples);
+        transform(config, state, false, late_samples);
         state->full = true;
         slide(state, config->hop >= 1 && config->hop <= FFT_LENGTH ? config->hop : FFT_LENGTH);
     }
@@ -447,13 +463,13 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         measure(config, state, &out);
         if (state->halved) {
             out.speed_m_s *= 2.0f;
-            out.quiet = out.quiet || fixed_greater(halved_least_m_s, out.speed_m_s);
+            out.quiet = out.quiet || fixed_greater(halved_least_m_s * config->beam->deaf, out.speed_m_s);
         }
         out.trust += made_trust * (float)made + railed_trust * (float)railed;
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
         out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
-        state->due = state->halved || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
+        state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
         state->pending = false;
     }
     if (state->due > 0 && --state->due == 0) {

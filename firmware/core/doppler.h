@@ -3,14 +3,13 @@
 //   paper: v = f_peak c / (2 f0 cos theta_d)                                         (1)  = (11), zero frequency excluded
 //   ours:  v = argmin over v of J(v) = sum_k P[k] / S_v[k]  +  a sum_k ln S_v[k],  a = sum_k P[k]     (2)
 //
-// Source: (11) Lhomme-Desages. (2), derived here: powers of a noise-like echo are exponentially distributed around a S_v[k] with
-// sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v comes from the beam's
-// geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a parabola in
-// ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is
-// below a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each
-// taken twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours
-// alone).
-// An interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
+// Source: (11) Lhomme-Desages; without a window, over all bins but zero. (2), derived here: powers of a noise-like echo are exponentially
+// distributed around a S_v[k] with sum_k S_v = 1, so -ln L = sum P/(a S_v) + sum ln(a S_v); times a, without what does not depend on v. S_v
+// comes from the beam's geometry (doppler_template.h). The minimum is found on every 4th grid speed, then on its neighbours, then by a
+// parabola in ln v. An echo is quiet when J is what it would be if more than half of the power were white noise, or when its power is below
+// a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each taken
+// twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours alone). An
+// interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
 //   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
 // The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
 // be, is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to
@@ -31,7 +30,7 @@ enum { DOPPLER_SPEEDS_MAX = 96, DOPPLER_BINS_MAX = 120 };
 
 typedef enum { DOPPLER_ARGMAX = 0, DOPPLER_LIKELIHOOD } doppler_method_t;
 
-enum { DOPPLER_WINDOW_TICKS_MAX = 64, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32, DOPPLER_SAMPLES_MAX = 64 };
+enum { DOPPLER_WINDOW_TICKS_MAX = 128, DOPPLER_BLOCKS = 5, DOPPLER_BLOCK = 64, DOPPLER_GAP_MAX = 32, DOPPLER_SAMPLES_MAX = 64 };
 
 // Which past a Doppler value tells of: the weight of each tick in the window's mean, newest first.
 typedef struct {
@@ -43,7 +42,7 @@ typedef struct {
 } doppler_window_t;
 
 // Arrays, not pointers: a pointer in a constant must be relocated, hence lies in writable memory.
-// Spectra of the echo on a grid of log-spaced speeds, made at build time from a radar's geometry.
+// Spectra of the echo on a grid of log-spaced speeds, made from a radar's geometry (firmware/template): a template is data.
 typedef struct {
     float log_step;         // ln of the ratio of neighbouring grid speeds
     float paper_m_s_per_Hz; // c / (2 f0 cos theta_d) of (11)
@@ -58,6 +57,11 @@ typedef struct {
     int32_t quiet[DOPPLER_SPEEDS_MAX];  // q * expected J/a of an echo of which half is white noise
     int32_t exact;                      // q * bins: expected (J/a - q sum ln S_v) of an echo of the template's own spectrum
     doppler_window_t window;            // at sample_rate_Hz, for ground_speed
+    float spread;                       // variance of a value over that of the reference radar's at the same speed [1]
+    float deaf;                         // speed below which the radar is deaf, over that of the reference radar [1], 1 or more
+    bool line;                          // of a point target: the grid is even in the speed, by log_step [m/s]
+    bool from_peak;                     // spectra narrower than the first search's steps: it begins at the largest power
+    int8_t start[DOPPLER_BINS_MAX];     // grid speed whose spectrum peaks in first_bin + k
 } doppler_template_t;
 
 typedef struct {

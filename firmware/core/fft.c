@@ -59,10 +59,9 @@ static inline uint64_t square_sum(int32_t re, int32_t im) { return (uint64_t)((i
 #endif
 
 // Stage 1: window, and 64 transforms of length 4 over x[n], x[n + 64], x[n + 128], x[n + 192]. h[n + 128] = 1 - h[n].
-static void window_and_first_stage(const int16_t *sample, int32_t mean, word_t *out)
+static void window_and_first_stage(const int16_t *sample, int32_t mean, const int32_t *hann, word_t *out)
 {
     const int32_t one_q28 = 1 << 28;
-    const int32_t *hann = fft_hann_q28;
     //@ loop unroll 64;
     for (const int16_t *end = sample + 64; sample != end; sample++, out += 2, hann += 2) {
         const int32_t h0 = hann[0];
@@ -191,13 +190,17 @@ static void combine_to_power(const word_t *in, uint64_t *power)
     } while (up != down);
 }
 
-void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]) { fft_power_about(sample, 0, power); }
+// h[n], h[n + 64] of no window, as fft_hann_q28 has them: 1/2, of the same sum, so that nothing wraps either.
+#define HALF_8 1 << 27, 1 << 27, 1 << 27, 1 << 27, 1 << 27, 1 << 27, 1 << 27, 1 << 27
+#define HALF_32 HALF_8, HALF_8, HALF_8, HALF_8
+static const int32_t flat_q28[128] = {HALF_32, HALF_32, HALF_32, HALF_32};
 
-void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
+// One copy for both windows: the compiler keeps the butterflies' order only where they stand once.
+static __attribute__((noinline)) void power_through(const int32_t *window, const int16_t *sample, int32_t mean, uint64_t *power)
 {
     word_t even[FFT_LENGTH / 2];
     word_t odd[FFT_LENGTH / 2];
-    window_and_first_stage(sample, mean, even);
+    window_and_first_stage(sample, mean, window, even);
     //@ loop unroll 16;
     for (int group = 0; group < 16; group++) {
         combine(even + 2 * group, odd + 8 * group, 4, fft_twiddle_4_q15);
@@ -207,4 +210,16 @@ void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t po
         combine(odd + 8 * group, even + 32 * group, 16, fft_twiddle_16_q15);
     }
     combine_to_power(even, power);
+}
+
+void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]) { fft_power_about(sample, 0, power); }
+
+void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
+{
+    power_through(fft_hann_q28, sample, mean, power);
+}
+
+void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS])
+{
+    power_through(flat_q28, sample, mean, power);
 }

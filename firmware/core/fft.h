@@ -21,6 +21,9 @@ void fft_power(const int16_t sample[FFT_LENGTH], uint64_t power[FFT_BINS]);
 // The same of x[n] - mean. Requires that no difference leaves 16 bits, else it wraps.
 void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS]);
 
+// The same without a window: h[n] = 1/2, of the same sum as (1)'s, so that nothing wraps either.
+void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -12,6 +12,7 @@
 //   odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S)                   (9)  m: the speed that (3) expects
 //   X[k] = (X[k-1] + (a - b) T - (Rw[k] - Rw[k-1])) (1 - T/0.25 s)                     (10)
 //   z = sqrt(d^2 - min((k a)^2, d^2/2)),  d the Doppler value, a the acceleration      (11)
+//   cost of a sign: (f/s_f)^2 g(|u|) where f u < 0,  u = R w - v,  f the raw accelerometer's mean  (12)
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
@@ -23,7 +24,13 @@
 // the values tell; the wheels' sign is a weak witness. While both live, the standard deviation holds both. (10): what the accelerometer
 // lets the speed change and the wheels do not, as long as no Doppler value tells of it, is slip or a slope: the variance grows by a share
 // of X^2 - least^2, and (7) needs less. (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean
-// is 0.
+// is 0. (12): an accelerometer feels no gravity that the body gives way to; it feels what the wheels do to the body, and dry friction acts
+// along the slip's velocity u on any ground and any slope. A sign for which it would act against it is the less likely, beyond what the
+// device's own bias may be; g goes from 0 for what rolling and its slip may be to 1.
+// (13): where (10) passes its limit, slip is the reason only if the force pushes along the slip that it would be, -X: f sign(-X) > least.
+// Else it is a slope that begins, under wheels that roll on: the best track keeps to the wheels' changes of speed for a window's length,
+// its bias free to jump, and the one that believes the accelerometer is followed beside it, as the other sign is, until the radar's values
+// tell.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -52,6 +59,7 @@ typedef struct {
     float bias_noise_m2_s4;         // Qb per tick
     float bias_start_m_s2;          // standard deviation of the bias at reset
     float bias_max_m_s2;            // |b| limit
+    float speed_max_m_s;            // |v| limit, of what the radar tells too
     float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
     float doppler_noise_m_s;
     float doppler_accel_s2;
@@ -71,6 +79,12 @@ typedef struct {
     float apart_share;             // of (10), squared
     float apart_least_m_s;         // of (10): what slip makes
     float apart_noise;             // of (10): Qv of its noise, nine times
+    float roll_told_m_s;           // of (13): its limit
+    float slip_force_m_s2;         // of (13): the least force of wheels that slip
+    float roll_odds;               // 2 ln of the odds that (13) starts with
+    float roll_noise_m2_s2;        // Qv per tick of a speed that changes as the wheels' does
+    float roll_share;              // of a tick's rest that enters the bias
+    float roll_bias_m2_s4;         // its variance then
     int32_t agile_values;          // after which (7) starts from the best anew
     float misfit_share;            // c of (8)
     float misfit_max;              // limit of (8)
@@ -83,10 +97,13 @@ typedef struct {
     float standing_noise_m2_s2;    // R of speed 0 in each standing tick
     float slow_m_s;                // |v| below which standing needs no quiet echo
     float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
+    float wheel_spins;             // 2 ln of the odds that the sign of wheels has that outrun the radar's value
     float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
     float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
     int32_t against_values;        // values against which they turn before the other sign is asked anew
     float against_odds;            // and the odds that it then starts with
+    float force_per_s2_m;          // 1/standard deviation of the device's bias, against which (12) is judged
+    float force_most, force_pull;  // of (12): at most; its share per value while both signs live
     float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
     float wheel_slip;
 } ground_speed_config_t;
@@ -123,6 +140,11 @@ typedef struct {
     float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
+    float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second
+    float value_beside_m_s, beside_mean_m_s; // the last value less the wheels' mean, and the mean of those before
+    float wheel_mean_m_s;                    // over a quarter of a second
+    int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again
+    int32_t rolls_wait;
     int32_t refused;
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
@@ -131,18 +153,22 @@ typedef struct {
     int32_t against;
     int32_t still_ticks;
     bool standstill;
+    bool heard;                // a Doppler value has come since the reset
+    bool accepted;             // and one has corrected
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
-    float odds;                // 2 ln of the odds against it
-    float doubt_m2_s2;         // what it adds to the variance
-    ground_speed_side_t agile; // (7)
-    float agile_sum;           // of (7)
-    int32_t agile_left;        // values until it starts anew
-    int32_t waits;             // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
+    float odds;                                           // 2 ln of the odds against it
+    float doubt_m2_s2;                                    // what it adds to the variance
+    ground_speed_side_t agile;                            // (7)
+    float agile_sum;                                      // of (7)
+    int32_t agile_left;                                   // values until it starts anew
+    int32_t waits;                                        // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
+    float value_heard_m_s, value_accel_m_s2, value_trust; // the value as it came, the raw acceleration in its window
     float value_m_s, value_noise_m2_s2;
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
     float value_cost;                    // e^2/S + ln S of the best
     float value_sign, value_wheel_m_s;
+    float value_force; // (12) as 2 ln of the odds of +
 } ground_speed_state_t;
 
 typedef struct {
@@ -150,6 +176,7 @@ typedef struct {
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
+    bool wheels_part;     // they turn at speeds so different that their mean tells little
     bool accel_valid;
     bool doppler_fresh;
     bool doppler_quiet;

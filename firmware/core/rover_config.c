@@ -81,26 +81,40 @@ static void build_circuit(const float *v, circuit_config_t *circuit, sense_confi
     sense->encoder_jump_max = 1 + whole(built.jump_rad_s / sense->speed_rad_s_per_count);
 }
 
+// A quarter of a window, or more where that would be less than 80 ms: between two values the search for lines and the filter's chores need
+// ticks of their own. Beyond 3200 Hz a whole window is shorter.
+static int32_t hop_of(float rate_Hz)
+{
+    int32_t hop = 64;
+    while (hop < FFT_LENGTH && (float)hop < 0.08f * rate_Hz) {
+        hop += 64;
+    }
+    return hop;
+}
+
 static void build_doppler(const rover_parameters_t *parameters, doppler_config_t *doppler)
 {
-    const doppler_template_t *beam = doppler_template_of(parameters->radar);
+    const doppler_template_t *beam = rover_template(parameters);
     doppler->beam = beam != 0 ? beam : &doppler_template_mdu1130;
     doppler->method = DOPPLER_LIKELIHOOD;
     doppler->offset_count = whole(parameters->value[ROVER_radar_offset_count]);
     doppler->max_count = whole(parameters->value[ROVER_radar_max_count]);
     doppler->per_tick_q8 = whole(doppler->beam->sample_rate_Hz * tick_s * 256.0f);
     doppler->per_sample_s = 1.0f / doppler->beam->sample_rate_Hz;
-    doppler->hop = 64;
+    doppler->hop = hop_of(doppler->beam->sample_rate_Hz);
     doppler->scale = parameters->value[ROVER_doppler_scale];
     doppler->quiet_power_count2 = (uint32_t)whole(fixed_clamp(parameters->value[ROVER_radar_quiet_count2], 0.0f, 65535.0f));
 }
 
 // What does not depend on the rover: the accelerometer's and the radar's noise, and the estimator's patience.
-static void build_ground_speed(const float *v, const doppler_window_t *window, ground_speed_config_t *ground_speed)
+// What does: the window's length, and what the radar's spectrum tells at best and cannot tell at all; each ratio is 1 for the reference.
+static void build_ground_speed(const float *v, const doppler_template_t *beam, ground_speed_config_t *ground_speed)
 {
+    const float longer = 2.0f / beam->window.per_s; // than half a second
+    const float deaf = beam->deaf;
     const ground_speed_config_t method = {
         .method = GROUND_SPEED_BIAS,
-        .window = window,
+        .window = &beam->window,
         .tick_s = tick_s,
         .per_tick_1_s = ticks_per_s,
         .tick_q20_s = tick_s * 1048576.0f,
@@ -108,12 +122,13 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
-        .bias_start_m_s2 = 0.3f,        // assumed: 3 deg of slope at the start; what is steeper is found by (7)
+        .bias_start_m_s2 = 1.0f,        // 6 deg: slopes to 10 are 1.7 of it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
-        .doppler_noise_m2_s2 = 3e-5f,
-        .doppler_noise_m_s = 5.8e-4f,
-        .doppler_accel_s2 = 0.004f,
-        .doppler_spread_s = 0.25f,
+        .speed_max_m_s = beam->speed_m_s[beam->speeds - 1] < 9.0f ? 10.0f : 100.0f, // no rover; cars that a roadside module hears
+        .doppler_noise_m2_s2 = 3e-5f * (deaf * deaf),
+        .doppler_noise_m_s = 5.8e-4f * beam->spread,
+        .doppler_accel_s2 = 0.004f * (longer * longer),
+        .doppler_spread_s = beam->line ? 0.0f : 0.25f * longer,
         .gate_sigma = 3.5f,
         .gate_patience = 4,
         .jump_share = 0.25f,  // half a second of values 0.125 s apart
@@ -126,26 +141,36 @@ static void build_ground_speed(const float *v, const doppler_window_t *window, g
         .agile_most = 10.0f,
         .apart_told_m_s = 0.06f,
         .apart_forget = 0.04f,
-        .apart_share = 0.5f,
+        .apart_share = 1.0f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
-        .agile_values = 4, // half a second: a window's length
+        .roll_told_m_s = 0.1f,       // a step of 2.5 deg and more: what is gentler, (5) and (7) find
+        .slip_force_m_s2 = 0.3f,     // a friction of 0.03, and more than the device's bias
+        .roll_odds = 6.0f,           // exp(3) to one, assumed: an obstacle that stops the rover looks the same at first
+        .roll_noise_m2_s2 = 1.5e-5f, // slip changes by 1.4 cm/s within a value's time, assumed
+        .roll_share = 0.1f,          // 0.1 s
+        .roll_bias_m2_s4 = 0.01f,    // the accelerometer's noise over that time: (0.06 m/s^2)^2, and the wheels'
+        .agile_values = 4,           // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
         .quiet_needed = 3,
-        .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
+        .quiet_noise_m2_s2 = 9e-4f * (deaf * deaf), // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
         .parked_needed = 100,          // 1 s: eight values of the radar that tell of no speed, assumed
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
-        .slow_m_s = 0.12f,
+        .slow_m_s = 0.12f * deaf,
         .loud_needed = 3,
-        .sign_sure = 18.0f, // exp(9) to one
-        .wheel_odds = 2.0f, // e to one, assumed
+        .sign_sure = 18.0f,  // exp(9) to one
+        .wheel_spins = 6.0f, // exp(3) to one, assumed
+        .wheel_odds = 2.0f,  // e to one, assumed
         .wheel_match = 14.0f,
         .wheel_pull = 0.5f,
         .against_values = 4, // half a second
         .against_odds = 4.0f,
+        .force_per_s2_m = 4.0f,  // 1/(0.25 m/s^2), assumed: 25 mg of a small MEMS part
+        .force_most = 12.0f,     // assumed: as a value of the radar
+        .force_pull = 0.25f,     // four values share their samples
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
     };
@@ -274,9 +299,12 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     build_sense(v, &config->sense);
     build_circuit(v, &config->circuit, &config->sense);
     build_doppler(parameters, &config->doppler);
-    build_ground_speed(v, &config->doppler.beam->window, &config->ground_speed);
+    build_ground_speed(v, config->doppler.beam, &config->ground_speed);
     config->slip.wheel_radius_m = v[ROVER_wheel_radius_m];
     config->slip.valid_m_s = v[ROVER_slip_valid_m_s];
+    config->slip.valid_std = 0.25f; // [1] assumed: beyond it slip does not tell a gripping wheel from a spinning one
+    config->slip.rim_std_m_s =
+        0.40824829f * config->sense.speed_rad_s_per_count * v[ROVER_wheel_radius_m]; // q/(T sqrt 6): docs/log_format.md
     build_motor(v, &config->motor);
     build_control(v, config);
     build_safety(v, &config->safety);
@@ -311,15 +339,17 @@ static control_refusal_t check_ranges(const rover_parameters_t *parameters)
 static control_refusal_t check_radar(const rover_parameters_t *parameters, const control_config_t *config)
 {
     const float *v = parameters->value;
-    const doppler_template_t *beam = doppler_template_of(parameters->radar);
+    const doppler_template_t *beam = rover_template(parameters);
     if (beam == 0) {
-        return refuse("radar", "no template of this radar is linked; use MDU1130, DJ Radar II, DJ Radar III or DRS1000");
+        return refuse("radar",
+                      "no template of this radar; use MDU1130, DJ Radar II, DJ Radar III, DRS1000, or give one (`traction rover`)");
     }
     const float off_Hz = v[ROVER_radar_rate_Hz] - beam->sample_rate_Hz;
     if (off_Hz > rate_tolerance_Hz || off_Hz < -rate_tolerance_Hz) {
-        return refuse("radar_rate_Hz", "the radar's template is made for another rate; sample at 512 Hz, or add a template of this rate");
+        return refuse("radar_rate_Hz",
+                      "the radar's template is made for another rate; sample at 512 Hz, or let `traction rover` make its template");
     }
-    if (v[ROVER_radar_depression_deg] < 15.0f || v[ROVER_radar_depression_deg] > 25.0f) {
+    if (parameters->beam == 0 && (v[ROVER_radar_depression_deg] < 15.0f || v[ROVER_radar_depression_deg] > 25.0f)) {
         return refuse("radar_depression_deg", "the templates are made for 20 deg, which a scale mends within 5; mount it at 15 to 25 deg");
     }
     if (config->speed_control.speed_max_m_s > beam->speed_m_s[beam->speeds - 1]) {
@@ -440,6 +470,7 @@ void control_config_make_paper(control_config_t *config)
     config->ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
     config->ground_speed.bias_start_m_s2 = 0.0f;
     config->wheel_pid.slew_T_rad_s = 1e6f;
+    config->wheel_pid.kd_s2 = 0.005f * config->wheel_pid.kp_s; // the paper names a PID, no gains: 5 ms of derivative time, assumed
     config->feed_forward = false;
     config->speed_control.ki_T_rad_m = 0.0f; // (22) has no integral
     config->slip_pi.per_speed_s_m = 0.0f;    // (23) has no schedule

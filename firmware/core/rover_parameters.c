@@ -20,7 +20,7 @@ static const row_t rows[ROVER_PARAMETER_COUNT] = {
 #undef ROVER_PARAMETER_ROW
 };
 
-static const char radar_names[ROVER_RADAR_COUNT][16] = {"MDU1130", "DJ Radar II", "DJ Radar III", "DRS1000"};
+static const char radar_names[ROVER_RADAR_COUNT][16] = {"MDU1130", "DJ Radar II", "DJ Radar III", "DRS1000", "own"};
 
 static int32_t within(int32_t index, int32_t count) { return index < 0 || index >= count ? 0 : index; }
 
@@ -28,6 +28,12 @@ const char *rover_parameter_name(int32_t index) { return rows[within(index, ROVE
 float rover_parameter_low(int32_t index) { return rows[within(index, ROVER_PARAMETER_COUNT)].low; }
 float rover_parameter_high(int32_t index) { return rows[within(index, ROVER_PARAMETER_COUNT)].high; }
 bool rover_parameter_scaled(int32_t index) { return rows[within(index, ROVER_PARAMETER_COUNT)].kind == SCALED; }
+
+const doppler_template_t *rover_template(const rover_parameters_t *parameters)
+{
+    return parameters->beam != 0 ? parameters->beam : doppler_template_of(parameters->radar);
+}
+
 const char *rover_radar_name(int32_t radar) { return radar_names[within(radar, ROVER_RADAR_COUNT)]; }
 
 void rover_parameters_reference(rover_parameters_t *parameters)
@@ -36,6 +42,7 @@ void rover_parameters_reference(rover_parameters_t *parameters)
         parameters->value[i] = rows[i].reference;
     }
     parameters->radar = ROVER_RADAR_MDU1130;
+    parameters->beam = 0;
 }
 
 // --- (1)-(3); the same operations for a rover and for the reference, so that the reference's ratios are exactly 1
@@ -84,6 +91,9 @@ static float scaled(rover_parameter_t i, const rover_parameters_t *parameters, c
     case ROVER_back_emf_Vs_rad:
         return v[ROVER_torque_constant_Nm_A];
     case ROVER_doppler_scale: {
+        if (parameters->beam != 0) {
+            return r[i]; // that template is made for this very depression
+        }
         const float per_deg = parameters->radar == ROVER_RADAR_MDU1130 ? 0.004f : 0.00635f;      // 0.00635 = tan 20 deg * pi/180
         return r[i] + per_deg * (v[ROVER_radar_depression_deg] - r[ROVER_radar_depression_deg]); // (7)
     }
@@ -108,7 +118,7 @@ static float scaled(rover_parameter_t i, const rover_parameters_t *parameters, c
         return r[i] * ratio(free_speed_rad_s, v, r); // (6)
     case ROVER_speed_max_m_s: {
         const float speed = r[i] * (over(v, r, ROVER_wheel_max_rad_s) * radius);
-        const doppler_template_t *beam = doppler_template_of(parameters->radar);
+        const doppler_template_t *beam = rover_template(parameters);
         const float heard = beam != 0 ? radar_share * beam->speed_m_s[beam->speeds - 1] : speed;
         return speed < heard ? speed : heard; // (6)
     }

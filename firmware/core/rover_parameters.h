@@ -19,6 +19,8 @@
 #ifndef TRACTION_FIRMWARE_CORE_ROVER_PARAMETERS_H
 #define TRACTION_FIRMWARE_CORE_ROVER_PARAMETERS_H
 
+#include "doppler.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -58,7 +60,7 @@ extern "C" {
     X(gyro_rad_s_per_count, OWN, 0.0005f, 1e-6f, 1.0f)                                                                                     \
     X(gyro_offset_count, OWN, 0.0f, -32767.0f, 32767.0f)                                                                                   \
     X(radar_depression_deg, OWN, 20.0f, 5.0f, 45.0f)                                                                                       \
-    X(radar_rate_Hz, OWN, 512.0f, 100.0f, 2000.0f)                                                                                         \
+    X(radar_rate_Hz, OWN, 512.0f, 202.0f, 6400.0f)                                                                                         \
     X(radar_offset_count, OWN, 512.0f, 0.0f, 1023.0f)                                                                                      \
     X(radar_max_count, OWN, 1023.0f, 255.0f, 1023.0f)                                                                                      \
     X(radar_quiet_count2, OWN, 2.0f, 0.0f, 1e5f)                                                                                           \
@@ -102,12 +104,21 @@ typedef enum {
         ROVER_PARAMETER_COUNT
 } rover_parameter_t;
 
-// Radars whose template is linked (table II, Lhomme-Desages).
-typedef enum { ROVER_RADAR_MDU1130 = 0, ROVER_RADAR_DJ_2, ROVER_RADAR_DJ_3, ROVER_RADAR_DRS1000, ROVER_RADAR_COUNT } rover_radar_t;
+// Radars whose template is linked (table II, Lhomme-Desages), and any other, whose template comes as data.
+typedef enum {
+    ROVER_RADAR_MDU1130 = 0,
+    ROVER_RADAR_DJ_2,
+    ROVER_RADAR_DJ_3,
+    ROVER_RADAR_DRS1000,
+    ROVER_RADAR_LINKED,
+    ROVER_RADAR_OWN = ROVER_RADAR_LINKED,
+    ROVER_RADAR_COUNT
+} rover_radar_t;
 
 typedef struct {
     float value[ROVER_PARAMETER_COUNT]; // by ROVER_<key>, in the unit that the key's name ends with
     int32_t radar;                      // rover_radar_t
+    const doppler_template_t *beam;     // of this very radar at this rate and depression; must outlive the config. 0: the linked one
 } rover_parameters_t;
 
 // The reference rover: table I (Lhomme-Desages), as this project drives it.
@@ -122,7 +133,10 @@ float rover_parameter_low(int32_t index);
 float rover_parameter_high(int32_t index);
 bool rover_parameter_scaled(int32_t index);
 
-// A radar's name as descriptions write it ("MDU1130"), index 0..ROVER_RADAR_COUNT-1.
+// What `parameters` name: their own template, or the linked one of their radar, or 0.
+const doppler_template_t *rover_template(const rover_parameters_t *parameters);
+
+// A radar's name as descriptions write it ("MDU1130", "own"), index 0..ROVER_RADAR_COUNT-1.
 const char *rover_radar_name(int32_t radar);
 
 #ifdef __cplusplus

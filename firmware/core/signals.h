@@ -130,6 +130,8 @@ typedef enum {
     FAULT_SPEED_BEYOND = 1u << 19,    // faster than the radar's band holds: the estimate is not to be used
 } fault_t;
 
+enum { FAULT_COUNT = 20 }; // bits of fault_t
+
 typedef struct {
     float speed_rad_s;     // encoder speed
     float accel_rad_s2;    // causal derivative of the encoder speed
@@ -138,8 +140,9 @@ typedef struct {
     float torque_Nm;       // KG*I
     float traction_N;      // (19)
     float slip;            // (1), extended
+    float slip_std;        // its standard deviation; made anew within 80 ms
     float duty;            // after safety, what was written
-    bool slip_valid;       // fast enough for slip to mean something
+    bool slip_valid;       // fast enough, and known well enough, for slip to mean something
     bool saturated;        // the controller wanted more duty than it got: full duty, or what a limiter left
     bool encoder_refused;  // the speed is the motor circuit's: the encoder's was impossible
 } wheel_trace_t;

@@ -18,6 +18,7 @@ CountScale count_scale(const sim::RoverDescription &rover) {
     scale.battery_offset = whole(rover.at("battery", "offset_count"));
     scale.accel_offset = whole(rover.at("accel", "offset_count"));
     scale.gyro_offset = whole(rover.at("gyro", "offset_count"));
+    scale.radar_rate_Hz = rover.at("radar", "rate_Hz");
     scale.current_max = whole(rover.at("current", "max_count"));
     scale.battery_max = whole(rover.at("battery", "max_count"));
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) {

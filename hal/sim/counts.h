@@ -18,6 +18,7 @@ struct CountScale {
     double accel_m_s2 = 0.004;                                           // [m/s^2/count] assumed, about 0.4 mg
     double gyro_rad_s = 0.0005;                                          // [rad/s/count] assumed
     std::array<int, WHEEL_COUNT> current_offset{2048, 2048, 2048, 2048}; // offset binary
+    double radar_rate_Hz = 512;
     int battery_offset = 0, accel_offset = 0, gyro_offset = 0;
     int current_max = 4095, battery_max = 4095;            // 12 bit
     std::array<int, WHEEL_COUNT> encoder_sign{1, 1, 1, 1}; // -1: the count falls as the wheel drives forward

@@ -167,7 +167,7 @@ void FaultHal::apply_radar(std::size_t index, const sim::SensorFault &fault, sen
             frame->radar_count[i] = static_cast<std::uint16_t>(round_count(frame->radar_count[i] + add, 0, sim::Radar::count_max));
     } else {
         // the stream as a whole comes late, so a frame keeps its number of samples
-        const auto late = static_cast<std::size_t>(fault.amount * sim::Radar::rate_Hz + 0.5);
+        const auto late = static_cast<std::size_t>(fault.amount * scale_.radar_rate_Hz + 0.5);
         const std::size_t samples = frame->radar_samples;
         for (std::size_t i = 0; i < samples; i++) {
             const std::size_t back = late + samples - i; // from the end of past_radar_

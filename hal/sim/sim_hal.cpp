@@ -6,7 +6,9 @@ namespace {
 constexpr int steps_per_tick = TICK_US / 1000; // the plant's step is 1 ms
 } // namespace
 
-SimHal::SimHal(const SimHalConfig &config) : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()) {}
+SimHal::SimHal(const SimHalConfig &config) : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()) {
+    if (config.can_bus) bus_ = make_can_bus({.faults = config.can_faults, .latency_ms = config.bus_latency_ms, .seed = config.seed});
+}
 
 // An order that comes twice is none. Braking shorts the winding: a driven bridge whose duty is 0.
 void SimHal::obey(const Order &order) {
@@ -18,6 +20,22 @@ void SimHal::obey(const Order &order) {
     plant_.set_enabled(order.drive == DRIVE_ON || order.drive == DRIVE_BRAKE);
 }
 
+// Each node's own say. While one drives or brakes, a bridge that let go is an open winding; when all have, nothing flows.
+void SimHal::obey_nodes() {
+    std::array<bool, sim::wheel_count> driven{};
+    bool any = false, ordered = false;
+    for (int wheel = 0; wheel < sim::wheel_count; wheel++) {
+        const std::optional<BridgeOrder> order = bus_->bridge(wheel);
+        ordered = ordered || order.has_value();
+        const drive_state_t drive = order ? order->drive : DRIVE_OFF;
+        if (order) plant_.set_duty(wheel, drive == DRIVE_ON ? order->duty_q15 / 32767.0 : 0);
+        driven[static_cast<std::size_t>(wheel)] = drive == DRIVE_ON || drive == DRIVE_BRAKE;
+        any = any || driven[static_cast<std::size_t>(wheel)];
+    }
+    if (ordered) plant_.set_enabled(any);
+    for (std::size_t i = 0; i < driven.size(); i++) let_go_[i] = any && !driven[i];
+}
+
 // One tick of the world under the orders that have come into effect.
 void SimHal::advance() {
     for (int i = 0; i < steps_per_tick; i++) {
@@ -25,7 +43,11 @@ void SimHal::advance() {
             obey(orders_.front());
             orders_.pop_front();
         }
-        if (now_ms_ - heard_ms_ > BRIDGE_RELEASE_MS) plant_.set_enabled(false); // signals.h: it releases itself
+        if (bus_) {
+            bus_->step(now_ms_);
+            obey_nodes();
+        } else if (now_ms_ - heard_ms_ > BRIDGE_RELEASE_MS)
+            plant_.set_enabled(false); // signals.h: it releases itself
         const double t_s = static_cast<double>(now_ms_) * 1e-3;
         for (const WheelBlock &block : config_.wheel_blocks) {
             if (t_s >= block.to_s && t_s < block.to_s + 1.5e-3) plant_.block_wheel(block.wheel, false);
@@ -48,9 +70,9 @@ void SimHal::advance() {
 }
 
 void SimHal::fail_motors(double t_s) {
-    if (config_.open_motors.empty() && config_.supply_sags.empty()) return;
+    if (config_.open_motors.empty() && config_.supply_sags.empty() && !bus_) return;
     for (int wheel = 0; wheel < sim::wheel_count; wheel++) {
-        bool open = false;
+        bool open = let_go_[static_cast<std::size_t>(wheel)];
         for (const WheelBlock &span : config_.open_motors) open = open || (span.wheel == wheel && t_s >= span.from_s && t_s < span.to_s);
         plant_.open_motor(wheel, open);
     }
@@ -77,11 +99,22 @@ hal_t SimHal::hal() {
         frame->elapsed_ticks = self->done_ticks_ - self->read_ticks_;
         frame->time_us = static_cast<std::uint32_t>(self->now_ms_ * 1000);
         self->read_ticks_ = self->done_ticks_;
-        to_counts(self->config_.scale, self->measured_, frame);
-        return HAL_OK;
+        if (!self->bus_) {
+            to_counts(self->config_.scale, self->measured_, frame);
+            return HAL_OK;
+        }
+        sensor_frame_t devices{};
+        to_counts(self->config_.scale, self->measured_, &devices);
+        frame->present = FRAME_TIME; // the computer's own
+        return self->bus_->read(self->now_ms_, devices, frame);
     };
     hal.write = [](void *context, const actuator_frame_t *actuator) {
         auto *self = static_cast<SimHal *>(context);
+        if (self->bus_) {
+            const hal_result_t written = self->bus_->write(self->now_ms_, *actuator);
+            self->lost_writes_ += written == HAL_ERR_TIMEOUT ? 1 : 0;
+            return written;
+        }
         Order order{
             .due_ms = self->now_ms_ + self->config_.bus_latency_ms, .duty = {}, .drive = actuator->drive, .sequence = actuator->sequence};
         for (std::size_t i = 0; i < sim::wheel_count; i++) order.duty[i] = actuator->duty_q15[i] / 32767.0;
@@ -91,6 +124,7 @@ hal_t SimHal::hal() {
     hal.safe_stop = [](void *context) {
         auto *self = static_cast<SimHal *>(context);
         self->orders_.clear();
+        if (self->bus_) self->bus_->forget();
         self->plant_.set_enabled(false);
     };
     hal.open = [](void *) { return HAL_OK; };
@@ -102,6 +136,7 @@ hal_t SimHal::hal() {
 // Every device of the simulated rover is there.
 void SimHal::tell(hal_status_t *status) const {
     for (unsigned device = 0; device < HAL_DEVICES; device++) status->device[device] = HAL_DEVICE_WORKS;
+    status->lost_writes = lost_writes_;
 }
 
 } // namespace traction::hal

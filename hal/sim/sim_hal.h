@@ -4,6 +4,7 @@
 // so a dead sensor never stalls the loop. The first wait_tick ends at t = 10 ms and gives tick 0.
 #pragma once
 
+#include "bus.h"
 #include "counts.h"
 
 #include "hal/hal.h"
@@ -36,6 +37,8 @@ struct SimHalConfig {
     int bus_latency_ms = 0;  // 0..9: an order acts so long after it is written; whole ticks are delay_hal.h's
     std::uint32_t ticks = 0; // HAL_END after so many
     std::uint64_t seed = 1;
+    bool can_bus = false; // between computer, wheels and sensors: bus.h
+    std::vector<sim::CanFault> can_faults;
 };
 
 class SimHal {
@@ -67,9 +70,13 @@ class SimHal {
         std::uint32_t sequence;
     };
     void obey(const Order &order);
+    void obey_nodes();
     void fail_motors(double t_s);
     void tell(hal_status_t *status) const;
-    std::deque<Order> orders_; // written, not yet in effect
+    std::deque<Order> orders_;                    // written, not yet in effect
+    std::unique_ptr<Bus> bus_;                    // null: direct
+    std::array<bool, sim::wheel_count> let_go_{}; // by its own node alone, while others drive
+    std::uint32_t lost_writes_ = 0;
 };
 
 } // namespace traction::hal

@@ -32,7 +32,9 @@ SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::Active
                        .supply_sags = {},
                        .bus_latency_ms = static_cast<int>(actuation_delay_ms(effects) % tick_ms),
                        .ticks = static_cast<std::uint32_t>(scenario.duration_s * 100 + 0.5),
-                       .seed = seed};
+                       .seed = seed,
+                       .can_bus = scenario.can_bus,
+                       .can_faults = scenario.can_faults};
     world.plant.effects.assign(effects.begin(), effects.end());
     const std::vector<sim::ActiveEffect> wheels = sim::wheel_differences(scenario.rover);
     world.plant.effects.insert(world.plant.effects.end(), wheels.begin(), wheels.end());

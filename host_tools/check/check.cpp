@@ -30,10 +30,11 @@ const char *severity_name(Severity severity) {
 
 const std::vector<std::string> &error_ids() {
     static const std::vector<std::string> ids = {
-        "axis",      "clipped", "clock_jump", "clock_rate",   "counter_jump",   "dead_sensor",    "drive_unexplained",
-        "heading",   "late",    "no_motion",  "magnitude",    "not_finite",     "nothing_to_use", "samples_missing",
-        "scale",     "short",   "sign",       "stuck_sensor", "swapped_wheels", "time_unit",      "unit",
-        "unrelated", "wheels",  "wrapped"};
+        "axis",         "clipped",      "clock_jump",        "copied",          "stamps", "clock_rate",
+        "counter_jump", "dead_sensor",  "drive_unexplained", "heading",         "late",   "no_motion",
+        "magnitude",    "not_finite",   "nothing_to_use",    "samples_missing", "scale",  "short",
+        "sign",         "stuck_sensor", "swapped_wheels",    "time_unit",       "unit",   "unrelated",
+        "wheels",       "wrapped"};
     return ids;
 }
 
@@ -47,6 +48,7 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
         check_motion(grid, machine, report.findings);
         check_scales(grid, machine, report.findings);
         check_clock(log, grid, machine, report.findings);
+        check_misplaced(log, grid, machine, report.findings);
         report.excitation = measure_excitation(grid);
         judge_excitation(report.excitation, grid, report.findings);
     }

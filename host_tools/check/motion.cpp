@@ -100,8 +100,8 @@ void Motion::radar_beside_camera() {
             say("the camera's speed is %.4g times the radar's: its positions look like %s", 1 / middle, camera->written),
             say("multiply x and y by %.6g", 1 / camera->factor), 1 / middle);
     } else {
-        add("scale", Severity::warning, "radar.speed_m_s", say("the radar reads %.3g times the camera's speed", middle),
-            "check the radar's mounting angle, and the camera's scale", middle);
+        add("scale", Severity::error, "radar.speed_m_s", say("the radar reads %.3g times the camera's speed", middle), // effects reach 1.3
+            "check the units (miles an hour are 2.24, feet 3.28), the radar's mounting angle, and the camera's scale", middle);
     }
 }
 
@@ -311,8 +311,9 @@ void Motion::yaw() {
                     say("gyro and camera turn in opposite directions (slope %.3g)", line.a),
                     "turn its sign round: a turn to the left is positive", line.a);
             } else if (std::fabs(alike) > 0.9 && (line.a < 0.7 || line.a > 1.4)) {
-                add("scale", Severity::warning, "imu.gyro_z_rad_s", say("the gyro reads %.3g times the camera's yaw rate", line.a),
-                    "calibrate the gyro", line.a);
+                const bool gross = line.a < 0.5 || line.a > 2;
+                add("scale", gross ? Severity::error : Severity::warning, "imu.gyro_z_rad_s",
+                    say("the gyro reads %.3g times the camera's yaw rate", line.a), "calibrate the gyro", line.a);
             }
             if (line.a > 0 && with_wheels < -0.9) { // on a steep side slope, gravity alone was seen to reach -0.8
                 add("swapped_wheels", Severity::error, "wheel.speed_rad_s",
@@ -345,9 +346,9 @@ void Motion::yaw() {
 void Motion::accel() {
     if (grid_.accel.empty()) return;
     const double middle = quantile(grid_.accel, 0.5);
-    if (std::fabs(middle) > 5) {
+    if (std::fabs(middle) > 4.2) { // [m/s^2] a slope of 25 degrees the whole drive long: loose soil is not steeper
         add("axis", Severity::error, "imu.accel_x_m_s2", say("'imu.accel_x_m_s2' stands at %.3g m/s^2: gravity is in it", middle),
-            "log the longitudinal axis", middle);
+            "log the longitudinal axis; take the tilt of the sensor's mounting out", middle);
         return;
     }
     const bool camera = !grid_.camera_forward.empty() && heading_fits_ && !blamed("camera");

@@ -15,8 +15,9 @@ namespace {
 
 // The widest scale of the catalogue is 0.4 (current_gain), of radii and voltages 0.3; beyond 1.6 it is a mistake.
 constexpr double widest_scale = 1.6;
-constexpr double widest_winding = 4; // wiring_resistance may nearly double Ra, noise of the current may halve what a fit finds of it
-constexpr double most_slip = 0.5;    // [1] through a whole drive, where slip is least: beyond, the radius is wrong
+constexpr double widest_back_emf = 1.4; // of the back-EMF alone, downwards: voltage_gain takes the winding with it, lost counts raise it
+constexpr double widest_winding = 4;    // wiring_resistance may nearly double Ra, noise of the current may halve what a fit finds of it
+constexpr double most_slip = 0.5;       // [1] through a whole drive, where slip is least: beyond, the radius is wrong
 
 void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
     findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
@@ -49,8 +50,8 @@ void motor_scale(const Grid &grid, const Machine &machine, Findings &findings) {
     }
     if (ke.empty()) return;
     const double a = middle(ke), b = Ra.empty() ? not_known : middle(Ra);
-    if (beyond(a, widest_scale)) {
-        const bool both = std::isfinite(b) && !beyond(a / b, 1.25);
+    const bool both = std::isfinite(b) && !beyond(a / b, 1.25);
+    if (beyond(a, widest_scale) || (a < 1 / widest_back_emf && std::isfinite(b) && !both && b > 0.8)) {
         if (both) {
             add(findings, "scale", grid.battery.empty() ? "wheel.duty" : "battery.voltage_V",
                 say("the motors' voltage is %.3g times what their back-EMF and winding together need (medians of %zu wheels)", a,
@@ -88,7 +89,7 @@ void odd_motor(const Grid &grid, Findings &findings) {
         const std::string current = "wheel" + std::to_string(one.wheel->index) + ".current_A";
         if (ke.size() < 2 || has_error(findings, "wheel" + std::to_string(one.wheel->index) + ".")) continue;
         const double a = middle(ke) / one.law.a, b = middle(Ra) / one.law.b;
-        if (beyond(a, 2)) // a wheel that a sweep drags was seen at 1.64
+        if (beyond(a, 1.8)) // a wheel that a sweep drags was seen at 1.64; every second count is 2
             add(findings, "scale", one.wheel->speed_column,
                 say("'%s' is %.3g times as large as its motor's back-EMF allows beside those of the other wheels",
                     one.wheel->speed_column.c_str(), a),
@@ -259,18 +260,30 @@ void sign_without_voltage(const Wheel &wheel, Findings &findings) {
         "turn the sign of current or speed round (map: sign = -1)", law.b);
 }
 
+bool stands(const std::vector<double> &x, double tolerance) {
+    const double low = quantile(x, 0), high = quantile(x, 1);
+    return !std::isfinite(low) || high - low <= tolerance * std::fmax(std::fabs(low), std::fabs(high));
+}
+
 // A wheel that turns at one and the same speed, to the last digit, while its motor's current comes and goes: its encoder says nothing.
-void frozen_speed(const Wheel &wheel, Findings &findings) {
+// Where all wheels do so and nothing else sees the machine move (voltage, camera, radar, carriage), a coarse sensor in a steady drive looks
+// the same.
+void frozen_speed(const Wheel &wheel, const Grid &grid, Findings &findings) {
     if (wheel.speed.empty() || wheel.current.empty() || has_error(findings, wheel.speed_column)) return;
-    double low = not_known, high = not_known, n = 0;
-    for (const double w : wheel.speed)
-        if (std::isfinite(w)) low = std::fmin(low, w), high = std::fmax(high, w), n += 1;
+    const double value = quantile(wheel.speed, 0.5);
+    const auto samples = std::count_if(wheel.speed.begin(), wheel.speed.end(), [](double w) { return std::isfinite(w); });
     const double spread = quantile(wheel.current, 0.95) - quantile(wheel.current, 0.05), largest = quantile(wheel.current, 0.99);
-    if (n * step_s < 5 || low == 0 || high - low > 1e-9 * std::fabs(low) || !(spread > 0.3 * std::fabs(largest))) return;
+    if (static_cast<double>(samples) * step_s < 5 || value == 0 || !stands(wheel.speed, 1e-9) || !(spread > 0.3 * std::fabs(largest)))
+        return;
+    bool witness = !stands(grid.ground_speed, 0.3);
+    for (const Wheel &other : grid.wheel) witness = witness || !stands(other.speed, 1e-9) || !stands(other.voltage, 0.3);
     findings.push_back(
-        {"dead_sensor", Severity::error, wheel.speed_column,
-         say("'%s' stands at %.5g through the whole drive while the current varies over %.3g A", wheel.speed_column.c_str(), low, spread),
-         "check its wiring; or take the column out of the log", low});
+        {"dead_sensor", witness ? Severity::error : Severity::warning, wheel.speed_column,
+         say("'%s' stands at %.5g through the whole drive while the current varies over %.3g A%s", wheel.speed_column.c_str(), value,
+             spread, witness ? "" : "; so do all wheels, and no other sensor tells whether that is true"),
+         witness ? "check its wiring; or take the column out of the log"
+                 : "check the wiring of the encoders; from such a drive neither friction over speed nor inertia can be learnt",
+         value});
 }
 
 void negated_radar(const Grid &grid, Findings &findings) {
@@ -296,7 +309,7 @@ void check_scales(const Grid &grid, const Machine &machine, Findings &findings) 
     odd_wheel(grid, machine, findings);
     radius_scale(grid, machine, findings);
     accel_scale(grid, machine, findings);
-    for (const Wheel &wheel : grid.wheel) sign_without_voltage(wheel, findings), frozen_speed(wheel, findings);
+    for (const Wheel &wheel : grid.wheel) sign_without_voltage(wheel, findings), frozen_speed(wheel, grid, findings);
     negated_radar(grid, findings);
 }
 

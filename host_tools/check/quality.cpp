@@ -70,6 +70,9 @@ void Quality::repairs() {
                 static_cast<double>(repair.count));
         }
     }
+    if (const auto ended = log_.header.find("ended"); ended != log_.header.end() && ended->second == "interrupted")
+        add("interrupted", Severity::note, "", say("the run was stopped after %.1f s, before its end", log_.duration_s()),
+            "nothing to do if what is there is enough", log_.duration_s());
 }
 
 void Quality::rate(const log::Signal &signal) {

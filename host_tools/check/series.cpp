@@ -81,9 +81,17 @@ std::vector<double> smooth(const std::vector<double> &x, std::size_t half_span) 
     return out;
 }
 
+std::vector<double> tame(std::vector<double> x) {
+    const double low = quantile(x, 0.005), high = quantile(x, 0.995), width = high - low;
+    if (!(width > 0)) return x;
+    for (double &v : x)
+        if (std::isfinite(v)) v = std::clamp(v, low - width, high + width);
+    return x;
+}
+
 const UnitSlip *unit_slip(char kind, double factor) {
     static constexpr UnitSlip angular[] = {
-        {60 / 6.283185307179586, "rpm"}, {57.29577951308232, "deg/s"}, {1 / 6.283185307179586, "turns/s"}};
+        {60 / 6.283185307179586, "rpm"}, {57.29577951308232, "deg/s"}, {1 / 6.283185307179586, "turns/s"}, {1000, "mrad/s"}};
     static constexpr UnitSlip current[] = {{1000, "mA"}, {0.001, "kA"}};
     static constexpr UnitSlip linear[] = {{1000, "mm"}, {100, "cm"}, {3.6, "km/h"}, {0.001, "km"}};
     static constexpr UnitSlip accel[] = {{1 / 9.80665, "g"}, {101.97, "mg"}, {1000, "mm/s^2"}};

@@ -61,6 +61,9 @@ std::vector<double> slope(const std::vector<double> &x, std::size_t half_span);
 // The same, averaged over +-half_span samples.
 std::vector<double> smooth(const std::vector<double> &x, std::size_t half_span);
 
+// The same without single wild samples: held within the middle 99 %, widened by its width on either side.
+std::vector<double> tame(std::vector<double> x);
+
 // A wheel angle that jumps back by a turn instead of going on.
 bool wraps(const log::Signal &angle);
 
@@ -83,8 +86,9 @@ void check_clipping(const log::Signal &signal, const Grid &grid, Findings &findi
 void check_drives(const Grid &grid, const Machine &machine, Findings &findings);      // duty, speed, current: units, signs, swaps
 void check_magnitudes(const Grid &grid, Findings &findings);                          // currents that lack their sign
 void check_scales(const Grid &grid, const Machine &machine, Findings &findings);      // factors, with a known machine
-void check_clock(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // its rate; signals that are late
-void check_motion(const Grid &grid, const Machine &machine, Findings &findings);                     // encoder, camera, radar, imu
+void check_clock(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings);     // its rate; signals that are late
+void check_misplaced(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings); // copies, other axes, sides
+void check_motion(const Grid &grid, const Machine &machine, Findings &findings);                         // encoder, camera, radar, imu
 Excitation measure_excitation(const Grid &grid);
 void judge_excitation(const Excitation &excitation, const Grid &grid, Findings &findings);
 

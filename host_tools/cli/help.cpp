@@ -144,7 +144,8 @@ std::string help_text() {
 }
 
 const char *closing_text() {
-    return "Exit codes: 0 done, 1 the answer is negative, 2 wrong command line, 3 bad input, 4 file error, 70 a bug.\n"
+    return "Exit codes: 0 done, 1 the answer is negative, 2 wrong command line, 3 bad input, 4 file error, 70 a bug,\n128 + N stopped by "
+           "signal N.\n"
            "The script ./traction of the sources also knows: test (build and run every test), build, prove, fuzz, mutate, help.\n";
 }
 

@@ -1,7 +1,9 @@
-// traction convert IN.csv --map MAP.toml --out OUT.csv: a foreign file becomes a log of our own format.
+// traction convert IN --out OUT.csv [--map MAP.toml] [--rover ROVER]: a foreign CSV, or the rover's own ULog, becomes a log of our own
+// format.
 #include "rows.h"
 #include "verbs.h"
 
+#include "host_tools/board/board_log.h"
 #include "host_tools/log/log.h"
 
 #include <cstdio>
@@ -12,11 +14,19 @@ namespace traction::cli {
 namespace {
 
 struct ConvertOptions {
-    std::string in, map, out;
+    std::string in, map, out, rover;
 };
 
+// The on-board log's header is the description of the rover that wrote it.
+log::Log from_board(const ConvertOptions &options) {
+    if (!options.map.empty()) throw UsageError("--map is for a foreign CSV; the rover's log has its own names");
+    const board::BoardLog board = board::read_board_log(options.in);
+    for (const std::string &text : board.text) std::printf("rover: %s\n", text.c_str());
+    return board::to_log(board, options.rover.empty() ? sim::RoverDescription() : sim::read_rover_file(options.rover));
+}
+
 void convert(const ConvertOptions &options, Outcome &outcome) {
-    const log::Log log = log::read_csv(options.in, options.map);
+    const log::Log log = board::is_ulog(options.in) ? from_board(options) : log::read_csv(options.in, options.map);
     log::write_csv(log, options.out);
     for (const std::string &repair : log.repairs) std::printf("mended: %s\n", repair.c_str());
     std::size_t samples = 0;
@@ -42,7 +52,7 @@ Verb verb_convert() {
     const auto options = std::make_shared<ConvertOptions>();
     return {
         .name = "convert",
-        .summary = "rewrite a foreign CSV, read through a map, as a log of traction's own format",
+        .summary = "rewrite a foreign CSV, or the rover's on-board ULog, as a log of traction's own format",
         .options =
             {log_row(options->in, "the file to read"),
              {.name = "--map",
@@ -50,6 +60,11 @@ Verb verb_convert() {
               .help = "which column is which signal (docs/log_format.md); without it, LOG is mended and rewritten",
               .value = "FILE",
               .kind = Kind::input},
+             {.name = "--rover",
+              .into = &options->rover,
+              .help = "of an on-board log: the rover that wrote it (rovers/*.toml); without it the reference rover",
+              .value = "ROVER",
+              .kind = Kind::rover},
              {.name = "--out", .into = &options->out, .help = "the log to write", .value = "FILE", .kind = Kind::output, .required = true}},
         .run = [options](Outcome &outcome) { convert(*options, outcome); }};
 }

@@ -24,13 +24,15 @@ void run(Arguments arguments, Outcome &outcome) {
     if (arguments.data.empty()) arguments.data = (need_data_root() / "../shared/data").string();
     const std::filesystem::path bench = std::filesystem::path(arguments.data) / "cmu_single_wheel/cmu_wheel_smooth_steady_state.csv";
     if (std::filesystem::exists(bench)) arguments.settings.bench_data = bench.string();
-    Progress progress("reproduce", 9 + 6L * arguments.settings.seeds); // drives: 2 calibrations, 2 + 1 + 1 + 3, and table III
+    Progress progress("reproduce", 19 + 6L * arguments.settings.seeds); // drives: 5 calibrations, 2 + 2 + 2 + 6, and table III
     arguments.settings.after_run = [&progress] { progress.step(); };
     outcome.json = reproduce(arguments.settings);
-    for (const auto &figure : outcome.json["figures"])
-        std::printf("%-8s %-20s paper: %s\n%-29s ours:  %s\n", figure["verdict"].get<std::string>().c_str(),
-                    figure["id"].get<std::string>().c_str(), figure["paper"].get<std::string>().c_str(), "",
-                    figure["ours"].get<std::string>().c_str());
+    for (const auto &figure : outcome.json["figures"]) {
+        const auto text = [&figure](const char *key) { return figure[key].get<std::string>(); };
+        std::printf("%-14s %-20s paper:               %s\n", text("verdict").c_str(), text("id").c_str(), text("paper").c_str());
+        if (!text("paper_here").empty()) std::printf("%-35s paper's method here: %s\n", "", text("paper_here").c_str());
+        std::printf("%-35s ours:                %s\n", "", text("ours").c_str());
+    }
     for (const auto &check : outcome.json["checks"])
         if (!check["pass"])
             std::printf("outside its bound: %s, %s: %.4g, not in %.4g to %.4g\n", check["id"].get<std::string>().c_str(),

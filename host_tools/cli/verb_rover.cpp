@@ -1,6 +1,7 @@
 // verb_rover.cpp - traction rover FILE: checks a rover's description and writes what follows from it: the firmware's parameters, a model.
 #include "verbs.h"
 
+#include "hal/linux/hardware.h"
 #include "host_tools/report/report.h"
 #include "host_tools/rover/rover.h"
 
@@ -23,8 +24,18 @@ nlohmann::json to_json(const parameters_t &parameters) {
     return out;
 }
 
+// [hardware], where the file has it, by the rover's own reader; the devices themselves are opened on the rover alone.
+void check_hardware(const sim::RoverDescription &rover) {
+    hardware_t hardware;
+    char message[HARDWARE_MESSAGE];
+    if (rover.hardware_line == 0) return;
+    if (!hardware_read(rover.file.c_str(), &hardware, message)) throw std::runtime_error(message); // complete: file, line, key, value, mend
+    std::printf("hardware: wheels by %s, sensors by %s\n", hardware.key[HARDWARE_wheels].text, hardware.key[HARDWARE_sensors].text);
+}
+
 void run_rover(const RoverOptions &options, Outcome &outcome) {
     const sim::RoverDescription rover = sim::read_rover_file(options.rover);
+    check_hardware(rover);
     const control_config_t config = firmware_config(rover); // refuses what cannot work
     const parameters_t parameters = firmware_parameters(rover);
     std::printf("%s: %.3g kg on wheels of %.4g m, radar %s; the firmware accepts it\n", rover.name.c_str(), rover.at("body", "mass_kg"),

@@ -1,6 +1,7 @@
 // verb_simulate.cpp - traction simulate SCENARIO: drives the rover through a scenario and writes the log.
 #include "progress.h"
 #include "rows.h"
+#include "stop_signal.h"
 #include "verbs.h"
 
 #include "host_tools/lab/next/manoeuvre.h"
@@ -45,24 +46,33 @@ bool parse_range(const std::string &text, std::uint64_t &first, std::uint64_t &l
     return true;
 }
 
-void keep(const Arguments &arguments, const sim::Scenario &scenario, const SimulationResult &result, bool batch, std::uint64_t seed) {
-    const auto name = [&](const std::string &path) { return batch ? with_seed(path, seed) : path; };
-    if (!arguments.out.empty()) log::write_csv(result.log, name(arguments.out));
-    if (!arguments.truth.empty()) log::write_csv(result.truth, name(arguments.truth));
-    if (!arguments.seal.empty()) report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed), name(arguments.seal));
+// The options of one run of several: files and hidden effects of its own.
+SimulateOptions options_of(const Arguments &arguments, SimulateOptions options, std::uint64_t seed, std::uint64_t first, bool batch) {
+    const auto name = [&](const std::string &path) { return batch && !path.empty() ? with_seed(path, seed) : path; };
+    options.log_path = name(arguments.out);
+    options.truth_path = name(arguments.truth);
+    if (arguments.hide >= 0)
+        options.hide = sim::HiddenDraw{
+            .seed = static_cast<std::uint64_t>(arguments.hide) + (seed - first), .count = arguments.hide_count, .among = {}};
+    return options;
 }
 
 // "stall, low battery": fault_t, firmware/core/signals.h.
 std::string fault_names(std::uint32_t faults) {
-    static const char *const name[] = {
-        "emergency stop",   "command timeout", "encoder lost",  "current lost", "accelerometer lost", "radar lost",
-        "battery lost",     "low battery",     "over-current",  "stall",        "missed ticks",       "speeds disagree",
-        "over-temperature", "gyro lost",       "absurd sensor", "bridge",       "motor open",         "encoder against its motor",
-        "brown-out"};
+    static const char *const name[] = {"emergency stop",     "command timeout",
+                                       "encoder lost",       "current lost",
+                                       "accelerometer lost", "radar lost",
+                                       "battery lost",       "low battery",
+                                       "over-current",       "stall",
+                                       "missed ticks",       "speeds disagree",
+                                       "over-temperature",   "gyro lost",
+                                       "absurd sensor",      "bridge",
+                                       "motor open",         "encoder against its motor",
+                                       "brown-out",          "speed beyond the radar's band"};
+    static_assert(std::size(name) == FAULT_COUNT);
     std::string text;
-    for (std::size_t bit = 0; bit < 32; ++bit)
-        if ((faults >> bit & 1U) != 0)
-            text += (text.empty() ? "" : ", ") + (bit < std::size(name) ? std::string(name[bit]) : "fault " + std::to_string(bit));
+    for (std::size_t bit = 0; bit < std::size(name); ++bit)
+        if ((faults >> bit & 1U) != 0) text += std::string(text.empty() ? "" : ", ") + name[bit];
     return text;
 }
 
@@ -84,6 +94,7 @@ nlohmann::json summary(const SimulationResult &result, std::uint64_t seed) {
     return {{"seed", seed},
             {"ticks", result.ticks},
             {"simulated_s", static_cast<double>(result.ticks) / 100},
+            {"interrupted", result.interrupted},
             {"faults", result.faults},
             {"fault_names", fault_names(result.faults)},
             {"self_test_failures", self_test_names(result.self_test)},
@@ -133,14 +144,12 @@ void run(const Arguments &arguments, Outcome &outcome) {
         throw UsageError(
             "--frames: replays the reference rover's firmware; for another rover keep the log (--out), which `traction replay` reads");
     SimulateOptions options;
-    options.truth = !arguments.truth.empty();
+    options.record = false;
     options.realtime = arguments.realtime;
     options.self_test = arguments.self_test;
     options.frames_path = arguments.frames;
     if (!arguments.firmware.empty()) options.firmware = arguments.firmware;
     for (const std::string &text : arguments.effects) options.effects.push_back(sim::parse_effect(text));
-    if (arguments.hide >= 0)
-        options.hide = sim::HiddenDraw{.seed = static_cast<std::uint64_t>(arguments.hide), .count = arguments.hide_count, .among = {}};
 
     std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
     const bool batch = !arguments.seeds.empty();
@@ -152,9 +161,14 @@ void run(const Arguments &arguments, Outcome &outcome) {
     const auto count = static_cast<long>(last - first + 1);
     Progress progress("simulate " + scenario.name, count * static_cast<long>(scenario.duration_s + 0.5));
     options.after_second = [&progress] { progress.step(); };
+    const StopSignal stop;
+    options.stopped = [] { return StopSignal::asked() != 0; };
     double simulated_s = 0;
-    simulate_batch(scenario, options, first, last, arguments.jobs, [&](std::uint64_t seed, SimulationResult &&result) {
-        keep(arguments, scenario, result, batch, seed);
+    const auto own = [&](std::uint64_t seed) { return options_of(arguments, options, seed, first, batch); };
+    simulate_batch(scenario, own, first, last, arguments.jobs, [&](std::uint64_t seed, SimulationResult &&result) {
+        if (!arguments.seal.empty())
+            report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed),
+                               batch ? with_seed(arguments.seal, seed) : arguments.seal);
         simulated_s += static_cast<double>(result.ticks) / 100;
         outcome.json["runs"].push_back(summary(result, seed));
     });
@@ -167,6 +181,11 @@ void run(const Arguments &arguments, Outcome &outcome) {
     if (arguments.out.empty() && arguments.truth.empty() && arguments.frames.empty())
         std::printf("the log was not kept; --out LOG keeps it\n");
     tell_faults(outcome);
+    if (const int signal = StopSignal::asked(); signal != 0) {
+        std::printf("stopped by a signal with %zu of %ld run%s begun; what was written is whole, and says `ended: interrupted`\n",
+                    runs.size(), count, count == 1 ? "" : "s");
+        outcome.exit_code = 128 + signal;
+    }
 }
 
 } // namespace
@@ -210,7 +229,7 @@ Verb verb_simulate() {
                   .kind = Kind::rover},
                  {.name = "--hide",
                   .into = &arguments->hide,
-                  .help = "hide an effect drawn by this seed",
+                  .help = "hide an effect drawn by this seed; with --seeds each run hides another, by the seeds that follow",
                   .value = "SEED",
                   .range = Range{.low = 0}},
                  {.name = "--hide-count",

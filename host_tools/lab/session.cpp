@@ -4,35 +4,23 @@
 
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/join_runs.h"
+#include "host_tools/lab/inputs/long_log.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace traction::lab {
-
-namespace {
-
-void cut_part(log::Log &log, double from_s, double to_s) {
-    if (!(from_s > 0) && !(to_s > 0)) return;
-    if (!(to_s > 0)) to_s = std::numeric_limits<double>::infinity();
-    for (log::Signal &s : log.signals) {
-        log::Signal part;
-        part.name = s.name;
-        for (std::size_t i = 0; i < s.t_s.size(); ++i)
-            if (s.t_s[i] >= from_s && s.t_s[i] <= to_s) part.t_s.push_back(s.t_s[i]), part.value.push_back(s.value[i]);
-        s = std::move(part);
-    }
-}
-
-} // namespace
 
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,
                      std::vector<std::string> &told, std::vector<std::string> &despite) {
     std::vector<log::Repair> repairs;
     log::Log log = log::read_csv(file, map, repairs);
-    cut_part(log, request.from_s, request.to_s);
+    keep_part(log, request.from_s, request.to_s);
     for (std::string &sentence : pass_gate(check::check(log, repairs, machine_of(model)), file, request.despite, despite))
         told.push_back(std::move(sentence));
+    if (!request.repeat.empty()) return log; // two runs are compared time by time
+    const double runs = static_cast<double>(request.logs.size() + (request.log.empty() ? 0 : 1)), gap_s = 15; // join_runs.h
+    const double share_s = runs > 1 ? std::max(60.0, longest_log_s / runs - gap_s) : longest_log_s;
+    if (std::string sentence = keep_busiest(model, log, share_s); !sentence.empty()) told.push_back(std::move(sentence));
     return log;
 }
 

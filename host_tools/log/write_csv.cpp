@@ -1,3 +1,4 @@
+#include "csv_text.h"
 #include "log.h"
 #include "write_file.h"
 
@@ -40,13 +41,6 @@ bool append_millionths(std::string &text, double value) {
     return true;
 }
 
-void append_number(std::string &text, double value) {
-    if (append_millionths(text, value)) return;
-    char buffer[32];
-    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
-    text.append(buffer, end);
-}
-
 // Quotes where the text would not survive without.
 std::string name_cell(const std::string &name) {
     if (name.find_first_of(",\";\t#") == std::string::npos && name.front() != ' ' && name.back() != ' ') return name;
@@ -66,37 +60,6 @@ void require(bool good, const std::string &path, const std::string &what, const 
 bool one_clean_line(const std::string &text) {
     const bool padded = !text.empty() && (std::strchr(" \t", text.front()) != nullptr || std::strchr(" \t", text.back()) != nullptr);
     return !padded && text.find_first_of("\r\n") == std::string::npos && text.find('\0') == std::string::npos;
-}
-
-void check(const Log &log, const std::string &path) {
-    for (const auto &[key, value] : log.header) {
-        require(!key.empty() && key != "format" && one_clean_line(key) && key.find(':') == std::string::npos && one_clean_line(value), path,
-                "header line '" + key + ": " + value + "' cannot be written",
-                "keep keys and values to one line without blanks at the ends, keys without ':', not 'format'");
-    }
-    std::set<std::string> names{"t_s"};
-    for (const Signal &signal : log.signals) {
-        double number = 0;
-        const auto parsed = std::from_chars(signal.name.data(), signal.name.data() + signal.name.size(), number);
-        require(!signal.name.empty() && signal.name.find_first_of("\r\n\t") == std::string::npos &&
-                    signal.name.find('\0') == std::string::npos && parsed.ptr != signal.name.data() + signal.name.size(),
-                path, "signal name '" + signal.name + "' cannot be written", "use '<object>.<quantity>_<unit>'");
-        require(names.insert(signal.name).second, path, "signal '" + signal.name + "' stands twice", "give every signal its own name");
-        require(signal.t_s.size() == signal.value.size(), path,
-                "signal '" + signal.name + "' has " + std::to_string(signal.t_s.size()) + " times and " +
-                    std::to_string(signal.value.size()) + " values",
-                "give every sample a time");
-        double previous = -std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
-            // the message is put together only when it is needed: this loop sees every sample
-            if (!(std::isfinite(signal.t_s[i]) && signal.t_s[i] > previous))
-                require(false, path, "times of '" + signal.name + "' do not increase at sample " + std::to_string(i),
-                        "sort them and drop duplicates");
-            if (!std::isfinite(signal.value[i]))
-                require(false, path, "'" + signal.name + "' is not finite at sample " + std::to_string(i), "leave the sample out");
-            previous = signal.t_s[i];
-        }
-    }
 }
 
 constexpr double never = std::numeric_limits<double>::infinity();
@@ -136,14 +99,58 @@ class Clocks {
 
 } // namespace
 
-void write_csv(const Log &log, const std::string &path) {
-    check(log, path);
-    WholeFile file(path);
+void append_number(std::string &text, double value) {
+    if (append_millionths(text, value)) return;
+    char buffer[32];
+    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
+    text.append(buffer, end);
+}
+
+std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path) {
     std::string text = "# format: traction-log 1\n";
-    for (const auto &[key, value] : log.header) text.append("# ").append(key).append(": ").append(value).append(1, '\n');
+    for (const auto &[key, value] : header) {
+        require(!key.empty() && key != "format" && one_clean_line(key) && key.find(':') == std::string::npos && one_clean_line(value), path,
+                "header line '" + key + ": " + value + "' cannot be written",
+                "keep keys and values to one line without blanks at the ends, keys without ':', not 'format'");
+        text.append("# ").append(key).append(": ").append(value).append(1, '\n');
+    }
     text += "t_s";
-    for (const Signal &signal : log.signals) text.append(1, ',').append(name_cell(signal.name));
+    std::set<std::string> seen{"t_s"};
+    for (const std::string &name : names) {
+        double number = 0;
+        const auto parsed = std::from_chars(name.data(), name.data() + name.size(), number);
+        require(!name.empty() && name.find_first_of("\r\n\t") == std::string::npos && name.find('\0') == std::string::npos &&
+                    parsed.ptr != name.data() + name.size(),
+                path, "signal name '" + name + "' cannot be written", "use '<object>.<quantity>_<unit>'");
+        require(seen.insert(name).second, path, "signal '" + name + "' stands twice", "give every signal its own name");
+        text.append(1, ',').append(name_cell(name));
+    }
     text += '\n';
+    return text;
+}
+
+void check_sample(const std::string &name, std::size_t index, double previous_s, double t_s, double value, const std::string &path) {
+    // the message is put together only when it is needed: every sample comes here
+    if (!(std::isfinite(t_s) && t_s > previous_s))
+        require(false, path, "times of '" + name + "' do not increase at sample " + std::to_string(index), "sort them and drop duplicates");
+    if (!std::isfinite(value))
+        require(false, path, "'" + name + "' is not finite at sample " + std::to_string(index), "leave the sample out");
+}
+
+void write_csv(const Log &log, const std::string &path) {
+    std::vector<std::string> names;
+    for (const Signal &signal : log.signals) {
+        names.push_back(signal.name);
+        require(signal.t_s.size() == signal.value.size(), path,
+                "signal '" + signal.name + "' has " + std::to_string(signal.t_s.size()) + " times and " +
+                    std::to_string(signal.value.size()) + " values",
+                "give every sample a time");
+        double previous = -never;
+        for (std::size_t i = 0; i < signal.t_s.size(); previous = signal.t_s[i++])
+            check_sample(signal.name, i, previous, signal.t_s[i], signal.value[i], path);
+    }
+    std::string text = csv_head(log.header, names, path);
+    WholeFile file(path);
     Clocks clocks(log);
     for (double t_s = clocks.next(); t_s != never; t_s = clocks.next()) {
         append_number(text, t_s);

@@ -7,6 +7,7 @@
 #include "host_tools/rover/rover.h"
 
 #include <cmath>
+#include <cstdlib>
 
 namespace traction::replay {
 
@@ -53,16 +54,16 @@ struct Columns {
     std::vector<Column> encoder, current, wheel_speed, duty, bridge;
 };
 
-void read_radar(Columns &columns, double t_s, sensor_frame_t &frame) {
+void read_radar(Columns &columns, double t_s, double rate_Hz, sensor_frame_t &frame) {
     frame.radar_samples = static_cast<std::uint8_t>(columns.samples.at(t_s));
-    // the converter's clock: sample n at n/512 s. A log without sequence numbers lost none: its newest sample is the tick's last
-    const double first = columns.sequence.at(t_s, std::floor(t_s * 512 + 1e-6) - frame.radar_samples + 1);
+    // the converter's clock: sample n at n/rate. A log without sequence numbers lost none: its newest sample is the tick's last
+    const double first = columns.sequence.at(t_s, std::floor(t_s * rate_Hz + 1e-6) - frame.radar_samples + 1);
     frame.radar_sequence = static_cast<std::uint32_t>(static_cast<std::int64_t>(first));
     for (int i = 0; i < frame.radar_samples && i < RADAR_SAMPLES_PER_TICK_MAX; ++i)
-        frame.radar_count[i] = static_cast<std::uint16_t>(columns.radar.at((first + i) / 512));
+        frame.radar_count[i] = static_cast<std::uint16_t>(columns.radar.at((first + i) / rate_Hz));
 }
 
-LoggedTick read_tick(Columns &columns, double t_s) {
+LoggedTick read_tick(Columns &columns, double t_s, double rate_Hz) {
     LoggedTick tick{};
     sensor_frame_t &frame = tick.frame;
     frame.tick = static_cast<std::uint32_t>(std::lround(t_s * 100)) - 1; // a tick ends its 10 ms
@@ -79,7 +80,7 @@ LoggedTick read_tick(Columns &columns, double t_s) {
     frame.gyro_x_count = static_cast<std::int16_t>(columns.gyro_x.at(t_s));
     frame.gyro_y_count = static_cast<std::int16_t>(columns.gyro_y.at(t_s));
     frame.emergency_stop = columns.stop.at(t_s) != 0;
-    read_radar(columns, t_s, frame);
+    read_radar(columns, t_s, rate_Hz, frame);
     command_t &command = tick.command;
     const double mode = columns.mode.at(t_s);
     command.mode = mode >= 0 && mode < static_cast<double>(MODE_COUNT) ? static_cast<control_mode_t>(static_cast<int>(mode)) : MODE_STOP;
@@ -124,7 +125,9 @@ std::vector<LoggedTick> logged_ticks(const log::Log &log) {
     Columns columns(log);
     std::vector<LoggedTick> ticks;
     ticks.reserve(clock.t_s.size());
-    for (const double t_s : clock.t_s) ticks.push_back(read_tick(columns, t_s));
+    const auto stated = log.header.find("radar.sample_rate_Hz");
+    const double rate = stated != log.header.end() ? std::strtod(stated->second.c_str(), nullptr) : 0;
+    for (const double t_s : clock.t_s) ticks.push_back(read_tick(columns, t_s, rate > 0 ? rate : 512));
     return ticks;
 }
 

@@ -1,5 +1,7 @@
 #include "rover.h"
 
+#include "radar_geometry.h"
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -41,6 +43,7 @@ parameters_t firmware_parameters(const sim::RoverDescription &rover) {
     out.rover.radar = -1;
     for (std::int32_t i = 0; i < ROVER_RADAR_COUNT; i++)
         if (rover.radar == rover_radar_name(i)) out.rover.radar = i;
+    if (needs_own_template(rover)) out.rover.beam = template_of(radar_geometry_of(rover));
     for (std::size_t i = 0; i < rover.values.size(); i++) {
         const sim::RoverKey &key = sim::rover_keys()[i];
         if (!key.firmware.empty()) set(out, key.firmware, rover.values[i].value, !key.choice || rover.values[i].given);
@@ -95,6 +98,7 @@ std::map<std::string, std::string> parameter_lines(const parameters_t &parameter
     rover_parameters_t reference;
     rover_parameters_reference(&reference);
     std::map<std::string, std::string> lines;
+    if (parameters.rover.beam != nullptr) lines = geometry_lines(parameters.rover.beam, "firmware.radar.");
     for (std::int32_t i = 0; i < ROVER_PARAMETER_COUNT; i++)
         if (parameters.rover.value[i] != reference.value[i])
             lines["firmware." + std::string(rover_parameter_name(i))] = digits(parameters.rover.value[i]);
@@ -108,6 +112,10 @@ parameters_t parameters_of_lines(const std::map<std::string, std::string> &heade
     for (const auto &[line, value] : header) {
         if (!line.starts_with("firmware.")) continue;
         const std::string key = line.substr(9);
+        if (key.starts_with("radar.")) {
+            if (out.rover.beam == nullptr) out.rover.beam = template_of(geometry_of_lines(header, "firmware.radar."));
+            continue;
+        }
         if (key == "radar") {
             std::int32_t radar = -1;
             for (std::int32_t i = 0; i < ROVER_RADAR_COUNT; i++)

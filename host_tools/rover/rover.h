@@ -12,7 +12,7 @@
 namespace traction {
 
 // The primary numbers for the firmware: what the description gives is given, the rest follows (rover_parameters_scale).
-// Throws sim::ScenarioError when no template of its radar is linked.
+// A radar that no linked template holds gets its own. Throws sim::ScenarioError where its numbers give none.
 parameters_t firmware_parameters(const sim::RoverDescription &rover);
 
 // Built and checked. Throws sim::ScenarioError with the description's file, line, key and the reason of control_config_check.

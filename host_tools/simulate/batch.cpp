@@ -7,8 +7,8 @@
 
 namespace traction {
 
-void simulate_batch(const sim::Scenario &scenario, const SimulateOptions &options, std::uint64_t first, std::uint64_t last, int jobs,
-                    const std::function<void(std::uint64_t, SimulationResult &&)> &done) {
+void simulate_batch(const sim::Scenario &scenario, const std::function<SimulateOptions(std::uint64_t)> &options, std::uint64_t first,
+                    std::uint64_t last, int jobs, const std::function<void(std::uint64_t, SimulationResult &&)> &done) {
     std::atomic<std::uint64_t> next{first};
     std::mutex mutex;
     std::exception_ptr failure;
@@ -17,7 +17,13 @@ void simulate_batch(const sim::Scenario &scenario, const SimulateOptions &option
             const std::uint64_t seed = next++;
             if (seed > last) return;
             try {
-                SimulateOptions own = options;
+                SimulateOptions own;
+                {
+                    const std::lock_guard lock(mutex);
+                    if (failure) return;
+                    own = options(seed);
+                }
+                if (own.stopped && own.stopped()) return;
                 own.seed = seed;
                 SimulationResult result = simulate(scenario, own);
                 const std::lock_guard lock(mutex);

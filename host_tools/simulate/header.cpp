@@ -63,7 +63,7 @@ void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &l
     const bool paper = scenario.firmware.config == "paper";
     log.header["noise.radar.speed_m_s"] = paper ? "0.02" : "0.008";
     log.header["noise.radar.speed_m_s.relative"] = paper ? "0.1" : "0.015";
-    log.header["window.radar.speed_m_s"] = "0.5";
+    log.header["window.radar.speed_m_s"] = number(rover.at("radar", "window_samples") / rover.at("radar", "rate_Hz"));
     log.header["radar.model"] = rover.radar;
     log.header["radar.sample_rate_Hz"] = number(rover.at("radar", "rate_Hz"));
     parameters_t parameters = firmware_parameters(rover);

@@ -12,16 +12,11 @@ double tidy(float value) { return std::nearbyint(static_cast<double>(value) * 1e
 } // namespace
 
 std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
-    Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .absent_is_zero = absent_is_zero};
-    if (name.rfind("camera", 0) != 0) {
-        fresh.signal.t_s.reserve(expected_);
-        fresh.signal.value.reserve(expected_);
-    }
-    columns_.push_back(std::move(fresh));
-    return columns_.size() - 1;
+    return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
 }
 
-Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
+Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path)
+    : expected_(expected_ticks), spool_(path), radar_rate_Hz_(radar_rate_Hz) {
     for (int i = 0; i < WHEEL_COUNT; i++) {
         const std::string name = "wheel" + std::to_string(i) + '.';
         wheel_[i] = {.speed = column(name + "speed_rad_s"),
@@ -33,6 +28,7 @@ Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
                      .slip = column(name + "slip"),
                      .torque = column(name + "motor_torque_Nm"),
                      .traction = column(name + "traction_N"),
+                     .slip_std = column(name + "slip_std"),
                      .slip_valid = column(name + "slip_valid"),
                      .saturated = column(name + "saturated"),
                      .refused = column(name + "encoder_refused", true),
@@ -78,12 +74,6 @@ Recorder::Recorder(std::uint64_t expected_ticks) : expected_(expected_ticks) {
            .fault_wheels = column("control.fault_wheels", true)};
 }
 
-void Recorder::put(std::size_t column, double t_s, double value) {
-    log::Signal &signal = columns_[column].signal;
-    signal.t_s.push_back(t_s);
-    signal.value.push_back(value);
-}
-
 // A double whose shortest text reads back to this very float.
 double Recorder::exact(float value) {
     if (value == last_float_) return last_exact_;
@@ -112,6 +102,7 @@ void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, con
     put(at.slip, t_s, tidy(trace.slip));
     put(at.torque, t_s, tidy(trace.torque_Nm));
     put(at.traction, t_s, tidy(trace.traction_N));
+    put(at.slip_std, t_s, tidy(trace.slip_std));
     put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
     put(at.saturated, t_s, trace.saturated ? 1 : 0);
     put(at.refused, t_s, trace.encoder_refused ? 1 : 0);
@@ -137,13 +128,13 @@ void Recorder::add_frame(double t_s, const sensor_frame_t &frame) {
         put(at_.gyro_x, t_s, frame.gyro_x_count);
         put(at_.gyro_y, t_s, frame.gyro_y_count);
     }
-    // samples keep the converter's own clock, n/512 s; what was recorded already is not recorded again
+    // samples keep the converter's own clock, n/rate; what was recorded already is not recorded again
     if ((frame.present & FRAME_RADAR) == 0u) return;
     put(at_.sequence, t_s, frame.radar_sequence);
     for (std::uint32_t i = 0; i < frame.radar_samples; i++) {
         const std::uint32_t n = frame.radar_sequence + i;
         if (static_cast<std::int32_t>(n - radar_next_) < 0) continue;
-        put(at_.radar_count, static_cast<double>(n) / 512, frame.radar_count[i]);
+        put(at_.radar_count, static_cast<double>(n) / radar_rate_Hz_, frame.radar_count[i]);
         radar_next_ = n + 1;
     }
 }
@@ -189,35 +180,22 @@ void Recorder::add_camera(std::span<const sim::Pose> poses) {
     }
 }
 
-log::Log Recorder::take() {
-    log::Log result;
-    for (Column &column : columns_) {
-        bool all_zero = true;
-        for (const double value : column.signal.value) all_zero = all_zero && value == 0;
-        if (column.signal.value.empty() || (column.absent_is_zero && all_zero)) continue;
-        result.signals.push_back(std::move(column.signal));
-    }
-    return result;
-}
-
-TruthRecorder::TruthRecorder() {
+TruthRecorder::TruthRecorder(const std::string &path) : spool_(path) {
     for (const char *name : {"truth.x_m", "truth.y_m", "truth.yaw_rad", "truth.pitch_rad", "truth.speed_m_s", "truth.path_m",
                              "truth.accel_x_m_s2", "truth.battery_voltage_V"})
-        log_.signals.push_back({.name = name, .t_s = {}, .value = {}});
+        spool_.add(name);
     for (int i = 0; i < sim::wheel_count; i++)
         for (const char *name : {"speed_rad_s", "current_A", "duty", "slip", "traction_N", "rolling_N", "lateral_N", "normal_N",
                                  "sinkage_m", "ground_speed_m_s", "temperature_degC"})
-            log_.signals.push_back({.name = "truth.wheel" + std::to_string(i) + '.' + name, .t_s = {}, .value = {}});
+            spool_.add("truth.wheel" + std::to_string(i) + '.' + name);
 }
 
 void TruthRecorder::add(const sim::Truth &truth) {
     std::size_t next = 0;
     const double t_s = std::nearbyint(truth.t_s * 1000) / 1000;
     const auto put = [&](double value) {
-        log::Signal &signal = log_.signals[next++];
-        if (!std::isfinite(value)) return;
-        signal.t_s.push_back(t_s);
-        signal.value.push_back(std::nearbyint(value * 1e9) / 1e9 + 0.0);
+        const std::size_t column = next++;
+        if (std::isfinite(value)) spool_.put(column, t_s, std::nearbyint(value * 1e9) / 1e9 + 0.0);
     };
     put(truth.position_m[0]);
     put(truth.position_m[1]);

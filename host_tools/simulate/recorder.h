@@ -5,7 +5,7 @@
 #pragma once
 
 #include "firmware/core/rover_config.h"
-#include "host_tools/log/log.h"
+#include "host_tools/log/spool.h"
 #include "sim/plant/truth.h"
 #include "sim/sensors/camera.h"
 
@@ -17,19 +17,18 @@ namespace traction {
 
 class Recorder {
   public:
-    explicit Recorder(std::uint64_t expected_ticks);
+    // path: of the log, for write; empty: it stays in memory, for take.
+    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path = "");
 
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
     void add_camera(std::span<const sim::Pose> poses);
-    log::Log take(); // columns that never held anything but 0 are left out where 0 is what absence means
+    // Columns that never held anything but 0 are left out where 0 is what absence means.
+    log::Log take() { return spool_.take(); }
+    void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 
   private:
-    struct Column {
-        log::Signal signal;
-        bool absent_is_zero = false;
-    };
     std::size_t column(const std::string &name, bool absent_is_zero = false);
-    void put(std::size_t column, double t_s, double value);
+    void put(std::size_t column, double t_s, double value) { spool_.put(column, t_s, value); }
     void add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
     void add_frame(double t_s, const sensor_frame_t &frame);
     void add_command(double t_s, const command_t &command);
@@ -37,14 +36,15 @@ class Recorder {
     double exact(float value);
 
     std::uint64_t expected_;
-    std::vector<Column> columns_;
+    log::Spool spool_;
+    double radar_rate_Hz_;
     std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick
     float last_float_ = 0;
     double last_exact_ = 0;
 
     struct Wheel {
-        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_valid, saturated, refused, bridge,
-            command_speed, command_duty;
+        std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_std, slip_valid, saturated,
+            refused, bridge, command_speed, command_duty;
     } wheel_[WHEEL_COUNT]{};
     struct {
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,
@@ -57,12 +57,13 @@ class Recorder {
 // The truth of one run, in columns of its own, one row per tick. Only ever written to a separate file.
 class TruthRecorder {
   public:
-    TruthRecorder();
+    explicit TruthRecorder(const std::string &path = ""); // as Recorder's
     void add(const sim::Truth &truth);
-    log::Log take() { return std::move(log_); }
+    log::Log take() { return spool_.take(); }
+    void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 
   private:
-    log::Log log_;
+    log::Spool spool_;
 };
 
 } // namespace traction

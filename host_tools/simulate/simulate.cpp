@@ -81,30 +81,42 @@ class Session : public Link {
     Session(const sim::Scenario &scenario, const SimulateOptions &options, const hal::SimHal &world, std::uint64_t seed,
             std::uint64_t expected_ticks)
         : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
-          recorder_(options.record ? expected_ticks : 0) {
+          recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path), truth_(options.truth_path) {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
     }
+    bool over() override { return interrupted_ = interrupted_ || (options_.stopped && options_.stopped()); }
     void command(const sensor_frame_t &frame, command_t &command) override { command = person_.command_at(frame.tick); }
     void log(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) override {
         hash_ = mix_trace(hash_, trace);
-        if (options_.record) {
+        if (records()) {
             camera_faults_.apply(world_.camera(), poses_);
             recorder_.add(frame, command, trace);
             recorder_.add_camera(poses_);
         }
-        if (options_.truth) truth_.add(world_.truth());
+        if (options_.truth || !options_.truth_path.empty()) truth_.add(world_.truth());
         if (frames_) frames_->add(frame, command);
         if (++ticks_ % 100 == 0 && options_.after_second) options_.after_second();
     }
+    // What was recorded goes into the result, or under its path; the headers stand in result already.
     void take(SimulationResult &result) {
         result.trace_hash = hash_;
-        if (options_.record) result.log = recorder_.take();
-        if (options_.truth) result.truth = truth_.take();
+        result.interrupted = interrupted_;
+        for (log::Log *log : {&result.log, &result.truth})
+            if (interrupted_) log->header["ended"] = "interrupted";
+        if (!options_.log_path.empty())
+            recorder_.write(result.log.header);
+        else if (options_.record)
+            result.log.signals = recorder_.take().signals;
+        if (!options_.truth_path.empty())
+            truth_.write(result.truth.header);
+        else if (options_.truth)
+            result.truth.signals = truth_.take().signals;
         if (frames_) frames_->keep();
     }
 
   private:
+    bool records() const { return options_.record || !options_.log_path.empty(); }
     const SimulateOptions &options_;
     const hal::SimHal &world_;
     hal::PlanOperator person_;
@@ -114,6 +126,7 @@ class Session : public Link {
     TruthRecorder truth_;
     std::unique_ptr<FrameWriter> frames_;
     std::uint64_t hash_ = 0xcbf29ce484222325u, ticks_ = 0;
+    bool interrupted_ = false;
 };
 
 } // namespace
@@ -141,10 +154,9 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     result.ticks = run.ticks;
     result.faults = run.faults;
     result.self_test = run.self_test;
-    session.take(result);
-
     write_header(scenario, seed, result.log);
-    if (options.truth) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
+    if (options.truth || !options.truth_path.empty()) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
+    session.take(result);
     return result;
 }
 

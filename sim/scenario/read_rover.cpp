@@ -57,6 +57,16 @@ void read_wheels(const toml::array &list, const std::string &file, RoverDescript
             "give four [[wheel]] (0 rear left, 1 rear right, 2 front left, 3 front right), or none where the wheels are equal");
 }
 
+// A radar of table II brings carrier and beam with it; any other must state them.
+void check_own_radar(Keys &keys, const RoverDescription &rover) {
+    for (const char *name : {"carrier_Hz", "vertical_deg", "horizontal_deg"}) {
+        const bool given = rover.value("radar", name).given;
+        if (given && rover.radar != "own") keys.fail(name, "is that of table II for this model", "leave it out, or write model = \"own\"");
+        if (!given && rover.radar == "own")
+            keys.fail(name, "missing", "a radar of your own states carrier_Hz, vertical_deg and horizontal_deg");
+    }
+}
+
 // The sections over what `rover` has; with `whole` every key that is no choice must be there.
 void read_sections(Keys &top, RoverDescription &rover, bool whole) {
     std::map<std::string, std::unique_ptr<Keys>, std::less<>> sections;
@@ -82,11 +92,13 @@ void read_sections(Keys &top, RoverDescription &rover, bool whole) {
     }
     if (Keys *radar = sections.at("radar").get(); radar != nullptr && (whole || radar->has("model"))) {
         static const auto models = radar_models();
-        std::array<std::string_view, models.size()> names;
+        std::array<std::string_view, models.size() + 1> names;
         std::transform(models.begin(), models.end(), names.begin(), [](const RadarModel &model) { return model.name; });
+        names.back() = "own";
         rover.radar = names[radar->word("model", "", names)];
         rover.radar_line = radar->node("model")->source().begin.line;
     }
+    if (Keys *radar = sections.at("radar").get(); radar != nullptr) check_own_radar(*radar, rover);
     for (const auto &[name, keys] : sections)
         if (keys) keys->finish();
     if (const toml::array *wheels = top.tables("wheel")) read_wheels(*wheels, top.file(), rover);
@@ -130,6 +142,7 @@ RoverDescription parse_rover(const std::string &text, const std::string &file) {
     rover.name = top.text("name", file);
     top.text("about", "");
     read_sections(top, rover, true);
+    if (const toml::table *hardware = top.table("hardware")) rover.hardware_line = hardware->source().begin.line;
     top.finish();
     return rover;
 }

@@ -8,10 +8,11 @@ namespace traction::sim {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> sensor_names{"encoder", "current", "battery", "accel",         "gyro",
-                                                       "radar",   "camera",  "bridge",  "emergency_stop"};
-constexpr std::array<std::string_view, 11> kind_names{"stuck", "noisy", "dropped", "delayed",  "timeout", "offset",
-                                                      "drift", "spike", "dead",    "slipping", "lost"};
+constexpr std::array<std::string_view, faulty_sensor_count> sensor_names{"encoder", "current", "battery", "accel",         "gyro",
+                                                                         "radar",   "camera",  "bridge",  "emergency_stop"};
+constexpr std::array<std::string_view, fault_kind_count> kind_names{"stuck", "noisy", "dropped", "delayed",  "timeout", "offset",
+                                                                    "drift", "spike", "dead",    "slipping", "lost"};
+static_assert(!sensor_names.back().empty() && !kind_names.back().empty(), "each has a name");
 
 // [sensors.accel] and its like: offset, drift, gain, noise in the sensor's unit.
 void read_analog(Keys &parent, std::string_view key, const std::string &unit, const std::string &drift_unit, double largest,
@@ -61,8 +62,11 @@ void read_radar(const toml::table &table, const std::string &file, Scenario &sce
     static const auto models = radar_models();
     std::array<std::string_view, models.size()> names;
     std::transform(models.begin(), models.end(), names.begin(), [](const RadarModel &model) { return model.name; });
-    config.model = names[keys.word("model", config.model, names)];
-    scenario.rover.radar = config.model; // which radar is mounted is known to the firmware
+    if (keys.has("model")) { // else the rover's
+        config.model = names[keys.word("model", "", names)];
+        config.frequency_Hz = config.vertical_deg = config.horizontal_deg = 0;
+        scenario.rover.radar = config.model; // which radar is mounted is known to the firmware
+    }
     config.mounting_error_deg = keys.number("mounting_error_deg", config.mounting_error_deg, {-10, 10});
     config.height_m = keys.number("height_m", config.height_m, {0.1, 1});
     config.ground_exponent = keys.number("ground_exponent", config.ground_exponent, {0, 2});
@@ -113,11 +117,21 @@ SensorFault read_sensor_fault(Keys &keys) {
     return fault;
 }
 
+CanFault read_can_fault(Keys &keys, double from_s, double to_s) {
+    constexpr std::array<std::string_view, 6> kinds{"lost", "duplicated", "late", "corrupted", "silent", "bus_off"};
+    constexpr std::array<std::string_view, 7> nodes{"wheel0", "wheel1", "wheel2", "wheel3", "sensors", "computer", "all"};
+    CanFault fault{.from_s = from_s, .to_s = to_s};
+    fault.kind = static_cast<CanFaultKind>(keys.word("how", "", kinds));
+    fault.node = static_cast<CanNode>(keys.word("node", "all", nodes));
+    if (fault.kind != CanFaultKind::silent && fault.kind != CanFaultKind::bus_off) fault.share = keys.need_number("share", {0, 1});
+    return fault;
+}
+
 } // namespace
 
 void read_faults(const toml::array &list, const std::string &file, Scenario &scenario) {
-    constexpr std::array<std::string_view, 7> what{"wheel_blocked", "sensor",    "emergency_stop", "command_lost",
-                                                   "motor_open",    "brown_out", "missed_ticks"};
+    constexpr std::array<std::string_view, 8> what{"wheel_blocked", "sensor",    "emergency_stop", "command_lost",
+                                                   "motor_open",    "brown_out", "missed_ticks",   "can"};
     for (std::size_t i = 0; i < list.size(); i++) {
         Keys keys(*list[i].as_table(), file, "fault[" + std::to_string(i) + "]");
         const std::size_t kind = keys.word("what", "", what);
@@ -142,6 +156,9 @@ void read_faults(const toml::array &list, const std::string &file, Scenario &sce
             scenario.open_motors.push_back({static_cast<int>(keys.integer("wheel", 0, 0, wheel_count - 1)), from_s, to_s});
         } else if (kind == 5) {
             scenario.supply_sags.push_back({keys.need_number("sag_V", {0, 60}), from_s, to_s});
+        } else if (kind == 7) {
+            if (!scenario.can_bus) keys.fail("what", "is a fault of the CAN bus, and there is none", "write bus = \"can\" at the top");
+            scenario.can_faults.push_back(read_can_fault(keys, from_s, to_s));
         } else {
             const auto ticks = static_cast<std::uint32_t>(keys.integer("ticks", 1, 1, 1000));
             scenario.missed_ticks.push_back({ticks, keys.number("every_s", 0, {0, 3600}), from_s, to_s});

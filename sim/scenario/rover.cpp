@@ -58,7 +58,13 @@ constexpr RoverKey keys[] = {
     {"gyro", "noise_rad_s", "rad/s", gyro_noise_rad_s, 0, 5, own, ""},
     {"radar", "depression_deg", "deg", 20, 5, 45, own, "radar_depression_deg"},
     {"radar", "height_m", "m", 0.3, 0.1, 1, own, ""},
-    {"radar", "rate_Hz", "Hz", 512, 100, 2000, own, "radar_rate_Hz"},
+    {"radar", "carrier_Hz", "Hz", 0, 1e9, 2e11, choice, ""}, // these six: of a radar that is not in table II
+    {"radar", "vertical_deg", "deg", 0, 1, 120, choice, ""},
+    {"radar", "horizontal_deg", "deg", 0, 1, 120, choice, ""},
+    {"radar", "band_low_Hz", "Hz", 0, 0, 1000, choice, ""},
+    {"radar", "band_high_Hz", "Hz", 0, 1, 1e6, choice, ""},
+    {"radar", "speed_high_m_s", "m/s", 1.35, 0.05, 9, choice, ""},
+    {"radar", "rate_Hz", "Hz", 512, 202, 6400, own, "radar_rate_Hz"},
     {"radar", "window_samples", "1", 256, 256, 256, own, ""}, // the firmware's transform
     {"radar", "offset_count", "1", 512, 0, 1023, own, "radar_offset_count"},
     {"radar", "max_count", "1", 1023, 255, 1023, own, "radar_max_count"},
@@ -169,6 +175,15 @@ SensorConfig sensors_of(const RoverDescription &rover) {
     sensors.encoder_counts_per_turn = rover.encoder_counts_per_turn();
     for (const RadarModel &model : radar_models())
         if (model.name == rover.radar) sensors.radar.model = model.name;
+    sensors.radar.rate_Hz = rover.at("radar", "rate_Hz");
+    if (rover.radar == "own") {
+        sensors.radar.model = "own";
+        sensors.radar.frequency_Hz = rover.at("radar", "carrier_Hz");
+        sensors.radar.vertical_deg = rover.at("radar", "vertical_deg");
+        sensors.radar.horizontal_deg = rover.at("radar", "horizontal_deg");
+    }
+    if (rover.value("radar", "band_low_Hz").given) sensors.radar.band_low_Hz = rover.at("radar", "band_low_Hz");
+    if (rover.value("radar", "band_high_Hz").given) sensors.radar.band_high_Hz = rover.at("radar", "band_high_Hz");
     sensors.radar.depression_deg = rover.at("radar", "depression_deg");
     sensors.radar.height_m = rover.at("radar", "height_m");
     sensors.radar.offset_count = rover.at("radar", "offset_count");

@@ -45,6 +45,7 @@ struct RoverDescription {
     std::string name = "Lhomme-Desages", file = "built in";
     std::string radar = "MDU1130"; // of radar_models()
     std::size_t radar_line = 0;
+    std::size_t hardware_line = 0;  // of [hardware], which hal/linux/hardware.h reads; 0: none
     std::vector<RoverValue> values; // by index of rover_keys()
     std::array<RoverWheel, wheel_count> wheel;
 

@@ -43,6 +43,8 @@ void read_all(Keys &top, const std::string &file, Scenario &scenario) {
     top.text("about", "");
     scenario.duration_s = top.need_number("duration_s", {0.01, 36000});
     scenario.seed = static_cast<std::uint64_t>(top.integer("seed", 1, 0, INT64_MAX));
+    constexpr std::array<std::string_view, 2> buses{"direct", "can"};
+    scenario.can_bus = top.word("bus", "direct", buses) == 1;
     if (const toml::table *table = top.table("ground")) read_ground(*table, file, scenario);
     if (const toml::node *node = top.node("rover")) read_rover(*node, file, scenario);
     if (const toml::table *table = top.table("sensors")) read_sensors(*table, file, scenario.sensors);

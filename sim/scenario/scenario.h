@@ -10,6 +10,7 @@
 #include "scenario_error.h"
 
 #include "sim/plant/plant.h"
+#include "sim/sensors/can_fault.h"
 #include "sim/sensors/fault.h"
 #include "sim/sensors/sensors.h"
 
@@ -57,6 +58,8 @@ struct Scenario {
     FirmwareChoice firmware;
     std::vector<DriveSegment> drive;
     std::vector<SensorFault> sensor_faults;
+    bool can_bus = false;             // wheels and sensors are nodes on a CAN bus (hal/sim/bus.h)
+    std::vector<CanFault> can_faults; // of that bus
     std::vector<WheelBlockSpan> wheel_blocks, open_motors;
     std::vector<SupplySag> supply_sags;
     std::vector<MissedTicks> missed_ticks;

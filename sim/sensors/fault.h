@@ -1,9 +1,12 @@
 // fault.h - a sensor that fails at scripted times: what, how, when. hal/sim carries it out on the raw counts.
 #pragma once
 
+#include <cstddef>
+
 namespace traction::sim {
 
 enum class FaultySensor { encoder, current, battery, accel, gyro, radar, camera, bridge, emergency_stop };
+inline constexpr std::size_t faulty_sensor_count = static_cast<std::size_t>(FaultySensor::emergency_stop) + 1; // the last one
 enum class FaultKind {
     stuck,    // repeats its last value
     noisy,    // adds noise of standard deviation `amount` (SI unit of the sensor; pulses for an encoder, counts for the radar)
@@ -17,6 +20,7 @@ enum class FaultKind {
     slipping, // encoder: loses `amount` of its pulses, 0..1
     lost,     // radar: each sample is lost with probability `amount`; a frame gives what follows the last loss in it, or precedes the first
 };
+inline constexpr std::size_t fault_kind_count = static_cast<std::size_t>(FaultKind::lost) + 1; // the last one
 
 struct SensorFault {
     FaultySensor sensor = FaultySensor::encoder;

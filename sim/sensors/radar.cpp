@@ -25,7 +25,7 @@ RadarModel find_model(std::string_view name) {
 }
 
 RadarBeam beam_of(const RadarConfig &config) {
-    const RadarModel model = find_model(config.model);
+    const RadarModel model = model_of(config);
     return {.frequency_Hz = model.frequency_Hz,
             .vertical_deg = model.vertical_deg,
             .horizontal_deg = model.horizontal_deg,
@@ -35,11 +35,20 @@ RadarBeam beam_of(const RadarConfig &config) {
 }
 
 BandPass filter_of(const RadarConfig &config) {
-    const double ratio = find_model(config.model).frequency_Hz / 9.9e9;
-    return {3 * ratio, std::min(80 * ratio, 240.0), Radar::rate_Hz};
+    const double ratio = model_of(config).frequency_Hz / 9.9e9, nyquist_Hz = 0.46875 * config.rate_Hz;
+    return {config.band_low_Hz >= 0 ? config.band_low_Hz : 3 * ratio,
+            std::min(config.band_high_Hz > 0 ? config.band_high_Hz : 80 * ratio, nyquist_Hz), config.rate_Hz};
 }
 
 } // namespace
+
+RadarModel model_of(const RadarConfig &config) {
+    RadarModel model = config.model == "own" ? RadarModel{.name = "own"} : find_model(config.model);
+    if (config.frequency_Hz > 0) model.frequency_Hz = config.frequency_Hz;
+    if (config.vertical_deg > 0) model.vertical_deg = config.vertical_deg;
+    if (config.horizontal_deg > 0) model.horizontal_deg = config.horizontal_deg;
+    return model;
+}
 
 BandPass::BandPass(double low_Hz, double high_Hz, double rate_Hz) : high_pass_{}, low_pass_{} {
     // bilinear transform of 1/(s^2 + sqrt2 s + 1) and s^2/(...), s = (1/k)(1 - z^-1)/(1 + z^-1), k = tan(pi f/rate)
@@ -83,15 +92,15 @@ std::uint16_t Radar::sample(double path_m) {
     if (config_.dropout_per_s > 0) {
         if (faded_samples_ > 0)
             faded_samples_--;
-        else if (fade_.uniform() < config_.dropout_per_s / rate_Hz)
-            faded_samples_ = static_cast<int>(config_.dropout_s * rate_Hz);
+        else if (fade_.uniform() < config_.dropout_per_s / config_.rate_Hz)
+            faded_samples_ = static_cast<int>(config_.dropout_s * config_.rate_Hz);
         if (faded_samples_ > 0) echo = 0;
     }
     // 1/f between 0.5 and 50 Hz: three first-order noises of equal power, a decade apart
     constexpr std::array<double, 3> corner_Hz{0.5, 5, 50};
     double flicker = 0;
     for (std::size_t i = 0; i < corner_Hz.size(); i++) {
-        const double keep = 1 - std::min(1.0, 2 * math::pi * corner_Hz[i] / rate_Hz);
+        const double keep = 1 - std::min(1.0, 2 * math::pi * corner_Hz[i] / config_.rate_Hz);
         flicker_[i] = keep * flicker_[i] + std::sqrt((1 - keep * keep) / 3) * noise_.normal();
         flicker += flicker_[i];
     }
@@ -99,7 +108,7 @@ std::uint16_t Radar::sample(double path_m) {
     settled_ = true;
     double volts = filter_.step(echo) + config_.noise_count * noise_.normal() + config_.flicker_count * flicker;
     for (const RadarLine &line : config_.interference) {
-        const double turns = line.frequency_Hz * static_cast<double>(samples_) / rate_Hz;
+        const double turns = line.frequency_Hz * static_cast<double>(samples_) / config_.rate_Hz;
         volts += 1.4142135623730951 * line.rms_count * math::sin(2 * math::pi * (turns - std::floor(turns)));
     }
     samples_++;

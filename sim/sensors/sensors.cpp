@@ -104,7 +104,7 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
         if (full) radar_waiting_.pop_front();
     }
     for (;;) {
-        const double due_s = static_cast<double>(radar_samples_) / Radar::rate_Hz;
+        const double due_s = static_cast<double>(radar_samples_) / config_.radar.rate_Hz;
         if (due_s > truth.t_s + 1e-9) break; // 1 ns: both clocks are sums
         const double u = step_s > 0 ? (due_s - last_.t_s) / step_s : 1;
         pending_.radar_count.push_back(radar_.sample(radar_path_m_ + u * step_m));

@@ -53,7 +53,7 @@ struct Measurements {
     double battery_V = 0;
     std::array<double, 3> accel_m_s2{};     // specific force along body x, y, z
     std::array<double, 3> gyro_rad_s{};     // about body x, y, z
-    std::uint32_t radar_first = 0;          // number of radar_count[0] among all samples; sample n is taken at n/512 s
+    std::uint32_t radar_first = 0;          // number of radar_count[0] among all samples; sample n is taken at n/rate
     std::vector<std::uint16_t> radar_count; // since the last tick, oldest first
     std::vector<Pose> camera;               // since the last tick
 };

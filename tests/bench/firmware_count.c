@@ -65,6 +65,7 @@ static int tick_table(void) {
     int deepest = 0;
     static const char *const names[] = {"tick stop",           "tick open_loop", "tick wheel_speed",
                                         "tick platform_speed", "tick slip",      "tick soil_sweep"};
+    _Static_assert(sizeof names / sizeof *names == MODE_COUNT, "each mode has a name");
     for (int mode = 0; mode < MODE_COUNT; mode++) {
         static control_state_t state;
         const control_config_t config = rover_config_default();

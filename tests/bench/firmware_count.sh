@@ -9,7 +9,7 @@ for tool in arm-linux-gnueabi-gcc qemu-arm cc; do
   command -v $tool > /dev/null || { echo "skipped: needs $tool (apt: gcc-arm-linux-gnueabi qemu-user)"; exit 0; }
 done
 cc -O2 -shared -fPIC -o "$out/libarm_count.so" "$root/tests/bench/arm_count/arm_count.c"
-cc -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
+cc -O2 -o "$out/template_gen" -I"$root" "$root/firmware/template/doppler_template_gen.c" "$root/firmware/template/radar_template.c" -lm
 templates=
 for radar in mdu1130 dj_radar_2 dj_radar_3 drs1000; do
   "$out/template_gen" $radar "$out/template_$radar.c"

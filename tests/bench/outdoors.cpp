@@ -73,7 +73,7 @@ struct Rover { // four like wheels on soil, one body
         const double rim = radius_m * wheel_rad_s, largest = std::max({std::fabs(rim), std::fabs(speed), 0.01});
         const double slip = (rim - speed) / largest, load = mass * gravity * std::cos(slope) / 4;
         const double traction = now.soil_max_share * load * (slip >= 0 ? 1 : -1) * (1 - std::exp(-std::fabs(slip) / now.soil_slip));
-        current = (duty * volt - KG * wheel_rad_s) / Ra;
+        current = now.coasts ? 0 : (duty * volt - KG * wheel_rad_s) / Ra;
         const double dry = 0.03 * std::tanh(wheel_rad_s / 0.2), rolling = now.rolling_N / 4 * std::tanh(speed / 0.02);
         wheel_rad_s += dt * (KG * current - 1.6e-3 * wheel_rad_s - dry - radius_m * traction) / J;
         accel = (4 * (traction - rolling) - mass * gravity * std::sin(slope)) / mass;
@@ -176,7 +176,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         waiting.clear(), number.clear();
         since = 0;
         command_t command = {};
-        command.mode = now.closed ? MODE_PLATFORM_SPEED : MODE_OPEN_LOOP;
+        command.mode = now.coasts ? MODE_STOP : now.closed ? MODE_PLATFORM_SPEED : MODE_OPEN_LOOP;
         command.platform_speed_m_s = static_cast<float>(now.command_m_s);
         for (float &value : command.duty) {
             value = static_cast<float>((3.24 * 0.3 + 0.265 * wheel / radius_m) / 7.2);

@@ -59,6 +59,7 @@ struct Case {
     bool sequence = true;                                  // the frame numbers its samples
     // closed loop
     bool closed = false;
+    bool coasts = false; // in mode stop
     double command_m_s = 0.3;
     double soil_max_share = 0.55, soil_slip = 0.26, rolling_N = 1.0; // most traction over load; slip at 63 % of it; resistance
 };

@@ -22,7 +22,8 @@ double ramp(double t, double t0, double t1, double v0, double v1) {
 struct Row {
     std::string group;
     Case what;
-    double fault_by_s = -1; // a fault is an answer when it comes by then
+    double fault_by_s = -1;  // a fault is an answer when it comes by then
+    std::uint32_t right = 0; // faults that are the truth: wheels that stand or push against the way
 };
 
 std::vector<Case> calm() {
@@ -55,11 +56,12 @@ std::vector<Case> calm() {
 
 std::vector<Row> rows() {
     std::vector<Row> all;
-    const auto add = [&all](const char *group, const std::string &name, Case now, double fault_by_s = -1) {
+    const auto add = [&all](const char *group, const std::string &name, Case now, double fault_by_s = -1, std::uint32_t right = 0) {
         now.name = name;
-        all.push_back({group, std::move(now), fault_by_s});
+        all.push_back({group, std::move(now), fault_by_s, right});
     };
     const double deg = outdoors::pi / 180;
+    const std::uint32_t slides = FAULT_SPEED_DISAGREE | FAULT_ENCODER_CIRCUIT; // these wheels contradict their motors' currents, too
     const auto constant = [](double v) { return [v](double) { return v; }; };
     for (const Case &now : calm()) {
         add("calm", now.name, now);
@@ -78,23 +80,31 @@ std::vector<Row> rows() {
         now.slope = [deg](double) { return -10 * deg; };
         add("slope", "-10 deg from the start at " + std::to_string(v).substr(0, 3), now);
     }
+    for (const double slope : {-10.0, -8.0, 8.0, 10.0}) {
+        Case now;
+        now.closed = now.coasts = true, now.duration_s = 4, now.settle_s = 1;
+        now.slope = [slope, deg](double) { return slope * deg; };
+        char name[64];
+        std::snprintf(name, sizeof name, "coasts off on %+.0f deg", slope);
+        add("restart", name, now);
+    }
     for (const double a : {-0.5, -1.0}) {
         Case now;
         now.speed = [a](double t) { return std::fmax(0.3, 1.0 + a * t); }, now.settle_s = 1;
         add("restart", "decelerating at " + std::to_string(a).substr(0, 4), now);
         now.wheel = [](double) { return 0.0; }, now.speed = [a](double t) { return std::fmax(0.3, 1.0 + a * t); };
         now.duration_s = 4;
-        add("restart", "the same, wheels blocked", now);
+        add("restart", "the same, wheels blocked", now, -1, slides);
     }
     {
         Case now;
         now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 6, 0.3, -0.4); }, now.wheel = constant(0.33);
-        add("backwards", "slides back, wheels forward", now);
+        add("backwards", "slides back, wheels forward", now, -1, slides);
         now.speed = [](double t) { return 0.3 * std::cos(2 * outdoors::pi * t / 8); };
-        add("backwards", "to and fro, wheels forward", now);
+        add("backwards", "to and fro, wheels forward", now, -1, slides);
         now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 5.7, 0.3, -0.4); },
         now.slope = [deg](double t) { return t < 5 ? 0 : 6 * deg; };
-        add("backwards", "slope of 6 deg, slides back", now);
+        add("backwards", "slope of 6 deg, slides back", now, -1, slides);
         Case reverse;
         reverse.speed = [](double t) { return -0.3 + 0.1 * std::sin(t); };
         add("backwards", "reverse drive", reverse);
@@ -241,7 +251,7 @@ int main(int argc, char **argv) {
             fix.push_back(one.first_fix_s < 0 ? 99 : one.first_fix_s);
             for (const outdoors::Step &step : run.steps) {
                 const double past = row.what.name.find("step") != std::string::npos ? (step.t >= 5 ? step.t - 5 : step.t) : step.t;
-                if (row.what.closed && past > 1.5) {
+                if (row.what.closed && !row.what.coasts && past > 1.5) {
                     off_worst = std::max(off_worst, std::fabs(step.speed - row.what.command_m_s));
                     off = off || std::fabs(step.speed - row.what.command_m_s) > 0.1;
                 }
@@ -251,10 +261,10 @@ int main(int argc, char **argv) {
         const double rmse = 100 * std::sqrt(sum.square / sum.n), nees = sum.nees_sum / sum.n;
         bool met =
             (rmse <= 4 || nees <= 2 || (row.fault_by_s > 0 && faulted)) && (sum.wrong_sign_s <= 0.5 || (row.fault_by_s > 0 && faulted));
-        if (row.what.closed) {
+        if (row.what.closed && !row.what.coasts) {
             met = !off && sum.faults == 0;
         }
-        if (row.fault_by_s < 0 && sum.faults != 0) {
+        if (row.fault_by_s < 0 && (sum.faults & ~row.right) != 0) {
             met = false;
         }
         if (row.group == "calm") {

@@ -125,14 +125,14 @@ case "$first_code $second_code" in
     *) bad "two runs with one name exit $first_code and $second_code" ;;
 esac
 
-# a run that is ended by a signal leaves nothing
+# a run that is ended by the loss of its terminal leaves nothing
 "$cli" simulate cruise --realtime --out ended.csv >/dev/null 2>&1 &
 run=$!
 for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do [ -e .ended.csv.lock ] && break; sleep 0.2; done
 [ -e .ended.csv.lock ] || bad "a run does not lock its log"
 "$cli" simulate cruise --out ended.csv >/dev/null 2>stderr.txt
 [ $? -eq 4 ] && grep -q "is being written by another run" stderr.txt || bad "a second run is not refused: $(cat stderr.txt)"
-kill -TERM $run
+kill -HUP $run
 wait $run 2>/dev/null
 [ $? -eq 0 ] && bad "a killed run exits 0"
 ls -A | grep -q "ended.csv" && bad "a killed run leaves $(ls -A | grep ended.csv)"
@@ -162,6 +162,27 @@ if grep -q '"fault_names": ""' fault.json; then want=0; else want=1; fi
 sed 's/^name = .*/name = "cut off"/' "$root/scenarios/cruise.toml" >fault.toml
 printf '\n[[fault]]\nwhat = "emergency_stop"\nfrom_s = 2\nto_s = 60\n' >>fault.toml
 gives 1 "ended with a latched fault: emergency stop" simulate fault.toml
+
+# a signal ends a run, and its log is whole and says so; each run of several hides an effect of its own
+sed 's/^duration_s = .*/duration_s = 3000/' "$root/scenarios/cruise.toml" >long.toml
+"$cli" simulate long.toml --quiet --out long.csv --truth long_truth.csv 2>/dev/null &
+sleep 1
+kill -TERM $!
+code=0
+wait $! || code=$?
+[ $code -eq 143 ] || bad "a run stopped by SIGTERM exits $code"
+grep -q '^# ended: interrupted$' long.csv || bad "the log does not say that it was interrupted"
+gives 0 '"interrupted"' check long.csv --json -
+[ "$(ls -A | grep long | tr '\n' ' ')" = "long.csv long.toml long_truth.csv " ] || bad "a stopped run leaves $(ls -A | grep long)"
+[ "$(head -n 100 long.csv | grep '^t_s' | tr -cd , | wc -c)" -eq "$(tail -n 1 long.csv | tr -cd , | wc -c)" ] || bad "the last row is cut"
+# 1000 s with log and truth in 100 MB of address space
+sed 's/^duration_s = .*/duration_s = 1000/' "$root/scenarios/cruise.toml" >long.toml
+(ulimit -v 100000 && "$cli" simulate long.toml --quiet --out long.csv --truth long_truth.csv) || bad "memory grows with the run"
+rm -f long.csv long_truth.csv
+gives 0 '' simulate "$root/scenarios/cruise.toml" --seeds 3..5 --jobs 2 --hide 7 --seal seal.json --out many.csv
+"$cli" simulate "$root/scenarios/cruise.toml" --quiet --seed 4 --hide 8 --seal alone.json --out alone.csv
+cmp many.4.csv alone.csv && cmp seal.4.json alone.json || bad "the second run does not hide what the next seed says"
+! cmp -s seal.3.json seal.4.json || bad "two runs hide the same"
 
 # a benchmark is a program of its own: its table, its JSON and its exit code come through
 gives 0 '"schema": "traction.bench_lab/1"' bench lab --logs 1 --duration 20 --json -

@@ -71,6 +71,9 @@ printf '#!/bin/sh\necho the program ran: "\$@"\n' >$tree/build/host/host_tools/c
 chmod +x $tree/build/host/host_tools/cli/traction
 S
 stand_in ctest </dev/null
+stand_in python3 <<'S'
+echo 'no venv here'; exit 1
+S
 run demo --seed 3
 [ "$status" -eq 0 ] || fail "demo ended with $status"
 expect "$calls" '^cmake --preset host -DBUILD_TESTING=OFF -DTRACTION_WERROR=OFF'
@@ -80,6 +83,7 @@ expect "$work/said" '^traction: building build/host, 40 steps$'
 expect "$work/said" '^traction: built build/host in [2-9] s$' # counted from the first line on, not when ninja has ended
 expect "$work/said" 'the program ran: demo --seed 3'
 refuse "$work/said" 'Building twenty'
+refuse "$calls" '^python3' # the demo needs no environment of Python's
 run demo --seed 4
 [ "$(cat "$work/said")" = 'the program ran: demo --seed 4' ] || fail 'the second call was not silent'
 refuse "$calls" '^cmake'
@@ -108,6 +112,13 @@ S
 run test
 expect "$calls" '^cmake --preset host$'
 expect "$calls" '^ctest --preset dev$'
+command -v cantools >/dev/null || expect "$work/said" 'no cantools .*: built without the CAN bus' # and everything else went on
 run test
 refuse "$calls" '^cmake'
-echo 'entry script: 6 claims hold'
+
+# 7. where there is cantools, nothing is asked for
+stand_in cantools </dev/null
+run test
+refuse "$calls" '^python3'
+refuse "$work/said" 'CAN bus'
+echo 'entry script: 7 claims hold'

@@ -11,7 +11,7 @@ printf 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n);\nint LLVMFuz
   echo "fuzz: skipped, this clang has no libFuzzer or no sanitizers ($out/try.log; apt: libclang-rt-dev or libclang-rt-14-dev)"
   exit 0
 }
-cc -std=c11 -O2 -o "$out/template_gen" "$root/firmware/template/doppler_template_gen.c" -lm
+cc -std=c11 -O2 -o "$out/template_gen" -I"$root" "$root/firmware/template/doppler_template_gen.c" "$root/firmware/template/radar_template.c" -lm
 templates=
 for radar in mdu1130 dj_radar_2 dj_radar_3 drs1000; do
   "$out/template_gen" $radar "$out/$radar.c"

@@ -41,7 +41,8 @@ def build_judge(root, out, jobs):
     """Base objects of the firmware, and its unit tests as two programs: fixed_test, which compiles fixed.h itself, and all the others."""
     base = out / "base"
     base.mkdir(parents=True, exist_ok=True)
-    must(["cc", "-std=c11", "-O2", "-o", out / "template_gen", root / "firmware/template/doppler_template_gen.c", "-lm"])
+    must(["cc", "-std=c11", "-O2", "-o", out / "template_gen", root / "firmware/template/doppler_template_gen.c",
+          root / "firmware/template/radar_template.c", f"-I{root}", "-lm"])
     commands = []
     for radar in RADARS:
         must([out / "template_gen", radar, out / f"{radar}.c"])

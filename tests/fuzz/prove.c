@@ -18,10 +18,11 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
       \forall integer n; 0 <= n < 256 ==> -16384 <= d->window.sample[n] <= 16352 && -16384 <= d->twice[n] <= 16352;
     predicate in_order(control_state_t *s) = in_window(&s->doppler) && 0 <= s->sense.head < 16 && 0 <= s->ground_speed.head < 128 && 0 <=
    s->beyond <= 3 && 0 <= s->ground_speed.refused <= 8 && 0 <= s->ground_speed.quiet <= 1000 && 0 <= s->ground_speed.still_ticks <= 1000 &&
-      0 <= s->safety.turn < 4;
+      0 <= s->safety.turn < 4 && 0 <= s->ground_speed.rolls_ticks <= 60 && 0 <= s->ground_speed.rolls_wait <= 100 &&
+      \forall integer n; 0 <= n < 4 ==> 0 <= s->sense.silent_ticks[n] <= 1000;
 */
 
-static control_state_t any_state_in_order(void) {
+static control_state_t any_state_in_order(const control_config_t *config) {
     control_state_t state;
     Frama_C_make_unknown((char *)&state, sizeof state);
     //@ loop unroll 256;
@@ -58,6 +59,13 @@ static control_state_t any_state_in_order(void) {
     state.doppler.full = Frama_C_interval(0, 1) != 0;
     state.doppler.halved = Frama_C_interval(0, 1) != 0;
     state.sense.head = Frama_C_interval(0, 15);
+    const int most = config->sense.encoder_step_max;
+    for (int n = 0; n < WHEEL_COUNT; n++) {
+        state.sense.silent_ticks[n] = (uint32_t)Frama_C_interval(0, 1000);
+        state.sense.step[n] = Frama_C_interval(-most, most);
+    }
+    state.driven = Frama_C_interval(0, 1) != 0;
+    state.circuit.driven = Frama_C_interval(0, 1) != 0;
     state.sense.timed = Frama_C_interval(0, 1) != 0;
     state.ground_speed.head = Frama_C_interval(0, 127);
     state.ground_speed.loud = Frama_C_interval(0, 1000);
@@ -66,6 +74,10 @@ static control_state_t any_state_in_order(void) {
     state.ground_speed.other.ticks = Frama_C_interval(0, 1000);
     state.ground_speed.agile.ticks = Frama_C_interval(0, 1000);
     state.ground_speed.wheel_ticks = Frama_C_interval(0, 1000);
+    state.ground_speed.rolls_ticks = Frama_C_interval(0, 60);
+    state.ground_speed.rolls_wait = Frama_C_interval(0, 100);
+    state.ground_speed.heard = Frama_C_interval(0, 1) != 0;
+    state.ground_speed.accepted = Frama_C_interval(0, 1) != 0;
     state.ground_speed.behind_ticks = Frama_C_interval(0, 1000);
     state.ground_speed.agile_left = Frama_C_interval(0, 4);
     state.ground_speed.waits = Frama_C_interval(0, 2);
@@ -85,7 +97,7 @@ static int any_tick(const control_config_t *config) {
     control_state_t state;
     control_reset(config, &state);
     //@ check in_order(&state);
-    state = any_state_in_order();
+    state = any_state_in_order(config);
     sensor_frame_t frame;
     command_t command;
     Frama_C_make_unknown((char *)&frame, sizeof frame);

@@ -3,7 +3,9 @@
 #include "host_tools/lab/forward/forward.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/dataset.h"
+#include "host_tools/lab/inputs/long_log.h"
 #include "host_tools/lab/inputs/smooth.h"
+#include "host_tools/lab/inputs/stretch.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
@@ -112,6 +114,54 @@ TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
         EXPECT_NEAR(now[j], by_hand, 1e-9);
         EXPECT_NEAR(late[j], by_hand - 0.1 * lag * (0.25 * change + 0.75 * rest), 1e-9);
     }
+}
+
+TEST(Inputs, a_stretch_of_a_log_keeps_its_times_and_predicts_what_the_whole_does_there) {
+    const Model model = bench();
+    const Dataset whole = make_dataset(model, motor(accel_rad_s2)), part = stretch(whole, 2.005, 4.5);
+    ASSERT_GE(part.start_s, 2.005);
+    EXPECT_LE(part.time(part.count - 1), 4.5 + 1e-9);
+    EXPECT_NEAR(2.495 / whole.step_s, static_cast<double>(part.count), 2); // both ends on the grid
+    const Physics physics = make_physics(model);
+    const Eigen::VectorXd all = Forward(whole).predict(physics), some = Forward(part).predict(physics);
+    Eigen::Index at = 0, row = 0;
+    for (std::size_t b = 0; b < whole.balance.size();
+         ++b) { // a motor alone remembers nothing: the same rows to the last digit but for sums
+        std::size_t kept = 0;
+        for (std::size_t r = 0; r < whole.balance[b].measured.size(); ++r, ++at) {
+            if (whole.balance[b].t0_s[r] < part.start_s || whole.balance[b].t1_s[r] > part.time(part.count - 1)) continue;
+            EXPECT_EQ(part.balance[b].t0_s[kept], whole.balance[b].t0_s[r]);
+            EXPECT_EQ(part.balance[b].measured[kept], whole.balance[b].measured[r]);
+            if (!whole.balance[b].smoothing_bias.empty()) {
+                EXPECT_EQ(part.balance[b].smoothing_bias[kept], whole.balance[b].smoothing_bias[r]);
+            }
+            EXPECT_NEAR(some[row++], all[at], 1e-9);
+            ++kept;
+        }
+        EXPECT_EQ(kept, part.balance[b].measured.size());
+        EXPECT_GT(kept, 40u); // 2.4 s of rows of 50 ms
+    }
+}
+
+TEST(Inputs, of_a_long_log_the_part_where_the_wheels_change_their_speeds_is_kept_at_the_full_grid_and_it_says_so) {
+    log::Log log;
+    log::Signal speed{"wheel0.speed_rad_s", {}, {}}, current{"wheel0.current_A", {}, {}};
+    for (int i = 0; i < 20000; ++i) { // 2000 s: steady, but for 500 s
+        const double t = 0.1 * i;
+        speed.t_s.push_back(t), speed.value.push_back(t > 1200 && t < 1700 ? 3 + std::sin(t) : 3);
+        current.t_s.push_back(t), current.value.push_back(0.1);
+    }
+    log.signals = {speed, current};
+    log::Log part = log, shorter = log;
+    const std::string told = keep_busiest(bench(), part);
+    EXPECT_NE(told.find("the log is 2000 s long"), std::string::npos) << told;
+    EXPECT_LE(part.signals[0].t_s.front(), 1200);
+    EXPECT_GE(part.signals[0].t_s.back(), 1700 - 0.1); // all of it, in 600 s
+    EXPECT_LE(part.duration_s(), longest_log_s + 0.1);
+    EXPECT_DOUBLE_EQ(measured_data(bench(), part).step_s, 0.02);
+    EXPECT_GT(measured_data(bench(), log).step_s, 0.06); // whole: 30000 steps at most
+    keep_part(shorter, 0.05, 600);
+    EXPECT_EQ(keep_busiest(bench(), shorter), "");
 }
 
 TEST(Inputs, wheels_that_swing_at_4_Hz_are_integrated_in_steps_of_10_ms) {

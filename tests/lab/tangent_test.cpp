@@ -115,6 +115,31 @@ TEST(Tangent, products_that_skip_the_zeros_of_a_jacobian_are_those_of_all_its_en
     const SparseJacobian sparse(data, J);
     EXPECT_LT((sparse.gram() - gram).norm(), 1e-12 * gram.norm()); // rounding
     EXPECT_LT((sparse.moment(problem.residual) - moment).norm(), 1e-12 * moment.norm());
+    EXPECT_EQ(sparse.whole(), J); // not one entry is lost
+}
+
+TEST(Tangent, what_wheels_share_changes_the_rows_as_the_sum_of_what_each_wheel_does) {
+    const auto [model, data, physics] = sand(20);
+    Problem problem(data, physics, free_parameters(model, physics));
+    problem.linearise();
+    int shared = 0;
+    for (std::size_t i = 0; i + 1 < problem.parameters.size(); ++i) {
+        const FreeParameter &p = problem.parameters[i];
+        const Eigen::VectorXd known = problem.jacobian.col(static_cast<Eigen::Index>(i));
+        if (p.own) { // that wheel alone moved, against all wheels looked at
+            Physics moved = physics;
+            p.add(moved, p.step);
+            const Eigen::VectorXd all =
+                (problem.forward().predict_from_base(moved, p.touched, -1) - problem.forward().base()).cwiseProduct(problem.row_scale) /
+                p.step;
+            EXPECT_LT((known - all).norm(), 1e-5 * all.norm() + 1e-9) << name_of(p); // rounding over the step
+        } else if (problem.parameters[i + 1].own) {
+            ++shared;
+            const Eigen::VectorXd at_once = problem.column(physics, p, p.step);
+            EXPECT_LT((known - at_once).norm(), 1e-3 * at_once.norm() + 1e-9) << name_of(p); // curvature over the step
+        }
+    }
+    EXPECT_GT(shared, 2); // motors, friction, radius: each wheel's may differ
 }
 
 TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {

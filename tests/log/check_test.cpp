@@ -256,6 +256,9 @@ TEST(Check, names_clipping_outliers_and_coarse_steps) {
     log = good();
     at(log, "imu.gyro_z_rad_s").value[1234] = 327.67;
     expect_only(log, "outlier", "imu.gyro_z_rad_s", Severity::warning);
+    log = good(); // an interference in a current, a speed and the supply is told, and refuses nothing
+    at(log, "wheel0.current_A").value[2345] = 80, at(log, "wheel1.speed_rad_s").value[3456] = -900;
+    EXPECT_TRUE(check::check(log, {}).passed()) << listed(check::check(log, {}), Severity::note);
     log = good();
     for (double &v : at(log, "wheel0.speed_rad_s").value) v = std::round(v);
     const check::Report report = check::check(log, {});
@@ -370,4 +373,19 @@ TEST(MeasuredData, robotino_and_cmu_logs_pass_the_check) {
         const check::Report report = check::check_file((data / "cmu_single_wheel" / file).string(), std::string("models/maps/") + map);
         EXPECT_TRUE(report.passed()) << file << "\n" << listed(report, Severity::warning);
     }
+}
+
+TEST(MeasuredData, the_linear_axis_and_the_skid_steer_pass_the_check) {
+    const std::filesystem::path data = "../shared/data";
+    if (!std::filesystem::exists(data / "husky")) GTEST_SKIP() << "the measured data (" << data << ") is not here";
+    for (const auto &[file, map] :
+         {std::pair{"emps/emps_estimation.csv", "emps.toml"}, std::pair{"husky/ASPHALT_pro_03.csv", "husky.toml"},
+          std::pair{"husky/FLOORING_pro_01.csv", "husky.toml"}, std::pair{"husky/SNOW_pro_02.csv", "husky.toml"}}) {
+        const check::Report report = check::check_file((data / file).string(), std::string("models/maps/") + map);
+        EXPECT_TRUE(report.passed()) << file << "\n" << listed(report, Severity::warning);
+    }
+    // all its wheels stand at one value, and nothing else tells whether that is true: said, not refused
+    const check::Report snow = check::check_file((data / "husky/SNOW_pro_02.csv").string(), "models/maps/husky.toml");
+    ASSERT_NE(snow.find("dead_sensor", "wheel0.speed_rad_s"), nullptr);
+    EXPECT_EQ(snow.find("dead_sensor", "wheel0.speed_rad_s")->severity, Severity::warning);
 }

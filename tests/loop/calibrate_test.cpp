@@ -107,7 +107,7 @@ TEST(Calibrate, sets_its_line_in_the_parameter_file_and_keeps_the_others) {
     put_parameter(path, "doppler_scale", 1.03, "second");
     control_config_t config = rover_config_default();
     char message[PARAMETERS_MESSAGE];
-    ASSERT_TRUE(parameters_read(path.c_str(), &config, message)) << message; // the firmware reads what the tools write
+    ASSERT_TRUE(parameters_read(path.c_str(), &config, nullptr, message)) << message; // the firmware reads what the tools write
     EXPECT_FLOAT_EQ(config.doppler.scale, 1.03f);
     EXPECT_FLOAT_EQ(config.wheel_pid.kp_s, 0.15f);
 }

@@ -84,3 +84,38 @@ TEST(Goal, a_blocked_wheel_costs_less_than_a_twentieth_of_the_speed) {
     }
     EXPECT_GT(std::fabs(mean(paper, 5.5, 9) - 0.2), std::fabs(mean(ours, 5.5, 9) - 0.2)); // (22) alone leaves an error
 }
+
+// NEES of slip: mean of (slip - truth)^2 / std^2 over valid ticks of all wheels, three seeds. Bounds: issue 13's for the speed under it, 2
+// where it must know; below 0.2 the claim would be more than twice too wide. Truth takes the wheel's own ground speed.
+TEST(Goal, slip_knows_how_well_it_is_known) {
+    for (const char *name :
+         {"fig17_slip_servo_concrete", "fig17_slip_servo_gravel", "fig17_slip_servo_sand", "cruise", "fig16_blocked_wheels"}) {
+        double sum = 0, error2 = 0;
+        std::size_t n = 0, all = 0;
+        for (std::uint64_t seed = 1; seed <= 3; seed++) {
+            SimulateOptions options;
+            options.seed = seed;
+            options.truth = true;
+            const auto result = simulate(sim::read_scenario(std::string("scenarios/") + name + ".toml"), options);
+            for (int i = 0; i < WHEEL_COUNT; i++) {
+                const std::string wheel = "wheel" + std::to_string(i) + '.';
+                const auto &slip = *result.log.find(wheel + "slip"), &std = *result.log.find(wheel + "slip_std"),
+                           &valid = *result.log.find(wheel + "slip_valid"), &truth = *result.truth.find("truth." + wheel + "slip");
+                for (std::size_t k = 300; k < slip.value.size(); k++, all++) {
+                    const auto at = static_cast<std::size_t>(std::lower_bound(truth.t_s.begin(), truth.t_s.end(), slip.t_s[k] - 1e-6) -
+                                                             truth.t_s.begin());
+                    if (valid.value[k] == 0 || at >= truth.value.size()) continue;
+                    const double e = slip.value[k] - truth.value[at];
+                    sum += e * e / (std.value[k] * std.value[k]);
+                    error2 += e * e;
+                    n++;
+                }
+            }
+        }
+        const double nees = sum / static_cast<double>(n);
+        std::printf("%-28s slip RMSE %.3f, NEES %.2f, valid %.0f %%\n", name, std::sqrt(error2 / static_cast<double>(n)), nees,
+                    100.0 * static_cast<double>(n) / static_cast<double>(all));
+        EXPECT_LE(nees, 2) << name;
+        EXPECT_GE(nees, 0.2) << name;
+    }
+}

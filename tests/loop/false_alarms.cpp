@@ -1,7 +1,8 @@
 // false_alarms - hours of normal driving in which the firmware must name nothing: all soils, slopes to 10 degrees from the start, along the
 // path and as steps, tilted directions, modes, speeds, starts, stops, turns, restarts with warm motors, motors and sensors unlike their
-// description within what the catalogue calls usual. usage: false_alarms_run [HOURS [FIRST_SEED]], or scenario SEED for the file of one
-// drive; a short run of it is a test.
+// description within what the catalogue calls usual. usage: false_alarms_run [HOURS [FIRST_SEED [wide]]], or scenario SEED [wide] for the
+// file of one drive; a short run of it is a test. `wide` varies what the others hold fixed: five soils, sand to 10 degrees, turns on the
+// spot, payload and where it lies, offset and vibration of the accelerometer, the radar's mounting, ground and fading.
 //
 // Every drive is drawn from its own seed, printed when it fails. A drive that asks for what the rover cannot do (a wheel held by a slope it
 // cannot climb) would be a fault by right: demands stay within grip and power.
@@ -26,11 +27,11 @@ std::string number(double value) {
 }
 
 // Sand gives way on its steeper slopes: what is asked there is driven at any slip, but not climbed.
-std::string draw(std::uint64_t seed, double duration_s) {
-    sim::Random random(seed, "false alarms");
-    static const char *const soils[] = {"sand", "gravel", "concrete"};
-    const int soil = random.below(3);
-    const double steepest = (soil == 0 ? 6 : 10) * degree;
+std::string draw(std::uint64_t seed, double duration_s, bool wide) {
+    sim::Random random(seed, wide ? "wide false alarms" : "false alarms");
+    static const char *const soils[] = {"sand", "gravel", "concrete", "dry_sand_literature", "loam"};
+    const int soil = random.below(wide ? 5 : 3);
+    const double steepest = (soil == 0 && !wide ? 6 : 10) * degree;
     std::string text =
         "duration_s = " + number(duration_s) + "\nseed = " + std::to_string(seed) + "\n[ground]\nsoil = \"" + soils[soil] + "\"\n";
     if (random.below(3) > 0) text += "slope_rad = " + number(random.uniform(-steepest, steepest)) + "\n";
@@ -40,7 +41,14 @@ std::string draw(std::uint64_t seed, double duration_s) {
             text += "[" + number(path_m) + ", " + number(random.uniform(-steepest, steepest)) + "], ";
         text += "]\n";
     }
-    if (random.below(3) == 0)
+    if (wide)
+        text += "[rover]\nmass_kg = " + number(random.uniform(2.4, 4.0)) + "\n[sensors]\nheave_m = " + number(random.uniform(0, 0.002)) +
+                "\nheave_Hz = " + number(random.uniform(3, 15)) + "\npitch_vibration_rad = " + number(random.uniform(0, 0.01)) +
+                "\npitch_vibration_Hz = " + number(random.uniform(2, 12)) +
+                "\n[sensors.accel]\noffset_m_s2 = " + number(random.uniform(-0.2, 0.2)) +
+                "\n[radar]\nmounting_error_deg = " + number(random.uniform(-3, 3)) + "\nground_exponent = " + number(random.uniform(0, 2)) +
+                "\n";
+    else if (random.below(3) == 0)
         text += "[sensors]\npitch_vibration_rad = " + number(random.uniform(0, 0.01)) + "\nheave_m = " + number(random.uniform(0, 0.001)) +
                 "\n";
     for (double t_s = 0; t_s < duration_s;) {
@@ -55,8 +63,8 @@ std::string draw(std::uint64_t seed, double duration_s) {
             text += "mode = \"wheel_speed\"\nwheel_speed_rad_s = " + number(speed / 0.057) + "\n";
             break;
         case 2:
-            text += "mode = \"platform_speed\"\nspeed_m_s = " + number(speed) + "\nyaw_rate_rad_s = " + number(random.uniform(-0.5, 0.5)) +
-                    "\n";
+            text += "mode = \"platform_speed\"\nspeed_m_s = " + number(speed) +
+                    "\nyaw_rate_rad_s = " + number(wide ? random.uniform(-1, 1) : random.uniform(-0.5, 0.5)) + "\n";
             break;
         default:
             text += "mode = \"platform_speed\"\nspeed_m_s = " + number(speed) + "\n";
@@ -67,21 +75,24 @@ std::string draw(std::uint64_t seed, double duration_s) {
 }
 
 // What motors and sensors are really like: within a tenth of their description.
-std::vector<sim::ActiveEffect> unlike(std::uint64_t seed) {
+std::vector<sim::ActiveEffect> unlike(std::uint64_t seed, bool wide) {
     sim::Random random(seed, "unlike");
     std::vector<sim::ActiveEffect> effects;
     if (random.below(2) == 0) effects.push_back(sim::parse_effect("voltage_gain:change=" + number(random.uniform(-0.05, 0.05))));
     if (random.below(2) == 0)
         effects.push_back(
             sim::parse_effect("current_gain:change=" + number(random.uniform(-0.1, 0.1)) + ",wheel=" + std::to_string(random.below(4))));
+    if (wide && random.below(2) == 0) effects.push_back(sim::parse_effect("mass_offset_x:offset_m=" + number(random.uniform(-0.03, 0.03))));
     return effects;
 }
 
 } // namespace
 
 int main(int argc, char **argv) {
+    const bool wide = std::string(argv[argc - 1]) == "wide";
+    argc -= wide ? 1 : 0;
     if (argc == 3 && std::string(argv[1]) == "scenario") {
-        std::fputs(draw(static_cast<std::uint64_t>(std::atoll(argv[2])), 60).c_str(), stdout);
+        std::fputs(draw(static_cast<std::uint64_t>(std::atoll(argv[2])), 60, wide).c_str(), stdout);
         return 0;
     }
     const double hours = argc > 1 ? std::atof(argv[1]) : 10;
@@ -91,10 +102,10 @@ int main(int argc, char **argv) {
     std::uint64_t alarms = 0;
     for (std::uint64_t seed = first; seed < first + drives; seed++) {
         SimulateOptions options;
-        options.effects = unlike(seed);
+        options.effects = unlike(seed, wide);
         options.record = false;
         options.warm = seed % 2 == 0; // every second drive is a restart of which nothing is known
-        const auto scenario = sim::parse_scenario(draw(seed, drive_s), "seed " + std::to_string(seed));
+        const auto scenario = sim::parse_scenario(draw(seed, drive_s, wide), "seed " + std::to_string(seed));
         const SimulationResult result = simulate(scenario, options);
         if (result.faults == 0) continue;
         alarms++;

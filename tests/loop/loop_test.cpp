@@ -254,7 +254,9 @@ TEST(Loop, the_same_scenario_and_seed_give_the_same_bytes_and_another_seed_does_
 TEST(Loop, a_batch_gives_each_seed_what_it_gives_alone) {
     const auto scenario = sim::read_scenario("scenarios/fig16_blocked_wheels.toml");
     std::vector<std::uint64_t> hash(4);
-    simulate_batch(scenario, {}, 1, 4, 2, [&](std::uint64_t seed, SimulationResult &&result) { hash[seed - 1] = result.trace_hash; });
+    simulate_batch(
+        scenario, [](std::uint64_t) { return SimulateOptions{}; }, 1, 4, 2,
+        [&](std::uint64_t seed, SimulationResult &&result) { hash[seed - 1] = result.trace_hash; });
     for (std::uint64_t seed = 1; seed <= 4; seed++) EXPECT_EQ(hash[seed - 1], run(scenario, seed).trace_hash);
 }
 

@@ -3,11 +3,14 @@
 #include "firmware/app/parameters.h"
 #include "hal/sim/fault_hal.h"
 #include "host_tools/replay/replay_log.h"
+#include "host_tools/rover/radar_geometry.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -145,7 +148,7 @@ TEST(RoverDescription, its_parameter_file_reads_back_bit_for_bit) {
         const std::string text = firmware_text(rover);
         control_config_t read;
         char message[PARAMETERS_MESSAGE];
-        ASSERT_TRUE(parameters_parse(text.data(), text.size(), "x", &read, message)) << message;
+        ASSERT_TRUE(parameters_parse(text.data(), text.size(), "x", &read, nullptr, message)) << message;
         EXPECT_EQ(bits(read), bits(firmware_config(rover))) << file;
     }
     EXPECT_NE(bits(firmware_config(sim::read_rover_file(heavy_file))), bits(rover_config_default()));
@@ -185,8 +188,7 @@ TEST(RoverDescription, a_mistake_is_told_with_file_line_key_value_and_mend) {
     EXPECT_EQ(said("stall_current_A = { value = 1.4,", "stall_current_A = { value = 2.5,"),
               "r.toml:84: limits.stall_current_A = 2.5: the firmware cannot work; a stalled wheel takes V/Ra, which is less: a stall would "
               "never be seen; lower it");
-    EXPECT_NE(said("rate_Hz = { value = 512", "rate_Hz = { value = 640").find("radar.rate_Hz = 640: the firmware cannot work"),
-              std::string::npos);
+    EXPECT_NE(said("rate_Hz = { value = 512", "rate_Hz = { value = 6400").find("radar.rate_Hz = 6400: must be"), std::string::npos);
     EXPECT_NE(message_of([] {
                   drive("sand", cruise(0.2), 2, "rover = \"rovers/none.toml\"\n");
               }).find("rover = 'rovers/none.toml': there is no such file"),
@@ -365,3 +367,84 @@ TEST(RoverDescription, a_wheel_of_its_own_radius_is_in_the_plant) {
 }
 
 } // namespace
+
+namespace {
+
+// The reference rover behind a radar that nobody linked.
+std::string own_radar(const std::string &model, const std::string &more, const std::string &rate) {
+    std::string text = text_of(reference_file);
+    const auto put = [&text](const std::string &from, const std::string &to) { text.replace(text.find(from), from.size(), to); };
+    put("model = \"MDU1130\"", "model = \"" + model + "\"\n" + more);
+    put("rate_Hz = { value = 512", "rate_Hz = { value = " + rate);
+    return text;
+}
+
+const std::string module_24_GHz = "carrier_Hz = 24.125e9\nvertical_deg = 30\nhorizontal_deg = 60";
+
+double rmse(const SimulationResult &result, double from_s) {
+    const log::Signal &estimate = *result.log.find("estimate.speed_m_s"), &truth = *result.truth.find("truth.speed_m_s");
+    double sum = 0;
+    int n = 0;
+    for (std::size_t k = 0; k < estimate.t_s.size(); k++) {
+        const auto at =
+            static_cast<std::size_t>(std::lower_bound(truth.t_s.begin(), truth.t_s.end(), estimate.t_s[k] - 1e-6) - truth.t_s.begin());
+        if (estimate.t_s[k] < from_s || at >= truth.t_s.size()) continue;
+        sum += (estimate.value[k] - truth.value[at]) * (estimate.value[k] - truth.value[at]);
+        n++;
+    }
+    return std::sqrt(sum / n);
+}
+
+} // namespace
+
+// Another radar, another rate: description -> world, template, firmware, log, replay, parameter file; nothing is compiled.
+TEST(OwnRadar, drives_logs_replays_and_goes_into_the_parameter_file) {
+    for (const auto &[model, more, rate] :
+         {std::array<std::string, 3>{"own", module_24_GHz, "1000"}, std::array<std::string, 3>{"MDU1130", "", "300"},
+          std::array<std::string, 3>{"own", "carrier_Hz = 61e9\nvertical_deg = 25\nhorizontal_deg = 25", "2000"}}) {
+        SCOPED_TRACE(model + " at " + rate + " Hz");
+        const sim::RoverDescription rover = sim::parse_rover(own_radar(model, more, rate), "own.toml");
+        sim::Scenario scenario = drive("gravel", cruise(0.3), 13);
+        sim::set_rover(scenario, rover);
+        const SimulationResult result = run(scenario);
+        EXPECT_EQ(result.faults, 0u);
+        EXPECT_LE(rmse(result, 3), 0.04); // issue 13's bound of any row
+        const replay::Comparison same = replay::replay_log(result.log, replay::logged_ticks(result.log));
+        EXPECT_EQ(same.differing, 0u) << same.first_signal << " at " << same.first_s;
+
+        const std::string text = firmware_text(rover);
+        const control_config_t built = firmware_config(rover);
+        control_config_t read;
+        static doppler_template_t beam;
+        char message[PARAMETERS_MESSAGE];
+        ASSERT_TRUE(parameters_parse(text.data(), text.size(), "x", &read, &beam, message)) << message;
+        EXPECT_EQ(read.doppler.beam, &beam);
+        EXPECT_EQ(std::memcmp(beam.inverse, built.doppler.beam->inverse, sizeof beam.inverse), 0);
+        EXPECT_EQ(std::memcmp(beam.speed_m_s, built.doppler.beam->speed_m_s, sizeof beam.speed_m_s), 0);
+        EXPECT_EQ(std::memcmp(&beam.window, &built.doppler.beam->window, sizeof beam.window), 0);
+        EXPECT_EQ(beam.spread, built.doppler.beam->spread);
+        EXPECT_EQ(read.doppler.hop, built.doppler.hop);
+        EXPECT_EQ(read.ground_speed.doppler_noise_m_s, built.ground_speed.doppler_noise_m_s);
+        EXPECT_FALSE(parameters_parse(text.data(), text.size(), "x", &read, nullptr, message)); // nowhere to keep it
+        const std::string cut = text.substr(0, text.size() - 2000);
+        EXPECT_FALSE(parameters_parse(cut.data(), cut.size(), "x", &read, &beam, message));
+    }
+}
+
+TEST(OwnRadar, that_cannot_be_is_refused_with_its_key) {
+    const auto told = [](const std::string &model, const std::string &more, const std::string &rate) -> std::string {
+        try {
+            (void)firmware_config(sim::parse_rover(own_radar(model, more, rate), "own.toml"));
+        } catch (const sim::ScenarioError &error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(told("own", module_24_GHz, "1000"), "accepted");
+    EXPECT_NE(told("own", "carrier_Hz = 24e9\nvertical_deg = 30", "512").find("radar.horizontal_deg"), std::string::npos);
+    EXPECT_NE(told("own", "carrier_Hz = 24\nvertical_deg = 30\nhorizontal_deg = 30", "512").find("radar.carrier_Hz"), std::string::npos);
+    EXPECT_NE(told("MDU1130", "carrier_Hz = 24e9", "512").find("radar.carrier_Hz"), std::string::npos);
+    EXPECT_NE(told("own", module_24_GHz + "\nband_low_Hz = 900", "512").find("radar.band_low_Hz"), std::string::npos);
+    EXPECT_NE(told("own", module_24_GHz, "100").find("radar.rate_Hz"), std::string::npos);
+    EXPECT_NE(told("MDU1130", "", "6400").find("radar.rate_Hz"), std::string::npos); // 25 Hz a bin: 1 m/s is three of them
+}

@@ -79,6 +79,42 @@ TEST(Scenario, a_mistake_is_told_with_file_line_key_value_and_mend) {
     for (const Case &c : cases) EXPECT_NE(message(c.text).find(c.expected), std::string::npos) << c.text << "\ngave: " << message(c.text);
 }
 
+// What the first hour outdoors brings: each bad value is refused with its file, line, key and mend, and what is right is read.
+TEST(Scenario, a_mistake_in_what_happens_outdoors_is_told_like_any_other) {
+    const auto ground = [](const std::string &line) { return "duration_s = 1\n[ground]\n" + line + "\n" + drive; };
+    const auto sensors = [](const std::string &line) { return "duration_s = 1\n[sensors]\n" + line + "\n" + drive; };
+    const auto radar = [](const std::string &line) { return "duration_s = 1\n[radar]\n" + line + "\n" + drive; };
+    const auto fault = [](const std::string &lines) { return "duration_s = 1\n" + drive + "[[fault]]\n" + lines; };
+    struct Case {
+        std::string text, expected;
+    };
+    const Case cases[] = {
+        {ground("slope_steps = [[1.0, 0.75]]"), "x.toml:3: ground.slope_steps = 0.75: out of range; give a number from -0.5 to 0.5"},
+        {ground("slope_steps = [[2.0, 0.1], [1.0, 0.0]]"), "its path does not lie after the one before; order the steps by their path"},
+        {ground("slope_steps = [1.0, 0.1]"), "x.toml:3: ground.slope_steps = 1.0: is not a list of pairs"},
+        {ground("slope_blend_m = 0"), "x.toml:3: ground.slope_blend_m = 0: out of range; give a number from 0.001 to 10"},
+        {sensors("heave_m = -0.001"), "x.toml:3: sensors.heave_m = -0.001: out of range; give a number from 0 to 0.1"},
+        {sensors("heave_Hz = \"fast\""), "x.toml:3: sensors.heave_Hz = 'fast': not a finite number; give a number from 0 to 200"},
+        {sensors("pitch_vibration_rad = 1"), "x.toml:3: sensors.pitch_vibration_rad = 1: out of range; give a number from 0 to 0.3"},
+        {sensors("pitch_vibration_Hz = 300"), "x.toml:3: sensors.pitch_vibration_Hz = 300: out of range; give a number from 0 to 200"},
+        {radar("offset_error_count = 501"), "x.toml:3: radar.offset_error_count = 501: out of range; give a number from -500 to 500"},
+        {radar("[[radar.interference]]\nfrequency_Hz = 0"),
+         "x.toml:4: radar.interference[0].frequency_Hz = 0: out of range; give a number from 0.1 to 10000"},
+        {radar("[[radar.interference]]\nfrequency_Hz = 50"), "radar.interference[0].rms_count: missing"},
+        {fault("what = \"missed_ticks\"\nticks = 0\n"), "fault[0].ticks = 0"},
+        {fault("what = \"brown_out\"\n"), "fault[0].sag_V: missing"},
+        {fault("what = \"motor_open\"\n"), "fault[0].wheel: missing"},
+        {fault("what = \"sensor\"\nsensor = \"radar\"\nhow = \"lost\"\nshare = 1.5\n"), "fault[0].share = 1.5: out of range"},
+        {fault("what = \"sensor\"\nsensor = \"encoder\"\nwheel = 0\nhow = \"slipping\"\n"), "fault[0].share: missing"},
+        {fault("what = \"sensor\"\nsensor = \"accel\"\nhow = \"spike\"\n"), "fault[0].spike: missing"},
+        {fault("what = \"sensor\"\nsensor = \"gyro\"\nhow = \"dead\"\n"), "fault[0].how = 'dead'"},
+    };
+    for (const Case &c : cases) EXPECT_NE(message(c.text).find(c.expected), std::string::npos) << c.text << "\ngave: " << message(c.text);
+    EXPECT_EQ(message(ground("slope_steps = [[1.0, 0.1], [2.0, 0.0]]\nslope_blend_m = 0.2")), "accepted");
+    EXPECT_EQ(message(sensors("heave_m = 0.005\nheave_Hz = 8.0\npitch_vibration_rad = 0.01\npitch_vibration_Hz = 5.0")), "accepted");
+    EXPECT_EQ(message(radar("[[radar.interference]]\nfrequency_Hz = 50.0\nrms_count = 10.0")), "accepted");
+}
+
 TEST(Scenario, a_plan_ramps_waves_and_stops_where_nothing_is_asked) {
     const Scenario scenario = parse_scenario(R"(
 duration_s = 20

@@ -61,6 +61,7 @@ Drive drive(
                                             .doppler_m_s = d.speed_m_s,
                                             .doppler_late_s = static_cast<float>(d.late_samples) / 512.0f,
                                             .wheel_m_s = static_cast<float>(v * 1.1),
+                                            .wheels_part = false,
                                             .accel_valid = true,
                                             .doppler_fresh = d.fresh,
                                             .doppler_quiet = d.quiet,
@@ -174,6 +175,7 @@ TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag) {
                                                 .doppler_m_s = static_cast<float>(fresh ? mean / weight : 0),
                                                 .doppler_late_s = 0,
                                                 .wheel_m_s = static_cast<float>(speed),
+                                                .wheels_part = false,
                                                 .accel_valid = true,
                                                 .doppler_fresh = fresh,
                                                 .doppler_quiet = false,
@@ -198,6 +200,7 @@ ground_speed_input_t only_accel(double accel, double wheel_m_s = 0.3) {
             .doppler_m_s = 0,
             .doppler_late_s = 0,
             .wheel_m_s = static_cast<float>(wheel_m_s),
+            .wheels_part = false,
             .accel_valid = true,
             .doppler_fresh = false,
             .doppler_quiet = false,
@@ -380,8 +383,8 @@ TEST(GroundSpeed, believes_the_first_value_and_takes_its_sign_from_the_wheels) {
             ground_speed_state_t state;
             ground_speed_reset(&config, &state);
             const ground_speed_input_t input = with_radar(0, 0.35, false, wheel);
-            // P = (1 m/s)^2, and a bias of +-0.3 m/s^2 makes 0.075 m/s of the window's age: the gain is 1/(1 + 0.075^2), less 4e-4
-            const double gain = paper ? 1 : 1 / (1 + 0.075 * 0.075);
+            // P = (1 m/s)^2, and a bias of +-1 m/s^2 makes 0.249 m/s of the window's age: the gain is 1/(1 + 0.249^2), less 4e-4
+            const double gain = paper ? 1 : 1 / (1 + 0.249 * 0.249);
             EXPECT_NEAR(ground_speed_step(&config, &state, &input).speed_m_s, (wheel < 0 ? -0.35 : 0.35) * gain, 0.35 * 0.01) << paper;
         }
     }

@@ -76,8 +76,9 @@ static ground_speed_config_t ground_speed_default() {
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
-        .bias_start_m_s2 = 0.3f,        // as rover_config.c has it
+        .bias_start_m_s2 = 1.0f,        // as rover_config.c has it
         .bias_max_m_s2 = 3.0f,          // 17 deg of slope and 0.1 m/s^2 of the device
+        .speed_max_m_s = 10.0f,
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
         .doppler_accel_s2 = 0.004f,
@@ -94,9 +95,15 @@ static ground_speed_config_t ground_speed_default() {
         .agile_drift = 0.0f,
         .agile_most = 10.0f,
         .apart_forget = 0.04f,
-        .apart_share = 0.5f,
+        .apart_share = 1.0f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
+        .roll_told_m_s = 0.1f,
+        .slip_force_m_s2 = 0.3f,
+        .roll_odds = 6.0f,
+        .roll_noise_m2_s2 = 1.5e-5f,
+        .roll_share = 0.1f,
+        .roll_bias_m2_s4 = 0.01f,
         .agile_values = 4, // half a second: a window's length
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
@@ -108,12 +115,16 @@ static ground_speed_config_t ground_speed_default() {
         .loud_needed = 3,
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick
         .slow_m_s = 0.12f,
-        .sign_sure = 18.0f, // exp(9) to one
-        .wheel_odds = 2.0f, // e to one, assumed
+        .sign_sure = 18.0f,  // exp(9) to one
+        .wheel_spins = 6.0f, // exp(3) to one, assumed
+        .wheel_odds = 2.0f,  // e to one, assumed
         .wheel_match = 14.0f,
         .wheel_pull = 0.5f,
         .against_values = 4,
         .against_odds = 4.0f,
+        .force_per_s2_m = 4.0f,
+        .force_most = 12.0f,
+        .force_pull = 0.25f,
         .wheel_noise_m_s = 0.1f, // assumed
         .wheel_slip = 0.5f,
     };
@@ -176,7 +187,11 @@ control_config_t written_out() {
                     .open_looks = 6},
         .doppler = doppler_default(),
         .ground_speed = ground_speed_default(),
-        .slip = {.wheel_radius_m = wheel_radius_m, .valid_m_s = 0.05f}, // [m/s] the band-pass blinds the radar below
+        .slip = {.wheel_radius_m = wheel_radius_m,
+                 .valid_m_s = 0.05f,
+                 .valid_std = 0.25f,
+                 .rim_std_m_s =
+                     0.40824829f * (6.28318531f / 6000.0f / tick_s) * wheel_radius_m}, // [m/s] the band-pass blinds the radar below
         .motor = {.torque_constant_Nm_A = torque_constant_Nm_A,
                   .volt_per_speed_Vs = resistance_ohm * viscous_Nms / torque_constant_Nm_A + torque_constant_Nm_A,
                   .volt_dry_V = resistance_ohm * dry_Nm / torque_constant_Nm_A,
@@ -264,7 +279,7 @@ TEST(ControlConfig, the_window_of_512_Hz_is_the_one_the_estimator_had) {
         1044, 1184, 1317, 1440, 1551, 1632, 1695, 1733, 1745, 1728, 1685, 1617, 1532, 1417, 1291, 1157, 1016,
         874,  736,  604,  484,  375,  281,  203,  140,  91,   55,   31,   15,   6,    2,    0,    0,    0,
     };
-    for (int radar = 0; radar < ROVER_RADAR_COUNT; ++radar) {
+    for (int radar = 0; radar < ROVER_RADAR_LINKED; ++radar) {
         const doppler_window_t &window = doppler_template_of(radar)->window;
         ASSERT_EQ(window.ticks, 51);
         EXPECT_EQ(window.tau_s, 0.249f);

@@ -24,17 +24,21 @@ Eigen::VectorXd Columns::column(const Candidate &c, std::size_t j) {
     return sum;
 }
 
-const Eigen::VectorXd &Columns::single(const Candidate &c, std::size_t j, const FreeParameter &p) {
+Eigen::VectorXd Columns::single(const Candidate &c, std::size_t j, const FreeParameter &p) {
     std::string key = c.effect + "/" + p.key + "/" + std::to_string(p.slots.size() == 1 ? p.slots[0].wheel : -1);
     for (const auto &[name, value] : c.variant) key += "/" + name + std::to_string(value);
     const auto found = cache_.find(key);
-    if (found != cache_.end()) return found->second;
-    if (is_patch(c.effect)) return cache_[key] = patch(c, p);
+    if (found != cache_.end()) return found->second.whole();
+    const auto keep = [&](Eigen::VectorXd column) {
+        cache_.emplace(key, SparseJacobian(problem_.data(), column));
+        return column;
+    };
+    if (is_patch(c.effect)) return keep(patch(c, p));
     Physics at = physics_;
     Candidate one = c;
     one.wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : c.wheel;
     one.prepare(at);
-    return cache_[key] = problem_.column(at, p, c.step[j]).cwiseQuotient(problem_.row_scale);
+    return keep(problem_.column(at, p, c.step[j]).cwiseQuotient(problem_.row_scale));
 }
 
 // A patch is the sum of the cells of the path that it covers.

@@ -3,6 +3,7 @@
 
 #include "candidate.h"
 #include "host_tools/lab/fit/problem.h"
+#include "host_tools/lab/fit/sparse_jacobian.h"
 
 #include <map>
 #include <string>
@@ -13,7 +14,7 @@ namespace traction::lab {
 class Columns {
   public:
     // Unscaled, by effect, wheel and shape: good for later rounds too, whose refits are exact anyway.
-    using Cache = std::map<std::string, Eigen::VectorXd>;
+    using Cache = std::map<std::string, SparseJacobian>;
 
     Columns(Problem &problem, Cache &cache) : problem_(problem), physics_(problem.physics()), cache_(cache) {}
 
@@ -22,7 +23,7 @@ class Columns {
 
   private:
     Eigen::VectorXd column(const Candidate &candidate, std::size_t strength);
-    const Eigen::VectorXd &single(const Candidate &candidate, std::size_t strength, const FreeParameter &parameter);
+    Eigen::VectorXd single(const Candidate &candidate, std::size_t strength, const FreeParameter &parameter);
     Eigen::VectorXd patch(const Candidate &candidate, const FreeParameter &parameter);
     UnitResponse response(bool strength);
     void fill_cells(const Candidate &candidate, const FreeParameter &parameter, std::size_t first);

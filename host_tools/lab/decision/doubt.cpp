@@ -2,7 +2,8 @@
 
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
-#include "host_tools/lab/fit/rounding.h"
+#include "host_tools/lab/inputs/smooth.h"
+#include "host_tools/lab/inputs/stretch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,13 @@ constexpr double never_nothing = 25;      // times noise: uneven ground leaves 3
 constexpr double several_names = 1.1;     // one wrong number is simpler than two effects
 constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
 constexpr double much_better = 0.5;       // of the error as stated
+constexpr double better = 0.75;           // the same, where an effect was named
+constexpr double as_much = 1.02;          // of the error that what was named leaves
+constexpr double notable = 0.95;          // of the error as stated: a mass that a log hardly tells wanders for less
+constexpr double sure = 2;                // standard errors of the blocks' differences
+constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
+
+constexpr double looked_at_s = 20; // what is grossly wrong shows wherever the model fails: there each datum is tried first
 
 // What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
 struct Datum {
@@ -26,7 +34,7 @@ struct Datum {
     bool more_is_an_effect = false; // of the catalogue: whether it is the cause has been decided there, only less is a matter of the model
 };
 constexpr Datum data_of_a_model[] = {
-    {"rover", "mass_kg", "the mass"},
+    {"rover", "mass_kg", "the mass", 1.3}, // on stiff ground a log was seen to tell it no better than 1.2
     {"wheel", "radius_m", "the wheels' radius", 1.25},
     {"motor", "torque_constant_Nm_A", "the torque constant (of the wheel's side of the gear)"},
     {"motor", "back_emf_Vs_rad", "the back-EMF (of the wheel's side of the gear)"},
@@ -85,17 +93,26 @@ std::vector<double> misfits(const Problem &problem) {
 
 namespace {
 
+// A datum set free, with the problem that its value comes from.
+struct Freed {
+    Suspect suspect;
+    const Datum *datum = nullptr;
+    std::optional<Problem> problem;
+};
+
 // The datum from `start` times what is stated; where it ends at the edge of what it may be, once more from there.
-Suspect gross_error(const Model &stated, const Dataset &data, const Datum &datum, double start) {
-    Suspect out;
-    Model as_is = stated;
+Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, double start) {
+    Freed out;
+    out.datum = &datum;
     for (int round = 0; round < 4; ++round) {
         Model model = stated;
+        const std::vector<Parameter *> values = values_of(model, datum);
+        const double value = values.empty() ? 0 : values.front()->value;
         if (!set_free(model, datum, start)) return {};
         const Physics physics = make_physics(model);
         Problem problem(data, physics, free_parameters(model, physics));
         problem.fit({.iterations = 3});
-        const double error = overall_error(problem), value = values_of(as_is, datum).front()->value;
+        const double error = overall_error(problem);
         double moved = 0, ratio = 1;
         std::string unit;
         for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
@@ -105,7 +122,10 @@ Suspect gross_error(const Model &stated, const Dataset &data, const Datum &datum
             break;
         }
         if (unit.empty() || !std::isfinite(error)) return out;
-        if (out.quantity.empty() || error < out.error) out = {datum.name, value, moved, unit, error, datum.gross, datum.more_is_an_effect};
+        if (out.suspect.quantity.empty() || error < out.suspect.error) {
+            out.suspect = {datum.name, value, moved, unit, error, datum.gross, datum.more_is_an_effect};
+            out.problem = std::move(problem);
+        }
         if (ratio > 0.03 && ratio < 5.5) return out;
         start *= ratio < 1 ? 0.05 : 5;
     }
@@ -114,21 +134,150 @@ Suspect gross_error(const Model &stated, const Dataset &data, const Datum &datum
 
 bool is_gross(const Suspect &s) { return s.fitted < s.stated / s.gross || (!s.more_is_an_effect && s.fitted > s.stated * s.gross); }
 
+std::vector<Freed> freed(const Model &stated, const Dataset &data, const std::vector<const Datum *> &asked) {
+    std::vector<Freed> found;
+    const auto less = [](const Freed &a, const Freed &b) { return a.suspect.error < b.suspect.error; };
+    const auto from = [&](Freed &f, double start) {
+        if (Freed other = gross_error(stated, data, *f.datum, start); !other.suspect.quantity.empty() && less(other, f))
+            f = std::move(other);
+    };
+    for (const Datum *datum : asked)
+        if (Freed f = gross_error(stated, data, *datum, 1); !f.suspect.quantity.empty()) found.push_back(std::move(f));
+    std::stable_sort(found.begin(), found.end(), less);
+    for (std::size_t i = 0; i < found.size(); ++i) { // a valley that a search from where it stands does not see
+        if (i < 3)
+            for (const double start : {0.25, 4.0}) from(found[i], start);
+        if (std::string(found[i].datum->key) == "mu") from(found[i], 15); // where nothing grips nothing tells the grip
+    }
+    std::stable_sort(found.begin(), found.end(), less);
+    return found;
+}
+
+std::vector<const Datum *> all_data() {
+    std::vector<const Datum *> list;
+    for (const Datum &datum : data_of_a_model) list.push_back(&datum);
+    return list;
+}
+
+// The part of the log where the model leaves the most, balance by balance; a row counts as four times its balance's mean at most.
+Dataset worst_stretch(const Problem &first) {
+    const Dataset &data = first.data();
+    const double end = data.time(data.count - 1), step = 0.25 * looked_at_s;
+    if (data.independent_rows || end - data.start_s < 2 * looked_at_s) return data;
+    const Eigen::VectorXd squares = first.residual.cwiseQuotient(first.noise_rows()).cwiseAbs2();
+    std::vector<double> left(static_cast<std::size_t>((end - data.start_s) / step) + 1, 0); // of each quarter of a stretch
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        const double mean = squares.segment(row, n).mean();
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            const double place =
+                std::clamp((0.5 * (b.t0_s[r] + b.t1_s[r]) - data.start_s) / step, 0.0, static_cast<double>(left.size() - 1));
+            left[static_cast<std::size_t>(place)] += std::min(4 * mean, squares[row]) / static_cast<double>(n);
+        }
+    }
+    std::size_t best = 0;
+    double most = 0;
+    for (std::size_t i = 0; i + 4 <= left.size(); ++i)
+        if (const double sum = left[i] + left[i + 1] + left[i + 2] + left[i + 3]; sum > most) most = sum, best = i;
+    const double from = std::min(data.start_s + static_cast<double>(best) * step, end - looked_at_s);
+    return stretch(data, from, from + looked_at_s);
+}
+
+// Of a fitted model on the rows of a part of its log, in units of noise, as overall_error() has it.
+double error_within(const Problem &fitted, const Dataset &part) {
+    const Eigen::VectorXd squares = fitted.residual.cwiseQuotient(fitted.noise_rows()).cwiseAbs2();
+    const double from = part.start_s, to = part.time(part.count - 1);
+    double sum = 0, balances = 0;
+    Eigen::Index row = 0;
+    for (const Balance &b : fitted.data().balance) {
+        double own = 0, n = 0;
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row)
+            if (b.t0_s[r] >= from && b.t1_s[r] <= to) own += squares[row], ++n;
+        if (n > 0) sum += own / n, ++balances;
+    }
+    return balances > 0 ? std::sqrt(sum / balances) : 0;
+}
+
+// Those that may bring the error below `need` times what it is, on the whole log: a datum that does not go half of that way where the model
+// fails most does not go all of it on the whole log.
+std::vector<const Datum *> promising_data(const Model &stated, const Problem &first, double need) {
+    const Dataset part = worst_stretch(first);
+    if (part.count == first.data().count) return all_data();
+    const double before = error_within(first, part);
+    std::vector<const Datum *> list;
+    for (const Freed &f : freed(stated, part, all_data()))
+        if (f.suspect.error < 0.5 * (1 + need) * before) list.push_back(f.datum);
+    return list;
+}
+
+// What no model goes below: the scatter of the residuals from row to row, which a prediction has no part in, for it follows the wheels.
+double scatter_of(const Problem &fitted) {
+    const Eigen::VectorXd e = fitted.residual.cwiseQuotient(fitted.noise_rows());
+    double sum = 0;
+    Eigen::Index row = 0;
+    for (const Balance &b : fitted.data().balance) {
+        std::vector<double> bend; // second differences: of white noise, sqrt(6) times it
+        for (std::size_t r = 2; r < b.measured.size(); ++r)
+            bend.push_back(std::fabs(e[row + static_cast<Eigen::Index>(r)] - 2 * e[row + static_cast<Eigen::Index>(r) - 1] +
+                                     e[row + static_cast<Eigen::Index>(r) - 2]));
+        sum += bend.empty() ? 0 : std::pow(1.4826 * median(bend), 2) / 6;
+        row += static_cast<Eigen::Index>(b.measured.size());
+    }
+    return fitted.data().balance.empty() ? 0 : std::sqrt(sum / static_cast<double>(fitted.data().balance.size()));
+}
+
+// Data that the fit within the priors has itself moved grossly: the sheet's deviation was too wide to hold them.
+std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first) {
+    Model before = stated, after = stated;
+    for (std::size_t i = 0; i < first.parameters.size(); ++i)
+        store(after, first.parameters[i], first.theta[static_cast<Eigen::Index>(i)], 0);
+    std::vector<Suspect> out;
+    for (const Datum &datum : data_of_a_model) {
+        const std::vector<Parameter *> was = values_of(before, datum), is = values_of(after, datum);
+        double value = 0, fitted = 0, prior = 0;
+        for (std::size_t i = 0; i < was.size() && i < is.size(); ++i)
+            value += was[i]->value, fitted += is[i]->value, prior += was[i]->prior;
+        if (!(value > 0) || !(std::fabs(fitted - value) > beyond_a_sheet * prior)) continue;
+        const auto n = static_cast<double>(was.size());
+        Suspect s{datum.name, value / n, fitted / n, was.front()->unit, overall_error(first), datum.gross, datum.more_is_an_effect};
+        if (is_gross(s)) out.push_back(std::move(s));
+    }
+    return out;
+}
+
+// Data of the sheet at their bounds.
+bool strained(const Problem &problem) {
+    for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+        for (const Datum &datum : data_of_a_model)
+            if (problem.parameters[i].owner == datum.table && problem.parameters[i].key == datum.key && problem.at_bound(i)) return true;
+    return false;
+}
+
+// By how many standard errors the freed datum predicts blocks left out better than the model with what was named.
+double lead_of(const Problem &last, Problem &datum) {
+    datum.keep_scales(last);
+    datum.gauss_newton(2);
+    const Fall fall = fall_between(held_out(last), held_out(datum), noise_weight(last));
+    return fall.error > 0 ? fall.sum / fall.error : fall.sum;
+}
+
+// An effect of the catalogue that is the datum by another name: of the two the effect is told.
+bool is_its_law(const Problem &last, const Datum &datum) {
+    static constexpr const char *laws[][2] = {
+        {"torque_constant", "torque_constant_Nm_A"}, {"current_gain", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"},
+        {"shear_stiffness", "shear_slip"},           {"voltage_gain", "back_emf_Vs_rad"},      {"voltage_gain", "torque_constant_Nm_A"}};
+    return std::any_of(last.parameters.begin(), last.parameters.end(), [&](const FreeParameter &p) {
+        return std::any_of(std::begin(laws), std::end(laws),
+                           [&](const auto &law) { return p.owner == law[0] && law[1] == std::string(datum.key); });
+    });
+}
+
 } // namespace
 
 std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
-    std::vector<std::pair<Suspect, const Datum *>> found;
-    for (const Datum &datum : data_of_a_model)
-        if (Suspect s = gross_error(stated, data, datum, 1); !s.quantity.empty()) found.emplace_back(std::move(s), &datum);
-    const auto less = [](const auto &a, const auto &b) { return a.first.error < b.first.error; };
-    std::stable_sort(found.begin(), found.end(), less);
-    for (std::size_t i = 0; i < found.size() && i < 3; ++i) // a valley that a search from where it stands does not see
-        for (const double start : {0.25, 4.0})
-            if (Suspect s = gross_error(stated, data, *found[i].second, start); !s.quantity.empty() && s.error < found[i].first.error)
-                found[i].first = std::move(s);
-    std::stable_sort(found.begin(), found.end(), less);
     std::vector<Suspect> out;
-    for (auto &[suspect, datum] : found) out.push_back(std::move(suspect));
+    for (Freed &f : freed(stated, data, all_data())) out.push_back(std::move(f.suspect));
     return out;
 }
 
@@ -149,16 +298,45 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     const double before = overall_error(first), after = overall_error(last), worst = worst_of(last);
     bool at_bound = false;
     for (std::size_t i = 0; i < first.parameters.size(); ++i) at_bound = at_bound || first.at_bound(i);
-    if (!at_bound && worst_of(first) < suspicious && !(accepted >= 2 && before > 1.3 * after)) return std::nullopt;
+    const bool nothing_found = accepted == 0 && !(shape_gain > 0), far_off = nothing_found && after > never_nothing;
     Doubt out;
-    const Scatter scatter(last); // a softer soil, too, only smooths what the encoders scatter
-    const double by_scatter = scatter.part.cwiseProduct(rounding_squares(data, last.physics())).dot(noise_weight(last));
-    const double left = std::sqrt(std::max(0.0, after * after - by_scatter)) * (1 - shape_gain);
-    for (Suspect &s : gross_errors(stated, data)) {
-        const double needed = accepted >= 2 ? several_names : one_name;
-        if (is_gross(s) && s.error < needed * left && s.error < much_better * before) out.suspects.push_back(std::move(s));
+    if (nothing_found) out.suspects = moved_grossly(stated, first);
+    if (!at_bound && worst_of(first) < suspicious && !far_off && out.suspects.empty() && !(accepted >= 2 && before > 1.3 * after))
+        return std::nullopt;
+    const double left = after * (1 - shape_gain);
+    // the largest share of the error that a rule below lets a datum leave
+    const double need = accepted == 0   ? std::min(much_better, one_name * left / before)
+                        : accepted == 1 ? std::min(notable, as_much * left / before)
+                                        : std::min(better, several_names * left / before);
+    std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
+    if (before > never_nothing)
+        found = freed(stated, data, all_data());
+    else if (data.independent_rows || scatter_of(first) < need * before)
+        found = freed(stated, data, promising_data(stated, first, need));
+    for (Freed &f : found) {
+        const Suspect &s = f.suspect;
+        // more of it is an effect, unless it alone does what took two names: then one of them is none
+        if (accepted >= 2 && s.more_is_an_effect && s.fitted > s.stated * s.gross && s.error < better * before &&
+            s.error < several_names * left && lead_of(last, *f.problem) > 0) {
+            out.suspects.push_back(std::move(f.suspect));
+            continue;
+        }
+        if (!is_gross(s)) continue;
+        const bool helps = s.error < (accepted > 0 ? better : much_better) * before;
+        const bool alone = s.error < (accepted >= 2 ? several_names : one_name) * left; // one number against all that was named
+        // one number against one effect: what is named leaves the sheet contradicted and the datum does not, or it predicts at least as
+        // well
+        const bool rivals =
+            accepted == 1 && s.error < as_much * left && s.error < notable * before &&
+            ((strained(last) && !strained(*f.problem)) || lead_of(last, *f.problem) > (is_its_law(last, *f.datum) ? sure : 0));
+        if ((helps && alone) || rivals) out.suspects.push_back(std::move(f.suspect));
     }
-    const bool far_off = accepted == 0 && !(shape_gain > 0) && after > never_nothing;
+    std::stable_sort(out.suspects.begin(), out.suspects.end(), [](const Suspect &x, const Suspect &y) { return x.error < y.error; });
+    std::vector<Suspect> once;
+    for (Suspect &suspect : out.suspects)
+        if (std::none_of(once.begin(), once.end(), [&](const Suspect &seen) { return seen.quantity == suspect.quantity; }))
+            once.push_back(std::move(suspect));
+    out.suspects = std::move(once);
     if (out.suspects.empty() && worst < describes_nothing && !far_off) return std::nullopt;
     char buffer[300];
     if (out.suspects.empty()) {

@@ -4,6 +4,7 @@
 #include "host_tools/lab/fit/distribution.h"
 #include "host_tools/lab/fit/rounding.h"
 #include "host_tools/lab/fit/screen.h"
+#include "host_tools/lab/fit/sparse_jacobian.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
     double p_value = 1, balance_fall = 0;
-    Eigen::MatrixXd columns;
+    SparseJacobian columns;
 };
 
 // Several shapes of equally many coefficients side by side: one pass serves them all.
@@ -135,13 +136,13 @@ double corrected(const Candidate &c, const Assessment &a) {
     return std::min(1.0, 2 * tried * std::min(a.p_value, falls));
 }
 
-ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Screen &screen, bool keep) {
+ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Screen &screen, const Dataset *keep) {
     ShapeScore s;
     s.candidate = c;
     s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
     s.p_value = corrected(s.candidate, s.assessment);
     if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(columns, s.assessment);
-    if (keep) s.columns = columns;
+    if (keep != nullptr) s.columns = SparseJacobian(*keep, columns);
     return s;
 }
 
@@ -177,7 +178,7 @@ Candidate on_wheels(const Candidate &shape, const std::vector<int> &group) {
 
 // A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
 void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
-                        const Eigen::MatrixXd &columns, bool keep) {
+                        const Eigen::MatrixXd &columns, const Dataset *keep) {
     const unsigned electric = stage_torque | stage_voltage;
     if ((shape.touched & electric) == 0 || (shape.touched & ~electric) != 0 || shape.varies_between_wheels) return;
     for (const std::vector<int> &group : wheel_groups(problem.physics())) {
@@ -205,7 +206,8 @@ void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &pro
     }
 }
 
-std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keep = false) {
+std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keeps = false) {
+    const Dataset *keep = keeps ? &problem.data() : nullptr; // the columns: of no use where nothing is named
     std::vector<ShapeScore> list;
     ShapeColumns columns(problem);
     std::vector<Candidate> waves;
@@ -303,7 +305,7 @@ Assessment effect_given_shape(const Problem &less, const Eigen::MatrixXd &effect
     Problem with = less;
     const Eigen::Index n = less.theta.size(), k = shape.columns.cols();
     with.jacobian.conservativeResize(Eigen::NoChange, n + k);
-    with.jacobian.rightCols(k) = shape.columns;
+    with.jacobian.rightCols(k) = shape.columns.whole();
     with.theta.conservativeResize(n + k);
     with.theta.tail(k).setZero();
     with.parameters.insert(with.parameters.end(), shape.candidate.strengths.begin(), shape.candidate.strengths.end());
@@ -330,7 +332,7 @@ std::optional<UnknownShape> confounding_shape(const Problem &last, const Candida
     for (const ShapeScore &shape : shapes) {
         if (shape.columns.cols() == 0 || !is_curve(shape.candidate) || !(shape.p_value < options.shape_p_limit)) continue;
         ShapeScore s = shape;
-        s.assessment = screen.assess(shape.columns, Eigen::VectorXd::Zero(shape.columns.cols()), false);
+        s.assessment = screen.assess(shape.columns.whole(), Eigen::VectorXd::Zero(shape.columns.cols()), false);
         s.p_value = corrected(s.candidate, s.assessment);
         if (!(s.p_value < options.shape_p_limit) || (best && !(s.assessment.gain > best->assessment.gain))) continue;
         const bool better = s.assessment.gain - own.gain > 2 * sum_error(s.assessment.block_gain - own.block_gain);

@@ -11,8 +11,39 @@
 namespace traction::lab {
 
 namespace {
+
 constexpr double huber = 3.0; // in units of the balance's scale
+
+// The wheel that all slots are of; -1: several, or the body.
+int wheel_of(const FreeParameter &p) {
+    int wheel = -1;
+    for (const Slot &slot : p.slots) {
+        if (slot.in_wheel == nullptr || (wheel >= 0 && slot.wheel != wheel)) return -1;
+        wheel = slot.wheel;
+    }
+    return wheel;
 }
+
+// What one wheel's differs from what the wheels share, wheel by wheel, where together they move the same slots: the shared one's derivative
+// is their sum. Empty where there is no such.
+std::vector<Eigen::Index> own_of(const std::vector<FreeParameter> &parameters, std::size_t shared) {
+    const FreeParameter &p = parameters[shared];
+    const auto has = [](const FreeParameter &q, const Slot &slot) {
+        return std::any_of(q.slots.begin(), q.slots.end(),
+                           [&](const Slot &s) { return s.in_wheel == slot.in_wheel && s.wheel == slot.wheel; });
+    };
+    std::vector<Eigen::Index> own;
+    std::size_t slots = 0;
+    for (std::size_t j = shared + 1; j < parameters.size() && parameters[j].own; ++j) { // they follow what they share
+        const FreeParameter &q = parameters[j];
+        if (q.owner != p.owner || q.key != p.key || q.touched != p.touched || wheel_of(q) < 0) return {};
+        if (!std::all_of(q.slots.begin(), q.slots.end(), [&](const Slot &slot) { return has(p, slot); })) return {};
+        own.push_back(static_cast<Eigen::Index>(j)), slots += q.slots.size();
+    }
+    return !p.own && slots == p.slots.size() ? own : std::vector<Eigen::Index>();
+}
+
+} // namespace
 
 Problem::Problem(const Dataset &data, const Physics &physics, std::vector<FreeParameter> free)
     : parameters(std::move(free)), data_(&data), base_(physics), forward_(data) {
@@ -62,9 +93,7 @@ Eigen::VectorXd Problem::prior_precision() const {
 Eigen::VectorXd Problem::column(const Physics &at, const FreeParameter &parameter, double step) {
     Physics moved = at;
     parameter.add(moved, step);
-    int wheel = -1;
-    if (parameter.slots.size() == 1 && parameter.slots[0].in_wheel != nullptr) wheel = parameter.slots[0].wheel;
-    return (forward_.predict_from_base(moved, parameter.touched, wheel) - forward_.base()).cwiseProduct(row_scale) / step;
+    return (forward_.predict_from_base(moved, parameter.touched, wheel_of(parameter)) - forward_.base()).cwiseProduct(row_scale) / step;
 }
 
 void Problem::bounds(std::size_t i, double &low, double &high) const {
@@ -85,7 +114,11 @@ void Problem::linearise() {
     const Physics at = physics();
     update_residual();
     jacobian.resize(measured_.size(), theta.size());
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
+    for (std::size_t i = parameters.size(); i-- > 0;) { // what wheels share after what is theirs
+        if (const std::vector<Eigen::Index> own = own_of(parameters, i); !own.empty() && forward_.has_linear_base()) {
+            jacobian.col(static_cast<Eigen::Index>(i)) = jacobian(Eigen::all, own).rowwise().sum();
+            continue;
+        }
         double low = 0, high = 0;
         bounds(i, low, high);
         // whole integrations need a step that is large against the 1e-9 m/s of their search

@@ -36,6 +36,14 @@ Eigen::MatrixXd SparseJacobian::gram(const Eigen::VectorXd &weight) const {
     return sum;
 }
 
+Eigen::MatrixXd SparseJacobian::whole() const {
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(parts_.empty() ? 0 : parts_.back().first + parts_.back().value.rows(), columns_);
+    for (const Part &part : parts_)
+        for (std::size_t j = 0; j < part.column.size(); ++j)
+            J.col(part.column[j]).segment(part.first, part.value.rows()) = part.value.col(static_cast<Eigen::Index>(j));
+    return J;
+}
+
 Eigen::VectorXd SparseJacobian::moment(const Eigen::VectorXd &rows) const {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(columns_), own;
     for (const Part &part : parts_) {

@@ -26,6 +26,8 @@ class SparseJacobian {
     const std::vector<Part> &parts() const { return parts_; }  // in the order of data.balance
     Eigen::MatrixXd gram() const;                              // J' J
     Eigen::MatrixXd gram(const Eigen::VectorXd &weight) const; // J' diag(weight of each row) J
+    Eigen::MatrixXd whole() const;                             // J, zeros and all: to keep J is to keep its parts
+    Eigen::Index cols() const { return columns_; }
     Eigen::VectorXd moment(const Eigen::VectorXd &rows) const; // J' rows
 
   private:

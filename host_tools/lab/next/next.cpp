@@ -174,12 +174,17 @@ void condition_on_log(Plan &plan, const Model &best, Eigen::MatrixXd &gram, Eige
         plan.data = nullptr;
         return;
     }
+    const auto fit = [&](Model &model) { // its values alone: no errors, no blocks left out
+        const Problem fitted = fitted_problem(model, *plan.data);
+        for (std::size_t i = 0; i < fitted.parameters.size(); ++i)
+            store(model, fitted.parameters[i], fitted.theta[static_cast<Eigen::Index>(i)], 0);
+    };
     Model explained = best;
-    fit_model(explained, *plan.data, "");
+    fit(explained);
     Problem last(*plan.data, make_physics(explained), free_parameters(explained, make_physics(explained)));
     last.linearise();
     plan.scale = scale_over_noise(last);
-    fit_model(plan.base, *plan.data, "");
+    fit(plan.base);
     Problem problem(*plan.data, make_physics(plan.base), free_parameters(plan.base, make_physics(plan.base)));
     problem.linearise();
     gram = fisher_information(problem, plan.scale, plan.candidates);

@@ -79,6 +79,20 @@ TEST(Metamorphic, wheels_may_be_numbered_in_any_order) {
     EXPECT_EQ(d.effects[0], "viscous_friction on wheel 3");
 }
 
+// A data sheet's noise is seldom the sensor's: what is named, and which wheel, must not hang on it.
+TEST(Metamorphic, the_noise_that_is_stated_may_be_wrong_by_a_factor_of_ten) {
+    for (const double factor : {0.316, 3.16}) { // the widest of the two is ten times the least
+        log::Log log = hidden();
+        for (auto &[key, value] : log.header)
+            if (key.rfind("noise.", 0) == 0) value = std::to_string(factor * std::stod(value));
+        lab::Model model = machine();
+        const lab::Diagnosis d = verdict(log, model);
+        ASSERT_FALSE(d.effects.empty()) << factor;
+        EXPECT_EQ(d.effects, as_it_is().effects) << factor;
+        EXPECT_NEAR(d.accepted[0].value[0], as_it_is().accepted[0].value[0], 0.1 * as_it_is().accepted[0].value[0]) << factor;
+    }
+}
+
 TEST(Metamorphic, one_drive_in_two_logs_is_the_same_drive) {
     log::Log halves[2] = {hidden(), hidden()};
     for (int i = 0; i < 2; ++i)

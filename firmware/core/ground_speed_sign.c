@@ -1,0 +1,165 @@
+#include "ground_speed_parts.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+// 2 ln of the odds that the wheels give to forward travel.
+float ground_speed_wheel_odds(const ground_speed_config_t *config, float measured, float wheel_m_s)
+{
+    const float rim = fabsf(wheel_m_s);
+    if (!fixed_greater(rim, config->still_m_s)) {
+        return 0.0f;
+    }
+    const bool match = fixed_greater(measured, 0.5f * rim) && fixed_greater(1.5f * rim, measured); // slip of -0.33 to 0.5
+    const bool spins = fixed_greater(rim, measured); // slip of 0 to 1 the wheels' way, or of more than 1 against it
+    const float odds = match ? config->wheel_match : spins ? config->wheel_spins : config->wheel_odds;
+    return wheel_m_s < 0.0f ? -odds : odds;
+}
+
+// g of (12): whether the wheels slip so fast that friction has no other direction.
+static float slips(const ground_speed_config_t *config, float slip_m_s, float rim_m_s)
+{
+    const float rolling = config->wheel_noise_m_s + config->wheel_slip * rim_m_s;
+    const float beyond = fabsf(slip_m_s) - rolling;
+    return !fixed_greater(beyond, 0.0f) ? 0.0f : fixed_greater(beyond, rolling) ? 1.0f : beyond / rolling;
+}
+
+float ground_speed_force_odds(const ground_speed_config_t *config, float measured, float wheel_m_s, float force_m_s2)
+{
+    const float rim = fabsf(wheel_m_s);
+    const float told = ground_speed_square(force_m_s2 * config->force_per_s2_m);
+    const float most = fixed_greater(told, config->force_most) ? config->force_most : told;
+    const float forth = wheel_m_s - measured; // u of +, and of -
+    const float back = wheel_m_s + measured;
+    float odds = 0.0f;
+    if ((forth < 0.0f) != (force_m_s2 < 0.0f)) {
+        odds -= most * slips(config, forth, rim);
+    }
+    if ((back < 0.0f) != (force_m_s2 < 0.0f)) {
+        odds += most * slips(config, back, rim);
+    }
+    return odds;
+}
+
+void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track)
+{
+    side->at = *track;
+    side->ticks = 0;
+    side->q20 = state->integral_q20[state->head];
+}
+
+// 1 where the wheels turn with the track at a speed that agrees with the radar's, -1 where they turn against it, else 0.
+static int32_t with_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float measured, float wheel_m_s)
+{
+    const bool rolls = fixed_greater(1.15f * fabsf(wheel_m_s), measured); // what overtakes its wheels is not pushed by them
+    const bool match = rolls && fabsf(ground_speed_wheel_odds(config, measured, wheel_m_s)) >= config->wheel_match;
+    return !match ? 0 : (wheel_m_s < 0.0f) == (state->speed_m_s < 0.0f) ? 1 : -1;
+}
+
+// A sign that was lost at a restart is the same at constant speed as the right one; wheels that turn against it all the time ask anew.
+void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s)
+{
+    state->against = with_wheels(config, state, measured, wheel_m_s) >= 0 ? 0 : state->against + (state->against < 1000 ? 1 : 0);
+    if (state->against >= config->against_values && !state->other_alive) {
+        const ground_speed_track_t best = ground_speed_best_of(state);
+        ground_speed_split(state, &state->other, &best);
+        state->other.at.speed_m_s = -best.speed_m_s;
+        state->other.at.bias_m_s2 = 2.0f * state->value_accel_m_s2 - best.bias_m_s2; // (2) of the mirror image
+        state->other.at.p_vb = 0.0f;
+        ground_speed_hold(config, &state->other.at);
+        state->odds = config->against_odds;
+        state->other_alive = true;
+        state->against = 0;
+    }
+}
+
+// (9): takes the likelier sign, and follows the other too where it may be the right one.
+float ground_speed_choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track,
+                               float measured, float middle, float spread, float wheel_m_s)
+{
+    const float told = 4.0f * measured * middle / spread; // 2 ln of the odds of +
+    if (fabsf(told) >= config->sign_sure || state->other_alive) {
+        return middle < 0.0f ? -1.0f : 1.0f;
+    }
+    const float odds = told + ground_speed_wheel_odds(config, measured, wheel_m_s) + state->value_force;
+    ground_speed_split(state, &state->other, track);
+    state->odds = fabsf(odds);
+    state->other_alive = state->odds < config->sign_sure;
+    return odds < 0.0f ? -1.0f : 1.0f;
+}
+
+static void move_side(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side, int32_t ticks_ago)
+{
+    const int32_t until = state->integral_q20[((uint32_t)(state->head - ticks_ago)) % GROUND_SPEED_HISTORY];
+    const float change = (float)fixed_wrap_difference(until, side->q20) * (1.0f / 1048576.0f);
+    const float n = (float)(side->ticks - ticks_ago);
+    ground_speed_move(config, &side->at, change, n * config->tick_s, n * state->speed_noise_m2_s2, n * config->bias_noise_m2_s4);
+    side->q20 = until;
+    side->ticks = ticks_ago;
+}
+
+typedef struct {
+    float middle_m_s, spread_m2_s2;
+    ground_speed_value_t value;
+    float told; // 2 ln of the odds of +
+} expected_t;
+
+// What a side expects of the value that the best saw `ticks_ago`.
+static expected_t expect(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side,
+                         int32_t ticks_ago)
+{
+    move_side(config, state, side, ticks_ago);
+    expected_t out;
+    out.value = ground_speed_value_for(config, state, &side->at, state->value_accel_m_s2);
+    out.middle_m_s = side->at.speed_m_s + state->value_tau_s * side->at.bias_m_s2 - state->value_change_m_s;
+    out.spread_m2_s2 = ground_speed_spread_of(&side->at, state->value_tau_s) + out.value.noise_m2_s2;
+    out.told = 4.0f * out.value.speed_m_s * out.middle_m_s / out.spread_m2_s2;
+    return out;
+}
+
+// Corrects it with that sign; returns e^2/S + ln S.
+static float see(const ground_speed_config_t *config, const ground_speed_state_t *state, ground_speed_side_t *side,
+                 const expected_t *expected, float sign)
+{
+    const float innovation = sign * expected->value.speed_m_s - expected->middle_m_s;
+    ground_speed_correct(config, &side->at, innovation, state->value_tau_s, expected->value.noise_m2_s2);
+    return ground_speed_square(innovation) / expected->spread_m2_s2 + ground_speed_ln_rough(expected->spread_m2_s2);
+}
+
+// 1/(1 + (1 + x/16)^8), x = 2 ln of the odds: at least 1/(1 + exp(x/2)), the probability of the less likely sign.
+static float doubt_of(float odds)
+{
+    const float a = 1.0f + fixed_clamp(odds, 0.0f, 100.0f) * (1.0f / 16.0f);
+    return 1.0f / (1.0f + ground_speed_square(ground_speed_square(ground_speed_square(a))));
+}
+
+static const float most_told = 12.0f; // [1] of one value about a sign: no single value decides (assumed)
+
+// The other sign sees the value one tick later, in a tick that has time.
+void ground_speed_update_other(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    const expected_t expected = expect(config, state, &state->other, 1);
+    const bool sure = fabsf(expected.told) >= config->sign_sure;
+    const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
+    const float cost = see(config, state, &state->other, &expected, sign);
+    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
+                   config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) +
+                   config->force_pull * (state->speed_m_s < 0.0f ? -state->value_force : state->value_force);
+    const bool won = state->odds < 0.0f;
+    if (won) {
+        const ground_speed_track_t best = ground_speed_best_of(state);
+        move_side(config, state, &state->other, 0);
+        ground_speed_keep_best(state, &state->other.at);
+        ground_speed_split(state, &state->other, &best);
+        state->odds = -state->odds;
+    }
+    const float apart = state->speed_m_s - state->other.at.speed_m_s;
+    const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
+    state->other_alive = !one && state->odds < config->sign_sure;
+    if (won) {
+        ground_speed_no_rolling(state);
+    }
+    const float doubt = doubt_of(state->odds);
+    state->doubt_m2_s2 = state->other_alive ? doubt * (1.0f - doubt) * apart * apart : 0.0f;
+}

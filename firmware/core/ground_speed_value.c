@@ -1,0 +1,129 @@
+#include "ground_speed_parts.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+static const float early_accel_m_s2 = 0.2f; // [m/s^2] assumed: the speed changes by 0.05 m/s at most in the first half window
+
+// The paper drives forward only; the sign of the wheels extends its filter to reverse.
+void ground_speed_update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s, float wheel_m_s)
+{
+    const float sign = fixed_greater(0.0f, wheel_m_s) ? -1.0f : 1.0f;
+    const float gain = state->p_vv / (state->p_vv + config->doppler_noise_m2_s2); // (1)
+    state->speed_m_s += gain * (sign * fixed_clamp(doppler_m_s, 0.0f, config->speed_max_m_s) - state->speed_m_s);
+    state->p_vv -= gain * state->p_vv;
+    state->p_vb = 0.0f;
+    state->p_bb = 0.0f;
+}
+
+// (4), (5): values that keep missing on one side tell of a slope long before (2) would.
+static const float one_sided_max = 4.0f; // [1] assumed: no single value tells of a jump
+
+static void watch_bias(const ground_speed_config_t *config, ground_speed_state_t *state, ground_speed_track_t *track, float innovation,
+                       float spread)
+{
+    const float one_sided = fixed_clamp(innovation * fabsf(innovation) / spread, -one_sided_max, one_sided_max);
+    state->one_sided += config->jump_share * (one_sided - state->one_sided); // (4)
+    if (fabsf(state->one_sided) > config->jump_limit) {
+        track->p_bb += config->jump_m2_s4; // (5)
+        state->one_sided = 0.0f;
+        ground_speed_hold(config, track);
+    }
+}
+
+// (8)
+static void watch_misfit(const ground_speed_config_t *config, ground_speed_state_t *state, float cost)
+{
+    const float limited = fixed_clamp(cost, 0.0f, ground_speed_square(config->gate_sigma));
+    state->misfit = fixed_clamp(state->misfit * (1.0f + config->misfit_share * (limited - 1.0f)), 1.0f, config->misfit_max);
+}
+
+ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
+                                            const ground_speed_track_t *track, float accel_m_s2)
+{
+    const float own_accel = accel_m_s2 - track->bias_m_s2;
+    const float heard = state->value_heard_m_s;
+    const float accel2 = fixed_clamp(own_accel * own_accel - track->p_bb, 0.0f, 100.0f);
+    const float heard2 = heard * heard;
+    const float less2 = fixed_clamp(ground_speed_square(config->doppler_spread_s) * accel2, 0.0f, 0.5f * heard2);
+    const ground_speed_value_t out = {
+        .speed_m_s = fixed_greater(less2, 0.0f) ? sqrtf(heard2 - less2) : heard, // (11)
+        .noise_m2_s2 =
+            state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2,
+    };
+    return out;
+}
+
+void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
+{
+    const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
+    const float heard = fixed_clamp(input->doppler_m_s, 0.0f, config->speed_max_m_s);
+    ground_speed_track_t track = ground_speed_best_of(state);
+    const bool rolls = state->rolls_ticks > 0;
+    ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
+    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                        // a track that rolls has none of its own
+    const float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
+    const float own_accel = window.accel_m_s2 - track.bias_m_s2;
+    const bool early = input->doppler_late_s < 0.0f;
+    if (early && fabsf(own_accel) > early_accel_m_s2) {
+        return; // w of (3) is that of a full window
+    }
+    const float shorter =
+        early ? 2.5f
+              : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
+    state->alike_m_s += 0.25f * (fixed_clamp(fixed_finite(input->doppler_misfit), 0.0f, 10.0f) * heard - state->alike_m_s);
+    state->value_heard_m_s = heard;
+    state->value_accel_m_s2 = window.accel_m_s2;
+    state->value_trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit * shorter;
+    ground_speed_watch_radar(config, state);
+    const ground_speed_value_t value = ground_speed_value_for(config, state, &track, own.accel_m_s2);
+    const float measured = value.speed_m_s;
+    const float noise = value.noise_m2_s2;
+    float spread = ground_speed_spread_of(&track, own.tau_s) + noise;
+    const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
+    const float cost = ground_speed_square(nearest) / spread;
+    state->waits = 2;
+    state->value_m_s = measured;
+    state->value_noise_m2_s2 = noise;
+    state->value_tau_s = window.tau_s;
+    state->value_change_m_s = window.change_m_s;
+    state->value_cost = cost + ground_speed_ln_rough(spread);
+    state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
+    state->value_wheel_m_s = input->wheel_m_s;
+    state->value_force = ground_speed_force_odds(config, measured, input->wheel_m_s, window.accel_m_s2);
+    watch_bias(config, state, &track, nearest, spread);
+    if (cost > ground_speed_square(config->gate_sigma)) {
+        if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little
+            state->refused++;
+            return;
+        }
+        track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
+        track.p_vb = 0.0f;
+        spread = ground_speed_spread_of(&track, own.tau_s) + noise;
+        state->value_cost = ground_speed_square(nearest) / spread + ground_speed_ln_rough(spread);
+    } else {
+        watch_misfit(config, state, cost);
+    }
+    state->refused = 0;
+    state->accepted = true;
+    state->value_sign = ground_speed_choose_sign(config, state, &track, measured, middle, spread, input->wheel_m_s);
+    state->waits = 2;
+    ground_speed_correct(config, &track, state->value_sign * measured - middle, own.tau_s, noise);
+    ground_speed_keep_best(state, &track);
+    ground_speed_ask_again(config, state, measured, input->wheel_m_s);
+}
+
+// A quiet echo says that the window's mean speed was too low to be heard.
+void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
+{
+    const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
+    ground_speed_track_t track = ground_speed_best_of(state);
+    const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s;
+    const float spread = ground_speed_spread_of(&track, window.tau_s) + config->quiet_noise_m2_s2;
+    if (middle * middle <= config->gate_sigma * config->gate_sigma * spread) { // else a fade of the echo
+        ground_speed_correct(config, &track, -middle, window.tau_s, config->quiet_noise_m2_s2);
+        ground_speed_keep_best(state, &track);
+        state->other_alive = false;
+    }
+}

@@ -1,0 +1,141 @@
+#include "ground_speed_parts.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+// X^2 of (10) beyond `least` and twice what the accelerometer's noise makes of it: Qv T/(2 (T/0.25 s)) = 12.5 Qv.
+float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s)
+{
+    return ground_speed_square(state->apart_m_s) - ground_speed_square(least_m_s) - config->apart_noise * state->speed_noise_m2_s2;
+}
+
+static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: the first count after a start
+
+static const float rolling_slip_m2_s2 = 9e-4f; // (3 cm/s)^2: what slip changes by where a slope begins, assumed
+static const float sway_times = 2.0f;          // a sine's peak over its mean square
+static const float refuted = 100.0f;           // 2 ln of odds: for certain
+static const float beside_share = 0.25f;       // [1] of a value that enters its mean: half a second
+
+enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100 };
+
+// f of (13), over the last ticks.
+static float force_now(const ground_speed_config_t *config, const ground_speed_state_t *state)
+{
+    const int32_t now = state->integral_q20[state->head];
+    const int32_t then = state->integral_q20[((uint32_t)state->head - FORCE_TICKS) % GROUND_SPEED_HISTORY];
+    return (float)fixed_wrap_difference(now, then) * (config->per_tick_1_s / (1048576.0f * FORCE_TICKS));
+}
+
+// Whether the radar's last value, less the wheels' mean of its window, has left its own mean by more than noise and `slip` explain.
+static bool radar_departs(const ground_speed_config_t *config, const ground_speed_state_t *state, float slip_m2_s2)
+{
+    const float left = state->value_beside_m_s - state->beside_mean_m_s;
+    const float noise = state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * state->value_heard_m_s);
+    return fixed_greater(ground_speed_square(left), config->roll_odds * (noise + slip_m2_s2));
+}
+
+// To be called at every value. While the best track rolls, the mean is that of before; a value that leaves it by more than slip may change
+// by tells that it does not roll.
+void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    const float before = state->value_beside_m_s;
+    state->value_beside_m_s = state->value_heard_m_s - fabsf(state->wheel_mean_m_s);
+    if (state->rolls_ticks > 0) {
+        if (radar_departs(config, state, rolling_slip_m2_s2)) {
+            state->odds -= refuted;
+        }
+    } else {
+        state->beside_mean_m_s =
+            state->accepted ? state->beside_mean_m_s + beside_share * (before - state->beside_mean_m_s) : state->value_beside_m_s;
+    }
+}
+
+// Variance of X over the last quarter of a second: of a body that sways on its wheels, not of a slope that begins.
+static float sway_m2_s2(const ground_speed_state_t *state) { return state->apart_m2_s2 - ground_speed_square(state->apart_mean_m_s); }
+
+// (13): the best track rolls from here on, what the accelerometer alone would have is the other one.
+static void begin_rolling(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    ground_speed_track_t best = ground_speed_best_of(state);
+    ground_speed_split(state, &state->other, &best);
+    state->other_alive = true;
+    state->odds = config->roll_odds;
+    best.speed_m_s -= state->apart_m_s;
+    best.p_vv += 0.25f * ground_speed_square(state->apart_m_s); // what (10) has forgotten of it, up to its half
+    ground_speed_hold(config, &best);
+    ground_speed_keep_best(state, &best);
+    state->apart_m_s = 0.0f;
+    state->rolls_ticks = ROLL_TICKS;
+    ground_speed_forget_agile(state);
+}
+
+// The wheels' change of speed is the body's; what the accelerometer feels beside it is bias.
+static void roll(const ground_speed_config_t *config, ground_speed_state_t *state, float ticks)
+{
+    state->speed_m_s -= state->apart_m_s;
+    state->bias_m_s2 += config->roll_share * config->per_tick_1_s * state->apart_m_s;
+    state->p_vv += ticks * config->roll_noise_m2_s2;
+    state->p_vb = 0.0f;
+    state->p_bb = config->roll_bias_m2_s4;
+    state->apart_m_s = 0.0f;
+}
+
+// (10), over the ticks since the last time: it waits in ticks that are busy.
+void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
+{
+    const float wheel = fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s);
+    const int32_t now = state->integral_q20[state->head];
+    const int32_t passed = state->wheel_ticks;
+    const float ticks = (float)passed;
+    const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) -
+                         state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
+    const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
+    if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
+        state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
+    }
+    const float share = 1.0f - keep;
+    state->apart_m2_s2 += share * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);
+    state->apart_mean_m_s += share * (state->apart_m_s - state->apart_mean_m_s);
+    state->wheel_m_s = wheel;
+    state->wheel_mean_m_s += share * (wheel - state->wheel_mean_m_s);
+    state->wheel_q20 = now;
+    state->wheel_ticks = 0;
+    if (config->method == GROUND_SPEED_PAPER) {
+        return;
+    }
+    state->rolls_wait -= state->rolls_wait > passed ? passed : state->rolls_wait;
+    if (state->rolls_ticks > 0) {
+        state->rolls_ticks -= state->rolls_ticks > passed ? passed : state->rolls_ticks;
+        roll(config, state, ticks);
+    } else if (!input->doppler_fresh && fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb) && state->rolls_wait == 0 &&
+               !state->other_alive && input->accel_valid && !input->wheels_part &&
+               fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), sway_times * sway_m2_s2(state))) {
+        const float force = force_now(config, state);
+        const float departs = force - state->bias_m_s2;
+        const bool back = state->apart_m_s < 0.0f;
+        const bool felt = fixed_greater(back ? -departs : departs, config->slip_force_m_s2); // else it is the wheels that depart: they spin
+        const bool pushed = fixed_greater(back ? force : -force, config->slip_force_m_s2);   // along the slip that X would be
+        if (felt && !pushed && !radar_departs(config, state, 0.0f)) {
+            begin_rolling(config, state);
+        }
+    }
+}
+
+ground_speed_past_t ground_speed_rolled(const ground_speed_state_t *state)
+{
+    const ground_speed_past_t out = {.tau_s = 0.0f, .change_m_s = state->wheel_m_s - state->wheel_mean_m_s, .accel_m_s2 = 0.0f};
+    return out;
+}
+
+// The one that believes the accelerometer won: what the wheels told was no rolling, and is forgotten.
+void ground_speed_no_rolling(ground_speed_state_t *state)
+{
+    if (state->rolls_ticks > 0) {
+        state->rolls_ticks = 0;
+        state->rolls_wait = ROLL_AGAIN_TICKS;
+        state->other_alive = false;
+        state->apart_m_s = 0.0f;
+        ground_speed_forget_agile(state);
+    }
+}

@@ -1,0 +1,148 @@
+// Columns that are not what their name says: a copy of another wheel's, a rate of another axis or without its sign, one side of the machine
+// turned round, stamps of a buffer.
+#include "series.h"
+
+#include "host_tools/log/vocabulary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traction::check {
+
+namespace {
+
+void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
+    findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
+}
+
+bool has_error(const Findings &findings, const std::string &start) {
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
+}
+
+// Share of the samples of two columns that are the same number, where enough of them change.
+bool same(const log::Signal *a, const log::Signal *b) {
+    constexpr std::size_t least_changes = 200; // of a coarse speed held by two equal loops some dozen may coincide
+    if (a == nullptr || b == nullptr || a->value.size() != b->value.size() || a->value.size() < least_changes) return false;
+    std::size_t equal = 0, changes = 0;
+    for (std::size_t i = 0; i < a->value.size(); ++i) {
+        equal += a->value[i] == b->value[i];
+        changes += i > 0 && a->value[i] != a->value[i - 1];
+    }
+    return changes >= least_changes && 1000 * equal >= 995 * a->value.size();
+}
+
+// Two sensors never read the same noise. Where current and speed are both the same, one motor drives both wheels; where one of them is and
+// the other is not, a column stands twice.
+void copies(const log::Log &log, const Grid &grid, Findings &findings) {
+    const auto column = [](const Wheel &wheel, const char *tail) { return "wheel" + std::to_string(wheel.index) + "." + tail; };
+    for (std::size_t i = 0; i < grid.wheel.size(); ++i) {
+        for (std::size_t j = i + 1; j < grid.wheel.size(); ++j) {
+            const Wheel &a = grid.wheel[i], &b = grid.wheel[j];
+            const auto both = [&](const char *tail) { return same(log.find(column(a, tail)), log.find(column(b, tail))); };
+            const std::string current = column(b, "current_A");
+            const bool currents = both("current_A"), have_currents = !a.current.empty() && !b.current.empty();
+            const bool motion = both("speed_rad_s") || both("angle_rad") || both("encoder_count");
+            if (!have_currents || currents == motion || a.speed.empty() || b.speed.empty()) continue;
+            const std::string &name = currents ? current : b.speed_column, &other = currents ? column(a, "current_A") : a.speed_column;
+            if (has_error(findings, name)) continue;
+            add(findings, "copied", name,
+                say("'%s' is '%s' to the last digit, while the %s of the two wheels differ", name.c_str(), other.c_str(),
+                    currents ? "speeds" : "currents"),
+                "give the column of this wheel's own sensor; or take it out of the log", 1);
+        }
+    }
+}
+
+// Samples whose stamps lie close together, then none for a while: the logger stamped what its buffer held when it wrote it. Slopes of
+// wheel angles over 0.1 s, and which current belongs to which speed, are lost.
+void buffers(const log::Log &log, Findings &findings) {
+    constexpr double pause_s = 0.1;          // what the lab smooths over
+    constexpr std::size_t least_burst = 5;   // samples; two or three are a bus that sends in groups
+    constexpr std::size_t least_pauses = 10; // otherwise they are gaps
+    for (const log::Signal &signal : log.signals) {
+        if (log::wheel_of(signal.name) < 0 || log::find_quantity(signal.name) == nullptr || signal.t_s.size() < 50) continue;
+        std::vector<double> steps;
+        for (std::size_t i = 1; i < signal.t_s.size(); ++i) steps.push_back(signal.t_s[i] - signal.t_s[i - 1]);
+        const double usual = quantile(steps, 0.5), mean = (signal.t_s.back() - signal.t_s.front()) / static_cast<double>(steps.size());
+        const auto pauses = static_cast<std::size_t>(
+            std::count_if(steps.begin(), steps.end(), [&](double step) { return step > std::fmax(pause_s, 20 * usual); }));
+        if (pauses < least_pauses || steps.size() < least_burst * pauses || 5 * usual > mean) continue;
+        add(findings, "stamps", signal.name,
+            say("the samples of '%s' come in %zu bursts, %.3g s apart within and %.3g s on the mean: they carry the time at which a buffer "
+                "was written",
+                signal.name.c_str(), pauses + 1, usual, mean),
+            "stamp every sample where it is measured; or spread each buffer evenly over the time since the one before", mean);
+        return;
+    }
+}
+
+// A gyro beside the camera's heading, both over half a second.
+void gyro(const Grid &grid, Findings &findings) {
+    if (grid.gyro.empty() || grid.camera_yaw_rate.empty() || has_error(findings, "imu.gyro") || has_error(findings, "camera")) return;
+    const std::vector<double> rate = smooth(tame(grid.gyro), 5), seen = smooth(tame(grid.camera_yaw_rate), 5);
+    std::vector<double> before(seen.size(), not_known), size = seen;
+    constexpr std::size_t lag = 16; // [cells] 0.8 s: no sample of the camera is in both
+    for (std::size_t k = lag; k < seen.size(); ++k) before[k] = seen[k - lag];
+    for (double &v : size) v = std::fabs(v);
+    if (!(quantile(size, 0.95) > 0.1) || correlation(seen, before) < 0.3) return; // too little turning, or the camera's own noise
+    const double alike = correlation(rate, seen), folded = correlation(rate, size), widest = quantile(rate, 0.995);
+    double back_s = 0;
+    for (const double v : seen) back_s += v < -0.3 * quantile(size, 0.98) ? step_s : 0;
+    if (quantile(rate, 0.005) > -0.05 * widest && back_s > 1 && folded > alike + 0.2) {
+        add(findings, "magnitude", "imu.gyro_z_rad_s", "the gyro never reads a turn to the right, but the camera sees them",
+            "log the rate with its sign: a turn to the left is positive", alike);
+        return;
+    }
+    double best = 0;
+    for (int shift = -15; shift <= 15; ++shift) { // what is later is told as that
+        std::vector<double> moved(rate.size(), not_known);
+        for (std::size_t k = 0; k < rate.size(); ++k)
+            if (const auto from = static_cast<std::ptrdiff_t>(k) + shift; from >= 0 && from < static_cast<std::ptrdiff_t>(rate.size()))
+                moved[k] = rate[static_cast<std::size_t>(from)];
+        best = std::max(best, std::fabs(correlation(moved, seen)));
+    }
+    if (best < 0.75)
+        add(findings, "unrelated", "imu.gyro_z_rad_s",
+            say("the gyro has nothing to do with the turns that the camera sees (correlation %.2f at best)", best),
+            "check that it is the rate about the vertical axis, of this run and of this time", best);
+}
+
+// Left wheels against right wheels: the ground, or the gyro, tells whether the machine drives straight or spins.
+void sides(const Grid &grid, const Machine &machine, Findings &findings) {
+    if (!machine.wheels_point_forward || !machine.rolls_freely || machine.wheel_y_m.size() != grid.wheel.size()) return;
+    if (has_error(findings, "wheel") || grid.ground_speed.empty()) return;
+    std::vector<double> sum(grid.count, 0), difference(grid.count, 0), ground = grid.ground_speed;
+    int left = 0, right = 0;
+    for (std::size_t i = 0; i < grid.wheel.size(); ++i) {
+        if (grid.wheel[i].speed.empty()) return;
+        const bool is_left = machine.wheel_y_m[i] > 0;
+        left += is_left, right += machine.wheel_y_m[i] < 0;
+        if (machine.wheel_y_m[i] == 0) continue;
+        for (std::size_t k = 0; k < grid.count; ++k)
+            sum[k] += grid.wheel[i].speed[k], difference[k] += (is_left ? -1 : 1) * grid.wheel[i].speed[k];
+    }
+    if (left == 0 || left != right) return;
+    for (std::size_t k = 0; k < grid.count; ++k)
+        sum[k] = std::fabs(sum[k]), difference[k] = std::fabs(difference[k]), ground[k] = std::fabs(ground[k]);
+    sum = smooth(sum, 5), difference = smooth(difference, 5), ground = smooth(ground, 5);
+    const double straight = correlation(ground, sum), spinning = correlation(ground, difference);
+    if (!(spinning > 0.8) || straight > spinning - 0.5) return;
+    add(findings, "sign", grid.wheel.front().speed_column,
+        say("the ground passes as fast as left and right wheels turn against each other (correlation %.2f; with their sum %.2f): the "
+            "motors of one "
+            "side are mounted the other way round",
+            spinning, straight),
+        "turn the signs of that side's speeds, currents and duties round (map: sign = -1)", spinning);
+}
+
+} // namespace
+
+void check_misplaced(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) {
+    copies(log, grid, findings);
+    buffers(log, findings);
+    gyro(grid, findings);
+    sides(grid, machine, findings);
+}
+
+} // namespace traction::check

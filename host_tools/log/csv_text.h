@@ -1,0 +1,19 @@
+// csv_text.h - how a log's head and numbers are written as text; shared by whoever writes rows.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace traction::log {
+
+// The shortest text that reads back to the same double.
+void append_number(std::string &text, double value);
+
+// The lines above the rows: format, header, names. Throws LogError with `path` where a key, a value or a name cannot be written.
+std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path);
+
+// A sample in a row of its signal: throws LogError unless both are finite and t_s comes after previous_s.
+void check_sample(const std::string &name, std::size_t index, double previous_s, double t_s, double value, const std::string &path);
+
+} // namespace traction::log

@@ -1,0 +1,174 @@
+#include "spool.h"
+
+#include "csv_text.h"
+#include "write_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+namespace traction::log {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// The folder in which the log will stand, when it will be a file there.
+std::string folder_of(const std::string &path) {
+    struct stat there {};
+    const bool in_place = path == "-" || (stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode));
+    if (in_place) return std::filesystem::temp_directory_path().string();
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
+int unnamed_file(const std::string &folder) {
+    const int fd = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (fd >= 0) return fd;
+    std::string name = folder + "/.spool.XXXXXX"; // a file system without O_TMPFILE
+    const int named = mkostemp(name.data(), O_CLOEXEC);
+    if (named >= 0) unlink(name.c_str());
+    return named;
+}
+
+} // namespace
+
+Spool::Spool(std::string path) : path_(std::move(path)) {}
+
+Spool::~Spool() {
+    if (fd_ >= 0) close(fd_);
+}
+
+void Spool::fail() const {
+    throw FileError(path_, 0, 0, std::string("cannot be written: ") + std::strerror(errno),
+                    "give a path that can be, with space for the log twice");
+}
+
+std::size_t Spool::add(const std::string &name, bool absent_is_zero, std::size_t reserve) {
+    Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .blocks = {}, .absent_is_zero = absent_is_zero};
+    fresh.signal.t_s.reserve(path_.empty() ? reserve : std::min(reserve, block));
+    fresh.signal.value.reserve(path_.empty() ? reserve : std::min(reserve, block));
+    columns_.push_back(std::move(fresh));
+    return columns_.size() - 1;
+}
+
+void Spool::put(std::size_t column, double t_s, double value) {
+    Column &to = columns_[column];
+    to.signal.t_s.push_back(t_s);
+    to.signal.value.push_back(value);
+    to.all_zero = to.all_zero && value == 0;
+    if (!path_.empty() && to.signal.value.size() == block) keep_block(to);
+}
+
+void Spool::keep_block(Column &column) {
+    if (fd_ < 0) fd_ = unnamed_file(folder_of(path_));
+    if (fd_ < 0) fail();
+    column.blocks.push_back(end_);
+    for (std::vector<double> *part : {&column.signal.t_s, &column.signal.value}) {
+        const char *from = reinterpret_cast<const char *>(part->data());
+        std::size_t left = part->size() * sizeof(double);
+        while (left > 0) {
+            const ssize_t done = pwrite(fd_, from, left, static_cast<off_t>(end_));
+            if (done < 0 && errno == EINTR) continue;
+            if (done <= 0) fail();
+            from += done, left -= static_cast<std::size_t>(done), end_ += static_cast<std::uint64_t>(done);
+        }
+        part->clear();
+    }
+}
+
+void Spool::load(const Column &column, std::size_t number, std::vector<double> &into) const {
+    if (number >= column.blocks.size()) {
+        into = column.signal.t_s;
+        into.insert(into.end(), column.signal.value.begin(), column.signal.value.end());
+        return;
+    }
+    into.resize(2 * block);
+    char *to = reinterpret_cast<char *>(into.data());
+    std::size_t left = into.size() * sizeof(double);
+    std::uint64_t at = column.blocks[number];
+    while (left > 0) {
+        const ssize_t done = pread(fd_, to, left, static_cast<off_t>(at));
+        if (done < 0 && errno == EINTR) continue;
+        if (done <= 0) fail();
+        to += done, left -= static_cast<std::size_t>(done), at += static_cast<std::uint64_t>(done);
+    }
+}
+
+Log Spool::take() {
+    Log result;
+    for (Column &column : columns_)
+        if (!column.left_out()) result.signals.push_back(std::move(column.signal));
+    columns_.clear();
+    return result;
+}
+
+// One column, sample after sample.
+class Spool::Reader {
+  public:
+    Reader(const Spool &spool, const Column &column) : spool_(spool), column_(column) { open_block(); }
+    double t_s() const { return at_ < size_ ? samples_[at_] : never; }
+    double value() const { return samples_[size_ + at_]; }
+    void next() {
+        const double before = t_s();
+        ++seen_;
+        if (++at_ == size_) open_block();
+        if (at_ < size_) check(before);
+    }
+    void check(double before) const { check_sample(column_.signal.name, seen_, before, t_s(), value(), spool_.path_); }
+
+  private:
+    void open_block() {
+        at_ = size_ = 0;
+        if (number_ > column_.blocks.size()) return;
+        spool_.load(column_, number_++, samples_);
+        size_ = samples_.size() / 2;
+    }
+    const Spool &spool_;
+    const Column &column_;
+    std::vector<double> samples_; // of one block: times, then values
+    std::size_t number_ = 0, at_ = 0, size_ = 0, seen_ = 0;
+};
+
+void Spool::write(const std::map<std::string, std::string> &header) {
+    std::vector<std::string> names;
+    std::vector<Reader> readers;
+    std::vector<double> next; // time of each reader's next sample
+    for (const Column &column : columns_) {
+        if (column.left_out()) continue;
+        names.push_back(column.signal.name);
+        readers.emplace_back(*this, column);
+        readers.back().check(-never);
+        next.push_back(readers.back().t_s());
+    }
+    WholeFile file(path_);
+    std::string text = csv_head(header, names, path_);
+    for (double t_s = never;; t_s = never) {
+        for (const double due : next) t_s = std::min(t_s, due);
+        if (t_s == never) break;
+        append_number(text, t_s);
+        for (std::size_t i = 0; i < readers.size(); ++i) {
+            text += ',';
+            if (next[i] != t_s) continue;
+            append_number(text, readers[i].value());
+            readers[i].next();
+            next[i] = readers[i].t_s();
+        }
+        text += '\n';
+        if (text.size() > std::size_t{1} << 20) {
+            file.write(text);
+            text.clear();
+        }
+    }
+    file.write(text);
+    file.keep();
+}
+
+} // namespace traction::log

@@ -1,0 +1,73 @@
+// A log that is written while it grows is the log that is written at once; nothing of it is lost or kept twice.
+#include "host_tools/log/spool.h"
+#include "host_tools/log/write_file.h"
+
+#include "files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+namespace traction::log {
+namespace {
+
+// Three columns of different clocks and lengths around a block's edge, one that is always 0, one that never held anything.
+void fill(Spool &spool, std::size_t samples) {
+    const std::size_t fast = spool.add("radar.adc_count"), slow = spool.add("wheel0.speed_rad_s"), rare = spool.add("camera.x_m"),
+                      zero = spool.add("command.slip", true);
+    spool.add("wheel1.speed_rad_s");
+    for (std::size_t k = 0; k < samples; ++k) {
+        const double t_s = static_cast<double>(k) / 512;
+        spool.put(fast, t_s, static_cast<double>(k * 37 % 1024));
+        if (k % 5 == 0) spool.put(slow, t_s, std::ldexp(static_cast<double>(k % 77) - 38, -7));
+        if (k % 1000 == 3) spool.put(rare, t_s + 1e-4, 1.0 / static_cast<double>(k + 1));
+        if (k % 5 == 0) spool.put(zero, t_s, 0);
+    }
+}
+
+TEST(Spool, writes_the_bytes_that_write_csv_writes) {
+    const std::map<std::string, std::string> header{{"seed", "7"}, {"title", "a run"}};
+    for (const std::size_t samples :
+         {std::size_t{0}, std::size_t{1}, Spool::block - 1, Spool::block, Spool::block + 1, 7 * Spool::block + 11}) {
+        const test::File at_once("spool_at_once.csv", ""), grown("spool_grown.csv", "");
+        Spool memory, disk(grown.path());
+        fill(memory, samples);
+        fill(disk, samples);
+        Log log = memory.take();
+        log.header = header;
+        EXPECT_EQ(log.find("command.slip"), nullptr) << "absent is 0";
+        EXPECT_EQ(log.find("wheel1.speed_rad_s"), nullptr) << "it never held anything";
+        write_csv(log, at_once.path());
+        disk.write(header);
+        EXPECT_EQ(at_once.text(), grown.text()) << samples;
+    }
+}
+
+TEST(Spool, refuses_what_cannot_stand_in_a_log) {
+    const test::File kept("spool_refused.csv", "as it was");
+    for (const bool backwards : {true, false}) {
+        Spool spool(kept.path());
+        const std::size_t column = spool.add("wheel0.speed_rad_s");
+        for (std::size_t k = 0; k < 3 * Spool::block; ++k) spool.put(column, static_cast<double>(k), 1);
+        spool.put(column, backwards ? 5.0 : 1e9, backwards ? 1 : std::numeric_limits<double>::quiet_NaN());
+        EXPECT_THROW(spool.write({}), LogError);
+        EXPECT_EQ(kept.text(), "as it was") << "nothing half-written";
+    }
+}
+
+TEST(Spool, tells_where_it_cannot_write) {
+    Spool spool("/nowhere/at/all.csv");
+    const std::size_t column = spool.add("wheel0.speed_rad_s");
+    try {
+        for (std::size_t k = 0; k <= Spool::block; ++k) spool.put(column, static_cast<double>(k), 1);
+        FAIL() << "a folder that is not there";
+    } catch (const FileError &error) {
+        EXPECT_NE(std::string(error.what()).find("/nowhere/at/all.csv"), std::string::npos) << error.what();
+    }
+}
+
+} // namespace
+} // namespace traction::log

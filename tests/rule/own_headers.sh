@@ -1,0 +1,31 @@
+#!/bin/sh
+# own_headers.sh ROOT [--fix] - a file that names one of these types includes its header itself, or its own header (x.cpp: x.h) does.
+# What another header happens to bring along differs between compilers: gcc 13 and 14 stopped twice at a missing <cstdint>.
+set -eu
+cd "${1:?own_headers.sh: which folder?}"
+fix=${2-}
+failures=$(mktemp)
+trap 'rm -f "$failures"' EXIT
+
+# needs HEADER REGEX: whoever matches the expression includes the header
+needs() {
+    find . -path ./build -prune -o -path ./tests/rule/broken -prune -o -path ./.venv -prune -o \( -name '*.h' -o -name '*.cpp' \) -print |
+        xargs grep -lE "$2" 2>/dev/null | while IFS= read -r file; do
+        own=${file%.cpp}.h
+        grep -q "#include <$1>" "$file" && continue
+        [ "$own" != "$file" ] && [ -f "$own" ] && grep -q "#include <$1>" "$own" && continue
+        if [ "$fix" = --fix ] && grep -q '^#include <' "$file"; then
+            awk -v line="#include <$1>" '!done && /^#include </ { print line; done = 1 } { print }' "$file" >"$file.part" && cat "$file.part" >"$file" && rm "$file.part"
+        else
+            echo "$file: $(grep -nE "$2" "$file" | head -n 1 | cut -d: -f1): needs #include <$1>" | tee -a "$failures"
+        fi
+    done
+}
+needs cstdint 'std::u?int(8|16|32|64)_t'
+needs optional 'std::optional<'
+needs array 'std::array<'
+needs functional 'std::function<'
+needs memory 'std::(unique|shared)_ptr<'
+needs map 'std::map<'
+needs span 'std::span<'
+[ ! -s "$failures" ] || { echo "sh tests/rule/own_headers.sh . --fix mends them"; exit 1; }

@@ -1,0 +1,40 @@
+// What signals.h counts is what it lists: a device or a fault that is added and forgotten there would be silently dead.
+#include "firmware/core/signals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+
+namespace {
+
+std::string header() {
+    std::ostringstream text;
+    text << std::ifstream("firmware/core/signals.h").rdbuf();
+    return text.str();
+}
+
+// The highest n of "NAME = 1u << n" among the names that begin so; a name that ends in _0 stands for four wheels.
+int highest(const std::string &beginning) {
+    const std::string text = header();
+    const std::regex line(beginning + "([A-Z_0-9]+) = 1u << ([0-9]+)");
+    int most = -1;
+    for (std::sregex_iterator found(text.begin(), text.end(), line), end; found != end; ++found) {
+        const std::string name = (*found)[1];
+        const bool of_wheels = name.size() > 2 && name.substr(name.size() - 2) == "_0";
+        most = std::max(most, std::stoi((*found)[2]) + (of_wheels ? WHEEL_COUNT - 1 : 0));
+    }
+    return most;
+}
+
+TEST(Signals, all_devices_are_all_bits) {
+    ASSERT_GE(highest("FRAME_"), 0) << "firmware/core/signals.h is not where it was";
+    EXPECT_EQ(static_cast<unsigned>(FRAME_ALL), (2u << highest("FRAME_")) - 1);
+}
+
+TEST(Signals, every_fault_is_counted) { EXPECT_EQ(FAULT_COUNT, highest("FAULT_") + 1); }
+
+} // namespace
