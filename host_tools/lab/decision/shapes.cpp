@@ -195,7 +195,7 @@ void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, c
 
 // One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.
 void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
-                               ShapeColumns &columns, bool keep) {
+                               ShapeColumns &columns, const Dataset *keep) {
     if (shape.touched != stage_motion || !is_straight(shape) || shape.order > 0) return;
     const std::vector<Eigen::MatrixXd> each = columns.of_each_wheel(shape);
     if (each.empty()) return;
