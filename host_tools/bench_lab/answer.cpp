@@ -24,6 +24,8 @@ json candidate_json(const lab::CandidateResult &result) {
         if (i < result.low.size()) p["low"] = finite(result.low[i]);
         if (i < result.high.size()) p["high"] = finite(result.high[i]);
     }
+    for (const lab::ShapeEstimate &shape : result.shapes)
+        parameters[shape.key] = {{"value", finite(shape.value)}, {"low", finite(shape.low)}, {"high", finite(shape.high)}};
     json variant = json::object();
     for (const auto &[key, value] : result.candidate.variant) variant[key] = value;
     return {{"effect", result.candidate.effect},

@@ -12,8 +12,8 @@ double torque_constant(const DriveParameters &p, const WheelEffects &e, const Dr
 }
 
 // What friction takes at the most, the Coulomb-like part of Gr >= 0.
-double dry_friction(const DriveParameters &p, const WheelEffects &e, double speed_rad_s, double angle_rad, double load_Nm) {
-    return std::max(dry_friction_Nm(p.coulomb_Nm, e, speed_rad_s, load_Nm) + periodic_Nm(e, angle_rad, true), 0.0);
+double dry_friction(const DriveParameters &p, const WheelEffects &e, double speed_rad_s, double angle_rad, double load_Nm, double since_s) {
+    return std::max(dry_friction_Nm(p.coulomb_Nm, e, speed_rad_s, load_Nm, since_s) + periodic_Nm(e, angle_rad, true), 0.0);
 }
 
 // One mass under a torque, viscous friction and Coulomb friction, both implicit. Returns the energy friction took.
@@ -29,8 +29,10 @@ double advance(double &speed_rad_s, double inertia, double torque_Nm, double vis
 
 } // namespace
 
-double drive_current(const DriveParameters &p, const WheelEffects &e, const DriveState &s, double duty, double supply_V, double dt_s) {
-    const double drop = duty * supply_V - torque_constant(p, e, s) * s.motor_speed_rad_s;
+double drive_current(const DriveParameters &p, const WheelEffects &e, const DriveState &s, double duty, double supply_V, double dt_s,
+                     double others_A) {
+    double drop = duty * supply_V - torque_constant(p, e, s) * s.motor_speed_rad_s;
+    if (e.shared_ohm != 0) drop -= law::shared_lead_V(e.shared_ohm, others_A);
     const double left = std::copysign(std::fabs(drop - law::bridge_dead_time_V(e.dead_voltage_V, drop)), drop);
     const double ohm = circuit_ohm(law::hot_resistance_ohm(p.resistance_ohm, s.heat_K), e);
     double current = left / ohm;
@@ -49,7 +51,7 @@ DriveWork drive_step(const DriveParameters &p, const WheelEffects &e, DriveState
         const double before = s.wheel_speed_rad_s;
         const double torque = motor_torque - traction_torque_Nm - periodic_Nm(e, s.wheel_angle_rad, false);
         work.friction = advance(s.wheel_speed_rad_s, p.inertia_kg_m2, torque, viscous,
-                                dry_friction(p, e, before, s.wheel_angle_rad, traction_torque_Nm), dt_s);
+                                dry_friction(p, e, before, s.wheel_angle_rad, traction_torque_Nm, s.since_s), dt_s);
         const double mean = 0.5 * (before + s.wheel_speed_rad_s);
         work.motor = motor_torque * mean * dt_s;
         s.wheel_angle_rad += dt_s * s.wheel_speed_rad_s;
@@ -64,13 +66,14 @@ DriveWork drive_step(const DriveParameters &p, const WheelEffects &e, DriveState
                                                  s.motor_angle_rad - s.wheel_angle_rad, s.motor_speed_rad_s - s.wheel_speed_rad_s);
             const double before = s.motor_speed_rad_s;
             work.friction += advance(s.motor_speed_rad_s, rotor_inertia, motor_torque - mesh - periodic_Nm(e, s.motor_angle_rad, false),
-                                     viscous, dry_friction(p, e, before, s.motor_angle_rad, mesh), h);
+                                     viscous, dry_friction(p, e, before, s.motor_angle_rad, mesh, s.since_s), h);
             work.motor += motor_torque * 0.5 * (before + s.motor_speed_rad_s) * h;
             s.wheel_speed_rad_s += h * (mesh - traction_torque_Nm) / p.wheel_inertia_kg_m2;
             s.motor_angle_rad += h * s.motor_speed_rad_s;
             s.wheel_angle_rad += h * s.wheel_speed_rad_s;
         }
     }
+    s.since_s += dt_s;
     // with the cold resistance, as the catalogue states it
     s.heat_K += dt_s * (heating_gap_K(e, s.current_A, p.resistance_ohm, s.heat_K) / e.heating_time_s);
     return work;

@@ -29,7 +29,8 @@ struct DriveState {
     double motor_angle_rad = 0, motor_speed_rad_s = 0; // behind the gear, at the wheel's scale
     double wheel_angle_rad = 0, wheel_speed_rad_s = 0;
     double current_A = 0;
-    double heat_K = 0; // winding temperature above ambient
+    double heat_K = 0;  // winding temperature above ambient
+    double since_s = 0; // time since the start
 };
 
 // What one step did, for the energy audit [J].
@@ -38,8 +39,9 @@ struct DriveWork {
 };
 
 // Current of (1) for a duty and a supply voltage, within the bridge's limit; with inductance the one after dt, implicit in I.
+// others_A: what flows in the other motors of a shared lead.
 double drive_current(const DriveParameters &parameters, const WheelEffects &effects, const DriveState &state, double duty, double supply_V,
-                     double dt_s);
+                     double dt_s, double others_A = 0);
 
 // Advances by dt under the current in `state` and the traction torque R*Ft [N m] that brakes the wheel.
 DriveWork drive_step(const DriveParameters &parameters, const WheelEffects &effects, DriveState &state, double traction_torque_Nm,

@@ -164,7 +164,7 @@ void Plant::World::push_body() {
     const Vec3 ahead = axis(0);
     push_velocity = mean_velocity();
     push = {};
-    const double drag = law::body_drag_N(b.drag_N, soft_sign(dot(push_velocity, ahead), 0.005));
+    const double along = dot(push_velocity, ahead), drag = dragged_N(b, along, soft_sign(along, 0.005));
     for (std::size_t k = 0; k < 2; ++k) push[k] = drag * ahead[k];
     push[0] += law::tether_drag_N(b.tether_N_m, truth.position_m[0] - config.x_m);
     push[1] += law::tether_drag_N(b.tether_N_m, truth.position_m[1] - config.y_m);

@@ -4,9 +4,27 @@
 
 namespace traction::sim {
 
+double Plant::World::place_on_path(int i) const {
+    return truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m);
+}
+
+// Of the other motors on a shared lead, a step before: where the lead is long beside the windings that would ring, so they follow slowly.
+double Plant::World::current_of_others(int i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double with = effects.wheel[n].shared_with;
+    if (effects.wheel[n].shared_ohm == 0) return 0;
+    double sum = 0;
+    for (int j = 0; j < wheel_count; ++j)
+        if (j != i && law::shares_lead(with, is_front(j) == is_front(i), is_left(j) == is_left(i)))
+            sum += drive[static_cast<std::size_t>(j)].current_A;
+    constexpr double share = 0.3; // of the difference, per step: assumed, 3 ms
+    others_A[n] += share * (sum - others_A[n]);
+    return others_A[n];
+}
+
 double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) const {
-    const double place = truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m);
-    const double here = strength_here(1 + config.ground.grip_change(x_m, y_m), effects.body, place, truth.path_m, trails(i) ? 1 : 0);
+    const double here =
+        strength_here(1 + config.ground.grip_change(x_m, y_m), effects.body, place_on_path(i), truth.path_m, trails(i) ? 1 : 0);
     return strength_sliding(here, effects.body, sliding_m_s);
 }
 
@@ -170,7 +188,8 @@ void Plant::World::step_wheel(int i, double supply_V) {
     const bool soft = config.ground.contact != ContactLaw::aggregated;
     const Footing foot = footing(point, out.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
     const Soil &soil = *foot.front;
-    const double factor = grip_factor(i, point[0], point[1], rim - along);
+    const double factor = strength_slipping(grip_factor(i, point[0], point[1], rim - along), b, std::clamp(contact[n].slip, -1.0, 1.0),
+                                            law::shear_stiffness(soil.shear_slip, b.shear_change));
     const ContactInput input{.law = soil.law,
                              .shear_slip = soil.shear_slip,
                              .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, b.relaxation_m),
@@ -187,6 +206,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     const double slip_size = std::min(1.0, std::fabs(contact[n].slip));
     double rolling = met.rolling_N;
     each_resistance(mine, b, slip_size, along, [&](double per_load) { rolling += per_load * load; });
+    if (b.heavy_resistance != 0) rolling += resistance_here(b, place_on_path(i)) * load;
     const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
     // what rolling alone pulls (arc law) is part of what it takes: both turn with the direction of rolling
     const double turned = rolling_step(contact[n], along, rolling - met.free_N, r.mass_kg / 4, config.dt_s);
@@ -201,7 +221,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     DriveState &d = drive[n];
     const double speed_before = d.wheel_speed_rad_s;
     if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
-    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s) : 0;
+    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s, current_of_others(i)) : 0;
     if (!blocked[n]) {
         out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
         const DriveWork work = drive_step(r.drive, mine, d, out.torque_Nm, config.dt_s);

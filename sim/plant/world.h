@@ -36,6 +36,8 @@ struct Plant::World {
     void build_bodies();
     void step();
     void step_wheel(int i, double supply_V);
+    double place_on_path(int i) const;
+    double current_of_others(int i);
     double grip_factor(int i, double x_m, double y_m, double sliding_m_s) const; // of Fm: place, track, sliding
     struct Meeting {
         ContactForce force;
@@ -72,7 +74,7 @@ struct Plant::World {
     std::array<Vec3, wheel_count> contact_at{}; // contact point in its half's frame
     std::array<DriveState, wheel_count> drive{};
     std::array<ContactState, wheel_count> contact{};
-    std::array<double, wheel_count> duty{};
+    std::array<double, wheel_count> duty{}, others_A{}; // others_A: of the motors that share a lead
     std::array<bool, wheel_count> blocked{}, open{};
     double sag_V = 0;
     double rise_rad = 0;                  // of the ground where the rover is

@@ -1,12 +1,13 @@
 // analog.h - the small sensors: current shunt, battery divider, accelerometer, gyro. Truth in, measurement in SI out.
 //
-// Each averages the truth over a tick (its anti-alias filter), then adds its own error. Noise figures are one standard
-// deviation of one 10 ms value. Rounding to counts happens in the HAL.
+// Each passes the truth through its own low pass and delay, averages it over a tick (its anti-alias filter), then adds its own error. Noise
+// figures are one standard deviation of one 10 ms value. Rounding to counts happens in the HAL.
 #pragma once
 
 #include "random.h"
 
 #include <cstdint>
+#include <deque>
 #include <string_view>
 
 namespace traction::sim {
@@ -17,6 +18,8 @@ struct AnalogConfig {
     double offset = 0;  // [unit of the sensor]
     double drift_s = 0; // [unit/s]
     double noise = 0;   // [unit] standard deviation of one value
+    double lag_s = 0;   // [s] time constant of a first-order low pass of its own
+    double delay_s = 0; // [s] age of what it measures
 };
 
 // Wheel current: 0.01 A (assumed: 5 counts of the 12-bit converter, what a shunt of 50 mohm behind a bridge leaves).
@@ -34,7 +37,18 @@ class AnalogSensor {
   public:
     AnalogSensor(const AnalogConfig &config, std::uint64_t seed, std::string_view name) : config_(config), random_(seed, name) {}
 
-    void add(double truth) { // once per plant step
+    void add(double truth, double step_s = 0) { // once per plant step, step_s after the one before
+        if (config_.lag_s > 0) {
+            filtered_ = started_ ? filtered_ + step_s / (config_.lag_s + step_s) * (truth - filtered_) : truth;
+            truth = filtered_;
+        }
+        started_ = true;
+        if (config_.delay_s > 0 && step_s > 0) {
+            waiting_.push_back(truth);
+            const auto most = static_cast<std::size_t>(config_.delay_s / step_s + 0.5);
+            while (waiting_.size() > most + 1) waiting_.pop_front();
+            truth = waiting_.front();
+        }
         sum_ += truth;
         count_++;
     }
@@ -50,8 +64,10 @@ class AnalogSensor {
   private:
     AnalogConfig config_;
     Random random_;
-    double sum_ = 0;
+    std::deque<double> waiting_;
+    double sum_ = 0, filtered_ = 0;
     int count_ = 0;
+    bool started_ = false;
 };
 
 } // namespace traction::sim

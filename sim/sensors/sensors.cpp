@@ -26,11 +26,16 @@ void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &c
     config.accel.gain *= law::accel_scale(1, b.accel_scale);
     config.accel.offset = law::accel_bias(config.accel.offset, b.accel_bias_m_s2);
     config.accel.drift_s = law::accel_drift(config.accel.drift_s, b.accel_drift_m_s3, 1); // per second
+    config.accel.delay_s = law::accel_delay_s(config.accel.delay_s, b.accel_delay_s);
+    config.accel.lag_s = law::accel_lag_s(config.accel.lag_s, b.accel_lag_s);
+    config.gyro.delay_s = law::gyro_delay_s(config.gyro.delay_s, b.gyro_delay_s);
+    config.radar_delay_s = law::radar_delay_s(config.radar_delay_s, b.radar_delay_s);
     config.battery.gain *= law::voltage_gain(1, b.voltage_gain);
     config.camera.delay_s = law::camera_delay_s(config.camera.delay_s, b.camera_delay_s);
     config.camera.scale *= law::camera_scale(1, b.camera_scale);
     for (std::size_t i = 0; i < wheel_count; i++) {
         config.current[i].gain *= law::current_gain(1, all.wheel[i].current_gain);
+        config.current[i].delay_s = law::current_delay_s(config.current[i].delay_s, b.current_delay_s);
         config.current[i].offset = law::current_offset(config.current[i].offset, all.wheel[i].current_offset_A);
     }
 }
@@ -90,8 +95,14 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
     // a hop lengthens the beam by sin(theta_d) of it, which looks like a path of tan(theta_d) of it, backwards
     const double hop_m = -tan_depression_ * (shake.heave_m - heave_m_);
     heave_m_ = shake.heave_m;
-    const double step_m = (truth.path_m - last_.path_m) * stretch + hop_m;
+    double step_m = (truth.path_m - last_.path_m) * stretch + hop_m;
     const double step_s = truth.t_s - last_.t_s;
+    if (config_.radar_delay_s > 0 && step_s > 0) { // the beam sees what it saw then
+        radar_waiting_.push_back(step_m);
+        const bool full = static_cast<double>(radar_waiting_.size()) > config_.radar_delay_s / step_s;
+        step_m = full ? radar_waiting_.front() : 0;
+        if (full) radar_waiting_.pop_front();
+    }
     for (;;) {
         const double due_s = static_cast<double>(radar_samples_) / config_.radar.rate_Hz;
         if (due_s > truth.t_s + 1e-9) break; // 1 ns: both clocks are sums
@@ -111,16 +122,17 @@ void Sensors::step(const Truth &truth) {
     }
     const Vibration shake = vibration(truth);
     step_radar(truth, accel_m_s2_, shake);
-    for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A);
+    for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A, step_s);
     battery_.add(truth.battery_voltage_V);
     // a nose that nods down by p turns -g p into the axis
     accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_) -
-               gravity_m_s2 * shake.pitch_rad);
+                   gravity_m_s2 * shake.pitch_rad,
+               step_s);
     accel_y_.add(truth.specific_force_m_s2[1]);
     accel_z_.add(truth.specific_force_m_s2[2] + shake.lift_m_s2);
     gyro_x_.add(truth.rate_body_rad_s[0]);
     gyro_y_.add(truth.rate_body_rad_s[1] - truth.rise_rate_rad_s + shake.pitch_rate_rad_s);
-    gyro_.add(truth.rate_body_rad_s[2]);
+    gyro_.add(truth.rate_body_rad_s[2], step_s);
     if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
         pending_.camera.push_back(*pose);
     last_ = truth;

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,6 +33,7 @@ struct SensorConfig {
     CameraConfig camera;
     double encoder_counts_per_turn = sim::encoder_counts_per_turn; // of a wheel
     RoverEffects effects;         // those that act on every reading anew; the others are in gain, offset, drift, scale and delay
+    double radar_delay_s = 0;     // age of what the beam sees [s]
     double radar_mount_pitch = 1; // how much of the body's pitch turns the beam (1: rigid mount)
     double ground_slope_rad = 0;  // pitch is counted from the ground: rise along ground_direction_rad
     double ground_direction_rad = 0;
@@ -79,6 +81,7 @@ class Sensors {
     Measurements pending_;
     Truth last_;
     double tan_depression_;
+    std::deque<double> radar_waiting_; // steps of the path that the beam has yet to see
     double radar_path_m_ = 0, heave_m_ = 0;
     std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
     double accel_m_s2_ = 0;          // along x, smoothed over 10 ms

@@ -275,7 +275,7 @@ Problem fitted() {
     return problem;
 }
 
-// Half of the catalogue's effects count as tried: 40 effects, of which near copies of one another count once. A p that is corrected for
+// Half of the catalogue's effects count as tried: 54 effects, of which near copies of one another count once. A p that is corrected for
 // clearly fewer would name one log in seven for each factor of seven.
 TEST(Screening, corrects_its_p_for_about_half_of_the_catalogue_and_every_shape_of_an_effect) {
     Problem problem = fitted();

@@ -62,11 +62,30 @@ TEST(Catalogue, a_shape_stays_within_its_range) {
 }
 
 TEST(Catalogue, a_parameter_carries_its_unit_in_its_name) {
-    const std::map<std::string_view, std::string_view> suffix{
-        {"N m", "_Nm"},    {"N m s", "_Nms"}, {"rad/s", "_rad_s"},  {"rad", "_rad"},    {"K/W", "_K_W"},    {"s", "_s"},
-        {"ohm", "_ohm"},   {"V", "_V"},       {"A", "_A"},          {"N", "_N"},        {"N/m", "_N_m"},    {"m", "_m"},
-        {"1/m", "_per_m"}, {"s/m", "_s_m"},   {"m/s^2", "_m_s2"},   {"m/s^3", "_m_s3"}, {"s^2/m", "_s2_m"}, {"rad s^2/m", "_rad_s2_m"},
-        {"1", ""},         {"1/turn", ""},    {"s^2/m^2", "_s2_m2"}};
+    const std::map<std::string_view, std::string_view> suffix{{"N m", "_Nm"},
+                                                              {"N m s", "_Nms"},
+                                                              {"rad/s", "_rad_s"},
+                                                              {"rad", "_rad"},
+                                                              {"K/W", "_K_W"},
+                                                              {"s", "_s"},
+                                                              {"ohm", "_ohm"},
+                                                              {"V", "_V"},
+                                                              {"A", "_A"},
+                                                              {"N", "_N"},
+                                                              {"N/m", "_N_m"},
+                                                              {"m", "_m"},
+                                                              {"1/m", "_per_m"},
+                                                              {"s/m", "_s_m"},
+                                                              {"m/s^2", "_m_s2"},
+                                                              {"m/s^3", "_m_s3"},
+                                                              {"s^2/m", "_s2_m"},
+                                                              {"rad s^2/m", "_rad_s2_m"},
+                                                              {"1", ""},
+                                                              {"1/turn", ""},
+                                                              {"s^2/m^2", "_s2_m2"},
+                                                              {"s/rad", "_per_rad_s"},
+                                                              {"N m s^2", "_Nms2"},
+                                                              {"N s^2/m^2", "_Ns2_m2"}};
     for (const Effect &effect : catalogue())
         for (const EffectParameter &p : effect.parameters) {
             const auto known = suffix.find(p.unit);
@@ -90,6 +109,11 @@ TEST(Laws, gear) {
     EXPECT_EQ(law::stribeck_friction_Nm(0.03, 2, -1), law::stribeck_friction_Nm(0.03, 2, 1));
     EXPECT_NEAR(law::viscous_friction_Nm(0.005, -4), -0.02, rounding);
     EXPECT_NEAR(law::mesh_loss_Nm(0.1, -0.3), 0.03, rounding);
+    EXPECT_NEAR(law::wear_in_Nm(0.05, 30, 30), 0.05 / 2.718281828459045, 0.05 * rounding); // at its own time 1/e is left
+    EXPECT_EQ(law::reverse_friction_Nm(0.03, -2), 0.03);
+    EXPECT_EQ(law::reverse_friction_Nm(0.03, 2), 0);
+    EXPECT_NEAR(law::churning_friction_Nm(6e-4, -5), 0.015, rounding);
+    EXPECT_NEAR(law::gear_speed_loss_Nm(0.03, -5, -0.3), 0.045, rounding);
     EXPECT_NEAR(law::torque_ripple_Nm(0.02, 0.01, 2, 1.0471975511965976), 0.02 * -0.5 + 0.01 * 0.8660254037844387, rounding); // 2*60 deg
 }
 
@@ -106,6 +130,10 @@ TEST(Laws, motor) {
     EXPECT_NEAR(law::hot_torque_constant(0.265, 50), 0.265 * 0.9, rounding);
     EXPECT_NEAR(law::torque_constant(0.265, -0.2), 0.212, rounding);
     EXPECT_NEAR(law::wiring_resistance_ohm(3.24, 0.4), 3.64, rounding);
+    EXPECT_NEAR(law::shared_lead_V(0.5, -0.8), -0.4, rounding);
+    EXPECT_TRUE(law::shares_lead(1, true, false) && !law::shares_lead(1, false, true));
+    EXPECT_TRUE(law::shares_lead(2, false, true) && !law::shares_lead(2, true, false));
+    EXPECT_TRUE(law::shares_lead(3, false, false));
     EXPECT_EQ(law::bridge_dead_time_V(0.4, -0.5), -0.4);
     EXPECT_EQ(law::bridge_dead_time_V(0.4, 0.3), 0.3); // below it all of the drop is lost
     EXPECT_EQ(law::bridge_dead_time_V(0.4, 0), 0);
@@ -117,6 +145,13 @@ TEST(Laws, ground) {
     EXPECT_EQ(law::rolling_resistance(0.06), 0.06);
     EXPECT_NEAR(law::slip_sinkage(0.2, -0.5), 0.1, rounding);
     EXPECT_NEAR(law::speed_resistance(0.08, -0.5), 0.04, rounding);
+    EXPECT_NEAR(law::squared_resistance(0.3, -0.5), 0.075, rounding);
+    EXPECT_EQ(law::resistance_patch(0.12, 1, 0.8, 0.999), 0);
+    EXPECT_EQ(law::resistance_patch(0.12, 1, 0.8, 1), 0.12);
+    EXPECT_EQ(law::resistance_patch(0.12, 1, 0.8, 1.8), 0);
+    EXPECT_EQ(law::shear_peak(0.5, 0.2, 0.1), 1); // up to the knee at twice sc
+    EXPECT_NEAR(law::shear_peak(0.5, -0.6, 0.1), 1 - 0.5 * 0.4, rounding);
+    EXPECT_NEAR(law::shear_peak(2.0, 1.0, 0.1), 0.1, rounding); // never less
     EXPECT_EQ(law::multi_pass(0.25, 0), 1);
     EXPECT_EQ(law::multi_pass(0.25, 1), 1.25);
     EXPECT_EQ(law::soil_patch(0.35, 1, 0.8, 0.999), 1);
@@ -142,6 +177,7 @@ TEST(Laws, loads_and_body_forces) {
     EXPECT_NEAR(aside.across_m_s2, 4.905, 1e-11); // turned to the left of the rise, its foot lies to the left
     EXPECT_NEAR(law::tether_drag_N(0.6, 2), -1.2, rounding);
     EXPECT_EQ(law::body_drag_N(1.2, -1), 1.2);
+    EXPECT_NEAR(law::fluid_drag_N(8, -0.5), 2, rounding);
 }
 
 TEST(Laws, sensors) {
@@ -158,6 +194,11 @@ TEST(Laws, sensors) {
     EXPECT_NEAR(law::camera_scale(1, 0.05), 1.05, rounding);
     EXPECT_NEAR(law::camera_delay_s(0.03, 0.12), 0.15, rounding);
     EXPECT_NEAR(law::actuation_delay_s(0, 0.05), 0.05, rounding);
+    EXPECT_NEAR(law::accel_delay_s(0.01, 0.12), 0.13, rounding);
+    EXPECT_NEAR(law::accel_lag_s(0.01, 0.12), 0.13, rounding);
+    EXPECT_NEAR(law::gyro_delay_s(0, 0.12), 0.12, rounding);
+    EXPECT_NEAR(law::radar_delay_s(0.02, 0.25), 0.27, rounding);
+    EXPECT_NEAR(law::current_delay_s(0.003, 0.05), 0.053, rounding);
 }
 
 // ---------------------------------------------------------------- what they add up to
@@ -177,7 +218,7 @@ TEST(Acting, effects_of_one_kind_add_up_shapes_replace_and_one_wheel_is_one) {
 
 TEST(Acting, friction_and_resistance_are_the_sums_of_their_laws) {
     const WheelEffects e{.coulomb_Nm = 0.04, .stribeck_Nm = 0.03, .stribeck_speed_rad_s = 2, .mesh_fraction = 0.1, .rolling = 0.06};
-    EXPECT_NEAR(dry_friction_Nm(0.03, e, 2, -0.3), 0.03 + 0.04 + 0.03 + 0.03 / 2.718281828459045, rounding);
+    EXPECT_NEAR(dry_friction_Nm(0.03, e, 2, -0.3, 0), 0.03 + 0.04 + 0.03 + 0.03 / 2.718281828459045, rounding);
     double sum = 0;
     each_resistance(e, BodyEffects{.slip_sinkage = 0.2, .speed_resistance_s_m = 0.08}, 0.5, -0.5, [&](double c) { sum += c; });
     EXPECT_NEAR(sum, 0.06 + 0.1 + 0.04, rounding);
@@ -187,7 +228,7 @@ TEST(Acting, without_effects_what_was_given_comes_back_bit_for_bit) {
     const WheelEffects e;
     const BodyEffects b;
     for (const double x : {0.1, 0.73, 1e-9}) {
-        EXPECT_EQ(dry_friction_Nm(x, e, 3, 0.2), x);
+        EXPECT_EQ(dry_friction_Nm(x, e, 3, 0.2, 1), x);
         EXPECT_EQ(motor_constant(x, e, 0), x);
         EXPECT_EQ(circuit_ohm(x, e), x);
         EXPECT_EQ(strength_here(x, b, 1, 2, 1), x);

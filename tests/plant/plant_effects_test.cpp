@@ -129,6 +129,11 @@ const std::map<std::string, std::vector<Balance>> &claims() {
         {"viscous_friction", {torque}},
         {"stribeck_friction", {torque}},
         {"mesh_loss", {torque}},
+        {"wear_in", {torque}},
+        {"reverse_friction", {torque}},
+        {"churning_friction", {torque}},
+        {"gear_speed_loss", {torque}},
+        {"shared_lead", {voltage}},
         {"backlash", {torque}},
         {"torque_ripple", {torque}},
         {"winding_heating", {torque, voltage}},
@@ -138,6 +143,9 @@ const std::map<std::string, std::vector<Balance>> &claims() {
         {"rolling_resistance", {rolling}},
         {"slip_sinkage", {rolling}},
         {"speed_resistance", {rolling}},
+        {"squared_resistance", {rolling}},
+        {"resistance_patch", {rolling}},
+        {"shear_peak", {}}, // that drive stays below its knee: a test of its own
         {"multi_pass", {strength}},
         {"load_transfer", {load}},
         {"mass_offset_x", {load}},
@@ -152,6 +160,7 @@ const std::map<std::string, std::vector<Balance>> &claims() {
         {"grade", {body}},
         {"tether_drag", {body}},
         {"body_drag", {body}},
+        {"fluid_drag", {body}},
     };
     return all;
 }
@@ -211,6 +220,22 @@ TEST(lateral_scrub, resists_turning_and_leaves_straight_driving_alone) {
     EXPECT_GT(turned[0], 0.5);
     EXPECT_LT(turned[1], 0.95 * turned[0]);
     EXPECT_NEAR(travelled[0], travelled[1], 1e-9); // rounding makes sideways speeds of 1e-17 m/s, on which the scrub acts
+}
+
+// Wheels that turn against the motion slip by 1; sand's knee is at 2 sc = 0.54, so a share of 0.5 leaves 1 - 0.5 * 0.46.
+TEST(shear_peak, takes_its_share_of_the_pull_beyond_the_knee) {
+    double pull[2];
+    for (int on = 0; on < 2; ++on) {
+        Plant plant(configuration({active("shear_peak", on)}));
+        for (int k = 0; k < 1000; ++k) {
+            for (int i = 0; i < wheel_count; ++i) plant.set_duty(i, k < 600 ? 0.7 : i < 2 ? 1.0 : -0.8);
+            plant.step();
+        }
+        const WheelTruth &front = plant.truth().wheel[2];
+        EXPECT_LT(front.slip, -0.99);
+        pull[on] = front.traction_N / front.normal_N;
+    }
+    EXPECT_NEAR(pull[1] / pull[0], 1 - 0.5 * 0.46, 0.05); // the plant's slip follows over 5 mm of way
 }
 
 TEST(effects, zero_strength_gives_the_same_bits_as_absence) {

@@ -57,4 +57,64 @@ TEST(SensorEffects, a_nodding_beam_is_a_wrong_scale_as_long_as_the_rover_acceler
     EXPECT_GT(to_plain, 0);
 }
 
+// A rover that stands until 0.5 s, then accelerates: what a late sensor says is what a prompt one said its delay before.
+std::vector<Measurements> start(const ActiveEffect &active) {
+    SensorConfig config = default_sensors();
+    config.accel.noise = config.accel_vibration_1_s = config.gyro.noise = config.radar.noise_count = config.radar.flicker_count = 0;
+    for (AnalogConfig &current : config.current) current.noise = 0;
+    apply_sensor_effects({&active, 1}, config);
+    Truth truth;
+    Sensors sensors(config, 1, truth);
+    std::vector<Measurements> out;
+    for (int ms = 1; ms <= 1500; ++ms) {
+        truth.t_s = ms * 1e-3;
+        const double since = std::fmax(0, truth.t_s - 0.5);
+        truth.v_body_m_s[0] = 0.5 * since;
+        truth.path_m = truth.position_m[0] = 0.25 * since * since;
+        truth.specific_force_m_s2[0] = since > 0 ? 0.5 : 0;
+        truth.rate_body_rad_s[2] = 0.3 * since;
+        for (auto &wheel : truth.wheel) wheel.current_A = 0.8 * since;
+        sensors.step(truth);
+        if (ms % 10 == 0) sensors.measure(out.emplace_back());
+    }
+    return out;
+}
+
+TEST(SensorEffects, a_late_sensor_says_what_a_prompt_one_said_its_delay_before) {
+    const auto prompt = start(effect("accel_bias", 0));
+    const auto accel = start(effect("accel_delay", 0.12)), gyro = start(effect("gyro_delay", 0.12)),
+               current = start(effect("current_delay", 0.05)), radar = start(effect("radar_delay", 0.25));
+    double late = 0, at_once = 0;
+    for (std::size_t i = 30; i < prompt.size(); ++i) {
+        EXPECT_NEAR(accel[i].accel_m_s2[0], prompt[i - 12].accel_m_s2[0], 1e-12);
+        EXPECT_NEAR(gyro[i].gyro_rad_s[2], prompt[i - 12].gyro_rad_s[2], 1e-12);
+        EXPECT_NEAR(current[i].current_A[1], prompt[i - 5].current_A[1], 1e-12);
+        // the phase of the echo, sampled at 512 Hz: 0.25 s are 128 samples
+        const auto first = static_cast<std::ptrdiff_t>(radar[i].radar_first), before = static_cast<std::ptrdiff_t>(prompt[0].radar_first);
+        for (std::size_t k = 0; k < radar[i].radar_count.size(); ++k) {
+            const auto find = [&](std::ptrdiff_t sample) {
+                for (const Measurements &m : prompt) {
+                    const std::ptrdiff_t at = sample - static_cast<std::ptrdiff_t>(m.radar_first);
+                    if (at >= 0 && at < static_cast<std::ptrdiff_t>(m.radar_count.size()))
+                        return static_cast<double>(m.radar_count[static_cast<std::size_t>(at)]);
+                }
+                return 0.0;
+            };
+            const std::ptrdiff_t sample = first + static_cast<std::ptrdiff_t>(k);
+            if (sample - 128 < before) continue;
+            late += std::pow(radar[i].radar_count[k] - find(sample - 128), 2);
+            at_once += std::pow(radar[i].radar_count[k] - find(sample), 2);
+        }
+    }
+    EXPECT_LT(late,
+              0.02 * at_once); // its delay is whole steps of the plant, 1 ms: 0.5 mm of path at most, a tenth of the echo's phase squared
+}
+
+TEST(SensorEffects, a_low_pass_has_reached_all_but_a_share_of_1_over_e_after_its_time_constant) {
+    const auto slow = start(effect("accel_lag", 0.12));
+    // the tick that ends at 0.5 + 0.12 s averages the last 10 ms of 1 - exp(-t/lag), and steps of 1 ms act 0.5 ms early
+    EXPECT_NEAR(slow[61].accel_m_s2[0] / 0.5, 1 - std::exp(-0.115 / 0.12), 0.005);
+    EXPECT_NEAR(slow.back().accel_m_s2[0], 0.5, 0.5 * std::exp(-0.98 / 0.12));
+}
+
 } // namespace

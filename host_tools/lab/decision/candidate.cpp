@@ -43,13 +43,13 @@ std::vector<std::vector<std::pair<std::string, double>>> shape_choices(const sim
 }
 
 // Windows along the path that the log covers: starts every half length.
-std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Motion &motion) {
+std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Motion &motion, std::initializer_list<double> lengths) {
     std::vector<std::vector<std::pair<std::string, double>>> list;
     if (motion.path_m.empty()) return {};
     const auto [low, high] = std::minmax_element(motion.path_m.begin(), motion.path_m.end());
     const double span = *high - *low;
     if (!(span > 0.3)) return {};
-    for (const double length : {0.25, 0.5, 1.0, 1.5, 2.5}) {
+    for (const double length : lengths) {
         if (length > 0.6 * span) continue;
         const double step = std::max(length / 2, span / 24);
         for (double start = *low; start + 0.5 * length < *high; start += step)
@@ -74,7 +74,12 @@ class MachineScale {
             by_unit_["N m"] = KG * volt / Ra / (0.265 * 7.2 / 3.24);
             by_unit_["N m s"] = KG * KG / Ra / (0.265 * 0.265 / 3.24);
             by_unit_["A"] = volt / Ra / (7.2 / 3.24);
-            by_unit_["s/m"] = 7.2 / 0.265 * 0.057 / (volt / KG * radius);
+            const double slower = 7.2 / 0.265 * 0.057 / (volt / KG * radius);
+            by_unit_["s/m"] = slower;
+            by_unit_["s^2/m^2"] = slower * slower;
+            by_unit_["s/rad"] = 7.2 / 0.265 / (volt / KG);
+            by_unit_["N m s^2"] = KG * KG * KG / Ra / volt / (0.265 * 0.265 * 0.265 / 3.24 / 7.2);
+            if (weight > 0) by_unit_["N s^2/m^2"] = weight / (2.88 * 9.81) * slower * slower;
         }
         if (Ra > 0) by_unit_["ohm"] = Ra / 3.24;
         if (volt > 0) by_unit_["V"] = volt / 7.2;
@@ -104,7 +109,7 @@ bool can_show(const std::string &effect, const std::vector<std::pair<std::string
         const double order = shape.empty() ? 1 : std::fabs(shape[0].second);
         return turns > std::max(1.0, 3 / order);
     }
-    if (effect != "actuation_delay" && effect != "camera_delay") return true;
+    if (!effect.ends_with("_delay") && effect != "accel_lag") return true;
     std::size_t most = 0;
     for (const WheelInput &w : data.wheel) { // changes of the wheel's speed by a tenth of its largest within a fifth of a second
         double largest = 0;
@@ -165,6 +170,7 @@ constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_friction, Axis::direction, "friction(direction of travel)"},
     {TermTarget::wheel_torque, Axis::accel, "torque(acceleration)"},
     {TermTarget::rolling, Axis::speed, "resistance(ground speed)"},
+    {TermTarget::rolling, Axis::abs_speed, "resistance(speed)", true},
     {TermTarget::rolling, Axis::slip, "resistance(slip)"},
     {TermTarget::rolling, Axis::time, "resistance(time)", true},
     {TermTarget::rolling, Axis::path, "resistance(path)"},
@@ -250,8 +256,9 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
     for (const EffectHandle &handle : effect_handles()) {
         const sim::Effect *effect = sim::find_effect(handle.name);
         if (effect == nullptr || model.find_effect(handle.name, -1) != nullptr) continue;
-        const bool patch = handle.name == "soil_patch";
-        auto shapes = patch ? patch_choices(motion) : shape_choices(*effect);
+        auto shapes = handle.name == "soil_patch"         ? patch_choices(motion, {0.25, 0.5, 1.0, 1.5, 2.5})
+                      : handle.name == "resistance_patch" ? patch_choices(motion, {0.5, 1.0, 2.0})
+                                                          : shape_choices(*effect);
         const auto wheels = wheel_choices(*effect, model);
         for (const auto &shape : shapes)
             for (const int wheel : wheels) {

@@ -36,7 +36,10 @@ struct Candidate {
     void prepare(Physics &physics) const;
 };
 
-// Every catalogue effect that is not in the model yet. Soil patches begin on cells of the path that `motion` drove.
+// An effect of one stretch of the path: its variants are windows along it.
+inline bool is_patch(const std::string &effect) { return effect == "soil_patch" || effect == "resistance_patch"; }
+
+// Every catalogue effect that is not in the model yet. Patches begin on cells of the path that `motion` drove.
 std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &data, const Motion &motion);
 
 // Structure-free shapes that this log can carry: axis x target, knots at quantiles of the axis.

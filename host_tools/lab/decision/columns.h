@@ -25,13 +25,17 @@ class Columns {
     Eigen::VectorXd column(const Candidate &candidate, std::size_t strength);
     Eigen::VectorXd single(const Candidate &candidate, std::size_t strength, const FreeParameter &parameter);
     Eigen::VectorXd patch(const Candidate &candidate, const FreeParameter &parameter);
+    UnitResponse response(bool strength);
     void fill_cells(const Candidate &candidate, const FreeParameter &parameter, std::size_t first);
 
     Problem &problem_;
     Physics physics_;
     Cache &cache_;
-    std::vector<Eigen::VectorXd> cells_; // of the path
-    UnitResponse ground_;                // to its strength
+    struct Ground {
+        std::vector<Eigen::VectorXd> cells; // of the path
+        UnitResponse unit;
+    };
+    std::map<std::string, Ground> ground_; // per effect that is a patch
     double cell_start_ = 0, cell_length_ = 1;
 };
 

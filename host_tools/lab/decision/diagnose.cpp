@@ -3,6 +3,7 @@
 #include "classes.h"
 #include "doubt.h"
 #include "host_tools/lab/fit/heldout.h"
+#include "host_tools/lab/fit/rounding.h"
 #include "host_tools/lab/fit/screen.h"
 #include "shapes.h"
 #include "tolerance.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 namespace traction::lab {
@@ -55,6 +57,7 @@ class Search {
         eliminate_backward(problem);
         if (options_.shapes) test_shapes(first, problem);
         settle_last(problem);
+        refine_shapes(problem);
         d_.limits = limits_of(problem);
         conclude();
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
@@ -262,8 +265,16 @@ class Search {
         compared.jacobian.resize(0, 0);
         compared.gauss_newton(2);
         HeldOut held = held_out(compared);
-        const Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()),
-                   noise = fall_between(held_, held, noise_weight(before));
+        Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()), noise = fall_between(held_, held, noise_weight(before));
+        if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
+            const Scatter scatter(before);
+            const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
+            const Eigen::VectorXd smoothed =
+                (rounding_squares(data_, before.physics()) - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
+            scaled.sum -= smoothed.dot(weight);
+            noise.sum -= smoothed.dot(noise_weight(before));
+            if (!(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight))) return std::nullopt;
+        }
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
         const bool falls = scaled.sure() && noise.sure();
         // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
@@ -433,6 +444,73 @@ class Search {
         refresh(last, Screen(last));
     }
 
+    // The variants that were tried are stations on a line: beside the strengths, their shape parameters that are numbers on a scale (not
+    // kinds: an order, who shares a lead) are set free from there. Kept where the fit is no worse for it.
+    void refine_shapes(Problem &last) {
+        for (CandidateResult &a : d_.accepted) {
+            const sim::Effect *effect = sim::find_effect(a.candidate.effect);
+            if (effect == nullptr) continue;
+            Model freed = d_.model;
+            bool any = false;
+            for (EffectUse &use : freed.effects) {
+                if (use.name != a.candidate.effect || use.wheel != a.candidate.wheel) continue;
+                for (const sim::EffectParameter &spec : effect->parameters) {
+                    const auto found = use.parameters.find(std::string(spec.name));
+                    if (found == use.parameters.end() || !is_on_a_scale(spec)) continue;
+                    Parameter &p = found->second;
+                    p.fixed = false;
+                    p.minimum = std::max(spec.minimum, spec.unit == "m" ? p.value - reach_m : p.value / reach);
+                    p.maximum = std::min(spec.maximum, spec.unit == "m" ? p.value + reach_m : p.value * reach);
+                    if (spec.unit == "rad") p.minimum = p.value - 1.6, p.maximum = p.value + 1.6;
+                    any = true;
+                }
+            }
+            if (!any) continue;
+            Problem problem = fitted(freed, &last);
+            if (!(overall_error(problem) < 1.0005 * overall_error(last))) continue;
+            take_shapes(a, problem, freed);
+            last = std::move(problem);
+        }
+    }
+
+    // Numbers on a scale; the others are kinds.
+    static bool is_on_a_scale(const sim::EffectParameter &spec) { return !spec.strength && spec.unit != "1" && spec.unit != "1/turn"; }
+
+    void take_shapes(CandidateResult &a, Problem &problem, Model &freed) {
+        const std::vector<ParameterError> errors = Screen(problem).parameter_errors();
+        for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+            const FreeParameter &p = problem.parameters[i];
+            if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel) continue;
+            const double value = p.base + problem.theta[static_cast<Eigen::Index>(i)];
+            for (auto &[key, variant] : a.candidate.variant) {
+                if (key != p.key) continue;
+                variant = value;
+                const double half = errors[i].half_width + (p.unit == "m" ? row_m() : 0);
+                a.shapes.push_back({p.key, p.unit, value, value - half, value + half});
+            }
+        }
+        d_.model = std::move(freed);
+        for (EffectUse &use : d_.model.effects)
+            for (const ShapeEstimate &shape : a.shapes)
+                if (use.name == a.candidate.effect && use.wheel == a.candidate.wheel) {
+                    Parameter &p = use.parameters.at(shape.key);
+                    p.value = shape.value, p.low = shape.low, p.high = shape.high, p.fixed = true;
+                    p.minimum = -std::numeric_limits<double>::infinity(), p.maximum = -p.minimum;
+                }
+        d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
+        refresh(problem, Screen(problem));
+    }
+
+    // How far the rover goes in half a row: an edge within it is not seen.
+    double row_m() const {
+        double sum = 0, n = 0;
+        for (std::size_t i = 0; i < data_.wheel.size(); ++i)
+            for (const double speed : data_.wheel[i].speed_rad_s)
+                if (std::fabs(speed) > data_.standstill_rad_s) sum += std::fabs(speed) * radius_of(i), ++n;
+        return n > 0 ? 0.5 * sum / n * 0.05 : 0;
+    }
+    double radius_of(std::size_t wheel) const { return d_.model.wheel[wheel].geometry.at("radius_m").value; }
+
     // What was found, or may be meant, can be seen in this log.
     bool was_seen(const std::string &effect) const {
         const auto is = [&](const std::string &label) { return label == effect || label.starts_with(effect + " on wheel"); };
@@ -456,7 +534,8 @@ class Search {
         d_.text = verdict_text(d_);
     }
 
-    static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
+    static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
+    static constexpr double least_reduction = 9;    // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
     const Model &stated_;
     const DiagnoseOptions &options_;

@@ -30,8 +30,15 @@ struct DiagnoseOptions {
     std::function<void(int, int)> progress; // candidates done; 500, a guess of how many there will be
 };
 
+// A shape parameter of a law that was named, refined from the variant that was tried: a Stribeck speed, a time constant, a patch's place.
+struct ShapeEstimate {
+    std::string key, unit;
+    double value = 0, low = 0, high = 0; // 95 %
+};
+
 struct CandidateResult {
     Candidate candidate;
+    std::vector<ShapeEstimate> shapes;                    // empty: none could be refined
     std::vector<double> value, low, high;                 // strengths, 95 %
     double heldout_gain = 0, gain_low = 0, gain_high = 0; // fraction of the held-out error
     double gain_squares = 0;

@@ -2,6 +2,7 @@
 
 #include "candidate.h"
 #include "host_tools/lab/fit/distribution.h"
+#include "host_tools/lab/fit/rounding.h"
 #include "host_tools/lab/fit/screen.h"
 #include "host_tools/lab/fit/sparse_jacobian.h"
 
@@ -16,8 +17,8 @@ namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
 constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spent on shapes of one wheel or axle
-constexpr double some_wheels_tried = 100; // electric shapes x wheels and axles
-constexpr double shapes_tried = 72;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
+constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 struct ShapeScore {
     Candidate candidate;
@@ -64,6 +65,20 @@ class ShapeColumns {
         Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
         for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
         return columns;
+    }
+
+    // Of a shape that moves the body, on each wheel alone; empty where that is not to be had in one pass.
+    std::vector<Eigen::MatrixXd> of_each_wheel(const Candidate &c) {
+        const std::size_t count = c.strengths.size(), wheels = physics_.wheel.size();
+        std::vector<Eigen::MatrixXd> list;
+        if (!plain_ || c.touched != stage_motion || wheels < 2 || wheels * count > most_shapes) return list;
+        Physics at = physics_;
+        c.prepare(at);
+        const Eigen::MatrixXd columns =
+            problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), *at.terms.back().term, count, true);
+        for (std::size_t i = 0; i < wheels; ++i)
+            list.push_back(columns.middleCols(static_cast<Eigen::Index>(i * count), static_cast<Eigen::Index>(count)));
+        return list;
     }
 
     // Of waves, which come many and alike: as many as one pass holds.
@@ -131,6 +146,9 @@ ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Scre
     return s;
 }
 
+// Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
+bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
+
 // One value between two that are nothing: a resonance. What a curve of many values says of it is less sure.
 bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
 
@@ -150,6 +168,14 @@ std::vector<std::vector<int>> wheel_groups(const Physics &physics) {
     return groups;
 }
 
+Candidate on_wheels(const Candidate &shape, const std::vector<int> &group) {
+    Candidate c = shape;
+    c.some_wheels = true;
+    c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
+    for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
+    return c;
+}
+
 // A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
 void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
                         const Eigen::MatrixXd &columns, const Dataset *keep) {
@@ -163,11 +189,20 @@ void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, c
             if (std::find(group.begin(), group.end(), b.wheel) != group.end()) part.middleRows(first, n) = columns.middleRows(first, n);
             first += n;
         }
-        Candidate c = shape;
-        c.some_wheels = true;
-        c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
-        for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
-        list.push_back(scored(c, part, screen, keep));
+        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
+    }
+}
+
+// One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.
+void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
+                               ShapeColumns &columns, const Dataset *keep) {
+    if (shape.touched != stage_motion || !is_straight(shape) || shape.order > 0) return;
+    const std::vector<Eigen::MatrixXd> each = columns.of_each_wheel(shape);
+    if (each.empty()) return;
+    for (const std::vector<int> &group : wheel_groups(problem.physics())) {
+        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(each[0].rows(), each[0].cols());
+        for (const int i : group) part += each[static_cast<std::size_t>(i)];
+        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
     }
 }
 
@@ -185,6 +220,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
         const Eigen::MatrixXd C = columns.of(c);
         list.push_back(scored(c, C, screen, keep));
         add_on_some_wheels(list, problem, screen, c, C, keep);
+        add_moving_on_some_wheels(list, problem, screen, c, columns, keep);
         for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
             Candidate bump = c;
             bump.effect += ", a bump";
@@ -276,9 +312,6 @@ Assessment effect_given_shape(const Problem &less, const Eigen::MatrixXd &effect
     return Screen(with).assess(effect, Eigen::VectorXd::Zero(effect.cols()), false);
 }
 
-// Near to many laws of the catalogue: takes a name's place only where it does better beside all else.
-bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
-
 // A curve through three values is no curve (a straight line or a bump is one), and one over wheels that each keep to a value of X is none
 // either: f(X) may stand for anything that differed between them.
 bool is_curve(const Candidate &shape) {
@@ -339,6 +372,26 @@ bool repeats(const ShapeScore &s) {
     return s.p_value < 2e-3 && gain.size() > 2 && gain.head(gain.size() - 2).sum() > 0;
 }
 
+// What a shape that moves the body gains by smoothing the encoders' scatter: no evidence (fit/rounding.h).
+class Smoothing {
+  public:
+    Smoothing(const Problem &problem, const Scatter &scatter) : problem_(problem), scatter_(scatter) {}
+    double of(const ShapeScore &s) {
+        if ((s.candidate.touched & stage_motion) == 0 || s.candidate.some_wheels) return 0;
+        Physics with = problem_.physics();
+        if (plain_.size() == 0) plain_ = rounding_squares(problem_.data(), with);
+        s.candidate.prepare(with);
+        for (std::size_t j = 0; j < with.terms.back().coefficients.size(); ++j)
+            with.terms.back().coefficients[j] = s.assessment.strength[static_cast<Eigen::Index>(j)];
+        return (plain_ - rounding_squares(problem_.data(), with)).cwiseProduct(scatter_.part).dot(problem_.row_scale.cwiseAbs2());
+    }
+
+  private:
+    const Problem &problem_;
+    const Scatter &scatter_;
+    Eigen::VectorXd plain_;
+};
+
 } // namespace
 
 ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
@@ -346,18 +399,27 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     ShapeFindings findings;
     Problem at_last = last, at_first = first; // their forward models are moved about
     const Screen last_screen(at_last);
+    const Scatter scatter(last); // slow on stiff ground (at a steady speed counts beat with samples): it stands in few blocks, like a law
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
     // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
     const auto material = [&](const ShapeScore &s) {
         const double share = s.candidate.some_wheels ? 0.5 : 1; // one wheel's rows are few among all
-        return s.assessment.gain > std::max(share * least, uneven(s.candidate) ? least_uneven : 0.0) * last_screen.heldout_error() ||
-               (s.balance_fall > 0.15 && s.p_value < 1e-4);
+        return s.assessment.gain > std::max({share * least, uneven(s.candidate) ? least_uneven : 0.0, of_scatter * scatter.share}) *
+                                       last_screen.heldout_error() ||
+               (s.balance_fall > 0.15 + scatter.share && s.p_value < 1e-4);
     };
     const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
     const ShapeScore *best = nullptr;
     double best_gain = 0;
+    Smoothing smoothing(last, scatter);
     for (const ShapeScore &s : scores) {
         if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
+        ShapeScore sharp = s;
+        const double smoothed = smoothing.of(s);
+        sharp.assessment.gain -= smoothed;
+        sharp.assessment.block_gain.array() -=
+            smoothed / static_cast<double>(std::max<Eigen::Index>(1, sharp.assessment.block_gain.size()));
+        if (sharp.assessment.gain < s.assessment.gain && (!material(sharp) || !repeats(sharp))) continue;
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
             continue;

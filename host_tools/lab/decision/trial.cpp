@@ -13,7 +13,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double clearly_worse = 1.02; // of the baseline's error: beyond such a size no better one is sought (assumed)
-constexpr double classes_tried = 20;   // catalogue effects that are not near copies of one another: about half of the catalogue
+constexpr double classes_tried = 26;   // catalogue effects that are not near copies of one another: about half of the catalogue
 
 bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
     for (std::size_t j = 0; j < value.size(); ++j)

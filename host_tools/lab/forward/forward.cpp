@@ -35,6 +35,23 @@ class VoltageIntegral {
     std::size_t j_ = 0;
 };
 
+// A first-order low pass of a series that is linear between its samples, lag in steps: y' = (x - y)/lag, exact. lag < 0: its inverse,
+// x + |lag| x', for what is smoothed more on its way here than in the sensor; both are x - lag x' to first order.
+void low_pass(std::vector<double> &x, double lag) {
+    if (lag == 0 || x.size() < 2) return;
+    if (lag < 0) {
+        for (std::size_t k = x.size(); --k > 0;) x[k] -= lag * (x[k] - x[k - 1]);
+        return;
+    }
+    const double kept = std::exp(-1 / lag);
+    double before = x[0], y = x[0];
+    for (std::size_t k = 1; k < x.size(); ++k) {
+        const double slope = x[k] - before, now = x[k];
+        y = now - lag * slope + (y - before + lag * slope) * kept;
+        before = now, x[k] = y;
+    }
+}
+
 std::size_t parts_of(double row_s) { return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(row_s / voltage_part_s))); }
 
 } // namespace
@@ -92,7 +109,7 @@ void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t b
     const Dataset &d = *data_;
     const Balance &b = d.balance[balance];
     const WheelPhysics &p = physics.wheel[wheel];
-    const std::vector<double> voltage = voltage_parts(balance, physics.body.current_delay, command_delay_s(physics.body));
+    const std::vector<double> voltage = voltage_parts(balance, current_delay_s(physics.body), command_delay_s(physics.body));
     const double offset = sim::law::current_offset(p.current_offset0, p.current_offset_A), last = static_cast<double>(d.count - 2);
     std::size_t at = 0;
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
@@ -100,7 +117,7 @@ void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t b
         double taken = 0;
         for (std::size_t n = 0; n < parts; ++n, ++at) {
             const double t = b.t0_s[r] + (static_cast<double>(n) + 0.5) / static_cast<double>(parts) * (b.t1_s[r] - b.t0_s[r]) -
-                             physics.body.current_delay;
+                             current_delay_s(physics.body);
             const double x = std::clamp((t - d.start_s) / d.step_s, 0.0, last);
             const auto k = static_cast<std::size_t>(x);
             const double f = x - static_cast<double>(k);
@@ -127,17 +144,20 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     const WheelPhysics &p = physics.wheel[wheel];
     const double radius = rolling_radius(p), KG = sim::motor_constant(p.KG, p, 0), factor = sim::law::current_gain(1, p.current_gain);
     if (!(KG > 0)) return;
-    const double per_N = factor * radius / KG, by_load = sim::load_friction_Nm(p, 1); // in proportion: its slope
+    const double per_N = factor * radius / KG, gain = count_gain(p);
+    const bool by_load = sim::load_friction_Nm(p, 1, 1) != 0;
     const std::vector<double> &now = motion.wheel[wheel].traction_N, &before = base_motion_.wheel[wheel].traction_N;
     series_.resize(data_->count);
     for (std::size_t k = 0; k < data_->count; ++k) {
         series_[k] = per_N * (now[k] - before[k]);
-        if (by_load != 0)
-            series_[k] += per_N * by_load * (std::fabs(now[k]) - std::fabs(before[k])) *
-                          soft_sign(data_->wheel[wheel].speed_rad_s[k], friction_share * data_->standstill_rad_s);
+        if (by_load) { // in proportion to the load: its slope
+            const double speed = data_->wheel[wheel].speed_rad_s[k];
+            series_[k] += per_N * sim::load_friction_Nm(p, 1, gain * speed) * (std::fabs(now[k]) - std::fabs(before[k])) *
+                          soft_sign(speed, friction_share * data_->standstill_rad_s);
+        }
         if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
     }
-    rows_of(balance, series_, physics.body.current_delay, true, out);
+    rows_of(balance, series_, current_delay_s(physics.body), true, out);
 }
 
 Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const {
@@ -161,6 +181,23 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
     return s;
 }
 
+void Forward::share_leads(const Physics &physics, const Motion &motion) const {
+    lead_current_.clear();
+    if (std::none_of(physics.wheel.begin(), physics.wheel.end(), [](const WheelPhysics &w) { return w.shared_ohm != 0; })) return;
+    std::vector<std::vector<double>> current(physics.wheel.size());
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electric_series(physics, motion, i, current[i], electric_);
+    lead_current_ = std::move(current);
+}
+
+double Forward::current_of_others(const Physics &physics, std::size_t wheel, std::size_t k) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < lead_current_.size(); ++j)
+        if (j != wheel && sim::law::shares_lead(physics.wheel[wheel].shared_with, same_axle(physics.wheel[wheel], physics.wheel[j]),
+                                                same_side(physics.wheel[wheel], physics.wheel[j])))
+            sum += lead_current_[j][k];
+    return sum;
+}
+
 void Forward::electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
                               ElectricSeries &out) const {
     const Dataset &d = *data_;
@@ -179,8 +216,9 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
         const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
         double KG = sim::motor_constant(p.KG, p, heat_K), ke = sim::motor_constant(p.ke, p, heat_K);
         double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
+        if (!lead_current_.empty()) u_lost += sim::law::shared_lead_V(p.shared_ohm, current_of_others(physics, wheel, k));
         const double viscous = sim::viscous_friction_Nm(p.b, p, std::fabs(w)), angle = gain * in.angle_rad[k];
-        const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k]);
+        const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k], d.time(k) - d.start_s);
         const double side = soft_sign(w, friction_share * data_->standstill_rad_s);
         double gear = friction * side, current_factor = sim::law::current_gain(1, p.current_gain);
         gear += sim::periodic_Nm<law::Library>(p, angle, false) + sim::periodic_Nm<law::Library>(p, angle, true) * side;
@@ -225,13 +263,13 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
                with_bench = bench_balance < d.balance.size();
     if (!with_torque && !with_voltage && !with_bench) return;
     electric_series(physics, motion, wheel, current, electric_);
-    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_.reading, physics.body.current_delay, false, out);
+    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_.reading, current_delay_s(physics.body), false, out);
     if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
-        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, physics.body.current_delay, command_delay_s(physics.body));
+        const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, current_delay_s(physics.body), command_delay_s(physics.body));
         auto rows = out.segment(static_cast<Eigen::Index>(first_row_[voltage_balance]), voltage.size());
-        rows_of(voltage_balance, electric_.per_V, physics.body.current_delay, false, out);
+        rows_of(voltage_balance, electric_.per_V, current_delay_s(physics.body), false, out);
         const Eigen::VectorXd through = rows.cwiseProduct(voltage);
-        rows_of(voltage_balance, electric_.lost, physics.body.current_delay, false, out);
+        rows_of(voltage_balance, electric_.lost, current_delay_s(physics.body), false, out);
         rows = through - rows;
         if (physics.wheel[wheel].dead_voltage_V != 0) dead_zone(physics, wheel, voltage_balance, rows);
         if (physics.unsigned_current) rows = rows.cwiseAbs();
@@ -272,6 +310,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         const BalanceKind kind = d.balance[i].kind;
         double delay = 0;
         if (kind == BalanceKind::accel) {
+            delay = sim::law::accel_delay_s(b.accel_delay0, b.accel_delay_s);
             double lagged = 0, before = 0;
             const double share = 1 - std::exp(-d.step_s / sim::law::accel_tilt_lag_s);
             for (std::size_t k = 0; k < d.count; ++k) {
@@ -283,8 +322,9 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
                 x[k] = sim::law::accel_drift(sim::law::accel_bias(read, b.accel_bias_m_s2), b.accel_drift_m_s3, d.time(k)) +
                        factor(TermTarget::accel, k) - 1;
             }
+            low_pass(x, sim::law::accel_lag_s(b.accel_lag0, b.accel_lag_s) / d.step_s);
         } else if (kind == BalanceKind::radar) {
-            delay = b.radar_delay;
+            delay = sim::law::radar_delay_s(b.radar_delay, b.radar_delay_s);
             for (std::size_t k = 0; k < d.count; ++k)
                 x[k] = std::fabs(motion.v_m_s[k]) * sim::law::radar_scale(1 + b.radar_scale0, b.radar_scale) *
                        sim::law::radar_pitch(b.radar_pitch_s2_m, motion.accel_m_s2[k]) * factor(TermTarget::radar, k);
@@ -296,6 +336,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
             const double scale = kind == BalanceKind::camera_yaw ? 1 : sim::law::camera_scale(1 + b.camera_scale0, b.camera_scale);
             for (std::size_t k = 0; k < d.count; ++k) x[k] = source[k] * scale * factor(TermTarget::camera, k);
         } else if (kind == BalanceKind::yaw_rate) {
+            delay = sim::law::gyro_delay_s(0, b.gyro_delay_s);
             for (std::size_t k = 0; k < d.count; ++k) x[k] = motion.yaw_rate_rad_s[k] + b.gyro_bias;
         } else if (kind == BalanceKind::force) {
             const Motion::Wheel &w = motion.wheel[static_cast<std::size_t>(d.balance[i].wheel)];
@@ -330,6 +371,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
     const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0,
                terms = has_electric_terms(physics);
     const unsigned stages = moves ? stage_torque | stage_voltage : touched;
+    if (electric) share_leads(physics, motion);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         const WheelPhysics &p = physics.wheel[i];
         const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
@@ -343,6 +385,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
 
 Eigen::VectorXd Forward::observe(const Physics &physics, const Motion &motion) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
+    share_leads(physics, motion);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, motion, i, stage_torque | stage_voltage, current_, out);
     sensors(physics, motion, out);
     return out;
@@ -356,6 +399,7 @@ void Forward::set_base(const Physics &physics) {
     have_base_ = true;
     base_physics_ = physics;
     linear_base_ = !base_motion_.tangent.empty() && has_neighbours(*data_, physics, physics);
+    share_leads(physics, base_motion_);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i)
         electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
     sensors(physics, base_motion_, base_prediction_);

@@ -35,7 +35,8 @@ class Forward {
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
     // What one unit of each coefficient of a shape f(X) changes in each row, beside the base: of a shape that moves the body, and of one of
     // the torque and voltage balances alone. Holds where nothing but the motion remembers (no heating, no other terms).
-    Eigen::MatrixXd shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count);
+    // each_wheel: of the shape on each wheel alone, one after the other (wheels x count columns, at most most_shapes).
+    Eigen::MatrixXd shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count, bool each_wheel = false);
     struct ElectricSeries {
         std::vector<double> reading, lost, per_V,
             shaft; // current by torque; by voltage: per_V times the motor's voltage, less what is lost
@@ -63,6 +64,9 @@ class Forward {
                     Eigen::VectorXd &out) const;
     void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
                          ElectricSeries &out) const;
+    // Currents of all wheels, for those that share a lead; nothing where none does.
+    void share_leads(const Physics &physics, const Motion &motion) const;
+    double current_of_others(const Physics &physics, std::size_t wheel, std::size_t k) const;
     Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel,
                        std::size_t k) const; // of the torque and voltage terms, I left out
     void lead(std::size_t balance, const std::vector<double> &series, double share, double delay_s, Eigen::VectorXd &out) const;
@@ -82,6 +86,7 @@ class Forward {
     Motion base_motion_, scratch_;
     mutable std::vector<double> series_, current_;
     mutable ElectricSeries electric_;
+    mutable std::vector<std::vector<double>> lead_current_; // per wheel, where leads are shared
     std::vector<Motion> shaped_;
     mutable std::vector<Windows> windows_; // per balance
     struct MeanVoltage {

@@ -10,11 +10,12 @@ bool plain_currents(const Physics &physics) {
                        [](const WheelPhysics &w) { return !sim::needs_any(w, sim::needs_heat | sim::needs_bend); });
 }
 
-Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t count) {
+Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t coefficients,
+                                bool each_wheel) {
     const Dataset &d = *data_;
     const Motion &m = base_motion_;
-    const std::size_t wheels = base.wheel.size();
-    std::vector<double> share(d.count * wheels * count);
+    const std::size_t wheels = base.wheel.size(), count = each_wheel ? wheels * coefficients : coefficients;
+    std::vector<double> share(d.count * wheels * count, 0);
     Signals s;
     for (std::size_t k = 0; k < d.count; ++k) {
         const std::size_t j = k == 0 ? 0 : k - 1;
@@ -25,7 +26,7 @@ Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, c
             s.Fn = m.wheel[i].load_N[k];
             s.theta = gain * d.wheel[i].angle_rad[k], s.x = s.X + base.wheel[i].x;
             s.Ft = m.wheel[i].traction_N[k], s.d = d.wheel[i].travel_rad.empty() ? 0 : gain * d.wheel[i].travel_rad[k];
-            term.weights(s, count, &share[(k * wheels + i) * count]);
+            term.weights(s, coefficients, &share[(k * wheels + i) * count + (each_wheel ? i * coefficients : 0)]);
         }
     }
     shaped_.resize(count);
@@ -75,7 +76,7 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
         for (std::size_t j = 0; j < count; ++j) {
             const auto rows_of_unit = [&](std::size_t balance, const std::vector<double> &of) {
                 for (std::size_t k = 0; k < d.count; ++k) series[k] = weight[k * count + j] * of[k];
-                rows_of(balance, series, base.body.current_delay, false, out);
+                rows_of(balance, series, current_delay_s(base.body), false, out);
                 return out.segment(static_cast<Eigen::Index>(first_row_[balance]),
                                    static_cast<Eigen::Index>(d.balance[balance].measured.size()));
             };
@@ -86,7 +87,8 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
             if (const std::size_t b = balance_of(BalanceKind::current_torque, i); b < d.balance.size())
                 place(b) = rows_of_unit(b, unit[i].reading);
             if (const std::size_t b = balance_of(BalanceKind::current_voltage, i); b < d.balance.size()) {
-                through = rows_of_unit(b, unit[i].per_V).cwiseProduct(mean_voltage(b, base.body.current_delay, command_delay_s(base.body)));
+                through =
+                    rows_of_unit(b, unit[i].per_V).cwiseProduct(mean_voltage(b, current_delay_s(base.body), command_delay_s(base.body)));
                 place(b) = through - rows_of_unit(b, unit[i].lost);
             }
         }

@@ -44,6 +44,8 @@ constexpr Key keys[] = {
     {"sensors", "duty.delay_s", nullptr, &B::voltage_delay0, stage_voltage},
     {"sensors", "current.delay_s", nullptr, &B::current_delay, stage_torque | stage_voltage},
     {"sensors", "accel.bias_m_s2", nullptr, &B::accel_bias0, stage_sensors},
+    {"sensors", "accel.delay_s", nullptr, &B::accel_delay0, stage_sensors},
+    {"sensors", "accel.lag_s", nullptr, &B::accel_lag0, stage_sensors},
     {"sensors", "gyro.bias_rad_s", nullptr, &B::gyro_bias, stage_sensors},
     {"sensors", "radar.scale", nullptr, &B::radar_scale0, stage_sensors},
     {"sensors", "radar.delay_s", nullptr, &B::radar_delay, stage_sensors},
@@ -262,6 +264,13 @@ void append_shared(std::vector<FreeParameter> &list, const Model &model, const K
     }
 }
 
+bool is_shape(const EffectHandle &handle, const std::string &key) {
+    return std::any_of(handle.shapes.begin(), handle.shapes.end(), [&](const auto &place) { return place.key == key; });
+}
+
+// A place along the path moves whole rows from one side of an edge to the other: its step is as long as a row (50 ms at 1 m/s).
+double shape_step(const Parameter &p) { return p.unit == "m" ? 0.05 : 1e-4 * std::max(std::fabs(p.value), 0.1); }
+
 void append_effects(std::vector<FreeParameter> &list, const Model &model) {
     int term = 0;
     for (const EffectUse &use : model.effects) {
@@ -286,18 +295,20 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model) {
                 free.touched = target_stages(target);
             } else {
                 free.touched = handle->touched;
-                for (const auto &place : handle->strengths) {
-                    if (place.key != key) continue;
-                    if (place.in_body != nullptr)
-                        free.slots = {body_slot(place.in_body)};
-                    else
-                        for (std::size_t i = 0; i < model.wheel.size(); ++i)
-                            if (use.wheel < 0 || static_cast<std::size_t>(use.wheel) == i)
-                                free.slots.push_back(wheel_slot(place.in_wheel, static_cast<int>(i)));
-                }
+                for (const auto *places : {&handle->strengths, &handle->shapes})
+                    for (const auto &place : *places) {
+                        if (place.key != key) continue;
+                        if (place.in_body != nullptr)
+                            free.slots = {body_slot(place.in_body)};
+                        else
+                            for (std::size_t i = 0; i < model.wheel.size(); ++i)
+                                if (use.wheel < 0 || static_cast<std::size_t>(use.wheel) == i)
+                                    free.slots.push_back(wheel_slot(place.in_wheel, static_cast<int>(i)));
+                    }
             }
             const double span = std::isfinite(p.maximum - p.minimum) ? p.maximum - p.minimum : std::fabs(p.value) + 1.0;
             free.step = std::max((handle != nullptr && handle->remembers ? 1e-3 : 1e-7) * span, 1e-10);
+            if (handle != nullptr && is_shape(*handle, key)) free.step = shape_step(p);
             if (!p.fixed && !free.slots.empty()) list.push_back(std::move(free));
         }
         if (handle == nullptr) ++term;

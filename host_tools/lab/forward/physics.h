@@ -36,12 +36,15 @@ inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y
 
 struct BodyPhysics : sim::BodyEffects {
     double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;
-    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, gyro_bias = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0,
-           camera_scale0 = 0, camera_delay0 = 0;
+    double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, accel_delay0 = 0, accel_lag0 = 0, gyro_bias = 0, radar_scale0 = 0,
+           radar_delay = 0, radar_lead = 0, camera_scale0 = 0, camera_delay0 = 0;
 };
 
 // By which the duty takes effect later than the log has it.
 inline double command_delay_s(const BodyPhysics &b) { return sim::law::actuation_delay_s(b.voltage_delay0, b.actuation_delay_s); }
+
+// By which the currents are later than the log has it.
+inline double current_delay_s(const BodyPhysics &b) { return sim::law::current_delay_s(b.current_delay, b.current_delay_s); }
 
 struct ExtraTerm {
     std::string name;

@@ -114,7 +114,9 @@ void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
     s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i) : data_.load_N[i][k];
     s.Fm = std::max(0.0, (w.adhesion + w.mu * s.load) * (even_ ? 1 : strength(i, v_before)));
     s.sc = s.plain_sc;
+    if (p_.body.heavy_resistance != 0) s.resistance_here = sim::resistance_here(p_.body, path_ + w.x);
     const auto at = static_cast<Eigen::Index>(i % 4);
+    four_[i / 4].resistance_here[at] = s.resistance_here;
     four_[i / 4].rim[at] = s.rim, four_[i / 4].load[at] = s.load, four_[i / 4].Fm[at] = s.Fm;
 }
 
@@ -132,6 +134,8 @@ void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
         const auto at = static_cast<Eigen::Index>(i);
         State &s = state_[first + i];
         s.rim = f.rim[at], s.load = f.load[at], s.Fm = f.Fm[at], s.sc = s.plain_sc;
+        if (p_.body.heavy_resistance != 0)
+            f.resistance_here[at] = s.resistance_here = sim::resistance_here(p_.body, path_ + p_.wheel[first + i].x);
     }
 }
 
@@ -142,10 +146,11 @@ inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) co
     const bool lags = state_[0].sigma > 0;
     f.slip = slip_now(lags, f.slip_before, f.lag_1_m, f.rim, v);
     f.side_slip = side_slip_now(sideways_ && lags, f.side_slip_before, f.lag_1_m, f.rim, v, side_v);
-    const Lane Fm = sim::strength_sliding<law::Library>(f.Fm, b, Lane(f.rim - v));
+    const Lane Fm =
+        sim::strength_slipping<Lane>(sim::strength_sliding<law::Library>(f.Fm, b, Lane(f.rim - v)), b, f.slip, Lane(1 / f.per_sc));
     const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.slip, f.side_slip, f.grip, sideways_);
     f.traction = traction, f.side = side;
-    const Lane resist = f.load * resistance(f.resistance, f.effects, b, f.slip, v);
+    const Lane resist = f.load * resistance(Lane(f.resistance + f.resistance_here), f.effects, b, f.slip, v);
     f.rolling = resist * soft_sign(v, resist_speed_m_s);
 }
 
@@ -227,10 +232,11 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     s.side_slip = p_.grips_sideways[i] ? side_slip_at(s, v, side_v) : 0;
     double Fm = sim::strength_sliding<law::Library>(s.Fm, b, s.rim - v), sc = s.sc, extra = 0, extra_rolling = 0;
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
+    Fm = sim::strength_slipping<double>(Fm, b, s.slip, sc);
     const auto [traction, side] = grip_of(p_.soil_law, Fm, sc, s.slip, s.side_slip, p_.wheel[i].grip, sideways_);
     s.traction = traction, s.side = side;
     if (p_.wheel[i].play_rad > 0) s.traction *= contact(i, v);
-    const double resist = s.load * resistance<double>(p_.wheel[i].crr, p_.wheel[i], b, s.slip, v) + extra_rolling;
+    const double resist = s.load * resistance<double>(p_.wheel[i].crr + s.resistance_here, p_.wheel[i], b, s.slip, v) + extra_rolling;
     // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
     const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v), share = resist / length(speed, resist_speed_m_s);
     s.rolling = share * v;
@@ -272,7 +278,7 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
 
 double WheelStep::body_force(double v) const {
     const BodyPhysics &b = p_.body;
-    double force = sim::law::tether_drag_N(b.tether_N_m, away_) + sim::law::body_drag_N(b.drag_N, soft_sign(v, resist_speed_m_s));
+    double force = sim::law::tether_drag_N(b.tether_N_m, away_) + sim::dragged_N(b, v, soft_sign(v, resist_speed_m_s));
     if (motion_terms_) {
         Signals signals;
         signals.t = t_, signals.v = v, signals.V = v, signals.x = signals.X = path_, signals.a = accel_, signals.r = yaw_rate_;

@@ -50,7 +50,7 @@ class WheelStep {
         double x = 0, y = 0; // place from the centre of mass (longitudinal motion: from the middle)
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, lag_1_m = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0,
                load_per_side = 0, load_per_twist = 0;
-        double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1;
+        double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1, resistance_here = 0;
         double slip_before = 0, side_slip_before = 0, play_before = 0;
         double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
     };
@@ -64,7 +64,7 @@ class WheelStep {
     // Four wheels side by side; where there are fewer, the last carry nothing.
     struct Four {
         Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(),
-             lateral = Lane::Zero();
+             resistance_here = Lane::Zero(), lateral = Lane::Zero();
         sim::WheelEffectsOf<Lane> effects;
         Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero(), side_slip_before = Lane::Zero();
         Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero(),

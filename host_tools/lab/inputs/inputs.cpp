@@ -190,7 +190,9 @@ void InputBuilder::wheel_motion(std::size_t i) {
         WheelInput sharp;
         sharp.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 3).slope;
         slopes_of(sharp);
-        const double noise = rounding_noise(angle, sample_period(*s), half);
+        const double count_rad = rounding_of(angle);
+        input.scatter_rad = scatter_of(angle, count_rad), input.sample_s = sample_period(*s), input.half_s = half;
+        const double noise = rounding_noise(count_rad, input.sample_s, half);
         rounding_rad_s2 = std::max(rounding_rad_s2, noise);
         follow_jumps(input, sharp, noise);
     } else if (data.independent_rows) {
@@ -212,12 +214,25 @@ void InputBuilder::wheel_motion(std::size_t i) {
     }
 }
 
-// What the rounding of an encoder leaves in the difference of two accelerations, by cubics and by parabolas [rad/s^2].
-double InputBuilder::rounding_noise(const std::vector<double> &angle, double period, double half) {
+// One count of an encoder, as an angle.
+double InputBuilder::rounding_of(const std::vector<double> &angle) {
     double count = 0;
     for (std::size_t i = 2; i < angle.size(); ++i)
         if (const double step = std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]); step > 1e-9 && (count <= 0 || step < count))
             count = step;
+    return count;
+}
+
+// Standard deviation of the samples of a wheel that turns: rounding at least, more where their times scatter.
+double InputBuilder::scatter_of(const std::vector<double> &angle, double count) {
+    std::vector<double> bend;
+    for (std::size_t i = 2; i < angle.size(); ++i)
+        if (std::fabs(angle[i] - angle[i - 2]) > 4 * count) bend.push_back(std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]));
+    return std::max(count / std::sqrt(12.0), 1.4826 * median(std::move(bend)) / std::sqrt(6.0));
+}
+
+// What the rounding of an encoder leaves in the difference of two accelerations, by cubics and by parabolas [rad/s^2].
+double InputBuilder::rounding_noise(double count, double period, double half) {
     constexpr double gain =
         165; // of white noise, by simulation: 167 at half = 55 ms and 165 at 80 ms of 10 ms samples, 140 at 110 ms of 20 ms samples
     return gain * count / std::sqrt(12.0) * std::sqrt(period) / std::pow(half, 1.5);

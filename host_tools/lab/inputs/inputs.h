@@ -39,7 +39,9 @@ struct InputBuilder {
     double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel
     void wheel_motion(std::size_t i);
     void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
-    static double rounding_noise(const std::vector<double> &angle_rad, double period_s, double half_s);
+    static double rounding_of(const std::vector<double> &angle_rad);
+    static double scatter_of(const std::vector<double> &angle_rad, double count_rad);
+    static double rounding_noise(double count_rad, double period_s, double half_s);
     void travel(WheelInput &input) const;
     // Acceleration from the smoothed speed by a second, equal smoothing of central differences.
     void slopes_of(WheelInput &input) const;

@@ -7,6 +7,7 @@ namespace {
 // Priors are assumed: a brushed gear motor's data sheet holds within 2 to 3 % for its constant and winding, 10 % for friction; a soil is
 // known to 20 %; a tyre's radius under load to 0.5 %. Between the wheels of one machine: motors of one lot differ by 1.5 % in their magnets
 // and 3 % in windings and brushes, bearings and gears by 15 % in what they lose, tyres of one mould by 0.2 %.
+// An accelerometer's own low pass: MEMS data sheets offer 5 to 260 Hz, so up to some 30 ms and mostly 10; as much again until it is read.
 constexpr ModelKey rover[] = {
     {"mass_kg", "kg", 0, 0, 1e5, 0, 0},          {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},
     {"centre_height_m", "m", 0, 0, 10, 0, 0},    {"gravity_m_s2", "m/s^2", 9.81, 0, 30, 0, 0},
@@ -42,6 +43,8 @@ constexpr ModelKey sensors[] = {
     {"current.delay_s", "s", 0, -5, 5, 0, 0.003},
     {"accel.noise_m_s2", "m/s^2", 0, 0, 1e3, 0, 0},
     {"accel.bias_m_s2", "m/s^2", 0, -5, 5, 0, 0.05},
+    {"accel.delay_s", "s", 0, -5, 5, 0, 0.01},
+    {"accel.lag_s", "s", 0, -1, 1, 0, 0.01},
     {"gyro.noise_rad_s", "rad/s", 0, 0, 1e2, 0, 0},
     {"gyro.bias_rad_s", "rad/s", 0, -1, 1, 0, 0.003},
     {"radar.noise_m_s", "m/s", 0, 0, 1e2, 0, 0},

@@ -40,6 +40,9 @@ json candidate_json(const CandidateResult &r, int rank) {
     for (std::size_t j = 0; j < r.value.size(); ++j)
         parameters[r.candidate.strengths[j].key] = {
             {"value", finite(r.value[j])}, {"unit", r.candidate.strengths[j].unit}, {"low", finite(r.low[j])}, {"high", finite(r.high[j])}};
+    for (const ShapeEstimate &shape : r.shapes)
+        parameters[shape.key] = {
+            {"value", finite(shape.value)}, {"unit", shape.unit}, {"low", finite(shape.low)}, {"high", finite(shape.high)}};
     for (const auto &[window, share] : r.evidence)
         evidence.push_back({{"t0_s", finite(window.first)}, {"t1_s", finite(window.second)}, {"share", finite(share)}});
     json out = {{"rank", rank},
@@ -65,7 +68,13 @@ std::string strengths_text(const CandidateResult &r) {
         append(text, "%s%s = %.4g [%.4g, %.4g] %s", j > 0 ? ", " : "", r.candidate.strengths[j].key.c_str(), r.value[j], r.low[j],
                r.high[j], r.candidate.strengths[j].unit == "1" ? "" : r.candidate.strengths[j].unit.c_str());
     }
-    for (const auto &[key, value] : r.candidate.variant) append(text, ", %s = %g", key.c_str(), value);
+    for (const auto &[key, value] : r.candidate.variant) {
+        const auto refined = std::find_if(r.shapes.begin(), r.shapes.end(), [&](const ShapeEstimate &s) { return s.key == key; });
+        if (refined == r.shapes.end())
+            append(text, ", %s = %g", key.c_str(), value);
+        else
+            append(text, ", %s = %.4g [%.4g, %.4g] %s", key.c_str(), value, refined->low, refined->high, refined->unit.c_str());
+    }
     return text;
 }
 

@@ -72,6 +72,17 @@ std::vector<Effect> body_effects() {
          "Drive both ways at several loads. Rolling resistance scales with load, this does not.",
          "pull the rover with a spring balance, motors disconnected",
          {strength(&B::drag_N, "force_N", "N", "drag force", 0, 5, 1.2, 0.1)}},
+        {"fluid_drag",
+         "Drag of water or wind, with the square of the speed",
+         body_force,
+         false,
+         needs_motion,
+         "F_body = -c*v*|v|",
+         "drag at large Reynolds number, Newton 1726; derived here",
+         "A force against the motion that is four times as large at twice the speed, whatever the wheels' load.",
+         "Hold several speeds up to the highest, at two loads. One speed alone is body drag; one load alone is squared resistance.",
+         "pull the rover with a spring balance at several speeds, motors disconnected",
+         {strength(&B::drag_Ns2_m2, "coefficient_Ns2_m2", "N s^2/m^2", "force per squared speed", 0, 30, 8, 0.8)}},
     };
 }
 

@@ -26,6 +26,14 @@ template <typename M = Portable> double stribeck_friction_Nm(double torque_Nm, d
     return torque_Nm * M::exp(-x * x);
 }
 inline double mesh_loss_Nm(double fraction, double transmitted_Nm) { return fraction * std::fabs(transmitted_Nm); }
+inline double gear_speed_loss_Nm(double loss_per_rad_s, double speed_rad_s, double transmitted_Nm) {
+    return loss_per_rad_s * std::fabs(speed_rad_s * transmitted_Nm);
+}
+template <typename M = Portable> double wear_in_Nm(double torque_Nm, double time_s, double since_s) {
+    return torque_Nm * M::exp(-since_s / time_s);
+}
+inline double reverse_friction_Nm(double torque_Nm, double speed_rad_s) { return speed_rad_s < 0 ? torque_Nm : 0; }
+inline double churning_friction_Nm(double coefficient_Nms2, double speed_rad_s) { return coefficient_Nms2 * speed_rad_s * speed_rad_s; }
 template <typename M = Portable> double torque_ripple_Nm(double cos_Nm, double sin_Nm, double order, double angle_rad) {
     const double phase = std::fabs(order) * angle_rad; // a negative order is a friction: acting.h turns it against the motion
     return cos_Nm * M::cos(phase) + sin_Nm * M::sin(phase);
@@ -51,6 +59,10 @@ inline double hot_resistance_ohm(double resistance_ohm, double dT_K) { return re
 inline double hot_torque_constant(double KG, double dT_K) { return KG * (1 - magnet_per_K * dT_K); }
 inline double torque_constant(double KG, double change) { return KG * (1 + change); }
 inline double wiring_resistance_ohm(double resistance_ohm, double added_ohm) { return resistance_ohm + added_ohm; }
+// What a lead takes from a motor's voltage for the current of others on it; its own part belongs to the winding as measured in place.
+inline double shared_lead_V(double resistance_ohm, double others_A) { return resistance_ohm * others_A; }
+// Whose motors are on it: 1 those of the axle, 2 those of the side, 3 all.
+inline bool shares_lead(double with, bool same_axle, bool same_side) { return with < 1.5 ? same_axle : with < 2.5 ? same_side : true; }
 // What the bridge keeps of the voltage that would drive the current: all of it up to the lost voltage. over: 0, or where the sign of the
 // drop is to be continuous (a fit needs its derivative at zero), the width of the change. Volts, or both as the current they would drive.
 inline double bridge_dead_time_V(double lost_V, double drop_V, double over_V = 0) {
@@ -68,6 +80,10 @@ template <typename T> T speed_resistance(double coefficient_s_m, const T &v_m_s)
     using std::abs;
     return T(coefficient_s_m * abs(v_m_s));
 }
+template <typename T> T squared_resistance(double coefficient_s2_m2, const T &v_m_s) { return T(coefficient_s2_m2 * v_m_s * v_m_s); }
+inline double resistance_patch(double coefficient, double start_m, double length_m, double place_m) {
+    return place_m >= start_m && place_m < start_m + length_m ? coefficient : 0;
+}
 template <typename T> T lateral_scrub_N(const T &coefficient, const T &load_N) { return coefficient * load_N; } // largest sideways force
 // Factors of Fm.
 inline double multi_pass(double gain, double follows) { return 1 + gain * follows; } // follows: 0 leads, 1 trails
@@ -78,6 +94,12 @@ inline double soil_gradient(double change_per_m, double path_m) { return std::ma
 template <typename M = Portable, typename T> T sliding_speed_loss(double coefficient_s_m, const T &sliding_m_s) {
     using std::abs;
     return M::exp(T(-coefficient_s_m * abs(sliding_m_s)));
+}
+// 1 - share*max(0, |s| - 2 sc), at least 0.1; 2 sc: where (21) has reached 86 % and (20) 57 % of its end. In terms of |x|, for lanes.
+template <typename T> T shear_peak(double share, const T &slip, const T &shear_slip) {
+    using std::abs;
+    const T past = abs(slip) - 2 * shear_slip, left = 0.9 - 0.5 * share * (past + abs(past));
+    return T(0.1 + 0.5 * (left + abs(left)));
 }
 inline double relaxation_length_m(double base_m, double added_m) { return base_m + added_m; }
 inline double shear_stiffness(double shear_slip, double change) { return shear_slip * (1 + change); }
@@ -98,6 +120,7 @@ template <typename M = Portable> Slope grade_m_s2(double gravity_m_s2, double sl
 }
 inline double tether_drag_N(double stiffness_N_m, double distance_m) { return -stiffness_N_m * distance_m; }
 inline double body_drag_N(double force_N, double side) { return -force_N * side; } // side: sgn(v), or as continuous as its caller needs
+inline double fluid_drag_N(double coefficient_Ns2_m2, double v_m_s) { return -coefficient_Ns2_m2 * v_m_s * std::fabs(v_m_s); }
 
 // ---- sensors: of affine ones the law acts on the reading or, all the same, on its coefficients
 inline constexpr double accel_tilt_lag_s = 0.1; // [s] assumed: the suspension's
@@ -115,6 +138,11 @@ inline double voltage_gain(double gain, double change) { return gain + change; }
 inline double encoder_missed(double fraction) { return 1 - fraction; } // share of the counts that is left
 inline double camera_scale(double scale, double change) { return scale + change; }
 inline double camera_delay_s(double delay_s, double added_s) { return delay_s + added_s; }
+inline double accel_delay_s(double delay_s, double added_s) { return delay_s + added_s; }
+inline double accel_lag_s(double lag_s, double added_s) { return lag_s + added_s; } // time constant of a first-order low pass
+inline double gyro_delay_s(double delay_s, double added_s) { return delay_s + added_s; }
+inline double radar_delay_s(double delay_s, double added_s) { return delay_s + added_s; }
+inline double current_delay_s(double delay_s, double added_s) { return delay_s + added_s; }
 inline double actuation_delay_s(double delay_s, double added_s) { return delay_s + added_s; }
 
 } // namespace traction::sim::law

@@ -31,13 +31,17 @@ class Recorder {
 
     // every 1 ms
     void watch(const World &world) {
-        for (std::size_t i = 0; i < wheels; ++i) current_sum_[i] += world.wheel[i].current;
+        PerWheel current{};
+        for (std::size_t i = 0; i < wheels; ++i) current[i] = world.wheel[i].current;
+        current_now_ = aged(currents_, current, h_.current_delay);
+        yaw_rate_now_ = aged(yaw_rates_, world.yaw_rate(), h_.gyro_delay);
+        for (std::size_t i = 0; i < wheels; ++i) current_sum_[i] += current_now_[i];
         accel_sum_ += felt(world.specific_force);
         battery_sum_ += world.battery;
         for (int k = 0; k < wheels; ++k) seen_[at(k)] += h_s * world.motor_speed(k) * (1 - h_.missed[at(k)]);
         leaned_ += h_s / 0.1 * (world.accel - leaned_);
         ++samples_;
-        radar_.push_back(std::fabs(world.v()) * (1 + h_.radar_scale + h_.radar_pitch * world.accel));
+        radar_.push_back(aged(speeds_, std::fabs(world.v()) * (1 + h_.radar_scale + h_.radar_pitch * world.accel), h_.radar_delay));
         if (radar_.size() > static_cast<std::size_t>(radar_window_s / h_s)) radar_.pop_front();
         past_.push_back({world.x, world.y, world.yaw});
         if (past_.size() > 501) past_.pop_front();
@@ -56,7 +60,7 @@ class Recorder {
                 put(wheel_name(i, "angle_rad"), stamp_, count * 2 * std::numbers::pi / counts_per_turn);
             else
                 put(wheel_name(i, "encoder_count"), stamp_, count);
-            const double mean = c_.chain.current_at_end ? world.wheel[i].current : current_sum_[i] / n;
+            const double mean = c_.chain.current_at_end ? current_now_[i] : current_sum_[i] / n;
             const double I = mean * (1 + h_.current_gain[i] + h_.gain_drift[i] * world.t / 120) + h_.current_offset[i] +
                              scale_ * m_.current_noise_A * noise_.normal();
             put(wheel_name(i, "current_A"), stamp_, c_.quiet ? I : m_.current_step_A * std::round(I / m_.current_step_A));
@@ -66,7 +70,7 @@ class Recorder {
         put("imu.accel_x_m_s2", stamp_,
             accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt + accel_offset_ +
                 scale_ * accel_noise * noise_.normal());
-        put("imu.gyro_z_rad_s", stamp_, world.yaw_rate() + gyro_offset_ + scale_ * gyro_noise * noise_.normal());
+        put("imu.gyro_z_rad_s", stamp_, yaw_rate_now_ + gyro_offset_ + scale_ * gyro_noise * noise_.normal());
         battery_now_ = battery_sum_ / n * (1 + h_.voltage_gain) + scale_ * battery_noise_V * noise_.normal();
         if (c_.battery) put("battery.voltage_V", stamp_, battery_now_);
         accel_sum_ = battery_sum_ = 0;
@@ -100,10 +104,15 @@ class Recorder {
     double felt(double force) {
         if (c_.chain.accel_cutoff_Hz > 0)
             filtered_ += (1 - std::exp(-2 * std::numbers::pi * c_.chain.accel_cutoff_Hz * h_s)) * (force - filtered_), force = filtered_;
-        if (!(c_.chain.accel_late_s > 0)) return force;
-        waiting_.push_back(force);
-        if (waiting_.size() > static_cast<std::size_t>(std::lround(c_.chain.accel_late_s / h_s)) + 1) waiting_.pop_front();
-        return waiting_.front();
+        if (h_.accel_lag > 0) smoothed_ += h_s / (h_.accel_lag + h_s) * (force - smoothed_), force = smoothed_;
+        return aged(waiting_, force, c_.chain.accel_late_s + h_.accel_delay);
+    }
+    // What it was `late_s` ago.
+    template <typename T> static T aged(std::deque<T> &past, const T &now, double late_s) {
+        if (!(late_s > 0)) return now;
+        past.push_back(now);
+        if (past.size() > static_cast<std::size_t>(std::lround(late_s / h_s)) + 1) past.pop_front();
+        return past.front();
     }
     static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
     static std::string wheel_name(std::size_t i, const char *what) { return "wheel" + std::to_string(i) + "." + what; }
@@ -146,8 +155,11 @@ class Recorder {
     double scale_, accel_offset_, gyro_offset_, accel_sum_ = 0, battery_sum_ = 0, battery_now_ = 7.2, leaned_ = 0, samples_ = 0;
     double next_radar_ = 0, next_camera_ = 0;
     PerWheel current_sum_{}, seen_{}, count_{};
-    double stamp_ = 0, filtered_ = 0; // time that the log writes; state of the accelerometer's filter
-    std::deque<double> radar_, radar_parts_, waiting_;
+    double stamp_ = 0, filtered_ = 0, smoothed_ = 0; // time that the log writes; states of the accelerometer's filters
+    double yaw_rate_now_ = 0;
+    PerWheel current_now_{};
+    std::deque<double> radar_, radar_parts_, waiting_, speeds_, yaw_rates_;
+    std::deque<PerWheel> currents_;
     std::deque<Pose> past_;
     std::vector<log::Signal> signals_;
 };

@@ -26,6 +26,7 @@ struct Hidden {
     // sensors and actuation
     double accel_bias = 0, accel_drift = 0, accel_scale = 0, accel_tilt = 0, radar_scale = 0, radar_pitch = 0;
     double voltage_gain = 0, camera_delay = 0, camera_scale = 0, actuation_delay = 0;
+    double accel_delay = 0, accel_lag = 0, gyro_delay = 0, radar_delay = 0, current_delay = 0;
     // outside the catalogue, on wheels
     PerWheel friction_squared{}, dead_band{}, hysteresis{}, torque_limit{}, friction_drift{}, reverse_friction{}, resonance{};
     PerWheel resonance_speed{5, 5, 5, 5}, friction_step{}, friction_step_time{60, 60, 60, 60}, wear_in{}, wear_in_time{30, 30, 30, 30};
