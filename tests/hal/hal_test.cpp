@@ -6,6 +6,7 @@
 #include "firmware/app/daemon.h"
 #include "firmware/core/rover_config.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <array>
