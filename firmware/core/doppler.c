@@ -109,7 +109,7 @@ static int32_t peak_speed(const doppler_template_t *beam, const int16_t *reduced
     for (int32_t k = 1; k < beam->bins; k++) {
         best = reduced[k] > reduced[best] ? k : best;
     }
-    const int32_t at = beam->start[best];
+    const int32_t at = (int32_t)beam->start[best];
     return at < 0 ? 0 : at >= beam->speeds ? beam->speeds - 1 : at;
 }
 

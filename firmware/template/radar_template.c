@@ -40,8 +40,9 @@ static void beam_histogram(const radar_geometry_t *radar, double *weight)
         }
         return;
     }
-    for (double th = 0.125; th < 90; th += 0.25) {
-        for (double ph = -89.875; ph < 90; ph += 0.25) {
+    for (int row = 0; row < 360; row++) {
+        for (int column = 0; column < 720; column++) {
+            const double th = 0.125 + 0.25 * row, ph = -89.875 + 0.25 * column;
             const double x = cos(th * rad) * cos(ph * rad), y = cos(th * rad) * sin(ph * rad), z = -sin(th * rad);
             const double along = x * c - z * s, up = x * s + z * c;
             if (along <= 0) {
