@@ -167,7 +167,9 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     tick(config, state, accel, noise);
     if (!input->busy || fresh) {
         catch_up(config, state);
-        ground_speed_watch_wheels(config, state, input);
+        if (!fresh || state->rolls_ticks > 0) { // a value's tick is dear
+            ground_speed_watch_wheels(config, state, input);
+        }
     }
     if (config->method == GROUND_SPEED_PAPER) {
         state->standstill = false;

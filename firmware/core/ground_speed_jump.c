@@ -73,7 +73,9 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
     const float spread = at->p_vv + value.noise_m2_s2;
     const float told = 4.0f * value.speed_m_s * at->speed_m_s / spread;
     const bool sure = fabsf(told) >= config->sign_sure;
-    const float odds = told + (sure ? 0.0f : ground_speed_wheel_odds(config, value.speed_m_s, state->value_wheel_m_s) + state->value_force);
+    const float odds =
+        told +
+        (sure ? 0.0f : ground_speed_wheel_odds(config, value.speed_m_s, state->value_wheel_m_s) + ground_speed_force_odds(config, state));
     const float sign = odds < 0.0f ? -1.0f : 1.0f;
     const float innovation = sign * value.speed_m_s - at->speed_m_s;
     ground_speed_track_t mirrored = *at;

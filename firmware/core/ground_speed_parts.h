@@ -74,8 +74,8 @@ void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed
 
 // --- ground_speed_sign.c
 
-// 2 ln of the odds that (12) gives to forward travel.
-float ground_speed_force_odds(const ground_speed_config_t *config, float measured, float wheel_m_s, float force_m_s2);
+// 2 ln of the odds that (12) gives to forward travel, of the last value.
+float ground_speed_force_odds(const ground_speed_config_t *config, const ground_speed_state_t *state);
 // The same of the wheels' sign alone.
 float ground_speed_wheel_odds(const ground_speed_config_t *config, float measured, float wheel_m_s);
 void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track);

@@ -25,8 +25,11 @@ static float slips(const ground_speed_config_t *config, float slip_m_s, float ri
     return !fixed_greater(beyond, 0.0f) ? 0.0f : fixed_greater(beyond, rolling) ? 1.0f : beyond / rolling;
 }
 
-float ground_speed_force_odds(const ground_speed_config_t *config, float measured, float wheel_m_s, float force_m_s2)
+float ground_speed_force_odds(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
+    const float measured = state->value_m_s;
+    const float wheel_m_s = state->value_wheel_m_s;
+    const float force_m_s2 = state->value_accel_m_s2;
     const float rim = fabsf(wheel_m_s);
     const float told = ground_speed_square(force_m_s2 * config->force_per_s2_m);
     const float most = fixed_greater(told, config->force_most) ? config->force_most : told;
@@ -82,7 +85,7 @@ float ground_speed_choose_sign(const ground_speed_config_t *config, ground_speed
     if (fabsf(told) >= config->sign_sure || state->other_alive) {
         return middle < 0.0f ? -1.0f : 1.0f;
     }
-    const float odds = told + ground_speed_wheel_odds(config, measured, wheel_m_s) + state->value_force;
+    const float odds = told + ground_speed_wheel_odds(config, measured, wheel_m_s) + ground_speed_force_odds(config, state);
     ground_speed_split(state, &state->other, track);
     state->odds = fabsf(odds);
     state->other_alive = state->odds < config->sign_sure;
@@ -140,12 +143,13 @@ static const float most_told = 12.0f; // [1] of one value about a sign: no singl
 void ground_speed_update_other(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     const expected_t expected = expect(config, state, &state->other, 1);
+    const float force = ground_speed_force_odds(config, state);
     const bool sure = fabsf(expected.told) >= config->sign_sure;
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const float cost = see(config, state, &state->other, &expected, sign);
     state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
                    config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) +
-                   config->force_pull * (state->speed_m_s < 0.0f ? -state->value_force : state->value_force);
+                   config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
     const bool won = state->odds < 0.0f;
     if (won) {
         const ground_speed_track_t best = ground_speed_best_of(state);

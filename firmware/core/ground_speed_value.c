@@ -91,7 +91,6 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
     state->value_wheel_m_s = input->wheel_m_s;
-    state->value_force = ground_speed_force_odds(config, measured, input->wheel_m_s, window.accel_m_s2);
     watch_bias(config, state, &track, nearest, spread);
     if (cost > ground_speed_square(config->gate_sigma)) {
         if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little

@@ -1,5 +1,8 @@
 #include "bus.h"
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 
 // 1: cantools was there when this was configured.

@@ -4,6 +4,8 @@
 #include "firmware/core/signals.h"
 #include "sim/scenario/scenario.h"
 
+#include <cstdint>
+
 namespace traction::hal {
 
 // The demand of the drive plan in the firmware's terms; age_ticks is 0.

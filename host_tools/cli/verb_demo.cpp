@@ -15,6 +15,7 @@
 #include "host_tools/simulate/simulate.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

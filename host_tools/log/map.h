@@ -4,6 +4,7 @@
 #include "read.h"
 #include "table.h"
 
+#include <map>
 #include <optional>
 
 namespace traction::log {

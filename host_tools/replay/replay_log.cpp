@@ -7,6 +7,7 @@
 #include "host_tools/rover/rover.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 namespace traction::replay {

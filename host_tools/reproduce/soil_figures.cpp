@@ -7,6 +7,7 @@
 #include "sim/sensors/random.h"
 
 #include <Eigen/Dense>
+#include <cstdint>
 
 #include <algorithm>
 #include <cmath>

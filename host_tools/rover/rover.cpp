@@ -3,6 +3,7 @@
 #include "radar_geometry.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

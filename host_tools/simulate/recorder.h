@@ -10,6 +10,7 @@
 #include "sim/sensors/camera.h"
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 

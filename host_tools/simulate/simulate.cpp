@@ -12,6 +12,7 @@
 
 #include <cstring>
 #include <memory>
+#include <span>
 
 namespace traction {
 

@@ -8,6 +8,7 @@
 #include "sim/physics/effects/acting.h"
 #include "sim/physics/terramechanics.h"
 
+#include <cstdint>
 #include <ode/ode.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "read_parts.h"
 
 #include <algorithm>
+#include <array>
 
 namespace traction::sim {
 

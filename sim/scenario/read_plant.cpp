@@ -3,6 +3,7 @@
 #include "read_parts.h"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 

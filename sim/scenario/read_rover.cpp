@@ -4,6 +4,7 @@
 #include "scenario.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -3,6 +3,9 @@
 #include "read_parts.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
 
 namespace traction::sim {
 

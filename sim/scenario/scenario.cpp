@@ -3,6 +3,7 @@
 #include "read_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

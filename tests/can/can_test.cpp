@@ -5,6 +5,7 @@
 
 #include "traction_can.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cstdlib>

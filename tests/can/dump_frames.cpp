@@ -3,6 +3,7 @@
 #include "hal/node/sensor_node.h"
 #include "hal/node/wheel_node.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <random>
 

@@ -6,6 +6,7 @@
 #include "firmware/app/daemon.h"
 #include "firmware/core/rover_config.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -93,7 +94,7 @@ TEST(Counts, scales_are_those_that_the_firmware_assumes) {
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) EXPECT_EQ(scale.current_offset[i], firmware.sense.current_offset_count[i]);
     EXPECT_EQ(scale.current_max, firmware.sense.current_max_count);
     EXPECT_EQ(sim::RadarConfig{}.max_count, firmware.sense.radar_max_count);
-    EXPECT_EQ(sim::Radar::rate_Hz, static_cast<double>(firmware.doppler.beam->sample_rate_Hz));
+    EXPECT_EQ(sim::RadarConfig{}.rate_Hz, static_cast<double>(firmware.doppler.beam->sample_rate_Hz));
 }
 
 TEST(Counts, a_quantity_comes_back_within_half_a_count) {

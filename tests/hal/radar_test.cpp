@@ -1,6 +1,7 @@
 // The clutter signal against docs/evidence.md section 2: four figures measured before this code was written, for the geometry of the paper.
 #include "sim/sensors/radar.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

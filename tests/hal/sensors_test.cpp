@@ -1,6 +1,7 @@
 // Each sensor errs as it says, no more and no less, and only by its seed.
 #include "sim/sensors/sensors.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

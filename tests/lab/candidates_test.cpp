@@ -8,7 +8,9 @@
 #include "sim/physics/effects/catalogue.h"
 #include "tests/lab/generator/generator.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <map>
 #include <muParser.h>
 
 #include <algorithm>

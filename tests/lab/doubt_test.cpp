@@ -6,6 +6,7 @@
 #include "tests/lab/generator/generator.h"
 
 #include <gtest/gtest.h>
+#include <optional>
 
 #include <algorithm>
 #include <cmath>

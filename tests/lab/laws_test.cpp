@@ -6,6 +6,7 @@
 #include "host_tools/lab/model/model.h"
 #include "tests/lab/generator/generator.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "host_tools/lab/result/profile_result.h"
 #include "tests/lab/generator/generator.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

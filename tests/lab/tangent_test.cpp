@@ -7,6 +7,7 @@
 #include "host_tools/lab/forward/wheel_step.h"
 #include "tests/lab/generator/generator.h"
 
+#include <array>
 #include <gtest/gtest.h>
 
 namespace traction::lab {

@@ -5,6 +5,8 @@
 #include "hal/linux/sysfs.h"
 #include "hal/linux/watchdog.h"
 
+#include <array>
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cerrno>

@@ -4,6 +4,8 @@
 
 #include "host_tools/check/check.h"
 
+#include <cstdint>
+#include <functional>
 #include <gtest/gtest.h>
 
 #include <algorithm>

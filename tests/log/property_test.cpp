@@ -3,6 +3,7 @@
 
 #include "host_tools/log/read.h"
 
+#include <cstdint>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 // wheels (fig. 16). The figures printed are those of docs/performance.md. Truth is the plant's.
 #include "host_tools/simulate/simulate.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 
 #include "sim/sensors/random.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>

@@ -8,6 +8,7 @@
 
 #include "firmware/core/rover_config.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

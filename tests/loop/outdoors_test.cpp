@@ -2,6 +2,7 @@
 // before: the figures in the comments are the firmware's of 0.2.0 on the same frames. All rows: tests/bench/outdoors_bench.
 #include "tests/bench/outdoors.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -7,6 +7,7 @@
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Scenario files: everything in the gallery reads, and each kind of mistake is told with file, line, key and the mend.
 #include "sim/scenario/scenario.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <filesystem>

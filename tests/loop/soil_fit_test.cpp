@@ -3,6 +3,7 @@
 
 #include "sim/sensors/random.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #!/bin/sh
-# own_headers.sh ROOT [--fix] - a file that names one of these types includes its header itself, or its own header (x.cpp: x.h) does.
+# own_headers.sh ROOT [--fix] - a file that names one of these types includes its header itself, or the header of its own name does.
 # What another header happens to bring along differs between compilers: gcc 13 and 14 stopped twice at a missing <cstdint>.
 set -eu
 cd "${1:?own_headers.sh: which folder?}"

@@ -2,6 +2,7 @@
 #include "firmware/core/rover_config.h"
 #include "tests/unit/clutter.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // Properties of the laws for any input (rapidcheck, host only; the seed is printed by rapidcheck and fixed by ctest).
 #include "firmware/core/rover_config.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

@@ -2,6 +2,7 @@
 #include "firmware/core/soil_sweep.h"
 #include "firmware/core/speed_control.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>

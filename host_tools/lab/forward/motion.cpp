@@ -3,6 +3,7 @@
 #include "wheel_step.h"
 
 #include <Eigen/Dense>
+#include <array>
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "wheel_step.h"
 
 #include <Eigen/Dense>
+#include <array>
 
 #include <cmath>
 

@@ -5,6 +5,7 @@
 #include "sim/physics/effects/catalogue.h"
 #include "terms.h"
 
+#include <span>
 #include <toml++/toml.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // The independent rover obeys what it states: (17)-(20) in steady motion, momentum, repeatability. Truth here is closed form.
 #include "tests/lab/generator/generator.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -10,16 +10,18 @@
 #include "host_tools/lab/validate.h"
 #include "tests/log/files.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace traction::gate {
 namespace {
 
-const Base &sound(const std::string &name) {
+const Base &sound(std::string_view name) { // by value: a temporary string would look like what is returned
     static const std::vector<Base> bases = {base("plant", 120), base("angle", 120), base("counts", 120)};
     return *std::find_if(bases.begin(), bases.end(), [&](const Base &b) { return b.name == name; });
 }

@@ -10,6 +10,7 @@
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/gate.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <exception>

@@ -9,6 +9,7 @@
 #include "tests/lab/generator/generator.h"
 
 #include <gtest/gtest.h>
+#include <map>
 
 #include <algorithm>
 #include <cmath>

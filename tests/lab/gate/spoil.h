@@ -6,6 +6,7 @@
 #include "host_tools/lab/model/model.h"
 #include "host_tools/log/log.h"
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>

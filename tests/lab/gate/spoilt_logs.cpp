@@ -2,6 +2,8 @@
 #include "spoil.h"
 #include "tamper.h"
 
+#include <cstdint>
+
 namespace traction::gate {
 
 const std::vector<Row> &spoilt_logs() {

@@ -12,6 +12,7 @@
 #include "random.h"
 
 #include <Eigen/Core>
+#include <array>
 
 #include <deque>
 #include <string_view>

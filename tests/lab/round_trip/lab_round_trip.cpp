@@ -4,11 +4,13 @@
 #include "round_trip.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iterator>
+#include <map>
 #include <utility>
 
 int main(int count, char **arguments) {

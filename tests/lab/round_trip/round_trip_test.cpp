@@ -7,7 +7,9 @@
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <map>
 
 namespace traction::round_trip {
 namespace {
