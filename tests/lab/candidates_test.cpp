@@ -305,7 +305,7 @@ TEST(Verdict, of_a_hidden_law_of_the_catalogue) {
 }
 
 TEST(Verdict, of_a_law_that_no_catalogue_holds) {
-    const Log log("friction_squared:coefficient_Nms2=1.2e-3", 90, 31);
+    const Log log("friction_resonance:torque_Nm=0.05,speed_rad_s=4", 90, 31);
     const Diagnosis d = diagnose(log.model, log.data, {});
     ASSERT_TRUE(d.unknown) << d.text;
     EXPECT_NE(d.unknown->variable.find("speed"), std::string::npos) << d.text;

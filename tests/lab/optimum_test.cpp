@@ -106,7 +106,7 @@ TEST(SingleWheel, a_law_that_the_catalogue_lacks_is_told_with_its_wheel) {
     GeneratorConfig config;
     config.soil = Soil::sand;
     config.seed = 62;
-    config.hidden.push_back(generator::parse_setting("reverse_friction:wheel=1,torque_Nm=0.04"));
+    config.hidden.push_back(generator::parse_setting("friction_step:wheel=1,torque_Nm=0.04,time_s=60"));
     const Model model = parse_model(generator::data_sheet(config), "sheet");
     const Diagnosis d = diagnose(model, make_dataset(model, generator::generate(config)), {});
     EXPECT_EQ(d.kind, "unknown") << d.text;
