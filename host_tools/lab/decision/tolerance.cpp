@@ -1,5 +1,6 @@
 #include "tolerance.h"
 
+#include "host_tools/lab/fit/normal_equations.h"
 #include "host_tools/lab/fit/sparse_jacobian.h"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ double penalty(const Problem &problem) { return problem.theta.cwiseAbs2().dot(pr
 // Least squares of rows and priors over the kept parameters, but for a constant: of a quadratic about the present place.
 double least(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment, const std::vector<Eigen::Index> &kept) {
     const Eigen::VectorXd part = moment(kept);
-    return -part.dot(Eigen::MatrixXd(normal(kept, kept)).ldlt().solve(part));
+    return -part.dot(solve_normal(normal(kept, kept), part));
 }
 
 // What each group does in place of the effect, whose strengths are the last parameters of `with`, by linear steps from there.

@@ -1,6 +1,7 @@
 #include "problem.h"
 
 #include "host_tools/lab/inputs/smooth.h"
+#include "normal_equations.h"
 #include "sparse_jacobian.h"
 
 #include <ceres/ceres.h>
@@ -349,7 +350,7 @@ Eigen::VectorXd Problem::step_within_bounds(const Eigen::MatrixXd &normal, const
             right[i] = rest[open[static_cast<std::size_t>(i)]];
             for (Eigen::Index j = 0; j < k; ++j) part(i, j) = normal(open[static_cast<std::size_t>(i)], open[static_cast<std::size_t>(j)]);
         }
-        const Eigen::VectorXd change = part.ldlt().solve(right);
+        const Eigen::VectorXd change = solve_normal(part, right);
         std::vector<Eigen::Index> kept;
         Eigen::VectorXd found = step;
         for (Eigen::Index i = 0; i < k; ++i) {

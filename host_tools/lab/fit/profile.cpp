@@ -1,6 +1,7 @@
 #include "profile.h"
 
 #include "identify.h"
+#include "normal_equations.h"
 #include "problem.h"
 #include "screen.h"
 
@@ -80,7 +81,7 @@ class Held {
         for (Eigen::Index i = 0; i < theta.size(); ++i) free.push_back(i);
         while (!free.empty()) {
             const Eigen::VectorXd rest = moment(free) - normal_(free, stopped) * step(stopped);
-            step(free) = normal_(free, free).ldlt().solve(rest).eval();
+            step(free) = solve_normal(normal_(free, free), rest);
             std::vector<Eigen::Index> still;
             for (const Eigen::Index i : free) {
                 const FreeParameter &p = others_[static_cast<std::size_t>(i)];
@@ -267,8 +268,7 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
     Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
     normal.diagonal() += best.prior_precision();
     for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's ridge
-    const Eigen::VectorXd white =
-        normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0).cwiseSqrt();
+    const Eigen::VectorXd white = inverse_diagonal(normal).cwiseSqrt();
     const double best_cost = best.cost();
     best.linearise(); // cost() has moved the prediction
     std::vector<Profile> out;

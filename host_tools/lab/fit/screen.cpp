@@ -1,6 +1,7 @@
 #include "screen.h"
 
 #include "distribution.h"
+#include "normal_equations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -237,7 +238,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
                    std::max(4.0 + static_cast<double>(k), static_cast<double>(count - 1)));
     out.standard_error = covariance.diagonal().cwiseSqrt();
     const Eigen::VectorXd whole = out.strength + present;
-    const double wald = whole.dot(covariance.ldlt().solve(whole)) / static_cast<double>(k);
+    const double wald = whole.dot(solve_normal(covariance, whole)) / static_cast<double>(k);
     const double left = std::max(1.0, freedom - static_cast<double>(k) + 1);
     out.p_value = f_tail(wald * left / std::max(freedom, left), static_cast<double>(k), left);
     out.freedom = freedom;

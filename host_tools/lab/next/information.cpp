@@ -1,5 +1,6 @@
 #include "information.h"
 
+#include "host_tools/lab/fit/normal_equations.h"
 #include "host_tools/lab/inputs/smooth.h"
 
 #include <algorithm>
@@ -49,7 +50,8 @@ std::map<std::string, double> scale_over_noise(const Problem &problem) {
     normal.diagonal() += problem.prior_precision();
     normal.diagonal() *= 1 + 1e-9;
     const Eigen::VectorXd raw = problem.residual.cwiseQuotient(noise);
-    const Eigen::VectorXd left = raw - J * normal.ldlt().solve(J.transpose() * raw - problem.prior_precision().cwiseProduct(problem.theta));
+    const Eigen::VectorXd left =
+        raw - J * solve_normal(normal, J.transpose() * raw - problem.prior_precision().cwiseProduct(problem.theta));
     Eigen::Index first = 0;
     for (const Balance &balance : problem.data().balance) {
         const auto n = static_cast<Eigen::Index>(balance.measured.size());
