@@ -31,7 +31,7 @@ Angles turning(double speed_rad_s, double swing_rad_s, double age_s) {
     return a;
 }
 
-double half_of(const Angles &a) { return half_width_for(a.t_s, a.angle_rad, period_s, usual_half_s, still_rad_s); }
+double half_of(const Angles &a) { return half_width_for(a.t_s, a.angle_rad, period_s, usual_half_s, still_rad_s, 0.01); }
 
 } // namespace
 

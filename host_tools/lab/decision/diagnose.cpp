@@ -3,7 +3,7 @@
 #include "classes.h"
 #include "doubt.h"
 #include "host_tools/lab/fit/heldout.h"
-#include "host_tools/lab/fit/rounding.h"
+#include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
 #include "shapes.h"
 #include "tolerance.h"
@@ -20,6 +20,10 @@
 namespace traction::lab {
 
 namespace {
+
+// Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
+// machine and the steps of no integration are known that well. Assumed.
+constexpr double least_fall = 0.002;
 
 std::string one_decimal(double value) {
     char buffer[64];
@@ -287,6 +291,7 @@ class Search {
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
+        if (!by_priors && !(held.error < (1 - least_fall) * held_.error)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }

@@ -2,7 +2,7 @@
 
 #include "candidate.h"
 #include "host_tools/lab/fit/distribution.h"
-#include "host_tools/lab/fit/rounding.h"
+#include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
 #include "host_tools/lab/fit/sparse_jacobian.h"
 
@@ -373,7 +373,7 @@ bool repeats(const ShapeScore &s) {
     return s.p_value < 2e-3 && gain.size() > 2 && gain.head(gain.size() - 2).sum() > 0;
 }
 
-// What a shape that moves the body gains by smoothing the encoders' scatter: no evidence (fit/rounding.h).
+// What a shape that moves the body gains by smoothing the encoders' scatter: no evidence (fit/scatter.h).
 class Smoothing {
   public:
     Smoothing(const Problem &problem, const Scatter &scatter) : problem_(problem), scatter_(scatter) {}

@@ -9,8 +9,9 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double friction_share = 1.0 / 3; // of the standstill speed: friction reverses over it; assumed, rows near standstill are left out
-constexpr double bridge_current_A = 0.01;  // the bridge's dead time reverses over this current at least: assumed
+constexpr double friction_share =
+    1.0 / 12;                             // of the standstill speed: friction reverses over it; assumed, rows near standstill are left out
+constexpr double bridge_current_A = 0.01; // the bridge's dead time reverses over this current at least: assumed
 constexpr double voltage_part_s =
     0.01; // dead time bends the voltage balance: it is taken over parts of a row as long as this, a control tick
 

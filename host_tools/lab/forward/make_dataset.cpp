@@ -1,12 +1,64 @@
 #include "make_dataset.h"
 
+#include "rounding.h"
 #include "smoothing_bias.h"
+
+#include <cmath>
+#include <cstddef>
 
 namespace traction::lab {
 
+namespace {
+
+constexpr double most_error = 0.5;         // of a row's noise, that scatter and smoothing together may be: it then weighs an eighth
+constexpr double least_slope_noise = 5e-4; // of the speed: the smoothing's half width is at its limit of 0.5 s by then
+constexpr double of_a_row_left_out = 8;    // its error, in noises (smoothing_bias.h)
+
+struct Smoothed {
+    Dataset data;
+    double error = 0; // of the torque balances' predictions by the smoothed wheels: scatter and bias, root mean square, in noises
+};
+
+std::size_t torque_rows(const Dataset &data) {
+    std::size_t rows = 0;
+    for (const Balance &b : data.balance)
+        if (b.kind == BalanceKind::current_torque) rows += b.measured.size();
+    return rows;
+}
+
+Smoothed smoothed(const Model &model, const log::Log &log, double slope_noise) {
+    Smoothed out{measured_data(model, log, slope_noise)};
+    const std::size_t rows = torque_rows(out.data);
+    add_smoothing_bias(model, out.data);
+    const Eigen::VectorXd squares = rounding_squares(out.data, make_physics(model), 1);
+    const std::size_t left_out = rows - torque_rows(out.data);
+    double sum = of_a_row_left_out * of_a_row_left_out * static_cast<double>(left_out);
+    Eigen::Index row = 0;
+    for (const Balance &b : out.data.balance)
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            if (b.kind != BalanceKind::current_torque) continue;
+            const double lost = b.smoothing_bias.empty() ? 0 : b.smoothing_bias[r],
+                         error = (squares[row] + lost * lost) / (b.noise * b.noise);
+            if (std::isfinite(error)) sum += error;
+        }
+    out.error = rows > 0 ? std::sqrt(sum / static_cast<double>(rows)) : 0;
+    return out;
+}
+
+// A wheel's speed is smoothed as widely as the machine asks for, by the model's own numbers: where heavy wheels on stiff ground turn what
+// the encoder leaves of 1 % into more than the current's noise, every fit follows that scatter, and softens the ground (errors in the
+// regressors attenuate its slope; Fuller 1987, section 1.1); a wider window loses what is quick. The width with the least of both.
+Dataset best_smoothed(const Model &model, const log::Log &log) {
+    Smoothed best = smoothed(model, log, 0.01);
+    for (double slope_noise = 0.005; best.error > most_error && slope_noise > least_slope_noise; slope_noise /= 2)
+        if (Smoothed wider = smoothed(model, log, slope_noise); wider.error < best.error) best = std::move(wider);
+    return best.data;
+}
+
+} // namespace
+
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
-    Dataset data = measured_data(model, log);
-    add_smoothing_bias(model, data);
+    Dataset data = best_smoothed(model, log);
     if (repeat != nullptr) noise_from_repeat(data, measured_data(model, *repeat));
     return data;
 }

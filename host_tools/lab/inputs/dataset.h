@@ -86,8 +86,9 @@ struct Dataset {
 };
 
 // Inputs and balances of a log, without what its smoothing may cost where speeds jump (forward/make_dataset.h adds that). Never throws
-// for a poor log: what cannot be used is left out with a message.
-Dataset measured_data(const Model &model, const log::Log &log);
+// for a poor log: what cannot be used is left out with a message. `slope_noise`: what the smoothing of angles may leave in a wheel's
+// speed, as a share of the speed.
+Dataset measured_data(const Model &model, const log::Log &log, double slope_noise = 0.01);
 
 // Two runs of one drive: where at least 20 rows of a balance lie within 20 ms of the other run's, the standard deviation of their
 // difference over sqrt(2) becomes the balance's noise.

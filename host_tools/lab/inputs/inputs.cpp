@@ -176,7 +176,7 @@ void InputBuilder::wheel_motion(std::size_t i) {
     if (scale != 0) {
         std::vector<double> angle(s->value);
         for (double &a : angle) a *= scale;
-        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, data.standstill_rad_s); wide > 1.2 * half) {
+        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, data.standstill_rad_s, slope_noise); wide > 1.2 * half) {
             half = wide;
             char text[160];
             std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s",

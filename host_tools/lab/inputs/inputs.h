@@ -8,9 +8,10 @@
 
 namespace traction::lab {
 
-// Below this share of the log's own top speed a wheel stands: friction is indeterminate there. 0.15 rad/s of a small rover's 12, and a
-// linear axis whose radius is one metre is read like the same axis with a radius of a decimetre.
-inline constexpr double standstill_share = 0.0125;
+// Below this share of the log's own top speed a wheel stands: how friction, rolling resistance and slip reverse there is known of no
+// machine, and differs from any law at twice the speed at which it is assumed to be done. 0.6 rad/s of a small rover's 12, and a linear
+// axis whose radius is one metre is read like the same axis with a radius of a decimetre.
+inline constexpr double standstill_share = 0.05;
 
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
@@ -19,6 +20,7 @@ double parameter(const Parameters &table, const std::string &key); // 0 where it
 struct InputBuilder {
     const Model &model;
     const log::Log &log;
+    double slope_noise; // what the angles' smoothing may leave in a speed, of the speed (half_width_for)
     Dataset data;
 
     const log::Signal *signal(const std::string &name) const;

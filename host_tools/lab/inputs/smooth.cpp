@@ -43,7 +43,6 @@ void solve_local(const double (&s)[7], const double (&r)[4], int degree, double 
 }
 
 constexpr double widest_half_s = 0.5; // starts and stops of a second still show
-constexpr double slope_noise = 0.01;  // of the speed: on hard ground a slip of 1 % carries a tenth of the load
 
 // What is white in the samples while the wheel turns, by the covariance -sigma^2 of neighbouring deviations from the straight line
 // through a sample's neighbours; an acceleration makes that covariance positive. `speed`: its median.
@@ -71,7 +70,7 @@ double scatter_of(const std::vector<double> &t, const std::vector<double> &angle
 } // namespace
 
 double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s,
-                      double still_rad_s) {
+                      double still_rad_s, double slope_noise) {
     double speed = 0;
     const double scatter = scatter_of(t_s, angle_rad, period_s, still_rad_s, speed);
     if (!(scatter > 0)) return half_s;

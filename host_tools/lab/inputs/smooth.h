@@ -29,9 +29,10 @@ double slope_response(double half_width_s, double omega_rad_s);
 double median(std::vector<double> values); // 0 when empty
 
 // Half width of local parabolas over the angles of a turning wheel whose samples scatter (a slow counter, a clock that jitters): at
-// least `half`, and so wide, up to 0.5 s, that the slope's noise is 1 % of the speed. `still`: speed below which a wheel stands [rad/s].
+// least `half`, and so wide, up to 0.5 s, that the slope's noise is `slope_noise` of the speed. `still_rad_s`: speed below which a wheel
+// stands.
 double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s,
-                      double still_rad_s);
+                      double still_rad_s, double slope_noise);
 
 // Standard deviation of white noise in a series from its second differences, robust: 1.4826 * MAD / sqrt(6).
 double noise_from_differences(const std::vector<double> &value);

@@ -1,5 +1,7 @@
 #include "rounding.h"
 
+#include "forward.h"
+
 #include "host_tools/lab/inputs/smooth.h"
 
 #include <algorithm>
@@ -9,8 +11,6 @@
 namespace traction::lab {
 
 namespace {
-
-constexpr int draws = 2; // each has thousands of independent rows
 
 // Uniform in -0.5 .. 0.5, of a draw, wheel and sample (splitmix64, Steele, Lea, Flood 2014).
 double uniform(std::uint64_t draw, std::uint64_t wheel, std::uint64_t sample) {
@@ -40,7 +40,7 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
 
 } // namespace
 
-Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
+Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics, int draws) {
     const Eigen::VectorXd plain = Forward(data).predict(physics);
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(plain.size());
     if (data.independent_rows || data.count < 3) return squares;
@@ -50,21 +50,6 @@ Eigen::VectorXd rounding_squares(const Dataset &data, const Physics &physics) {
         squares += (Forward(noisy).predict(physics) - plain).cwiseAbs2() / draws;
     }
     return squares;
-}
-
-Scatter::Scatter(const Problem &problem) : part(Eigen::VectorXd::Zero(problem.residual.size())) {
-    const Eigen::VectorXd all = rounding_squares(problem.data(), problem.physics()), noise = problem.noise_rows().cwiseAbs2(),
-                          weight = problem.row_scale.cwiseAbs2(), left = problem.residual.cwiseAbs2();
-    Eigen::Index first = 0;
-    for (const Balance &b : problem.data().balance) {
-        const auto n = static_cast<Eigen::Index>(b.measured.size());
-        const auto sum = [&](const Eigen::VectorXd &squares) { return squares.segment(first, n).dot(weight.segment(first, n)); };
-        if (const double most = sum(all); most > 0)
-            part.segment(first, n).setConstant(std::clamp((sum(left) - sum(noise)) / most, 0.0, 1.0));
-        first += n;
-    }
-    const double whole = left.dot(weight);
-    share = whole > 0 ? part.cwiseProduct(all).dot(weight) / whole : 0;
 }
 
 } // namespace traction::lab

@@ -1,0 +1,24 @@
+// scatter.h - how much of what a fit leaves may be the encoders' scatter.
+//
+// An effect that makes the model follow its wheels more slowly or more softly (a relaxation length, a softer soil) predicts better where
+// they scatter, because it smooths that noise, though no machine has it. What a candidate gains in this way is no evidence: (1) of
+// forward/rounding.h before and after, row by row, is taken from the fall of the squares.
+#pragma once
+
+#include "host_tools/lab/forward/rounding.h"
+#include "problem.h"
+
+namespace traction::lab {
+
+// A shape must explain more than this part of what scatter may be, an effect that moves the body a third of it: assumed.
+inline constexpr double of_scatter = 0.15;
+
+// (1) as far as the residual of a fitted problem shows it: per balance no more than it leaves beyond the measurement noise. (Samples of
+// a rounding encoder are not white: what (1) says of them is an upper estimate.)
+struct Scatter {
+    Eigen::VectorXd part; // of (1), row by row, that counts
+    double share = 0;     // of the problem's scaled squares that scatter may be
+    explicit Scatter(const Problem &problem);
+};
+
+} // namespace traction::lab
