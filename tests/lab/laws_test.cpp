@@ -1,8 +1,8 @@
 // What the later laws of the catalogue are for: real drives show them, and an independent rover that hides one is told its name; sensors
 // that are late within what such sensors are give none.
 #include "host_tools/lab/decision/diagnose.h"
-#include "host_tools/lab/forward/rounding.h"
 #include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/forward/rounding.h"
 #include "host_tools/lab/model/model.h"
 #include "tests/lab/generator/generator.h"
 

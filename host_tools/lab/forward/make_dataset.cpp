@@ -2,6 +2,9 @@
 
 #include "rounding.h"
 #include "smoothing_bias.h"
+#include "wheel_laws.h"
+
+#include "host_tools/lab/inputs/inputs.h"
 
 #include <cmath>
 #include <cstddef>
@@ -13,6 +16,8 @@ namespace {
 constexpr double most_error = 0.5;         // of a row's noise, that scatter and smoothing together may be: it then weighs an eighth
 constexpr double least_slope_noise = 5e-4; // of the speed: the smoothing's half width is at its limit of 0.5 s by then
 constexpr double of_a_row_left_out = 8;    // its error, in noises (smoothing_bias.h)
+
+static_assert(stands_m_s == rest_speed_m_s);
 
 struct Smoothed {
     Dataset data;

@@ -102,7 +102,10 @@ double InputBuilder::top_speed_rad_s() const {
 }
 
 bool InputBuilder::grid_and_wheels() {
-    if (const double top = top_speed_rad_s(); top > 0) data.standstill_rad_s = standstill_share * top;
+    double radius = 0;
+    for (const WheelSpec &wheel : model.wheel) radius = std::max(radius, parameter(wheel.geometry, "radius_m"));
+    if (const double top = top_speed_rad_s(); top > 0)
+        data.standstill_rad_s = std::clamp(radius > 0 ? stands_m_s / radius : 0, standstill_share[0] * top, standstill_share[1] * top);
     const auto wheels = [this](double step_s) {
         data.wheel.assign(model.wheel.size(), {});
         if (!set_grid(step_s)) return false;
@@ -176,7 +179,8 @@ void InputBuilder::wheel_motion(std::size_t i) {
     if (scale != 0) {
         std::vector<double> angle(s->value);
         for (double &a : angle) a *= scale;
-        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, data.standstill_rad_s, slope_noise); wide > 1.2 * half) {
+        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, data.standstill_rad_s, slope_noise);
+            wide > 1.2 * half) {
             half = wide;
             char text[160];
             std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s",

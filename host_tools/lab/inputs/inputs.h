@@ -8,10 +8,10 @@
 
 namespace traction::lab {
 
-// Below this share of the log's own top speed a wheel stands: how friction, rolling resistance and slip reverse there is known of no
-// machine, and differs from any law at twice the speed at which it is assumed to be done. 0.6 rad/s of a small rover's 12, and a linear
-// axis whose radius is one metre is read like the same axis with a radius of a decimetre.
-inline constexpr double standstill_share = 0.05;
+// A wheel stands below a rim speed of a centimetre a second, where slip is taken against that speed (rest_speed_m_s), and how friction
+// and rolling resistance reverse is known of no machine; but at least below the first and at most below the second share of the log's own
+// top speed, so that an axis of natural units and a rover that crawls are read too.
+inline constexpr double stands_m_s = 0.01, standstill_share[] = {0.0125, 0.05};
 
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
