@@ -159,7 +159,16 @@ static const float noise_trust = 4.0f; // [1] R = R0 (1 + this noise/echo), powe
 
 // --- (3)
 
-enum { LINE_FROM = 8, LINE_SIDE = 4, LINE_SWAY_Q8 = 90, LINE_ABOVE_Q8 = 512, LEVEL_SHARE = 8, SWAY_START_Q8 = 512, LINE_DUE = 5 };
+enum {
+    LINE_FROM = 8,
+    LINE_SIDE = 4,
+    LINE_SWAY_Q8 = 90,
+    LINE_ABOVE_Q8 = 512,
+    LEVEL_SHARE = 8,
+    SWAY_START_Q8 = 512,
+    LINE_DUE = 5,
+    TONE_FROM = 12
+};
 
 // log2 of a power, Q8, its mantissa as a straight line: within 0.09.
 static int32_t log2_q8(uint64_t power)
@@ -183,8 +192,12 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         state->sway_q8[k] = (int16_t)(sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
     }
     state->leveled = true;
+    int32_t loudest = LINE_FROM - LINE_SIDE;
     for (int32_t i = 0; i < 4; i++) {
         state->line[i] = 0;
+    }
+    for (int32_t k = LINE_FROM - LINE_SIDE; k < end; k++) {
+        loudest = state->level_q8[k] > state->level_q8[loudest] ? k : loudest;
     }
     for (int32_t k = LINE_FROM; k < end - LINE_SIDE; k++) {
         const int32_t above = state->level_q8[k] - LINE_ABOVE_Q8;
@@ -192,6 +205,30 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
             state->line[(uint32_t)k / 32u] |= 1u << ((uint32_t)k % 32u);
         }
     }
+    if (!beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
+        doppler_line_suggest(&state->tone, (uint32_t)loudest);
+    }
+}
+
+// What the sum of a window can be. It is that anyway: a bound that needs no relation between the sum and the samples.
+static int32_t held_sum(int32_t sum)
+{
+    const int32_t most = FFT_LENGTH * 32767;
+    return sum > most ? most : sum < -most ? -most : sum;
+}
+
+enum { CLEAN_MOST = 96, SAMPLE_LOW = -512 * DOPPLER_GAIN, SAMPLE_HIGH = 511 * DOPPLER_GAIN };
+
+// Takes the line off what has come since the last time; in ticks that have time.
+static void clean(doppler_state_t *state)
+{
+    const int32_t waiting = state->filled - state->clean;
+    const doppler_line_span_t span = {
+        .count = waiting < CLEAN_MOST ? waiting : CLEAN_MOST, .mean = state->sum / FFT_LENGTH, .low = SAMPLE_LOW, .high = SAMPLE_HIGH};
+    int32_t sum = state->sum;
+    doppler_line_take(&state->tone, &span, state->window.sample + state->clean, &sum);
+    state->sum = held_sum(sum);
+    state->clean += span.count;
 }
 
 // The window's powers without the lines. Returns `copy`, or the powers themselves where there is no line.
@@ -251,13 +288,6 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     }
 }
 
-// What the sum of a window can be. It is that anyway: a bound that needs no relation between the sum and the samples.
-static int32_t held_sum(int32_t sum)
-{
-    const int32_t most = FFT_LENGTH * 32767;
-    return sum > most ? most : sum < -most ? -most : sum;
-}
-
 // Drops the oldest `hop` samples.
 static void slide(doppler_state_t *state, int32_t hop)
 {
@@ -276,6 +306,10 @@ static void slide(doppler_state_t *state, int32_t hop)
         }
     }
     state->filled = FFT_LENGTH - hop;
+    if (state->clean < hop) {
+        doppler_line_skip(&state->tone, (uint32_t)(hop - state->clean));
+    }
+    state->clean = state->clean < hop ? 0 : state->clean - hop;
 }
 
 static const float halved_least_m_s =
@@ -288,12 +322,15 @@ static void mirror(doppler_state_t *state)
     }
 }
 
+enum { MEAN_MOST = 384 * DOPPLER_GAIN }; // beyond, the echo stands at the rail; and no difference fills 16 bits
+
 static void transform(const doppler_config_t *config, doppler_state_t *state, bool halved, int32_t late_samples)
 {
     const int32_t sum = state->sum;
-    const int32_t mean = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
-                         : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
-                                                           : sum / FFT_LENGTH;
+    const int32_t offset = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
+                           : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
+                                                             : sum / FFT_LENGTH;
+    const int32_t mean = offset > MEAN_MOST ? MEAN_MOST : offset < -MEAN_MOST ? -MEAN_MOST : offset;
     if (config->method == DOPPLER_ARGMAX) {
         fft_power_flat(state->window.sample, mean, state->power); // the paper windows nothing
     } else {
@@ -472,14 +509,20 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
         state->pending = false;
     }
+    bool busy = out.fresh;
     if (state->due > 0 && --state->due == 0) {
         watch_lines(config->beam, state);
+        busy = true;
     }
     for (int32_t i = 0; i < count; i++) {
         const bool railed = sample[i] == 0u || (int32_t)sample[i] >= config->max_count;
         take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
     }
     out.busy = state->pending;
+    if (!busy && !out.busy && state->full && config->method == DOPPLER_LIKELIHOOD) {
+        clean(state);
+        (void)doppler_line_think(&state->tone);
+    }
     out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;
 }

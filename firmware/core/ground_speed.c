@@ -12,6 +12,7 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
     state->p_bb = config->bias_start_m_s2 * config->bias_start_m_s2;
     state->speed_noise_m2_s2 = config->speed_noise_m2_s2;
     state->misfit = 1.0f;
+    ground_speed_weigh_wheels(config, state);
 }
 
 // Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once; or wheels at rest for long
@@ -46,7 +47,8 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     const float spread = config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
     const bool denied = state->unheard_ticks < SILENT_TICKS && fixed_greater(fabsf(state->value_m_s - fabsf(wheel_m_s)), 2.0f * spread);
-    if (!denied && fixed_greater(state->p_vv, 1.2f * noise)) {
+    const bool open = state->other_alive && state->unheard_ticks < SILENT_TICKS; // which sign it is, the radar tells
+    if (!denied && !open && fixed_greater(state->p_vv, 1.2f * noise)) {
         ground_speed_track_t track = ground_speed_best_of(state);
         ground_speed_correct(config, &track, wheel_m_s - track.speed_m_s, 0.0f, noise);
         ground_speed_keep_best(state, &track);
@@ -54,11 +56,15 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     }
 }
 
+// [1] of the variance that (14) takes, x = X/sigma: 0.8 (2 E[x^2 (1 - x^2/16)^2] - E[x^2 (1 - x^2/16)^4]) of a normal x
+static const float felt_takes = 0.68f;
+
 static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
+    const float rest = fixed_bits(state->felt_m_s) == 0u ? 1.0f : 1.0f - felt_takes * state->felt_trust; // of it, that (14) leaves
     const float unseen =
-        config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks;
+        config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks * rest;
     const float told = ground_speed_told_by_wheels(config, state, config->apart_least_m_s);
     // of a body that sways on its wheels: the mean square, less what noise makes on average, a ninth of what it may make
     const float shaken =
@@ -185,7 +191,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         state_std(config, state);
     }
     const ground_speed_output_t out = {
-        .speed_m_s = state->speed_m_s,
+        .speed_m_s = state->standstill ? state->speed_m_s : state->speed_m_s - state->felt_m_s, // (14)
         .std_m_s = state->std_m_s,
         .bias_m_s2 = state->bias_m_s2,
         .standstill = state->standstill,

@@ -31,6 +31,9 @@
 // Else it is a slope that begins, under wheels that roll on: the best track keeps to the wheels' changes of speed for a window's length,
 // its bias free to jump, and the one that believes the accelerometer is followed beside it, as the other sign is, until the radar's values
 // tell.
+// (14): reported is v - c X (1 - X^2/(16 var X))^2 within four sigma of X: the accelerometer's white noise since the window's middle is in
+// v, and no radar value has seen it; X holds the same noise and the wheels do not. c = cov/var X: 2 (1 - exp(-tau/0.25 s)) where that noise
+// is all of X (derived here), and less by as much as the mean of X^2 is more. It is no more than 1.14 c sigma wrong where X is slip.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -79,6 +82,7 @@ typedef struct {
     float apart_share;             // of (10), squared
     float apart_least_m_s;         // of (10): what slip makes
     float apart_noise;             // of (10): Qv of its noise, nine times
+    float felt_share, felt_noise;  // of (14): c where X is nothing but noise, and var X over Qv
     float roll_told_m_s;           // of (13): its limit
     float slip_force_m_s2;         // of (13): the least force of wheels that slip
     float roll_odds;               // 2 ln of the odds that (13) starts with
@@ -137,7 +141,11 @@ typedef struct {
     float misfit;            // of (8), 1 or more
     float apart_m_s;         // X of (10)
     float alike_m_s;         // error that values of a strange spectrum may share: their mean does not make it smaller
-    float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
+    float felt_m_s;          // what (14) takes off
+    float felt_trust;        // of (14): its c over that of nothing but noise
+    float per_felt_most_s2_m2;
+    float apart_long_m2_s2; // mean of X^2 over seconds
+    float wheel_m_s;        // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
     float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second

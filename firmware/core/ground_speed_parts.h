@@ -91,6 +91,7 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
 
 // --- ground_speed_wheels.c
 
+void ground_speed_weigh_wheels(const ground_speed_config_t *config, ground_speed_state_t *state);
 float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s);
 void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_state_t *state);
