@@ -103,12 +103,18 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         state->waits = 1;
         if (state->other_alive) {
             ground_speed_update_other(config, state);
+        } else if (state->refused == 0) {
+            ground_speed_ask_again(config, state);
         }
     } else if (state->waits > 0) {
         state->waits = 0;
         if (state->rolls_ticks == 0) { // (3) knows no jump within its window
             ground_speed_update_agile(config, state);
         }
+        state->slide_due = true;
+    } else if (state->slide_due && !input->busy) {
+        state->slide_due = false;
+        ground_speed_watch_slide(config, state);
     } else if (!input->busy) {
         do_chore(config, state, input);
     }
@@ -134,6 +140,7 @@ static void tick(const ground_speed_config_t *config, ground_speed_state_t *stat
 {
     ground_speed_integrate(config, state, accel);
     state->other.ticks += state->other.ticks < 1000 ? 1 : 0;
+    state->slide.ticks++;
     state->agile.ticks += state->agile.ticks < 1000 ? 1 : 0;
     state->wheel_ticks += state->wheel_ticks < 1000 ? 1 : 0;
     state->speed_m_s += (accel - state->bias_m_s2) * config->tick_s; // (2)
@@ -151,6 +158,13 @@ static void catch_up(const ground_speed_config_t *config, ground_speed_state_t *
     state->p_vb -= lost;
     state->p_bb += n * config->bias_noise_m2_s4;
     state->behind_ticks = 0;
+}
+
+// The mean of both signs by their odds, less (14).
+static float reported(const ground_speed_state_t *state)
+{
+    const float believed = state->other_alive ? state->speed_m_s - state->doubt_m_s : state->speed_m_s;
+    return state->standstill ? state->speed_m_s : believed - state->felt_m_s;
 }
 
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
@@ -191,7 +205,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         state_std(config, state);
     }
     const ground_speed_output_t out = {
-        .speed_m_s = state->standstill ? state->speed_m_s : state->speed_m_s - state->felt_m_s, // (14)
+        .speed_m_s = reported(state),
         .std_m_s = state->std_m_s,
         .bias_m_s2 = state->bias_m_s2,
         .standstill = state->standstill,

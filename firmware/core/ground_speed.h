@@ -118,6 +118,19 @@ typedef struct {
     float p_vv, p_vb, p_bb;
 } ground_speed_track_t;
 
+enum { SLIDE_VALUES = 6 };
+
+// The last values, of (15).
+typedef struct {
+    int32_t newest, held;
+    float heard_m_s[SLIDE_VALUES];
+    float alike_m_s[SLIDE_VALUES];
+    float sign[SLIDE_VALUES];           // of the best track then
+    float tau_s[SLIDE_VALUES];          // of (3), when it came
+    uint32_t ticks, came[SLIDE_VALUES]; // a count of ticks, and where it stood then
+    int32_t q20[SLIDE_VALUES];          // V in its window's middle
+} ground_speed_slide_t;
+
 // A track that moves on at Doppler values alone.
 typedef struct {
     ground_speed_track_t at;
@@ -161,15 +174,17 @@ typedef struct {
     int32_t against;
     int32_t still_ticks;
     bool standstill;
-    bool heard;                // a Doppler value has come since the reset
-    bool accepted;             // and one has corrected
+    bool heard;    // a Doppler value has come since the reset
+    bool accepted; // and one has corrected
+    ground_speed_slide_t slide;
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
     float odds;                                           // 2 ln of the odds against it
-    float doubt_m2_s2;                                    // what it adds to the variance
+    float doubt_m_s, doubt_m2_s2;                         // what it takes off the mean, and adds to the variance
     ground_speed_side_t agile;                            // (7)
     float agile_sum;                                      // of (7)
     int32_t agile_left;                                   // values until it starts anew
+    bool slide_due;                                       // (15) has not seen it
     int32_t waits;                                        // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
     float value_heard_m_s, value_accel_m_s2, value_trust; // the value as it came, the raw acceleration in its window
     float value_m_s, value_noise_m2_s2;

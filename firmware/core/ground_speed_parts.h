@@ -79,12 +79,22 @@ float ground_speed_force_odds(const ground_speed_config_t *config, const ground_
 // The same of the wheels' sign alone.
 float ground_speed_wheel_odds(const ground_speed_config_t *config, float measured, float wheel_m_s);
 void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track);
-void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s);
+// Instead of that, where one sign is taken alone.
+void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state);
 float ground_speed_choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track,
                                float measured, float middle, float spread, float wheel_m_s);
 void ground_speed_update_other(const ground_speed_config_t *config, ground_speed_state_t *state);
 
+// --- ground_speed_slide.c
+
+// At every value that tells of a full window.
+void ground_speed_remember(ground_speed_state_t *state);
+void ground_speed_watch_slide(const ground_speed_config_t *config, ground_speed_state_t *state);
+
 // --- ground_speed_jump.c
+
+// The window's middle of the last value, which came `ago` ticks ago: V there, as the mean over the window.
+int32_t ground_speed_middle_q20(const ground_speed_state_t *state, uint32_t ago);
 
 void ground_speed_forget_agile(ground_speed_state_t *state);
 void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed_state_t *state);

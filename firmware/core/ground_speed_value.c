@@ -91,6 +91,9 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
     state->value_wheel_m_s = input->wheel_m_s;
+    if (!early) {
+        ground_speed_remember(state);
+    }
     watch_bias(config, state, &track, nearest, spread);
     if (cost > ground_speed_square(config->gate_sigma)) {
         if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little
@@ -110,7 +113,6 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->waits = 2;
     ground_speed_correct(config, &track, state->value_sign * measured - middle, own.tau_s, noise);
     ground_speed_keep_best(state, &track);
-    ground_speed_ask_again(config, state, measured, input->wheel_m_s);
 }
 
 // A quiet echo says that the window's mean speed was too low to be heard.

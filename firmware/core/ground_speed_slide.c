@@ -1,0 +1,179 @@
+#include "ground_speed_parts.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+static const float smear_s = 0.07f;     // [s] times the acceleration: what a window that it crosses reads wrong, assumed
+static const float fits_most = 3.0f;    // chi^2 over its degrees of freedom: 5 % of all lines have more
+static const float slide_prior = 16.0f; // 2 ln of the odds against a slide, assumed: exp(8) to one
+static const float slide_least = 8.0f;  // that the values must tell before it is asked
+static const float slide_sure = -6.0f;  // as far as four values are believed
+static const float waver = 0.1f;
+static const float dip = 0.8f; // [1] assumed: the values spread by 2 to 8 %
+
+typedef struct {
+    float t_s[SLIDE_VALUES];   // of the windows' middles, from the newest one's; the newest first
+    float v_m_s[SLIDE_VALUES]; // V there, the same
+    float d_m_s[SLIDE_VALUES];
+    float noise_m2_s2; // of a value
+} recent_t;
+
+// A line through y = sign d - V over t, and what is left of it.
+typedef struct {
+    float mean_m_s, slope_m_s2, t_mean_s, t_square_s2;
+    float chi2;
+    float noise_m2_s2;
+} line_t;
+
+void ground_speed_remember(ground_speed_state_t *state)
+{
+    const int32_t at = (state->slide.newest + 1) % SLIDE_VALUES;
+    state->slide.newest = at;
+    state->slide.held += state->slide.held < SLIDE_VALUES ? 1 : 0;
+    state->slide.heard_m_s[at] = state->value_heard_m_s;
+    state->slide.alike_m_s[at] = state->alike_m_s;
+    state->slide.sign[at] = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
+    state->slide.came[at] = state->slide.ticks;
+    state->slide.q20[at] = ground_speed_middle_q20(state, 0u);
+    state->slide.tau_s[at] = state->value_tau_s;
+}
+
+static recent_t recent(const ground_speed_config_t *config, const ground_speed_state_t *state)
+{
+    const int32_t newest = state->slide.newest;
+    const float alike = state->slide.alike_m_s[(newest + 1) % SLIDE_VALUES]; // of the oldest: the slide makes its own
+    recent_t out = {.noise_m2_s2 = state->value_noise_m2_s2 + ground_speed_square(alike)};
+    for (int32_t i = 0; i < SLIDE_VALUES; i++) {
+        const int32_t at = (newest + SLIDE_VALUES - i) % SLIDE_VALUES;
+        out.t_s[i] = state->slide.tau_s[newest] - state->slide.tau_s[at] +
+                     (float)(int32_t)(state->slide.came[at] - state->slide.came[newest]) * config->tick_s;
+        out.v_m_s[i] = (float)fixed_wrap_difference(state->slide.q20[at], state->slide.q20[newest]) * (1.0f / 1048576.0f);
+        out.d_m_s[i] = state->slide.heard_m_s[at];
+    }
+    return out;
+}
+
+// The line whose `flipped` newest values have the sign `sign`, and the older ones the other; 0 flipped: all have it.
+static line_t fit(const recent_t *recent, int32_t count, int32_t flipped, float sign)
+{
+    line_t out = {.chi2 = 0.0f};
+    float y[SLIDE_VALUES];
+    const float per_count = count == SLIDE_VALUES ? 1.0f / (float)SLIDE_VALUES : 1.0f / (float)(SLIDE_VALUES - 1);
+    float change = 0.0f;
+    for (int32_t i = 0; i < count; i++) {
+        const float s = i < flipped || flipped == 0 ? sign * recent->d_m_s[i] : -sign * recent->d_m_s[i];
+        y[i] = s - recent->v_m_s[i];
+        out.mean_m_s += y[i] * per_count;
+        out.t_mean_s += recent->t_s[i] * per_count;
+        change = i == 0 ? s : i == count - 1 ? change - s : change;
+    }
+    float ty = 0.0f;
+    float yy = 0.0f;
+    for (int32_t i = 0; i < count; i++) {
+        const float t = recent->t_s[i] - out.t_mean_s;
+        ty += t * (y[i] - out.mean_m_s);
+        yy += ground_speed_square(y[i] - out.mean_m_s);
+        out.t_square_s2 += ground_speed_square(t);
+    }
+    const float per_square = 1.0f / fixed_clamp(out.t_square_s2, 1e-3f, 10.0f);
+    out.slope_m_s2 = ty * per_square;
+    const float accel = change / fixed_clamp(-recent->t_s[count - 1], 0.1f, 10.0f);
+    out.noise_m2_s2 = recent->noise_m2_s2 + ground_speed_square(smear_s * accel);
+    out.chi2 = (yy - ty * out.slope_m_s2) / out.noise_m2_s2;
+    return out;
+}
+
+// The line's speed now, and its bias.
+static ground_speed_track_t track_of(const ground_speed_config_t *config, const ground_speed_state_t *state, const line_t *line)
+{
+    const int32_t newest = state->slide.newest;
+    const float since = (float)fixed_wrap_difference(state->integral_q20[state->head], state->slide.q20[newest]) * (1.0f / 1048576.0f);
+    const float late = state->slide.tau_s[newest] + (float)(int32_t)(state->slide.ticks - state->slide.came[newest]) * config->tick_s;
+    const float p_bb = line->noise_m2_s2 / fixed_clamp(line->t_square_s2, 1e-3f, 10.0f);
+    const float along = -line->t_mean_s + late; // from the values' mean to now
+    const ground_speed_track_t out = {
+        .speed_m_s = line->mean_m_s + line->slope_m_s2 * along + since,
+        .bias_m_s2 = -line->slope_m_s2,
+        .p_vv = 0.25f * line->noise_m2_s2 + along * along * p_bb,
+        .p_vb = -along * p_bb,
+        .p_bb = p_bb,
+    };
+    return out;
+}
+
+static void propose(const ground_speed_config_t *config, ground_speed_state_t *state, const line_t *line, float odds)
+{
+    ground_speed_track_t track = track_of(config, state, line);
+    ground_speed_hold(config, &track);
+    const bool same = (track.speed_m_s < 0.0f) == (state->speed_m_s < 0.0f);
+    if (same || (state->other_alive && state->odds <= odds)) {
+        return;
+    }
+    ground_speed_split(state, &state->other, &track);
+    state->other_alive = true;
+    state->odds = odds < 0.0f ? -odds : odds;
+    if (odds < 0.0f) {
+        const ground_speed_track_t best = ground_speed_best_of(state);
+        ground_speed_keep_best(state, &track);
+        ground_speed_split(state, &state->other, &best);
+        ground_speed_forget_agile(state);
+        state->rolls_ticks = 0;
+        state->refused = 0;
+    }
+}
+
+// A magnitude that passes through zero falls, and rises again, once.
+static bool dips(const recent_t *recent, int32_t count)
+{
+    const float newest = recent->d_m_s[0];
+    const float oldest = recent->d_m_s[count - 1];
+    const float end = fixed_greater(oldest, newest) ? newest : oldest;
+    int32_t least = 0;
+    for (int32_t i = 1; i < count; i++) {
+        least = fixed_greater(recent->d_m_s[least], recent->d_m_s[i]) ? i : least;
+    }
+    for (int32_t i = 1; i < count; i++) {
+        const float step = recent->d_m_s[i] - recent->d_m_s[i - 1]; // falls up to the least one, rises from there on
+        if (fixed_greater(i <= least ? step : -step, waver * end)) {
+            return false;
+        }
+    }
+    return fixed_greater(dip * end, recent->d_m_s[least]);
+}
+
+// (15) over `count` values; true where it has told.
+static bool look(const ground_speed_config_t *config, ground_speed_state_t *state, const recent_t *values, int32_t count)
+{
+    const int32_t oldest = (state->slide.newest + SLIDE_VALUES + 1 - count) % SLIDE_VALUES;
+    const bool went = (state->slide.sign[oldest] < 0.0f) != (state->speed_m_s < 0.0f);
+    if (went || !dips(values, count)) { // the best track has passed through zero itself, or nothing has
+        return false;
+    }
+    const float sign = state->speed_m_s < 0.0f ? 1.0f : -1.0f; // of the newest, if it slides
+    const line_t straight = fit(values, count, 0, -sign);
+    line_t best = straight;
+    for (int32_t flipped = 1; flipped < count; flipped++) {
+        const line_t line = fit(values, count, flipped, sign);
+        if (fixed_greater(best.chi2, line.chi2)) {
+            best = line;
+        }
+    }
+    const float told = straight.chi2 - best.chi2;
+    if (!fixed_greater(told, slide_least) || !fixed_greater(fits_most * (float)(count - 2), best.chi2)) {
+        return false;
+    }
+    propose(config, state, &best, fixed_clamp(slide_prior - told, slide_sure, slide_prior));
+    return true;
+}
+
+void ground_speed_watch_slide(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    if (state->slide.held < SLIDE_VALUES) {
+        return;
+    }
+    const recent_t values = recent(config, state);
+    if (!look(config, state, &values, SLIDE_VALUES)) {
+        look(config, state, &values, SLIDE_VALUES - 1);
+    }
+}
