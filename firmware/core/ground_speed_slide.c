@@ -4,11 +4,12 @@
 
 #include <math.h>
 
-static const float smear_s = 0.07f;     // [s] times the acceleration: what a window that it crosses reads wrong, assumed
-static const float fits_most = 3.0f;    // chi^2 over its degrees of freedom: 5 % of all lines have more
-static const float slide_prior = 16.0f; // 2 ln of the odds against a slide, assumed: exp(8) to one
-static const float slide_least = 8.0f;  // that the values must tell before it is asked
-static const float slide_sure = -6.0f;  // as far as four values are believed
+static const float smear_s = 0.07f;          // [s] times the acceleration: what a window that it crosses reads wrong, assumed
+static const float fits_most = 3.0f;         // chi^2 over its degrees of freedom: 5 % of all lines have more
+static const float slope_ends_m2_s4 = 0.25f; // (0.5 m/s^2)^2: the slope that it slides on need not last, assumed
+static const float slide_prior = 16.0f;      // 2 ln of the odds against a slide, assumed: exp(8) to one
+static const float slide_least = 8.0f;       // that the values must tell before it is asked
+static const float slide_sure = -6.0f;       // as far as four values are believed
 static const float waver = 0.1f;
 static const float dip = 0.8f; // [1] assumed: the values spread by 2 to 8 %
 
@@ -97,7 +98,7 @@ static ground_speed_track_t track_of(const ground_speed_config_t *config, const 
         .bias_m_s2 = -line->slope_m_s2,
         .p_vv = 0.25f * line->noise_m2_s2 + along * along * p_bb,
         .p_vb = -along * p_bb,
-        .p_bb = p_bb,
+        .p_bb = p_bb + slope_ends_m2_s4,
     };
     return out;
 }
