@@ -255,6 +255,13 @@ static const float misfit_calm = 0.8f; // [1] of (3)'s comment
 static const float misfit_strange = 2.5f;
 static const float misfit_share = 0.3f; // [1] of the speed per unit of misfit: heave of 5 mm at 8 Hz makes 0.16 to 0.39
 
+// Of a line, in the units of reduce's energy: a count^2 of variance is 12288 * 64, and a is in counts times the gain.
+static uint64_t line_power(const doppler_line_t *line)
+{
+    const uint64_t square = (uint64_t)((int64_t)line->a_re * line->a_re) + (uint64_t)((int64_t)line->a_im * line->a_im);
+    return square * (12288u * 64u / (2u * DOPPLER_GAIN * DOPPLER_GAIN));
+}
+
 static void measure(const doppler_config_t *config, const doppler_state_t *state, doppler_output_t *out)
 {
     int16_t reduced[DOPPLER_BINS_MAX] __attribute__((aligned(8)));
@@ -281,6 +288,7 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     const bool noise = outside.known && outside.in < 2u * outside.noise;
     out->speed_m_s = config->scale * speed_m_s;
     out->quiet = !outside.beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->relieved = state->relief > 0 && line_power(&state->tone) > energy / 2u;
     out->beyond = outside.beyond || (top && !out->quiet && outside.in > 3u * outside.noise);
     if (outside.known && !out->quiet && outside.in > outside.noise) {
         const float share = (float)outside.noise / (float)(outside.in - outside.noise);
@@ -321,6 +329,8 @@ static void mirror(doppler_state_t *state)
         state->window.sample[j] = state->window.sample[2 * EARLY_MIRRORED - 1 - j];
     }
 }
+
+enum { RELIEF_VALUES = 6 }; // a window that is rid of the line wholly has come by then
 
 enum { MEAN_MOST = 384 * DOPPLER_GAIN }; // beyond, the echo stands at the rail; and no difference fills 16 bits
 
@@ -504,7 +514,10 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         }
         out.trust += made_trust * (float)made + railed_trust * (float)railed;
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
+        state->relief -= state->relief > 0 ? 1 : 0;
         out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
+        out.relieved = out.relieved && !out.spoilt && !out.quiet;
+        state->relief = out.relieved ? 0 : state->relief;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
         state->pending = false;
@@ -521,7 +534,9 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
     out.busy = state->pending;
     if (!busy && !out.busy && state->full && config->method == DOPPLER_LIKELIHOOD) {
         clean(state);
+        const bool known = state->tone.found;
         (void)doppler_line_think(&state->tone);
+        state->relief = state->tone.found && !known ? RELIEF_VALUES : state->relief;
     }
     out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;

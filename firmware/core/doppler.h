@@ -96,6 +96,7 @@ typedef struct {
     bool leveled;                                         // (3) has begun
     doppler_line_t tone;                                  // the line inside the echo
     int32_t clean;                                        // samples of the window that are rid of it
+    int32_t relief;                                       // values that may still be the first without it
     int32_t sum;                                          // of the samples in the window
     int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
     int32_t block, in_block;                              // the block that is being filled, and how much of it is
@@ -118,6 +119,7 @@ typedef struct {
     bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
     bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
     bool strange;         // no speed's spectrum fits: interference, or no ground
+    bool relieved;        // what came before told of an interfering line as strong as the echo, which is taken off from here on
     bool spoilt;          // strange, or too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
     float misfit;         // share of the speed that may be wrong because no spectrum fits [1]

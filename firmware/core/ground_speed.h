@@ -206,6 +206,7 @@ typedef struct {
     bool busy;              // this tick has a transform or a search: chores wait
     float doppler_trust;    // how much larger its variance is than a calm echo's [1]; 0 counts as 1
     float doppler_misfit;   // share of it that may be wrong for all values alike [1]
+    bool doppler_relieved;  // the values before this one told of an interfering line
     uint32_t elapsed_ticks; // since the call before; 0 counts as 1
 } ground_speed_input_t;
 

@@ -55,8 +55,26 @@ ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config,
     return out;
 }
 
+// What was believed of the speed, the slope and the sign was a line's.
+static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    state->accepted = false;
+    state->refused = 0;
+    state->p_vv = 1.0f; // [m^2/s^2] nothing is known any more
+    state->p_vb = 0.0f;
+    state->p_bb = ground_speed_square(config->bias_start_m_s2);
+    state->misfit = 1.0f;
+    state->other_alive = false;
+    state->rolls_ticks = 0;
+    state->slide.held = 0;
+    ground_speed_forget_agile(state);
+}
+
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
+    if (input->doppler_relieved) {
+        begin_anew(config, state);
+    }
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
     const float heard = fixed_clamp(input->doppler_m_s, 0.0f, config->speed_max_m_s);
     ground_speed_track_t track = ground_speed_best_of(state);

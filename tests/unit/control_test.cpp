@@ -333,6 +333,7 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
                                             .busy = heard.busy || heard.fresh,
                                             .doppler_trust = value.trust,
                                             .doppler_misfit = value.misfit,
+                                            .doppler_relieved = value.relieved,
                                             .elapsed_ticks = 1};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;
