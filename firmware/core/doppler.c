@@ -517,7 +517,6 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         state->relief -= state->relief > 0 ? 1 : 0;
         out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.relieved = out.relieved && !out.spoilt && !out.quiet;
-        state->relief = out.relieved ? 0 : state->relief;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
         state->pending = false;

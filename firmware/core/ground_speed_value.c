@@ -55,6 +55,8 @@ ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config,
     return out;
 }
 
+static const float believed_cost = 4.0f; // [1] two standard deviations
+
 // What was believed of the speed, the slope and the sign was a line's.
 static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
@@ -72,9 +74,6 @@ static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t
 
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
-    if (input->doppler_relieved) {
-        begin_anew(config, state);
-    }
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
     const float heard = fixed_clamp(input->doppler_m_s, 0.0f, config->speed_max_m_s);
     ground_speed_track_t track = ground_speed_best_of(state);
@@ -100,7 +99,13 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     const float noise = value.noise_m2_s2;
     float spread = ground_speed_spread_of(&track, own.tau_s) + noise;
     const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
-    const float cost = ground_speed_square(nearest) / spread;
+    float cost = ground_speed_square(nearest) / spread;
+    if (input->doppler_relieved && cost > believed_cost) { // else the line had not told it
+        begin_anew(config, state);
+        track = ground_speed_best_of(state);
+        spread = ground_speed_spread_of(&track, own.tau_s) + noise;
+        cost = ground_speed_square(nearest) / spread;
+    }
     state->waits = 2;
     state->value_m_s = measured;
     state->value_noise_m2_s2 = noise;
