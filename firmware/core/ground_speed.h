@@ -174,6 +174,7 @@ typedef struct {
     int32_t against;
     int32_t still_ticks;
     bool standstill;
+    bool relieved; // what a line had told is forgotten
     bool heard;    // a Doppler value has come since the reset
     bool accepted; // and one has corrected
     ground_speed_slide_t slide;

@@ -65,6 +65,7 @@ static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t
     state->p_vv = 1.0f; // [m^2/s^2] nothing is known any more
     state->p_vb = 0.0f;
     state->p_bb = ground_speed_square(config->bias_start_m_s2);
+    state->bias_m_s2 = state->value_accel_m_s2; // as if it rolled along, give or take
     state->misfit = 1.0f;
     state->other_alive = false;
     state->rolls_ticks = 0;
@@ -79,8 +80,8 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     ground_speed_track_t track = ground_speed_best_of(state);
     const bool rolls = state->rolls_ticks > 0;
     ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
-    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                        // a track that rolls has none of its own
-    const float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
+    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                  // a track that rolls has none of its own
+    float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
     const bool early = input->doppler_late_s < 0.0f;
     if (early && fabsf(own_accel) > early_accel_m_s2) {
@@ -98,11 +99,16 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     const float measured = value.speed_m_s;
     const float noise = value.noise_m2_s2;
     float spread = ground_speed_spread_of(&track, own.tau_s) + noise;
-    const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
+    float nearest = middle < 0.0f ? -measured - middle : measured - middle;
     float cost = ground_speed_square(nearest) / spread;
-    if (input->doppler_relieved && cost > believed_cost) { // else the line had not told it
+    if (!input->doppler_relieved) {
+        state->relieved = false;
+    } else if (!state->relieved && cost > believed_cost) { // else the line had not told it
         begin_anew(config, state);
+        state->relieved = true;
         track = ground_speed_best_of(state);
+        middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s;
+        nearest = middle < 0.0f ? -measured - middle : measured - middle;
         spread = ground_speed_spread_of(&track, own.tau_s) + noise;
         cost = ground_speed_square(nearest) / spread;
     }
