@@ -181,6 +181,24 @@ static int32_t log2_q8(uint64_t power)
 
 static bool is_line(const doppler_state_t *state, int32_t k) { return (state->line[(uint32_t)k / 32u] >> ((uint32_t)k % 32u) & 1u) != 0u; }
 
+enum { RELIEF_VALUES = 6 }; // a window that is rid of the line wholly has come by then
+
+static bool any_line(const doppler_state_t *state) { return (state->line[0] | state->line[1] | state->line[2] | state->line[3]) != 0u; }
+
+// Whether the lines hold more than half of what the other bins do: the five bins around each, as without_lines has it.
+static bool lines_prevail(const doppler_template_t *beam, const doppler_state_t *state)
+{
+    uint64_t all = 0;
+    uint64_t lines = 0;
+    int32_t until = -1; // bins up to there are a line's
+    for (int32_t k = 0; k < beam->first_bin + beam->bins; k++) {
+        until = k + 2 < FFT_BINS && is_line(state, k + 2) ? k + 4 : until;
+        all += state->power[k] >> 8;
+        lines += k <= until ? state->power[k] >> 8 : 0u;
+    }
+    return 3u * lines > all;
+}
+
 static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
 {
     const int32_t end = beam->first_bin + beam->bins;
@@ -192,6 +210,7 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         state->sway_q8[k] = (int16_t)(sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
     }
     state->leveled = true;
+    const bool known = any_line(state);
     int32_t loudest = LINE_FROM - LINE_SIDE;
     for (int32_t i = 0; i < 4; i++) {
         state->line[i] = 0;
@@ -204,6 +223,10 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         if (state->sway_q8[k] < LINE_SWAY_Q8 && above > state->level_q8[k - LINE_SIDE] && above > state->level_q8[k + LINE_SIDE]) {
             state->line[(uint32_t)k / 32u] |= 1u << ((uint32_t)k % 32u);
         }
+    }
+    if (!known && any_line(state) && lines_prevail(beam, state)) {
+        state->relief = RELIEF_VALUES;
+        state->relief_masked = true;
     }
     if (!beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
         doppler_line_suggest(&state->tone, (uint32_t)loudest);
@@ -234,7 +257,7 @@ static void clean(doppler_state_t *state)
 // The window's powers without the lines. Returns `copy`, or the powers themselves where there is no line.
 static const uint64_t *without_lines(const doppler_template_t *beam, const doppler_state_t *state, uint64_t *copy)
 {
-    if ((state->line[0] | state->line[1] | state->line[2] | state->line[3]) == 0u) {
+    if (!any_line(state)) {
         return state->power;
     }
     for (int32_t k = 0; k < FFT_BINS; k++) {
@@ -288,7 +311,7 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     const bool noise = outside.known && outside.in < 2u * outside.noise;
     out->speed_m_s = config->scale * speed_m_s;
     out->quiet = !outside.beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
-    out->relieved = state->relief > 0 && line_power(&state->tone) > energy / 2u;
+    out->relieved = state->relief > 0 && (state->relief_masked || line_power(&state->tone) > energy / 2u);
     out->beyond = outside.beyond || (top && !out->quiet && outside.in > 3u * outside.noise);
     if (outside.known && !out->quiet && outside.in > outside.noise) {
         const float share = (float)outside.noise / (float)(outside.in - outside.noise);
@@ -329,8 +352,6 @@ static void mirror(doppler_state_t *state)
         state->window.sample[j] = state->window.sample[2 * EARLY_MIRRORED - 1 - j];
     }
 }
-
-enum { RELIEF_VALUES = 6 }; // a window that is rid of the line wholly has come by then
 
 enum { MEAN_MOST = 384 * DOPPLER_GAIN }; // beyond, the echo stands at the rail; and no difference fills 16 bits
 
@@ -515,6 +536,7 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         out.trust += made_trust * (float)made + railed_trust * (float)railed;
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
         state->relief -= state->relief > 0 ? 1 : 0;
+        state->relief_masked = state->relief_masked && state->relief > 0;
         out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.relieved = out.relieved && !out.spoilt && !out.quiet;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
