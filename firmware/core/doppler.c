@@ -181,7 +181,8 @@ static int32_t log2_q8(uint64_t power)
 
 static bool is_line(const doppler_state_t *state, int32_t k) { return (state->line[(uint32_t)k / 32u] >> ((uint32_t)k % 32u) & 1u) != 0u; }
 
-enum { RELIEF_VALUES = 6 }; // a window that is rid of the line wholly has come by then
+enum { REST = 5, LOOK_LEAST_S = 3 }; // ticks that the filter has after a value; a scatterer is in the beam for less time than that
+enum { RELIEF_VALUES = 6 };          // a window that is rid of the line wholly has come by then
 
 static bool any_line(const doppler_state_t *state) { return (state->line[0] | state->line[1] | state->line[2] | state->line[3]) != 0u; }
 
@@ -228,7 +229,8 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         state->relief = RELIEF_VALUES;
         state->relief_masked = true;
     }
-    if (!beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
+    const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
+    if (long_enough && !beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
         doppler_line_suggest(&state->tone, (uint32_t)loudest);
     }
 }
@@ -240,18 +242,25 @@ static int32_t held_sum(int32_t sum)
     return sum > most ? most : sum < -most ? -most : sum;
 }
 
-enum { CLEAN_MOST = 96, SAMPLE_LOW = -512 * DOPPLER_GAIN, SAMPLE_HIGH = 511 * DOPPLER_GAIN };
+enum { CLEAN_LEAST = 24, CLEAN_MOST = 64, SAMPLE_LOW = -512 * DOPPLER_GAIN, SAMPLE_HIGH = 511 * DOPPLER_GAIN };
 
-// Takes the line off what has come since the last time; in ticks that have time.
-static void clean(doppler_state_t *state)
+// Takes the line off some of what has come since the last time; in ticks that have time, of which there are five or more between two
+// values. True where there was little.
+static bool clean(const doppler_config_t *config, doppler_state_t *state)
 {
     const int32_t waiting = state->filled - state->clean;
+    const int32_t some = (5 * config->per_tick_q8) / 256;
+    const int32_t most = some < CLEAN_LEAST ? CLEAN_LEAST : some > CLEAN_MOST ? CLEAN_MOST : some;
     const doppler_line_span_t span = {
-        .count = waiting < CLEAN_MOST ? waiting : CLEAN_MOST, .mean = state->sum / FFT_LENGTH, .low = SAMPLE_LOW, .high = SAMPLE_HIGH};
+        .count = waiting < most ? waiting : most, .mean = state->sum / FFT_LENGTH, .low = SAMPLE_LOW, .high = SAMPLE_HIGH};
+    if (span.count <= 0 || state->clean < 0 || state->clean > FFT_LENGTH - span.count) {
+        return true;
+    }
     int32_t sum = state->sum;
     doppler_line_take(&state->tone, &span, state->window.sample + state->clean, &sum);
     state->sum = held_sum(sum);
     state->clean += span.count;
+    return 2 * span.count < most;
 }
 
 // The window's powers without the lines. Returns `copy`, or the powers themselves where there is no line.
@@ -553,8 +562,9 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
     }
     out.busy = state->pending;
-    if (!busy && !out.busy && state->full && config->method == DOPPLER_LIKELIHOOD) {
-        clean(state);
+    state->rest = out.fresh ? REST : state->rest > 0 ? state->rest - 1 : 0;
+    const bool idle = !busy && !out.busy && state->rest == 0;
+    if (idle && state->full && config->method == DOPPLER_LIKELIHOOD && clean(config, state)) {
         const bool known = state->tone.found;
         (void)doppler_line_think(&state->tone);
         state->relief = state->tone.found && !known ? RELIEF_VALUES : state->relief;

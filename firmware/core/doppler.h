@@ -97,6 +97,7 @@ typedef struct {
     doppler_line_t tone;                                  // the line inside the echo
     int32_t clean;                                        // samples of the window that are rid of it
     bool relief_masked;                                   // it was left out by (3)
+    int32_t rest;                                         // calls that are the filter's
     int32_t relief;                                       // values that may still be the first without it
     int32_t sum;                                          // of the samples in the window
     int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream

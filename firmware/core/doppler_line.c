@@ -3,7 +3,7 @@
 #include "fft_table.h"
 #include "fixed.h"
 
-enum { CELLS_A_CALL = 8, BLOCKS_LEAST = 16, THINK_EVERY = 4, LAST = 8, ALL = DOPPLER_LINE_BLOCKS };
+enum { CELLS_A_CALL = 4, BLOCKS_LEAST = 16, THINK_EVERY = 4, LAST = 8, D_STEP = 4, ALL = DOPPLER_LINE_BLOCKS };
 
 static const float share_found = 0.5f; // of (3)
 static const float share_last = 0.25f; // of the last second: three standard deviations below 1 for a line as strong as the echo beside it
@@ -168,9 +168,8 @@ static uint32_t place(const doppler_line_t *line, uint32_t first)
 }
 
 // (3), (4)
-static void decide(doppler_line_t *line, uint32_t first)
+static void decide(doppler_line_t *line, uint32_t first, uint32_t u)
 {
-    const uint32_t u = place(line, first);
     const sum_t S = sum_at(line, first, u);
     uint64_t power = 1;
     const uint32_t count = (uint32_t)line->blocks < ALL ? (uint32_t)line->blocks : ALL;
@@ -186,9 +185,9 @@ static void decide(doppler_line_t *line, uint32_t first)
     const int32_t per_sample = (int32_t)u / 64; // u from -1/2 to 1/2
     line->turn = (line->bin << 24) + (uint32_t)per_sample;
     sum_t D = {0, 0};
-    for (uint32_t n = 0; n < DOPPLER_LINE_BLOCK; n++) {
-        D.re += cos_q15((uint32_t)per_sample * n) / DOPPLER_LINE_BLOCK;
-        D.im += sin_q15((uint32_t)per_sample * n) / DOPPLER_LINE_BLOCK;
+    for (uint32_t n = 2; n < DOPPLER_LINE_BLOCK; n += D_STEP) { // the middle of four: they turn by 1/32 at most
+        D.re += cos_q15((uint32_t)per_sample * n) / (DOPPLER_LINE_BLOCK / D_STEP);
+        D.im += sin_q15((uint32_t)per_sample * n) / (DOPPLER_LINE_BLOCK / D_STEP);
     }
     const float d_re = (float)D.re * (1.0f / 32768.0f);
     const float d_im = (float)D.im * (1.0f / 32768.0f);
@@ -208,7 +207,12 @@ bool doppler_line_think(doppler_line_t *line)
         line->thinks += CELLS_A_CALL;
         return true;
     }
-    decide(line, first);
+    if (line->thinks == ALL + 1u) {
+        line->place = place(line, first);
+        line->thinks++;
+        return true;
+    }
+    decide(line, first, line->place);
     line->thinks = 0;
     return true;
 }

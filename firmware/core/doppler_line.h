@@ -32,6 +32,7 @@ typedef struct {
     int32_t blocks;                                                     // N
     uint32_t thinks;                                                    // cells of (2) that are made; 0: it rests
     uint32_t cell[DOPPLER_LINE_BLOCKS];                                 // |S|^2 / 2^12 at u = cell/32
+    uint32_t place;                                                     // u of the largest of them, 2^32 of a turn
     bool found;                                                         // a and turn are a line's
     uint32_t turn;                                                      // 2^32 (k/256 + u/64) of (4)
     int32_t a_re, a_im;

@@ -111,9 +111,8 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         if (state->rolls_ticks == 0) { // (3) knows no jump within its window
             ground_speed_update_agile(config, state);
         }
-        state->slide_due = true;
-    } else if (state->slide_due && !input->busy) {
-        state->slide_due = false;
+        state->slide.due = 2;
+    } else if (state->slide.due > 0 && !input->busy) {
         ground_speed_watch_slide(config, state);
     } else if (!input->busy) {
         do_chore(config, state, input);
@@ -160,11 +159,13 @@ static void catch_up(const ground_speed_config_t *config, ground_speed_state_t *
     state->behind_ticks = 0;
 }
 
-// The mean of both signs by their odds, less (14).
-static float reported(const ground_speed_state_t *state)
+// The mean of both signs by their odds, less (14). A tick that is busy has no time for a second difference.
+static float reported(ground_speed_state_t *state, bool busy)
 {
-    const float believed = state->other_alive ? state->speed_m_s - state->doubt_m_s : state->speed_m_s;
-    return state->standstill ? state->speed_m_s : believed - state->felt_m_s;
+    if (!busy) {
+        state->less_m_s = state->other_alive ? state->doubt_m_s + state->felt_m_s : state->felt_m_s;
+    }
+    return state->standstill ? state->speed_m_s : state->speed_m_s - state->less_m_s;
 }
 
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
@@ -205,7 +206,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         state_std(config, state);
     }
     const ground_speed_output_t out = {
-        .speed_m_s = reported(state),
+        .speed_m_s = reported(state, input->busy),
         .std_m_s = state->std_m_s,
         .bias_m_s2 = state->bias_m_s2,
         .standstill = state->standstill,

@@ -123,6 +123,7 @@ enum { SLIDE_VALUES = 6 };
 // The last values, of (15).
 typedef struct {
     int32_t newest, held;
+    int32_t due; // looks that are still to come
     float heard_m_s[SLIDE_VALUES];
     float alike_m_s[SLIDE_VALUES];
     float sign[SLIDE_VALUES];           // of the best track then
@@ -181,11 +182,11 @@ typedef struct {
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
     float odds;                                           // 2 ln of the odds against it
+    float less_m_s;                                       // by what is reported less than the best
     float doubt_m_s, doubt_m2_s2;                         // what it takes off the mean, and adds to the variance
     ground_speed_side_t agile;                            // (7)
     float agile_sum;                                      // of (7)
     int32_t agile_left;                                   // values until it starts anew
-    bool slide_due;                                       // (15) has not seen it
     int32_t waits;                                        // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
     float value_heard_m_s, value_accel_m_s2, value_trust; // the value as it came, the raw acceleration in its window
     float value_m_s, value_noise_m2_s2;

@@ -20,12 +20,13 @@ typedef struct {
     float noise_m2_s2; // of a value
 } recent_t;
 
-// A line through y = sign d - V over t, and what is left of it.
+// Lines through y = s - V over t, s the values with their signs: what does not depend on the signs, and the sums that do.
 typedef struct {
-    float mean_m_s, slope_m_s2, t_mean_s, t_square_s2;
-    float chi2;
-    float noise_m2_s2;
-} line_t;
+    int32_t count;
+    float per_count;
+    float t_mean_s, t_square_s2, per_square_1_s2; // sum of (t - mean)^2
+    float y, ty, yy;                              // sums of y, (t - mean) y, y^2
+} sums_t;
 
 void ground_speed_remember(ground_speed_state_t *state)
 {
@@ -55,57 +56,71 @@ static recent_t recent(const ground_speed_config_t *config, const ground_speed_s
     return out;
 }
 
-// The line whose `flipped` newest values have the sign `sign`, and the older ones the other; 0 flipped: all have it.
-static line_t fit(const recent_t *recent, int32_t count, int32_t flipped, float sign)
+// All values with the sign `sign`.
+static sums_t sums_of(const recent_t *recent, int32_t count, float sign)
 {
-    line_t out = {.chi2 = 0.0f};
-    float y[SLIDE_VALUES];
-    const float per_count = count == SLIDE_VALUES ? 1.0f / (float)SLIDE_VALUES : 1.0f / (float)(SLIDE_VALUES - 1);
-    float change = 0.0f;
+    sums_t out = {.count = count, .per_count = count == SLIDE_VALUES ? 1.0f / (float)SLIDE_VALUES : 1.0f / (float)(SLIDE_VALUES - 1)};
     for (int32_t i = 0; i < count; i++) {
-        const float s = i < flipped || flipped == 0 ? sign * recent->d_m_s[i] : -sign * recent->d_m_s[i];
-        y[i] = s - recent->v_m_s[i];
-        out.mean_m_s += y[i] * per_count;
-        out.t_mean_s += recent->t_s[i] * per_count;
-        change = i == 0 ? s : i == count - 1 ? change - s : change;
+        out.t_mean_s += recent->t_s[i];
     }
-    float ty = 0.0f;
-    float yy = 0.0f;
+    out.t_mean_s *= out.per_count;
     for (int32_t i = 0; i < count; i++) {
         const float t = recent->t_s[i] - out.t_mean_s;
-        ty += t * (y[i] - out.mean_m_s);
-        yy += ground_speed_square(y[i] - out.mean_m_s);
-        out.t_square_s2 += ground_speed_square(t);
+        const float y = sign * recent->d_m_s[i] - recent->v_m_s[i];
+        out.t_square_s2 += t * t;
+        out.y += y;
+        out.ty += t * y;
+        out.yy += y * y;
     }
-    const float per_square = 1.0f / fixed_clamp(out.t_square_s2, 1e-3f, 10.0f);
-    out.slope_m_s2 = ty * per_square;
-    const float accel = change / fixed_clamp(-recent->t_s[count - 1], 0.1f, 10.0f);
-    out.noise_m2_s2 = recent->noise_m2_s2 + ground_speed_square(smear_s * accel);
-    out.chi2 = (yy - ty * out.slope_m_s2) / out.noise_m2_s2;
+    out.t_square_s2 = fixed_clamp(out.t_square_s2, 1e-3f, 10.0f);
+    out.per_square_1_s2 = 1.0f / out.t_square_s2;
     return out;
 }
 
+// Value i has the sign `sign`, and had the other one.
+static void turn(sums_t *sums, const recent_t *recent, int32_t i, float sign)
+{
+    const float s2 = 2.0f * sign * recent->d_m_s[i];
+    sums->y += s2;
+    sums->ty += (recent->t_s[i] - sums->t_mean_s) * s2;
+    sums->yy -= 2.0f * s2 * recent->v_m_s[i];
+}
+
+// Sum of squares that the line leaves.
+static float left_by(const sums_t *sums)
+{
+    return sums->yy - sums->y * sums->y * sums->per_count - sums->ty * sums->ty * sums->per_square_1_s2;
+}
+
+// Of a value whose window's speed changes from the oldest to the newest: R, and what it reads wrong.
+static float noise_of(const recent_t *recent, int32_t count, float change_m_s)
+{
+    const float accel = change_m_s / fixed_clamp(-recent->t_s[count - 1], 0.1f, 10.0f);
+    return recent->noise_m2_s2 + ground_speed_square(smear_s * accel);
+}
+
 // The line's speed now, and its bias.
-static ground_speed_track_t track_of(const ground_speed_config_t *config, const ground_speed_state_t *state, const line_t *line)
+static ground_speed_track_t track_of(const ground_speed_config_t *config, const ground_speed_state_t *state, const sums_t *sums,
+                                     float noise)
 {
     const int32_t newest = state->slide.newest;
     const float since = (float)fixed_wrap_difference(state->integral_q20[state->head], state->slide.q20[newest]) * (1.0f / 1048576.0f);
     const float late = state->slide.tau_s[newest] + (float)(int32_t)(state->slide.ticks - state->slide.came[newest]) * config->tick_s;
-    const float p_bb = line->noise_m2_s2 / fixed_clamp(line->t_square_s2, 1e-3f, 10.0f);
-    const float along = -line->t_mean_s + late; // from the values' mean to now
+    const float slope = sums->ty * sums->per_square_1_s2;
+    const float p_bb = noise * sums->per_square_1_s2;
+    const float along = late - sums->t_mean_s; // from the values' mean to now
     const ground_speed_track_t out = {
-        .speed_m_s = line->mean_m_s + line->slope_m_s2 * along + since,
-        .bias_m_s2 = -line->slope_m_s2,
-        .p_vv = 0.25f * line->noise_m2_s2 + along * along * p_bb,
+        .speed_m_s = sums->y * sums->per_count + slope * along + since,
+        .bias_m_s2 = -slope,
+        .p_vv = sums->per_count * noise + along * along * p_bb,
         .p_vb = -along * p_bb,
         .p_bb = p_bb + slope_ends_m2_s4,
     };
     return out;
 }
 
-static void propose(const ground_speed_config_t *config, ground_speed_state_t *state, const line_t *line, float odds)
+static void propose(const ground_speed_config_t *config, ground_speed_state_t *state, ground_speed_track_t track, float odds)
 {
-    ground_speed_track_t track = track_of(config, state, line);
     ground_speed_hold(config, &track);
     const bool same = (track.speed_m_s < 0.0f) == (state->speed_m_s < 0.0f);
     if (same || (state->other_alive && state->odds <= odds)) {
@@ -146,35 +161,42 @@ static bool dips(const recent_t *recent, int32_t count)
 // (15) over `count` values; true where it has told.
 static bool look(const ground_speed_config_t *config, ground_speed_state_t *state, const recent_t *values, int32_t count)
 {
-    const int32_t oldest = (state->slide.newest + SLIDE_VALUES + 1 - count) % SLIDE_VALUES;
-    const bool went = (state->slide.sign[oldest] < 0.0f) != (state->speed_m_s < 0.0f);
+    const int32_t first = (state->slide.newest + SLIDE_VALUES + 1 - count) % SLIDE_VALUES;
+    const bool went = (state->slide.sign[first] < 0.0f) != (state->speed_m_s < 0.0f);
     if (went || !dips(values, count)) { // the best track has passed through zero itself, or nothing has
         return false;
     }
     const float sign = state->speed_m_s < 0.0f ? 1.0f : -1.0f; // of the newest, if it slides
-    const line_t straight = fit(values, count, 0, -sign);
-    line_t best = straight;
-    for (int32_t flipped = 1; flipped < count; flipped++) {
-        const line_t line = fit(values, count, flipped, sign);
-        if (fixed_greater(best.chi2, line.chi2)) {
-            best = line;
+    sums_t sums = sums_of(values, count, -sign);
+    const float newest = values->d_m_s[0];
+    const float oldest = values->d_m_s[count - 1];
+    const float straight = left_by(&sums) / noise_of(values, count, newest - oldest);
+    sums_t best = sums;
+    float least = 1e9f;
+    for (int32_t i = 0; i < count - 1; i++) {
+        turn(&sums, values, i, sign);
+        const float left = left_by(&sums);
+        if (fixed_greater(least, left)) {
+            least = left;
+            best = sums;
         }
     }
-    const float told = straight.chi2 - best.chi2;
-    if (!fixed_greater(told, slide_least) || !fixed_greater(fits_most * (float)(count - 2), best.chi2)) {
+    const float noise = noise_of(values, count, newest + oldest);
+    const float chi2 = least / noise;
+    const float told = straight - chi2;
+    if (!fixed_greater(told, slide_least) || !fixed_greater(fits_most * (float)(count - 2), chi2)) {
         return false;
     }
-    propose(config, state, &best, fixed_clamp(slide_prior - told, slide_sure, slide_prior));
+    propose(config, state, track_of(config, state, &best, noise), fixed_clamp(slide_prior - told, slide_sure, slide_prior));
     return true;
 }
 
 void ground_speed_watch_slide(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
-    if (state->slide.held < SLIDE_VALUES) {
-        return;
-    }
-    const recent_t values = recent(config, state);
-    if (!look(config, state, &values, SLIDE_VALUES)) {
-        look(config, state, &values, SLIDE_VALUES - 1);
+    const int32_t count = state->slide.due == 2 ? SLIDE_VALUES : SLIDE_VALUES - 1;
+    state->slide.due--;
+    if (state->slide.held >= SLIDE_VALUES) {
+        const recent_t values = recent(config, state);
+        state->slide.due = look(config, state, &values, count) ? 0 : state->slide.due;
     }
 }
