@@ -203,21 +203,22 @@ static bool lines_prevail(const doppler_template_t *beam, const doppler_state_t 
 static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
 {
     const int32_t end = beam->first_bin + beam->bins;
+    int32_t loudest = LINE_FROM - LINE_SIDE;
+    int32_t most = INT32_MIN;
     for (int32_t k = LINE_FROM - LINE_SIDE; k < end; k++) {
         const int32_t level = log2_q8(state->power[k]);
         const int32_t away = level - (state->leveled ? state->level_q8[k] : level);
         const int32_t sway = state->leveled ? state->sway_q8[k] : SWAY_START_Q8;
-        state->level_q8[k] = (int16_t)(level - away + away / LEVEL_SHARE);
+        const int32_t mean = level - away + away / LEVEL_SHARE;
+        loudest = mean > most ? k : loudest;
+        most = mean > most ? mean : most;
+        state->level_q8[k] = (int16_t)mean;
         state->sway_q8[k] = (int16_t)(sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
     }
     state->leveled = true;
     const bool known = any_line(state);
-    int32_t loudest = LINE_FROM - LINE_SIDE;
     for (int32_t i = 0; i < 4; i++) {
         state->line[i] = 0;
-    }
-    for (int32_t k = LINE_FROM - LINE_SIDE; k < end; k++) {
-        loudest = state->level_q8[k] > state->level_q8[loudest] ? k : loudest;
     }
     for (int32_t k = LINE_FROM; k < end - LINE_SIDE; k++) {
         const int32_t above = state->level_q8[k] - LINE_ABOVE_Q8;
@@ -225,13 +226,10 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
             state->line[(uint32_t)k / 32u] |= 1u << ((uint32_t)k % 32u);
         }
     }
-    if (!known && any_line(state) && lines_prevail(beam, state)) {
-        state->relief = RELIEF_VALUES;
-        state->relief_masked = true;
-    }
-    const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
-    if (long_enough && !beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
-        doppler_line_suggest(&state->tone, (uint32_t)loudest);
+    state->weigh_lines = !known && any_line(state);
+    if (!beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
+        const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
+        doppler_line_suggest(&state->tone, long_enough ? (uint32_t)loudest : 0u);
     }
 }
 
@@ -332,16 +330,21 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
 static void slide(doppler_state_t *state, int32_t hop)
 {
     int32_t gone = 0;
-    for (int32_t j = 0; j < hop; j++) {
+    int32_t j = 0;
+    for (; j + 4 <= hop; j += 4) { // a sum of four costs half of four sums
+        const int16_t *four = state->window.sample + j;
+        gone += four[0] + four[1] + four[2] + four[3];
+    }
+    for (; j < hop; j++) {
         gone += state->window.sample[j];
     }
     state->sum = held_sum(state->sum - gone);
     if (hop % 4 == 0) {
-        for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
+        for (j = hop / 4; j < FFT_LENGTH / 4; j++) {
             state->window.four[j - hop / 4] = state->window.four[j];
         }
     } else {
-        for (int32_t j = hop; j < FFT_LENGTH; j++) {
+        for (j = hop; j < FFT_LENGTH; j++) {
             state->window.sample[j - hop] = state->window.sample[j];
         }
     }
@@ -519,15 +522,6 @@ void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t
     }
 }
 
-static int32_t total_of(const int32_t *block)
-{
-    int32_t sum = 0;
-    for (int32_t i = 0; i < DOPPLER_BLOCKS; i++) {
-        sum += block[i];
-    }
-    return sum;
-}
-
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
 {
     doppler_output_t out = {0};
@@ -535,8 +529,12 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         state->hold = false;
         state->late_samples += count > 0 ? count : 0;
     } else if (state->pending) {
-        const int32_t made = total_of(state->made);
-        const int32_t railed = total_of(state->railed);
+        int32_t made = 0;
+        int32_t railed = 0;
+        for (int32_t i = 0; i < DOPPLER_BLOCKS; i++) {
+            made += state->made[i];
+            railed += state->railed[i];
+        }
         measure(config, state, &out);
         if (state->halved) {
             out.speed_m_s *= 2.0f;
@@ -564,7 +562,11 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
     out.busy = state->pending;
     state->rest = out.fresh ? REST : state->rest > 0 ? state->rest - 1 : 0;
     const bool idle = !busy && !out.busy && state->rest == 0;
-    if (idle && state->full && config->method == DOPPLER_LIKELIHOOD && clean(config, state)) {
+    if (idle && state->weigh_lines) {
+        state->weigh_lines = false;
+        state->relief_masked = lines_prevail(config->beam, state);
+        state->relief = state->relief_masked ? RELIEF_VALUES : state->relief;
+    } else if (idle && state->full && config->method == DOPPLER_LIKELIHOOD && clean(config, state)) {
         const bool known = state->tone.found;
         (void)doppler_line_think(&state->tone);
         state->relief = state->tone.found && !known ? RELIEF_VALUES : state->relief;

@@ -96,6 +96,7 @@ typedef struct {
     bool leveled;                                         // (3) has begun
     doppler_line_t tone;                                  // the line inside the echo
     int32_t clean;                                        // samples of the window that are rid of it
+    bool weigh_lines;                                     // (3) has found the first one
     bool relief_masked;                                   // it was left out by (3)
     int32_t rest;                                         // calls that are the filter's
     int32_t relief;                                       // values that may still be the first without it
