@@ -126,7 +126,7 @@ typedef struct {
     int32_t due; // looks that are still to come
     float heard_m_s[SLIDE_VALUES];
     float alike_m_s[SLIDE_VALUES];
-    float sign[SLIDE_VALUES];           // of the best track then
+    float sign[SLIDE_VALUES];           // of the best track in the middle of its window
     float tau_s[SLIDE_VALUES];          // of (3), when it came
     uint32_t ticks, came[SLIDE_VALUES]; // a count of ticks, and where it stood then
     int32_t q20[SLIDE_VALUES];          // V in its window's middle

@@ -35,7 +35,7 @@ void ground_speed_remember(ground_speed_state_t *state)
     state->slide.held += state->slide.held < SLIDE_VALUES ? 1 : 0;
     state->slide.heard_m_s[at] = state->value_heard_m_s;
     state->slide.alike_m_s[at] = state->alike_m_s;
-    state->slide.sign[at] = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
+    state->slide.sign[at] = state->value_sign; // in the middle of its window
     state->slide.came[at] = state->slide.ticks;
     state->slide.q20[at] = ground_speed_middle_q20(state, 0u);
     state->slide.tau_s[at] = state->value_tau_s;
