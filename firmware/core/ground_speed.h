@@ -34,6 +34,11 @@
 // (14): reported is v - c X (1 - X^2/(16 var X))^2 within four sigma of X: the accelerometer's white noise since the window's middle is in
 // v, and no radar value has seen it; X holds the same noise and the wheels do not. c = cov/var X: 2 (1 - exp(-tau/0.25 s)) where that noise
 // is all of X (derived here), and less by as much as the mean of X^2 is more. It is no more than 1.14 c sigma wrong where X is slip.
+// (15): a body that slides back under wheels that drive forwards passes through zero, and neither wheels nor accelerometer need feel it:
+//   s_i = -+d_i = c + V(t_i) - b (t_i - t_0),  the older of the last 5 or 6 values with the old sign, the newer with the other
+// Where their magnitude falls and rises again, that line is laid for every place of the turn. If the best of them fits, and better by 16
+// than the line without a turn, it is the other sign from here on, or the best. Both signs are reported by their odds. What a line of
+// interference had told is forgotten when it is taken off (doppler_relieved): speed, slope and sign begin anew.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 

@@ -4,8 +4,9 @@
 //   ground_speed_track.c  one track [v, b]: prediction (2), correction, bounds; V and what a window remembers (3); noise (6)
 //   ground_speed_value.c  a Doppler value on the best track: (1), (3), (4), (5), (8), (11); a quiet one
 //   ground_speed_sign.c   the other sign, (9)
+//   ground_speed_slide.c  a turn through zero that the last values tell of, (15)
 //   ground_speed_jump.c   the track whose bias may jump, (7)
-//   ground_speed_wheels.c where accelerometer and wheels part: (10), and whether it is slip or a slope, (13)
+//   ground_speed_wheels.c where accelerometer and wheels part: (10), and whether it is slip or a slope, (13); what of it is noise, (14)
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 

@@ -2,6 +2,7 @@
 #include "firmware/core/doppler_line.h"
 #include "tests/unit/clutter.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>
