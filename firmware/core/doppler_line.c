@@ -135,10 +135,10 @@ static void think_of_cells(doppler_line_t *line, uint32_t first, uint32_t from)
             const uint32_t h = first + j;
             const int32_t re = line->past_re[h % ALL];
             const int32_t im = line->past_im[h % ALL];
-            const int32_t cos = cosine[c * h % ALL];
-            const int32_t sin = cosine[(c * h - ALL / 4u) % ALL];
-            sum.re += (re * cos + im * sin) >> 15;
-            sum.im += (im * cos - re * sin) >> 15;
+            const int32_t along = cosine[c * h % ALL];
+            const int32_t across = cosine[(c * h - ALL / 4u) % ALL];
+            sum.re += (re * along + im * across) >> 15;
+            sum.im += (im * along - re * across) >> 15;
         }
         line->cell[c] = (uint32_t)(square_of(sum) >> 12);
     }

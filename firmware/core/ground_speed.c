@@ -47,8 +47,8 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     const float spread = config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
     const bool denied = state->unheard_ticks < SILENT_TICKS && fixed_greater(fabsf(state->value_m_s - fabsf(wheel_m_s)), 2.0f * spread);
-    const bool open = state->other_alive && state->unheard_ticks < SILENT_TICKS; // which sign it is, the radar tells
-    if (!denied && !open && fixed_greater(state->p_vv, 1.2f * noise)) {
+    const bool undecided = state->other_alive && state->unheard_ticks < SILENT_TICKS; // which sign it is, the radar tells
+    if (!denied && !undecided && fixed_greater(state->p_vv, 1.2f * noise)) {
         ground_speed_track_t track = ground_speed_best_of(state);
         ground_speed_correct(config, &track, wheel_m_s - track.speed_m_s, 0.0f, noise);
         ground_speed_keep_best(state, &track);
