@@ -9,7 +9,7 @@ static const float fits_most = 3.0f;         // chi^2 over its degrees of freedo
 static const float slope_ends_m2_s4 = 0.25f; // (0.5 m/s^2)^2: the slope that it slides on need not last, assumed
 static const float slide_prior = 16.0f;      // 2 ln of the odds against a slide, assumed: exp(8) to one
 static const float slide_least = 8.0f;       // that the values must tell before it is asked
-static const float slide_sure = -6.0f;       // as far as four values are believed
+static const float slide_sure = 2.0f;        // it is never taken at once: the next value decides
 static const float waver = 0.1f;
 static const float dip = 0.8f; // [1] assumed: the values spread by 2 to 8 %
 
