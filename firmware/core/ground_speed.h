@@ -37,7 +37,7 @@
 // (15): a body that slides back under wheels that drive forwards passes through zero, and neither wheels nor accelerometer need feel it:
 //   s_i = -+d_i = c + V(t_i) - b (t_i - t_0),  the older of the last 5 or 6 values with the old sign, the newer with the other
 // Where their magnitude falls and rises again, that line is laid for every place of the turn. If the best of them fits, and better by 16
-// than the line without a turn, it is the other sign from here on, or the best. Both signs are reported by their odds. What a line of
+// than the line without a turn, it is followed as the other sign from here on. Both signs are reported by their odds. What a line of
 // interference had told is forgotten when it is taken off (doppler_relieved): speed, slope and sign begin anew.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H

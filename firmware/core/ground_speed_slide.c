@@ -128,15 +128,7 @@ static void propose(const ground_speed_config_t *config, ground_speed_state_t *s
     }
     ground_speed_split(state, &state->other, &track);
     state->other_alive = true;
-    state->odds = odds < 0.0f ? -odds : odds;
-    if (odds < 0.0f) {
-        const ground_speed_track_t best = ground_speed_best_of(state);
-        ground_speed_keep_best(state, &track);
-        ground_speed_split(state, &state->other, &best);
-        ground_speed_forget_agile(state);
-        state->rolls_ticks = 0;
-        state->refused = 0;
-    }
+    state->odds = odds;
 }
 
 // A magnitude that passes through zero falls, and rises again, once.
