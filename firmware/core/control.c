@@ -82,6 +82,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .busy = state->heard.busy || state->heard.fresh,
         .doppler_trust = doppler.trust,
         .doppler_misfit = doppler.misfit,
+        .doppler_relieved = doppler.relieved,
         .elapsed_ticks = sense->elapsed_ticks,
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);

@@ -159,7 +159,16 @@ static const float noise_trust = 4.0f; // [1] R = R0 (1 + this noise/echo), powe
 
 // --- (3)
 
-enum { LINE_FROM = 8, LINE_SIDE = 4, LINE_SWAY_Q8 = 90, LINE_ABOVE_Q8 = 512, LEVEL_SHARE = 8, SWAY_START_Q8 = 512, LINE_DUE = 5 };
+enum {
+    LINE_FROM = 8,
+    LINE_SIDE = 4,
+    LINE_SWAY_Q8 = 90,
+    LINE_ABOVE_Q8 = 512,
+    LEVEL_SHARE = 8,
+    SWAY_START_Q8 = 512,
+    LINE_DUE = 5,
+    TONE_FROM = 12
+};
 
 // log2 of a power, Q8, its mantissa as a straight line: within 0.09.
 static int32_t log2_q8(uint64_t power)
@@ -172,17 +181,42 @@ static int32_t log2_q8(uint64_t power)
 
 static bool is_line(const doppler_state_t *state, int32_t k) { return (state->line[(uint32_t)k / 32u] >> ((uint32_t)k % 32u) & 1u) != 0u; }
 
+enum { REST = 5, LOOK_LEAST_S = 3 }; // ticks that the filter has after a value; a scatterer is in the beam for less time than that
+enum { RELIEF_VALUES = 6 };          // a window that is rid of the line wholly has come by then
+
+static bool any_line(const doppler_state_t *state) { return (state->line[0] | state->line[1] | state->line[2] | state->line[3]) != 0u; }
+
+// Whether the lines hold more than half of what the other bins do: the five bins around each, as without_lines has it.
+static bool lines_prevail(const doppler_template_t *beam, const doppler_state_t *state)
+{
+    uint64_t all = 0;
+    uint64_t lines = 0;
+    int32_t until = -1; // bins up to there are a line's
+    for (int32_t k = 0; k < beam->first_bin + beam->bins; k++) {
+        until = k + 2 < FFT_BINS && is_line(state, k + 2) ? k + 4 : until;
+        all += state->power[k] >> 8;
+        lines += k <= until ? state->power[k] >> 8 : 0u;
+    }
+    return 3u * lines > all;
+}
+
 static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
 {
     const int32_t end = beam->first_bin + beam->bins;
+    int32_t loudest = LINE_FROM - LINE_SIDE;
+    int32_t most = INT32_MIN;
     for (int32_t k = LINE_FROM - LINE_SIDE; k < end; k++) {
         const int32_t level = log2_q8(state->power[k]);
         const int32_t away = level - (state->leveled ? state->level_q8[k] : level);
         const int32_t sway = state->leveled ? state->sway_q8[k] : SWAY_START_Q8;
-        state->level_q8[k] = (int16_t)(level - away + away / LEVEL_SHARE);
+        const int32_t mean = level - away + away / LEVEL_SHARE;
+        loudest = mean > most ? k : loudest;
+        most = mean > most ? mean : most;
+        state->level_q8[k] = (int16_t)mean;
         state->sway_q8[k] = (int16_t)(sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
     }
     state->leveled = true;
+    const bool known = any_line(state);
     for (int32_t i = 0; i < 4; i++) {
         state->line[i] = 0;
     }
@@ -192,12 +226,45 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
             state->line[(uint32_t)k / 32u] |= 1u << ((uint32_t)k % 32u);
         }
     }
+    state->weigh_lines = !known && any_line(state);
+    if (!beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
+        const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
+        doppler_line_suggest(&state->tone, long_enough ? (uint32_t)loudest : 0u);
+    }
+}
+
+// What the sum of a window can be. It is that anyway: a bound that needs no relation between the sum and the samples.
+static int32_t held_sum(int32_t sum)
+{
+    const int32_t most = FFT_LENGTH * 32767;
+    return sum > most ? most : sum < -most ? -most : sum;
+}
+
+enum { CLEAN_LEAST = 24, CLEAN_MOST = 64, SAMPLE_LOW = -512 * DOPPLER_GAIN, SAMPLE_HIGH = 511 * DOPPLER_GAIN };
+
+// Takes the line off some of what has come since the last time; in ticks that have time, of which there are five or more between two
+// values. True where there was little.
+static bool clean(const doppler_config_t *config, doppler_state_t *state)
+{
+    const int32_t waiting = state->filled - state->clean;
+    const int32_t some = (5 * config->per_tick_q8) / 256;
+    const int32_t most = some < CLEAN_LEAST ? CLEAN_LEAST : some > CLEAN_MOST ? CLEAN_MOST : some;
+    const doppler_line_span_t span = {
+        .count = waiting < most ? waiting : most, .mean = state->sum / FFT_LENGTH, .low = SAMPLE_LOW, .high = SAMPLE_HIGH};
+    if (span.count <= 0 || state->clean < 0 || state->clean > FFT_LENGTH - span.count) {
+        return true;
+    }
+    int32_t sum = state->sum;
+    doppler_line_take(&state->tone, &span, state->window.sample + state->clean, &sum);
+    state->sum = held_sum(sum);
+    state->clean += span.count;
+    return 2 * span.count < most;
 }
 
 // The window's powers without the lines. Returns `copy`, or the powers themselves where there is no line.
 static const uint64_t *without_lines(const doppler_template_t *beam, const doppler_state_t *state, uint64_t *copy)
 {
-    if ((state->line[0] | state->line[1] | state->line[2] | state->line[3]) == 0u) {
+    if (!any_line(state)) {
         return state->power;
     }
     for (int32_t k = 0; k < FFT_BINS; k++) {
@@ -217,6 +284,13 @@ static const uint64_t *without_lines(const doppler_template_t *beam, const doppl
 static const float misfit_calm = 0.8f; // [1] of (3)'s comment
 static const float misfit_strange = 2.5f;
 static const float misfit_share = 0.3f; // [1] of the speed per unit of misfit: heave of 5 mm at 8 Hz makes 0.16 to 0.39
+
+// Of a line, in the units of reduce's energy: a count^2 of variance is 12288 * 64, and a is in counts times the gain.
+static uint64_t line_power(const doppler_line_t *line)
+{
+    const uint64_t square = (uint64_t)((int64_t)line->a_re * line->a_re) + (uint64_t)((int64_t)line->a_im * line->a_im);
+    return square * (12288u * 64u / (2u * DOPPLER_GAIN * DOPPLER_GAIN));
+}
 
 static void measure(const doppler_config_t *config, const doppler_state_t *state, doppler_output_t *out)
 {
@@ -244,6 +318,7 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     const bool noise = outside.known && outside.in < 2u * outside.noise;
     out->speed_m_s = config->scale * speed_m_s;
     out->quiet = !outside.beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->relieved = state->relief > 0 && (state->relief_masked || line_power(&state->tone) > energy / 2u);
     out->beyond = outside.beyond || (top && !out->quiet && outside.in > 3u * outside.noise);
     if (outside.known && !out->quiet && outside.in > outside.noise) {
         const float share = (float)outside.noise / (float)(outside.in - outside.noise);
@@ -251,31 +326,33 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     }
 }
 
-// What the sum of a window can be. It is that anyway: a bound that needs no relation between the sum and the samples.
-static int32_t held_sum(int32_t sum)
-{
-    const int32_t most = FFT_LENGTH * 32767;
-    return sum > most ? most : sum < -most ? -most : sum;
-}
-
 // Drops the oldest `hop` samples.
 static void slide(doppler_state_t *state, int32_t hop)
 {
     int32_t gone = 0;
-    for (int32_t j = 0; j < hop; j++) {
+    int32_t j = 0;
+    for (; j + 4 <= hop; j += 4) { // a sum of four costs half of four sums
+        const int16_t *four = state->window.sample + j;
+        gone += four[0] + four[1] + four[2] + four[3];
+    }
+    for (; j < hop; j++) {
         gone += state->window.sample[j];
     }
     state->sum = held_sum(state->sum - gone);
     if (hop % 4 == 0) {
-        for (int32_t j = hop / 4; j < FFT_LENGTH / 4; j++) {
+        for (j = hop / 4; j < FFT_LENGTH / 4; j++) {
             state->window.four[j - hop / 4] = state->window.four[j];
         }
     } else {
-        for (int32_t j = hop; j < FFT_LENGTH; j++) {
+        for (j = hop; j < FFT_LENGTH; j++) {
             state->window.sample[j - hop] = state->window.sample[j];
         }
     }
     state->filled = FFT_LENGTH - hop;
+    if (state->clean < hop) {
+        doppler_line_skip(&state->tone, (uint32_t)(hop - state->clean));
+    }
+    state->clean = state->clean < hop ? 0 : state->clean - hop;
 }
 
 static const float halved_least_m_s =
@@ -288,12 +365,15 @@ static void mirror(doppler_state_t *state)
     }
 }
 
+enum { MEAN_MOST = 384 * DOPPLER_GAIN }; // beyond, the echo stands at the rail; and no difference fills 16 bits
+
 static void transform(const doppler_config_t *config, doppler_state_t *state, bool halved, int32_t late_samples)
 {
     const int32_t sum = state->sum;
-    const int32_t mean = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
-                         : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
-                                                           : sum / FFT_LENGTH;
+    const int32_t offset = state->filled == EARLY_TWICE      ? sum / EARLY_TWICE
+                           : state->filled == EARLY_MIRRORED ? sum / EARLY_MIRRORED
+                                                             : sum / FFT_LENGTH;
+    const int32_t mean = offset > MEAN_MOST ? MEAN_MOST : offset < -MEAN_MOST ? -MEAN_MOST : offset;
     if (config->method == DOPPLER_ARGMAX) {
         fft_power_flat(state->window.sample, mean, state->power); // the paper windows nothing
     } else {
@@ -442,15 +522,6 @@ void doppler_gap(const doppler_config_t *config, doppler_state_t *state, int32_t
     }
 }
 
-static int32_t total_of(const int32_t *block)
-{
-    int32_t sum = 0;
-    for (int32_t i = 0; i < DOPPLER_BLOCKS; i++) {
-        sum += block[i];
-    }
-    return sum;
-}
-
 doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *state, const uint16_t *sample, int32_t count)
 {
     doppler_output_t out = {0};
@@ -458,8 +529,12 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         state->hold = false;
         state->late_samples += count > 0 ? count : 0;
     } else if (state->pending) {
-        const int32_t made = total_of(state->made);
-        const int32_t railed = total_of(state->railed);
+        int32_t made = 0;
+        int32_t railed = 0;
+        for (int32_t i = 0; i < DOPPLER_BLOCKS; i++) {
+            made += state->made[i];
+            railed += state->railed[i];
+        }
         measure(config, state, &out);
         if (state->halved) {
             out.speed_m_s *= 2.0f;
@@ -467,19 +542,35 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         }
         out.trust += made_trust * (float)made + railed_trust * (float)railed;
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
+        state->relief -= state->relief > 0 ? 1 : 0;
+        state->relief_masked = state->relief_masked && state->relief > 0;
         out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
+        out.relieved = out.relieved && !out.spoilt && !out.quiet;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
         state->pending = false;
     }
+    bool busy = out.fresh;
     if (state->due > 0 && --state->due == 0) {
         watch_lines(config->beam, state);
+        busy = true;
     }
     for (int32_t i = 0; i < count; i++) {
         const bool railed = sample[i] == 0u || (int32_t)sample[i] >= config->max_count;
         take(config, state, value_of(config, sample[i]), false, railed, count - 1 - i);
     }
     out.busy = state->pending;
+    state->rest = out.fresh ? REST : state->rest > 0 ? state->rest - 1 : 0;
+    const bool idle = !busy && !out.busy && state->rest == 0;
+    if (idle && state->weigh_lines) {
+        state->weigh_lines = false;
+        state->relief_masked = lines_prevail(config->beam, state);
+        state->relief = state->relief_masked ? RELIEF_VALUES : state->relief;
+    } else if (idle && state->full && config->method == DOPPLER_LIKELIHOOD && clean(config, state)) {
+        const bool known = state->tone.found;
+        (void)doppler_line_think(&state->tone);
+        state->relief = state->tone.found && !known ? RELIEF_VALUES : state->relief;
+    }
     out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;
 }

@@ -11,12 +11,14 @@
 // twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours alone). An
 // interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
 //   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
+// A line inside the echo, where it sways with it, is told by its phase and taken off the samples (doppler_line.h).
 // The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
 // be, is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to
 // 0.9).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_H
 
+#include "doppler_line.h"
 #include "fft.h"
 
 #include <stdbool.h>
@@ -92,6 +94,12 @@ typedef struct {
     uint32_t line[4];                                     // bit k % 32 of word k / 32: bin k is a line
     int32_t due;                                          // calls until the lines are looked at
     bool leveled;                                         // (3) has begun
+    doppler_line_t tone;                                  // the line inside the echo
+    int32_t clean;                                        // samples of the window that are rid of it
+    bool weigh_lines;                                     // (3) has found the first one
+    bool relief_masked;                                   // it was left out by (3)
+    int32_t rest;                                         // calls that are the filter's
+    int32_t relief;                                       // values that may still be the first without it
     int32_t sum;                                          // of the samples in the window
     int32_t made[DOPPLER_BLOCKS], railed[DOPPLER_BLOCKS]; // samples that were filled in, and at a rail, by blocks of 64 of the stream
     int32_t block, in_block;                              // the block that is being filled, and how much of it is
@@ -114,6 +122,7 @@ typedef struct {
     bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
     bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
     bool strange;         // no speed's spectrum fits: interference, or no ground
+    bool relieved;        // what came before told of an interfering line as strong as the echo, which is taken off from here on
     bool spoilt;          // strange, or too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
     float misfit;         // share of the speed that may be wrong because no spectrum fits [1]

@@ -31,6 +31,14 @@
 // Else it is a slope that begins, under wheels that roll on: the best track keeps to the wheels' changes of speed for a window's length,
 // its bias free to jump, and the one that believes the accelerometer is followed beside it, as the other sign is, until the radar's values
 // tell.
+// (14): reported is v - c X (1 - X^2/(16 var X))^2 within four sigma of X: the accelerometer's white noise since the window's middle is in
+// v, and no radar value has seen it; X holds the same noise and the wheels do not. c = cov/var X: 2 (1 - exp(-tau/0.25 s)) where that noise
+// is all of X (derived here), and less by as much as the mean of X^2 is more. It is no more than 1.14 c sigma wrong where X is slip.
+// (15): a body that slides back under wheels that drive forwards passes through zero, and neither wheels nor accelerometer need feel it:
+//   s_i = -+d_i = c + V(t_i) - b (t_i - t_0),  the older of the last 5 or 6 values with the old sign, the newer with the other
+// Where their magnitude falls and rises again, that line is laid for every place of the turn. If the best of them fits, and better by 16
+// than the line without a turn, it is followed as the other sign from here on. Both signs are reported by their odds. What a line of
+// interference had told is forgotten when it is taken off (doppler_relieved): speed, slope and sign begin anew.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -79,6 +87,7 @@ typedef struct {
     float apart_share;             // of (10), squared
     float apart_least_m_s;         // of (10): what slip makes
     float apart_noise;             // of (10): Qv of its noise, nine times
+    float felt_share, felt_noise;  // of (14): c where X is nothing but noise, and var X over Qv
     float roll_told_m_s;           // of (13): its limit
     float slip_force_m_s2;         // of (13): the least force of wheels that slip
     float roll_odds;               // 2 ln of the odds that (13) starts with
@@ -114,6 +123,20 @@ typedef struct {
     float p_vv, p_vb, p_bb;
 } ground_speed_track_t;
 
+enum { SLIDE_VALUES = 6 };
+
+// The last values, of (15).
+typedef struct {
+    int32_t newest, held;
+    int32_t due; // looks that are still to come
+    float heard_m_s[SLIDE_VALUES];
+    float alike_m_s[SLIDE_VALUES];
+    float sign[SLIDE_VALUES];           // of the best track in the middle of its window
+    float tau_s[SLIDE_VALUES];          // of (3), when it came
+    uint32_t ticks, came[SLIDE_VALUES]; // a count of ticks, and where it stood then
+    int32_t q20[SLIDE_VALUES];          // V in its window's middle
+} ground_speed_slide_t;
+
 // A track that moves on at Doppler values alone.
 typedef struct {
     ground_speed_track_t at;
@@ -137,7 +160,11 @@ typedef struct {
     float misfit;            // of (8), 1 or more
     float apart_m_s;         // X of (10)
     float alike_m_s;         // error that values of a strange spectrum may share: their mean does not make it smaller
-    float wheel_m_s;         // when X was looked at last, and V then, and the ticks since
+    float felt_m_s;          // what (14) takes off
+    float felt_trust;        // of (14): its c over that of nothing but noise
+    float per_felt_most_s2_m2;
+    float apart_long_m2_s2; // mean of X^2 over seconds
+    float wheel_m_s;        // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
     float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second
@@ -153,12 +180,15 @@ typedef struct {
     int32_t against;
     int32_t still_ticks;
     bool standstill;
-    bool heard;                // a Doppler value has come since the reset
-    bool accepted;             // and one has corrected
+    bool relieved; // what a line had told is forgotten
+    bool heard;    // a Doppler value has come since the reset
+    bool accepted; // and one has corrected
+    ground_speed_slide_t slide;
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
     float odds;                                           // 2 ln of the odds against it
-    float doubt_m2_s2;                                    // what it adds to the variance
+    float less_m_s;                                       // by what is reported less than the best
+    float doubt_m_s, doubt_m2_s2;                         // what it takes off the mean, and adds to the variance
     ground_speed_side_t agile;                            // (7)
     float agile_sum;                                      // of (7)
     int32_t agile_left;                                   // values until it starts anew
@@ -183,6 +213,7 @@ typedef struct {
     bool busy;              // this tick has a transform or a search: chores wait
     float doppler_trust;    // how much larger its variance is than a calm echo's [1]; 0 counts as 1
     float doppler_misfit;   // share of it that may be wrong for all values alike [1]
+    bool doppler_relieved;  // the values before this one told of an interfering line
     uint32_t elapsed_ticks; // since the call before; 0 counts as 1
 } ground_speed_input_t;
 

@@ -18,12 +18,14 @@ static ground_speed_track_t to_middle(const ground_speed_track_t *track, float t
     return out;
 }
 
-// The window's middle of the value that waits: V there, as the mean over the window.
-static int32_t middle_q20(const ground_speed_state_t *state)
+int32_t ground_speed_middle_q20(const ground_speed_state_t *state, uint32_t ago)
 {
-    const int32_t then = state->integral_q20[((uint32_t)state->head - 2u) % GROUND_SPEED_HISTORY];
+    const int32_t then = state->integral_q20[((uint32_t)state->head - ago) % GROUND_SPEED_HISTORY];
     return (int32_t)((uint32_t)then - (uint32_t)(int32_t)(fixed_clamp(state->value_change_m_s, -1000.0f, 1000.0f) * 1048576.0f));
 }
+
+// Of the value that waits.
+static int32_t middle_q20(const ground_speed_state_t *state) { return ground_speed_middle_q20(state, 2u); }
 
 static void start_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
 {

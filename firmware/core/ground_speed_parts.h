@@ -4,8 +4,9 @@
 //   ground_speed_track.c  one track [v, b]: prediction (2), correction, bounds; V and what a window remembers (3); noise (6)
 //   ground_speed_value.c  a Doppler value on the best track: (1), (3), (4), (5), (8), (11); a quiet one
 //   ground_speed_sign.c   the other sign, (9)
+//   ground_speed_slide.c  a turn through zero that the last values tell of, (15)
 //   ground_speed_jump.c   the track whose bias may jump, (7)
-//   ground_speed_wheels.c where accelerometer and wheels part: (10), and whether it is slip or a slope, (13)
+//   ground_speed_wheels.c where accelerometer and wheels part: (10), and whether it is slip or a slope, (13); what of it is noise, (14)
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 
@@ -79,18 +80,29 @@ float ground_speed_force_odds(const ground_speed_config_t *config, const ground_
 // The same of the wheels' sign alone.
 float ground_speed_wheel_odds(const ground_speed_config_t *config, float measured, float wheel_m_s);
 void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track);
-void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s);
+// Instead of that, where one sign is taken alone.
+void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state);
 float ground_speed_choose_sign(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *track,
                                float measured, float middle, float spread, float wheel_m_s);
 void ground_speed_update_other(const ground_speed_config_t *config, ground_speed_state_t *state);
 
+// --- ground_speed_slide.c
+
+// At every value that tells of a full window.
+void ground_speed_remember(ground_speed_state_t *state);
+void ground_speed_watch_slide(const ground_speed_config_t *config, ground_speed_state_t *state);
+
 // --- ground_speed_jump.c
+
+// The window's middle of the last value, which came `ago` ticks ago: V there, as the mean over the window.
+int32_t ground_speed_middle_q20(const ground_speed_state_t *state, uint32_t ago);
 
 void ground_speed_forget_agile(ground_speed_state_t *state);
 void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed_state_t *state);
 
 // --- ground_speed_wheels.c
 
+void ground_speed_weigh_wheels(const ground_speed_config_t *config, ground_speed_state_t *state);
 float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s);
 void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_state_t *state);

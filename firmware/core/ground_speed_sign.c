@@ -17,10 +17,16 @@ float ground_speed_wheel_odds(const ground_speed_config_t *config, float measure
     return wheel_m_s < 0.0f ? -odds : odds;
 }
 
+// What a body that its wheels push cannot do is overtake them: a radius and a radar's angle that are 10 % off, and a value's noise
+// (assumed).
+static const float overtaken_share = 0.1f;
+static const float overtaken_m_s = 0.02f;
+
 // g of (12): whether the wheels slip so fast that friction has no other direction.
-static float slips(const ground_speed_config_t *config, float slip_m_s, float rim_m_s)
+static float slips(const ground_speed_config_t *config, float slip_m_s, float wheel_m_s, float rim_m_s)
 {
-    const float rolling = config->wheel_noise_m_s + config->wheel_slip * rim_m_s;
+    const bool overtakes = (slip_m_s < 0.0f) != (wheel_m_s < 0.0f) && fixed_greater(rim_m_s, config->still_m_s);
+    const float rolling = overtakes ? overtaken_m_s + overtaken_share * rim_m_s : config->wheel_noise_m_s + config->wheel_slip * rim_m_s;
     const float beyond = fabsf(slip_m_s) - rolling;
     return !fixed_greater(beyond, 0.0f) ? 0.0f : fixed_greater(beyond, rolling) ? 1.0f : beyond / rolling;
 }
@@ -37,16 +43,18 @@ float ground_speed_force_odds(const ground_speed_config_t *config, const ground_
     const float back = wheel_m_s + measured;
     float odds = 0.0f;
     if ((forth < 0.0f) != (force_m_s2 < 0.0f)) {
-        odds -= most * slips(config, forth, rim);
+        odds -= most * slips(config, forth, wheel_m_s, rim);
     }
     if ((back < 0.0f) != (force_m_s2 < 0.0f)) {
-        odds += most * slips(config, back, rim);
+        odds += most * slips(config, back, wheel_m_s, rim);
     }
     return odds;
 }
 
 void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track)
 {
+    state->doubt_m_s = 0.0f; // until the first value since
+    state->doubt_m2_s2 = 0.0f;
     side->at = *track;
     side->ticks = 0;
     side->q20 = state->integral_q20[state->head];
@@ -60,11 +68,17 @@ static int32_t with_wheels(const ground_speed_config_t *config, const ground_spe
     return !match ? 0 : (wheel_m_s < 0.0f) == (state->speed_m_s < 0.0f) ? 1 : -1;
 }
 
-// A sign that was lost at a restart is the same at constant speed as the right one; wheels that turn against it all the time ask anew.
-void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state, float measured, float wheel_m_s)
+static const float force_against = 1.0f; // 2 ln of the odds of (12), assumed
+
+// A sign that was lost at a restart or in a slide is the same at constant speed as the right one; wheels that turn against it all the time,
+// or friction that does, ask anew.
+void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
-    state->against = with_wheels(config, state, measured, wheel_m_s) >= 0 ? 0 : state->against + (state->against < 1000 ? 1 : 0);
-    if (state->against >= config->against_values && !state->other_alive) {
+    const float force = ground_speed_force_odds(config, state);
+    const bool dragged = fixed_greater(state->speed_m_s < 0.0f ? force : -force, force_against);
+    const bool against = dragged || with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) < 0;
+    state->against = !against ? 0 : state->against + (state->against < 1000 ? 1 : 0);
+    if (state->against >= config->against_values) {
         const ground_speed_track_t best = ground_speed_best_of(state);
         ground_speed_split(state, &state->other, &best);
         state->other.at.speed_m_s = -best.speed_m_s;
@@ -165,5 +179,6 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
         ground_speed_no_rolling(state);
     }
     const float doubt = doubt_of(state->odds);
+    state->doubt_m_s = state->other_alive ? doubt * (state->speed_m_s - state->other.at.speed_m_s) : 0.0f;
     state->doubt_m2_s2 = state->other_alive ? doubt * (1.0f - doubt) * apart * apart : 0.0f;
 }

@@ -93,6 +93,7 @@ void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_
     const float mean = (float)sum * (1.0f / (2.0f * NOISE_TICKS * 65536.0f * 65536.0f)); // units of 2^-16 m/s
     state->accel_noise_m2_s2 += noise_share * (mean - state->accel_noise_m2_s2);
     state->speed_noise_m2_s2 = fixed_clamp(state->accel_noise_m2_s2, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
+    ground_speed_weigh_wheels(config, state);
 }
 
 // sum_j w_j (V(t) - V(t - s_j)) of (3), t `ago` ticks before now.

@@ -55,6 +55,24 @@ ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config,
     return out;
 }
 
+static const float believed_cost = 4.0f; // [1] two standard deviations
+
+// What was believed of the speed, the slope and the sign was a line's.
+static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    state->accepted = false;
+    state->refused = 0;
+    state->p_vv = 1.0f; // [m^2/s^2] nothing is known any more
+    state->p_vb = 0.0f;
+    state->p_bb = ground_speed_square(config->bias_start_m_s2);
+    state->bias_m_s2 = state->value_accel_m_s2; // as if it rolled along, give or take
+    state->misfit = 1.0f;
+    state->other_alive = false;
+    state->rolls_ticks = 0;
+    state->slide.held = 0;
+    ground_speed_forget_agile(state);
+}
+
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
@@ -62,8 +80,8 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     ground_speed_track_t track = ground_speed_best_of(state);
     const bool rolls = state->rolls_ticks > 0;
     ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
-    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                        // a track that rolls has none of its own
-    const float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
+    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                  // a track that rolls has none of its own
+    float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
     const bool early = input->doppler_late_s < 0.0f;
     if (early && fabsf(own_accel) > early_accel_m_s2) {
@@ -81,8 +99,19 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     const float measured = value.speed_m_s;
     const float noise = value.noise_m2_s2;
     float spread = ground_speed_spread_of(&track, own.tau_s) + noise;
-    const float nearest = middle < 0.0f ? -measured - middle : measured - middle;
-    const float cost = ground_speed_square(nearest) / spread;
+    float nearest = middle < 0.0f ? -measured - middle : measured - middle;
+    float cost = ground_speed_square(nearest) / spread;
+    if (!input->doppler_relieved) {
+        state->relieved = false;
+    } else if (!state->relieved && cost > believed_cost) { // else the line had not told it
+        begin_anew(config, state);
+        state->relieved = true;
+        track = ground_speed_best_of(state);
+        middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s;
+        nearest = middle < 0.0f ? -measured - middle : measured - middle;
+        spread = ground_speed_spread_of(&track, own.tau_s) + noise;
+        cost = ground_speed_square(nearest) / spread;
+    }
     state->waits = 2;
     state->value_m_s = measured;
     state->value_noise_m2_s2 = noise;
@@ -91,6 +120,9 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
     state->value_wheel_m_s = input->wheel_m_s;
+    if (!early) {
+        ground_speed_remember(state);
+    }
     watch_bias(config, state, &track, nearest, spread);
     if (cost > ground_speed_square(config->gate_sigma)) {
         if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little
@@ -110,7 +142,6 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->waits = 2;
     ground_speed_correct(config, &track, state->value_sign * measured - middle, own.tau_s, noise);
     ground_speed_keep_best(state, &track);
-    ground_speed_ask_again(config, state, measured, input->wheel_m_s);
 }
 
 // A quiet echo says that the window's mean speed was too low to be heard.

@@ -17,6 +17,8 @@ static const float sway_times = 2.0f;          // a sine's peak over its mean sq
 static const float refuted = 100.0f;           // 2 ln of odds: for certain
 static const float beside_share = 0.25f;       // [1] of a value that enters its mean: half a second
 
+static const float felt_sigmas = 4.0f; // of X, beyond which it is no noise
+
 enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100 };
 
 // f of (13), over the last ticks.
@@ -81,6 +83,29 @@ static void roll(const ground_speed_config_t *config, ground_speed_state_t *stat
     state->apart_m_s = 0.0f;
 }
 
+static const float long_share = 0.125f; // [1] of a mean that enters the long one: as the noise's own memory, 1.3 s and more
+
+// c of (14): what of X is the accelerometer's noise, against what X is: encoders, slip and sway count as what they are. Where X is nothing
+// but that noise, c is what theory has; it is never more.
+void ground_speed_weigh_wheels(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    if (config->method == GROUND_SPEED_PAPER) {
+        return;
+    }
+    const float noise = config->felt_noise * state->speed_noise_m2_s2;
+    state->apart_long_m2_s2 += long_share * (state->apart_m2_s2 - state->apart_long_m2_s2);
+    state->felt_trust = fixed_greater(state->apart_long_m2_s2, noise) ? noise / state->apart_long_m2_s2 : 1.0f;
+    state->per_felt_most_s2_m2 = 1.0f / (ground_speed_square(felt_sigmas) * noise);
+}
+
+// (14): within what the accelerometer's white noise makes of X, X is that noise; beyond, it is slip or a slope, and the less of it is noise
+// the further it lies out.
+static float felt(const ground_speed_config_t *config, const ground_speed_state_t *state)
+{
+    const float left = 1.0f - ground_speed_square(state->apart_m_s) * state->per_felt_most_s2_m2;
+    return fixed_greater(left, 0.0f) ? config->felt_share * state->felt_trust * state->apart_m_s * ground_speed_square(left) : 0.0f;
+}
+
 // (10), over the ticks since the last time: it waits in ticks that are busy.
 void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
@@ -104,6 +129,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     if (config->method == GROUND_SPEED_PAPER) {
         return;
     }
+    state->felt_m_s = input->accel_valid && !input->wheels_part ? felt(config, state) : 0.0f;
     state->rolls_wait -= state->rolls_wait > passed ? passed : state->rolls_wait;
     if (state->rolls_ticks > 0) {
         state->rolls_ticks -= state->rolls_ticks > passed ? passed : state->rolls_ticks;

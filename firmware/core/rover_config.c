@@ -111,6 +111,7 @@ static void build_doppler(const rover_parameters_t *parameters, doppler_config_t
 static void build_ground_speed(const float *v, const doppler_template_t *beam, ground_speed_config_t *ground_speed)
 {
     const float longer = 2.0f / beam->window.per_s; // than half a second
+    const float middle = 4.0f * beam->window.tau_s; // its age over the 0.25 s of (10)
     const float deaf = beam->deaf;
     const ground_speed_config_t method = {
         .method = GROUND_SPEED_BIAS,
@@ -144,8 +145,10 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .apart_share = 1.0f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
-        .roll_told_m_s = 0.1f,       // a step of 2.5 deg and more: what is gentler, (5) and (7) find
-        .slip_force_m_s2 = 0.3f,     // a friction of 0.03, and more than the device's bias
+        .felt_share = 2.0f * middle / (1.0f + 0.58f * middle), // 2 (1 - exp(-x)) within 0.03 for x <= 1.2
+        .felt_noise = 12.5f,                                   // T/(2 T/0.25 s) per T
+        .roll_told_m_s = 0.1f,                                 // a step of 2.5 deg and more: what is gentler, (5) and (7) find
+        .slip_force_m_s2 = 0.3f,                               // a friction of 0.03, and more than the device's bias
         .roll_odds = 6.0f,           // exp(3) to one, assumed: an obstacle that stops the rover looks the same at first
         .roll_noise_m2_s2 = 1.5e-5f, // slip changes by 1.4 cm/s within a value's time, assumed
         .roll_share = 0.1f,          // 0.1 s

@@ -201,6 +201,7 @@ Result measure(const Counts &counts, const Helpers &helpers, const Settings &set
         input.busy = now.busy || now.fresh;
         input.doppler_trust = heard.trust;
         input.doppler_misfit = heard.misfit;
+        input.doppler_relieved = heard.relieved;
         input.elapsed_ticks = 1;
         const ground_speed_output_t speed = ground_speed_step(&config.ground_speed, &state, &input);
         keep(heard, used && !heard.quiet, t_s, out);

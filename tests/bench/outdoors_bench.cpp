@@ -107,6 +107,13 @@ std::vector<Row> rows() {
         now.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 5.7, 0.3, -0.4); },
         now.slope = [deg](double t) { return t < 5 ? 0 : 6 * deg; };
         add("backwards", "slope of 6 deg, slides back", now, -1, slides);
+        for (const double grip : {0.05, 0.1, 0.2}) { // kinetic friction pushes forwards all the while, the slope is what the motion needs
+            Case real;
+            const auto decel = [](double t) { return t > 5 && t < 5.7 ? -1.0 : 0.0; };
+            real.speed = [](double t) { return t < 5 ? 0.3 : ramp(t, 5, 5.7, 0.3, -0.4); }, real.wheel = constant(0.33);
+            real.slope = [grip, decel](double t) { return t < 5 ? 0 : std::asin(grip - decel(t) / outdoors::gravity); };
+            add("backwards", "slides back where soil grips " + std::to_string(grip).substr(0, 4), real, -1, slides);
+        }
         Case reverse;
         reverse.speed = [](double t) { return -0.3 + 0.1 * std::sin(t); };
         add("backwards", "reverse drive", reverse);

@@ -132,6 +132,7 @@ void run(const Profile &profile, const Samples &samples, int seed, const Variant
                                             .busy = false,
                                             .doppler_trust = 1,
                                             .doppler_misfit = 0,
+                                            .doppler_relieved = false,
                                             .elapsed_ticks = 1};
         const double estimate = static_cast<double>(ground_speed_step(&config.ground_speed, &filter, &input).speed_m_s);
         const double error = estimate - v;

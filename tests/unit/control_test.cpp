@@ -321,10 +321,12 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
         doppler_output_t value = heard; // by the tick before
         value.late_samples += frame.radar_samples;
         heard = doppler_step(&config.doppler, &doppler, frame.radar_count, frame.radar_samples);
+        const float turning =
+            trace.wheel[0].speed_rad_s + trace.wheel[1].speed_rad_s + trace.wheel[2].speed_rad_s + trace.wheel[3].speed_rad_s;
         const ground_speed_input_t input = {.accel_x_m_s2 = trace.accel_x_m_s2,
                                             .doppler_m_s = value.speed_m_s,
                                             .doppler_late_s = static_cast<float>(value.late_samples) / 512.0f,
-                                            .wheel_m_s = 0.298f,
+                                            .wheel_m_s = 0.25f * turning * config.slip.wheel_radius_m,
                                             .wheels_part = false,
                                             .accel_valid = true,
                                             .doppler_fresh = value.fresh && !value.beyond && !value.spoilt,
@@ -333,6 +335,7 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
                                             .busy = heard.busy || heard.fresh,
                                             .doppler_trust = value.trust,
                                             .doppler_misfit = value.misfit,
+                                            .doppler_relieved = value.relieved,
                                             .elapsed_ticks = 1};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;

@@ -34,6 +34,7 @@ TEST(GroundSpeed, is_bounded_for_any_input) {
                                                         .busy = false,
                                                         .doppler_trust = 1,
                                                         .doppler_misfit = 0,
+                                                        .doppler_relieved = false,
                                                         .elapsed_ticks = 1};
                     const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &state, &input);
                     ASSERT_LE(std::fabs(out.speed_m_s), 20.0f);

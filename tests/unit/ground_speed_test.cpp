@@ -71,6 +71,7 @@ Drive drive(
                                             .busy = false,
                                             .doppler_trust = 1,
                                             .doppler_misfit = 0,
+                                            .doppler_relieved = false,
                                             .elapsed_ticks = 1};
         const ground_speed_output_t estimate = ground_speed_step(&config.ground_speed, &state, &input);
         out.truth.push_back(v);
@@ -185,6 +186,7 @@ TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag) {
                                                 .busy = false,
                                                 .doppler_trust = 1,
                                                 .doppler_misfit = 0,
+                                                .doppler_relieved = false,
                                                 .elapsed_ticks = 1};
             const double estimate = static_cast<double>(ground_speed_step(&config.ground_speed, &state, &input).speed_m_s);
             if (t > 2.1 && t < 4) error = std::fmax(error, std::fabs(estimate - speed));
@@ -210,6 +212,7 @@ ground_speed_input_t only_accel(double accel, double wheel_m_s = 0.3) {
             .busy = false,
             .doppler_trust = 1,
             .doppler_misfit = 0,
+            .doppler_relieved = false,
             .elapsed_ticks = 1};
 }
 

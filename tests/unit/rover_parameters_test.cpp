@@ -98,6 +98,8 @@ static ground_speed_config_t ground_speed_default() {
         .apart_share = 1.0f,
         .apart_least_m_s = 0.03f,
         .apart_noise = 112.0f,
+        .felt_share = 2.0f * 4.0f * doppler_template_mdu1130.window.tau_s / (1.0f + 0.58f * 4.0f * doppler_template_mdu1130.window.tau_s),
+        .felt_noise = 12.5f,
         .roll_told_m_s = 0.1f,
         .slip_force_m_s2 = 0.3f,
         .roll_odds = 6.0f,
