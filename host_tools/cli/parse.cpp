@@ -135,7 +135,7 @@ void check_names(const Verb &verb, const std::vector<Option> &options, const Wor
         if (word.size() < 2 || word[0] != '-' || word[1] == '.' || (word[1] >= '0' && word[1] <= '9')) continue;
         const std::string name = word.substr(0, word.find('='));
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw UsageError("there is no option " + name + did_you_mean(name, known) + " `traction " + verb.name + " --help` lists all");
+            throw UsageError("there is no option " + name + did_you_mean(name, known, "traction " + verb.name + " --help"));
     }
 }
 
@@ -217,8 +217,8 @@ Parsed parse_group(const Group &group, Words words) {
     if (!words.empty() && words.front().rfind('-', 0) != 0) {
         for (const Verb &verb : all_verbs())
             if (verb.name == group.name + ' ' + words.front()) return parse_verb(verb, Words(words.begin() + 1, words.end()));
-        return usage(" " + group.name + ": there is no '" + words.front() + "'" + did_you_mean(words.front(), names_in(group.name)) +
-                     " `traction " + group.name + " --help` lists all");
+        return usage(" " + group.name + ": there is no '" + words.front() + "'" +
+                     did_you_mean(words.front(), names_in(group.name), "traction " + group.name + " --help"));
     }
     if (asks_help(words)) return shown(help_text(group));
     Parsed parsed = usage(" " + group.name + ": say which");
@@ -248,9 +248,8 @@ Parsed parse(int argc, const char *const *argv) {
     for (const Verb &verb : all_verbs())
         if (verb.name == word) return parse_verb(verb, rest);
     if (word.rfind('-', 0) == 0)
-        return usage(": there is no option " + word + did_you_mean(word, {"--help", "--version"}) +
-                     " A verb comes first: `traction --help`");
-    return usage(": there is no verb '" + word + "'" + did_you_mean(word, names_in("")) + " `traction --help` lists all");
+        return usage(": there is no option " + word + did_you_mean(word, {"--help", "--version"}, "traction --help"));
+    return usage(": there is no verb '" + word + "'" + did_you_mean(word, names_in(""), "traction --help"));
 }
 
 } // namespace traction::cli

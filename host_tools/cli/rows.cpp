@@ -77,8 +77,7 @@ std::vector<std::string> effect_names() {
 void need_effect(const std::string &option, const std::string &text, const char *end) {
     const std::string name = text.substr(0, text.find_first_of(end));
     if (sim::find_effect(name) == nullptr)
-        throw UsageError(option + ": there is no effect '" + name + "'" + did_you_mean(name, effect_names()) +
-                         " `traction effects` lists all");
+        throw UsageError(option + ": there is no effect '" + name + "'" + did_you_mean(name, effect_names(), "traction effects"));
 }
 
 std::vector<Option> rows(std::vector<Option> first, std::vector<Option> then) {

@@ -30,4 +30,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string> &
     return nearest == nullptr ? "" : "; did you mean '" + *nearest + "'?";
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string> &known, const std::string &command) {
+    const std::string nearest = did_you_mean(word, known);
+    return (nearest.empty() ? ";" : nearest) + " `" + command + "` lists all";
+}
+
 } // namespace traction::cli

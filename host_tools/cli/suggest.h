@@ -13,4 +13,7 @@ std::size_t distance(std::string_view a, std::string_view b);
 // "; did you mean 'simulate'?", or empty when no known word is near (within 2 letters, or a third of the word).
 std::string did_you_mean(std::string_view word, const std::vector<std::string> &known);
 
+// The same, then which command lists all: "; did you mean 'fit'? `traction --help` lists all".
+std::string did_you_mean(std::string_view word, const std::vector<std::string> &known, const std::string &command);
+
 } // namespace traction::cli

@@ -38,7 +38,7 @@ void man(const ManRequest &request, Outcome &outcome) {
         if (verb.name == name) text = manual(verb);
         known.push_back(verb.name);
     }
-    if (text.empty()) throw UsageError("there is no verb '" + name + "'" + did_you_mean(name, known) + " `traction --help` lists all");
+    if (text.empty()) throw UsageError("there is no verb '" + name + "'" + did_you_mean(name, known, "traction --help"));
     std::fputs(text.c_str(), stdout);
     outcome.json["text"] = text;
 }

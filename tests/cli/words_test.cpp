@@ -29,6 +29,8 @@ TEST(Suggest, nearest_word_is_offered_and_a_far_one_is_not) {
     EXPECT_EQ(did_you_mean("zzzzzz", verbs), "");
     EXPECT_EQ(did_you_mean("x", verbs), "");
     EXPECT_EQ(did_you_mean("", verbs), "");
+    EXPECT_EQ(did_you_mean("fti", verbs, "traction --help"), "; did you mean 'fit'? `traction --help` lists all");
+    EXPECT_EQ(did_you_mean("zzzzzz", verbs, "traction --help"), "; `traction --help` lists all");
     EXPECT_EQ(distance("ab", "ba"), 1U);
     EXPECT_EQ(distance("kitten", "sitting"), 3U);
 }

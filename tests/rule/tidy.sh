@@ -20,7 +20,7 @@ compiled=$(for file in $files; do if grep -q "/$file\"" "$build/compile_commands
 database=$(mktemp -d)
 trap 'rm -rf "$database"' EXIT
 sed 's/ -Winvalid-pch -include [^ ]*cmake_pch\.hxx//' "$build/compile_commands.json" >"$database/compile_commands.json"
-if said=$(printf '%s\n' "$compiled" | xargs -P 2 -n 6 "$tidy" -p "$database" --quiet --extra-arg=-Wno-unknown-warning-option 2>&1); then
+if said=$(printf '%s\n' "$compiled" | xargs -P 2 -n 6 "$tidy" -p "$database" --quiet --extra-arg=-Wno-unknown-warning-option --extra-arg=-Qunused-arguments 2>&1); then
     echo "tidy: nothing found in $(printf '%s\n' "$compiled" | wc -l) files of $*"
 else
     printf '%s\n' "$said" | grep -vE '^[0-9]+ warnings? (generated|treated)|^Suppressed' || true
