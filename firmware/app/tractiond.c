@@ -303,6 +303,7 @@ static bool start_link(const options_t *options, const control_config_t *config,
                                      .rover = rover,
                                      .speed_max_m_s = config->speed_control.speed_max_m_s,
                                      .yaw_max_rad_s = rover->value[ROVER_yaw_rate_max_rad_s],
+                                     .patience_ms = config->safety.command_patience_ticks * TICK_US / 1000u,
                                      .system = (uint8_t)options->link_system};
     drive->link = udp_link_start(&link, message);
     (void)fprintf(stderr, "tractiond: %s\n", message);

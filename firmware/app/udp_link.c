@@ -169,6 +169,7 @@ static void forget_silent(udp_link_t *link)
         const uint64_t patience_ns = (peer->key ? PEER_KEY_MS : PEER_MS) * ns_per_ms;
         if (peer->heard_ns != 0u && now_ns - peer->heard_ns > patience_ns) {
             peer->heard_ns = 0;
+            supervisor_moved(&link->supervisor, i, SUPERVISOR_NOBODY);
         }
     }
 }
@@ -224,7 +225,10 @@ static bool receive(udp_link_t *link)
         const int better = place == UDP_LINK_PEERS ? give_place(link, peer->key) : place;
         if (better != place) {
             link->peer[better] = *peer;
+            supervisor_moved(&link->supervisor, better, SUPERVISOR_NOBODY); // who had the place
             supervisor_moved(&link->supervisor, place, better);
+        } else if (place == UDP_LINK_PEERS) { // was answered; what takes longer is for those who have a place
+            supervisor_moved(&link->supervisor, place, SUPERVISOR_NOBODY);
         }
     }
     return true;
@@ -360,6 +364,7 @@ static supervisor_config_t config_of(const udp_link_options_t *options, const ui
                                   .key = key,
                                   .speed_max_m_s = options->speed_max_m_s,
                                   .yaw_max_rad_s = options->yaw_max_rad_s,
+                                  .patience_ms = options->patience_ms,
                                   .started_10us = signing_time(),
                                   .system = options->system};
     if (getrandom(&config.session, sizeof config.session, GRND_NONBLOCK) != (ssize_t)sizeof config.session) { // too early after power-up

@@ -28,7 +28,8 @@ typedef struct {
     const char *logs;                // folder of the on-board log; null: none
     const rover_parameters_t *rover; // told over the link; outlives it
     float speed_max_m_s, yaw_max_rad_s;
-    uint8_t system; // 1..255
+    uint32_t patience_ms; // age of a command that the firmware forgives
+    uint8_t system;       // 1..255
 } udp_link_options_t;
 
 typedef struct udp_link udp_link_t;

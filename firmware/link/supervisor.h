@@ -25,6 +25,7 @@ extern "C" {
 enum {
     SUPERVISOR_COMPONENT = 1,      // MAV_COMP_ID_AUTOPILOT1
     SUPERVISOR_EVERYBODY = -1,     // for send
+    SUPERVISOR_NOBODY = -2,        // for supervisor_moved: this peer is gone
     SUPERVISOR_STALE_MS = 250,     // assumed: three statuses at 20 Hz lost, and 100 ms of network
     SUPERVISOR_OPERATOR_MS = 1000, // assumed: silence after which another may drive
     SUPERVISOR_STEP_MS = 10,       // supervisor_step is called so often
@@ -49,6 +50,7 @@ typedef struct {
     const rover_parameters_t *rover;    // read over the link; may be null
     const uint8_t *key;                 // 32 bytes; null: nobody may command
     float speed_max_m_s, yaw_max_rad_s; // what the firmware drives at most: a command beyond is refused
+    uint32_t patience_ms;               // age of a command that the firmware forgives
     uint32_t session;                   // another at every start
     uint64_t started_10us;              // channel.h's time then: what was signed before is no command
     uint32_t version[3];                // of the program
@@ -110,7 +112,8 @@ supervisor_heard_t supervisor_receive(supervisor_t *link, int peer, const uint8_
 // The newest tick, for the next telemetry, and what was asked for in it.
 void supervisor_tick(supervisor_t *link, const trace_t *trace, const command_t *asked);
 
-// A peer whose datagram was answered has another number from now on: what is under way goes there.
+// A peer whose datagram was answered has another number from now on: what is under way goes there, or ends where it is
+// SUPERVISOR_NOBODY.
 void supervisor_moved(supervisor_t *link, int from, int to);
 
 // Sends what is due. Call every SUPERVISOR_STEP_MS.

@@ -9,7 +9,6 @@
 
 enum { TOLD_HEARTBEAT = 0, TOLD_STATUS, TOLD_COMMON, TOLD_LINK };
 enum { FLAG_STANDSTILL = 1, FLAG_IN_COMMAND = 2, FLAG_TOO_OLD = 4 };
-enum { TIMEOUT_MS = 80 }; // command_patience_ticks of the firmware
 
 size_t supervisor_send(supervisor_t *link, int peer, const mavlink_message_t *packet)
 {
@@ -104,7 +103,7 @@ size_t supervisor_tell_parameter(supervisor_t *link, int peer, uint32_t index)
 
 static bool moving_asked(const supervisor_t *link) { return link->order.number > 0u && link->order.command.mode != MODE_STOP; }
 
-static bool too_old(const supervisor_t *link) { return moving_asked(link) && link->now_ms - link->heard_ms > TIMEOUT_MS; }
+static bool too_old(const supervisor_t *link) { return moving_asked(link) && link->now_ms - link->heard_ms > link->config.patience_ms; }
 
 void supervisor_tell_heartbeat(supervisor_t *link, int peer)
 {
@@ -306,9 +305,14 @@ void supervisor_tick(supervisor_t *link, const trace_t *trace, const command_t *
 
 void supervisor_moved(supervisor_t *link, int from, int to)
 {
+    supervisor_transfer_t *transfer = &link->transfer;
+    const bool gone = to == SUPERVISOR_NOBODY;
+    link->parameter_end = gone && link->parameter_peer == from ? 0u : link->parameter_end;
+    transfer->listing = transfer->listing && !(gone && transfer->peer == from);
+    transfer->reading = transfer->reading && !(gone && transfer->reader == from);
     link->parameter_peer = link->parameter_peer == from ? to : link->parameter_peer;
-    link->transfer.peer = link->transfer.peer == from ? to : link->transfer.peer;
-    link->transfer.reader = link->transfer.reader == from ? to : link->transfer.reader;
+    transfer->peer = transfer->peer == from ? to : transfer->peer;
+    transfer->reader = transfer->reader == from ? to : transfer->reader;
 }
 
 static bool due(supervisor_t *link, int which, float rate_Hz)
