@@ -21,7 +21,7 @@ uint32_t supervisor_age_ticks(const command_t *order, uint64_t received_ns, uint
     if (order->mode == MODE_STOP || now_ns <= received_ns) {
         return 0;
     }
-    const uint64_t ticks = (now_ns - received_ns + tick_ns - 1u) / tick_ns;
+    const uint64_t old_ns = now_ns - received_ns, ticks = old_ns / tick_ns + (old_ns % tick_ns != 0u ? 1u : 0u);
     return ticks < UINT32_MAX ? (uint32_t)ticks : UINT32_MAX;
 }
 
