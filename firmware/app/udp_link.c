@@ -25,7 +25,7 @@
 #define TRACTION_VERSION "0.0.0"
 #endif
 
-enum { DATAGRAM = 2048, AT_ONCE = 64, PEER_MS = 5000, PEER_KEY_MS = 30000 };
+enum { DATAGRAM = 2048, AT_ONCE = 64, PEER_MS = 5000, PEER_KEY_MS = 30000, PEER_SILENT_MS = 2500 };
 
 static const uint64_t ns_per_ms = 1000000;
 
@@ -144,17 +144,19 @@ static int place_of(const udp_link_t *link, const struct sockaddr_storage *addre
     return place;
 }
 
-// A place for who is at the spare one: a free one, or that of who has no key and was not heard for longest; who has the key displaces any
-// who has not. UDP_LINK_PEERS: there is none.
+// A place for who is at the spare one: a free one, or that of who was not heard for longest among those who missed two heartbeats and,
+// where the newcomer has the key, those who have not. UDP_LINK_PEERS: there is none.
 static int give_place(const udp_link_t *link, bool key)
 {
+    const uint64_t now_ns = clock_ns(CLOCK_MONOTONIC);
     int best = UDP_LINK_PEERS;
     for (int i = 0; i < UDP_LINK_PEERS; i++) {
         const peer_t *peer = &link->peer[i];
         if (peer->heard_ns == 0u) {
             return i;
         }
-        if (key && !peer->key && (best == UDP_LINK_PEERS || peer->heard_ns < link->peer[best].heard_ns)) {
+        const bool gives_way = (key && !peer->key) || now_ns - peer->heard_ns > PEER_SILENT_MS * ns_per_ms;
+        if (gives_way && (best == UDP_LINK_PEERS || peer->heard_ns < link->peer[best].heard_ns)) {
             best = i;
         }
     }

@@ -323,10 +323,12 @@ supervisor_heard_t supervisor_receive(supervisor_t *link, int peer, const uint8_
             heard = heard == SUPERVISOR_HEARD_KEY ? heard : SUPERVISOR_HEARD_SOMEBODY;
             take_packet(link, peer, &packet, false);
             break;
-        case CHANNEL_BAD_SIGNATURE:
+        case CHANNEL_BAD_SIGNATURE: // may listen, as anybody may: it will see that the rover signs with another key
+            heard = heard == SUPERVISOR_HEARD_KEY ? heard : SUPERVISOR_HEARD_SOMEBODY;
             link->counts.refused_signature++;
             break;
         case CHANNEL_REPLAYED:
+            heard = heard == SUPERVISOR_HEARD_KEY ? heard : SUPERVISOR_HEARD_SOMEBODY;
             link->counts.refused_replay++;
             break;
         case CHANNEL_BROKEN:

@@ -25,7 +25,7 @@ class Peer:
             self.mav.signing.timestamp = signing_time()
             self.mav.signing.sign_outgoing = True
             self.mav.signing.allow_unsigned_callback = lambda mav, message: False
-        self.heard, self.latest, self.refused = {}, {}, 0
+        self.heard, self.latest, self.all, self.refused = {}, {}, [], 0
 
     def bytes_of(self, message):
         self.mav.signing.timestamp = max(self.mav.signing.timestamp, signing_time())
@@ -50,6 +50,7 @@ class Peer:
                 self.heard[message.get_type()] = self.heard.get(message.get_type(), 0) + 1
                 self.latest[message.get_type()] = message
                 got.append(message)
+                self.all.append(message)
         return got
 
     def until(self, kind, seconds=3, ask=None, good=lambda message: True):
@@ -104,12 +105,8 @@ check(peer.refused == 0, "packets of the rover that its own key does not verify"
 nobody.send(heartbeat)
 ask = dialect.MAVLink_param_request_list_message(1, 1)
 first = nobody.until("PARAM_VALUE", ask=ask)
-names = {}
-end = time.monotonic() + 5
-while len(names) < first.param_count and time.monotonic() < end:
-    for message in nobody.listen(0.2):
-        if message.get_type() == "PARAM_VALUE":
-            names[message.param_index] = (message.param_id, message.param_value)
+nobody.listen(1)
+names = {m.param_index: (m.param_id, m.param_value) for m in nobody.all if m.get_type() == "PARAM_VALUE"}
 check(len(names) == first.param_count, f"{len(names)} of {first.param_count} parameters")
 check(len({name for name, _ in names.values()}) == first.param_count, "names of parameters that are not different")
 check(any(name == "wheel_radius_m" and abs(value - 0.057) < 1e-6 for name, value in names.values()), "no wheel_radius_m")

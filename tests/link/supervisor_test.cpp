@@ -255,6 +255,7 @@ TEST(Supervisor, a_packet_that_comes_again_or_late_is_a_replay) {
     late.channel.signing.timestamp = begin_10us - 61 * 100'000;
     rover.receive(late.command(rover.fresh()));
     EXPECT_EQ(rover.link.counts.refused_replay, 3u);
+    EXPECT_EQ(rover.receive(Operator(another_key.data()).command(rover.fresh())), SUPERVISOR_HEARD_SOMEBODY); // is told, not obeyed
 }
 
 TEST(Supervisor, a_command_recorded_before_a_restart_moves_nothing_after_it) {
