@@ -7,12 +7,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <random>
 #include <set>
@@ -537,6 +539,57 @@ TEST(Supervisor, random_bytes_move_nothing) {
     }
     EXPECT_EQ(rover.link.counts.accepted, 0u);
     EXPECT_EQ(rover.link.order.number, 0u);
+}
+
+// Whole packets of every kind the rover knows, with any content and length: unsigned ones move nothing, signed ones nothing beyond the
+// limits.
+TEST(Supervisor, any_content_of_a_whole_packet_is_borne) {
+    static const mavlink_msg_entry_t known[] = MAVLINK_MESSAGE_CRCS;
+    std::mt19937 random(20261124);
+    Rover open(our_key.data()), driven(our_key.data());
+    for (Rover *rover : {&open, &driven})
+        for (uint32_t number = 1; number < 4; number++) rover->logs[number] = Bytes(1000);
+    Operator nobody(nullptr), who(our_key.data());
+    for (int i = many("LINK_FORGERIES", 5'000); i > 0; i--) {
+        // every second one is of a kind that is answered or obeyed
+        const uint32_t asked[] = {20, 21, 23, 43, 76, 117, 119, 122, MAVLINK_MSG_ID_TRACTION_COMMAND};
+        const mavlink_msg_entry_t *about =
+            random() % 2 == 0 ? mavlink_get_msg_entry(asked[random() % std::size(asked)]) : &known[random() % std::size(known)];
+        mavlink_message_t packet{};
+        packet.msgid = about->msgid & 0xffffffu;
+        char *payload = _MAV_PAYLOAD_NON_CONST(&packet);
+        for (size_t k = 0; k < about->max_msg_len; k++) payload[k] = static_cast<char>(random() % 3 == 0 ? random() : 0);
+        if ((about->flags & MAV_MSG_ENTRY_FLAG_HAVE_TARGET_SYSTEM) != 0) payload[about->target_system_ofs] = 1;
+        if ((about->flags & MAV_MSG_ENTRY_FLAG_HAVE_TARGET_COMPONENT) != 0) payload[about->target_component_ofs] = 1;
+        if (about->msgid == MAVLINK_MSG_ID_TRACTION_COMMAND && random() % 2 == 0) {
+            std::memcpy(payload, &session, 4); // the first two of its fields on the wire
+            std::memcpy(payload + 4, &driven.now_ms, 4);
+            payload[22] = static_cast<char>(random() % 8);
+        }
+        const bool key = random() % 2 == 0;
+        channel_t &channel = key ? who.channel : nobody.channel;
+        (void)mavlink_finalize_message_buffer(&packet, channel.system, 190, &channel.status, about->min_msg_len, about->max_msg_len,
+                                              about->crc_extra);
+        Bytes bytes(CHANNEL_PACKET);
+        bytes.resize(channel_bytes(&packet, bytes.data()));
+        if (random() % 20 == 0) bytes.resize(1 + random() % bytes.size()); // cut
+        (key ? driven : open).receive(bytes, static_cast<int>(random() % 5));
+        if (i % 16 == 0) {
+            open.run(10);
+            driven.run(10);
+            driven.now_ms = open.now_ms = std::max(driven.now_ms, open.now_ms);
+        }
+        const command_t &order = driven.link.order.command;
+        ASSERT_TRUE(order.mode == MODE_STOP || order.mode == MODE_PLATFORM_SPEED || order.mode == MODE_SLIP ||
+                    order.mode == MODE_SOIL_SWEEP);
+        ASSERT_LE(std::fabs(order.platform_speed_m_s), 1.0f);
+        ASSERT_LE(std::fabs(order.yaw_rate_rad_s), 4.0f);
+        ASSERT_LE(std::fabs(order.slip_ref), 1.0f);
+        ASSERT_LT(order.slip_wheels, 16);
+    }
+    EXPECT_EQ(open.link.counts.accepted, 0u);
+    EXPECT_EQ(open.link.order.number, 0u);
+    EXPECT_GT(driven.link.counts.accepted, 0u);
 }
 
 // What an attacker has who hears everything and lacks the key: old packets, his own, and any change of them.
