@@ -4,6 +4,7 @@
 
 #include "firmware/core/signals.h"
 
+#include <functional>
 #include <poll.h>
 #include <sys/types.h>
 #include <termios.h>

@@ -6,6 +6,7 @@
 
 #include "operator.h"
 
+#include <cstdint>
 #include <functional>
 #include <string>
 

@@ -3,6 +3,7 @@
 // that, at most 10 ms later.
 #include "host_tools/board/board_log.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 
