@@ -1,7 +1,8 @@
-#define _GNU_SOURCE // getrandom, clock_gettime
+#define _POSIX_C_SOURCE 200809L // clock_gettime, strnlen
 #include "udp_link.h"
 
 #include "log_ring.h"
+#include "udp_address.h"
 
 #include "firmware/link/key.h"
 #include "firmware/link/supervisor.h"
@@ -9,10 +10,11 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <pthread.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
@@ -60,6 +62,15 @@ struct udp_link {
     int log_file; // -1: none is open
     uint32_t log_number;
 };
+
+// A key leaves no copy behind; the compiler may not know better.
+static void wipe(void *bytes, size_t count)
+{
+    volatile uint8_t *at = bytes;
+    while (count-- > 0u) {
+        *at++ = 0;
+    }
+}
 
 static uint64_t clock_ns(clockid_t which)
 {
@@ -293,54 +304,10 @@ void udp_link_counts(udp_link_t *link, uint32_t counts[ULOG_LINK_COUNTS]) { memc
 
 // --- start and end
 
-typedef union {
-    struct sockaddr any;
-    struct sockaddr_in four;
-    struct sockaddr_in6 six;
-} address_t;
-
-// "1.2.3.4[:PORT]", "[::1][:PORT]" or "::1". Returns its length, 0: it is none.
-static socklen_t parse_address(const char *text, address_t *address)
-{
-    char host[64] = "";
-    const bool bracketed = text[0] == '[';
-    const char *end = bracketed ? strchr(text, ']') : strchr(text, ':');
-    const char *port = end;
-    if (!bracketed && end != NULL && strchr(end + 1, ':') != NULL) { // several colons: the whole is a host of version 6
-        end = port = NULL;
-    }
-    const size_t length = end == NULL ? strlen(text) : (size_t)(end - text) - (bracketed ? 1u : 0u);
-    if ((bracketed && end == NULL) || length >= sizeof host) {
-        return 0;
-    }
-    memcpy(host, text + (bracketed ? 1 : 0), length);
-    port = bracketed && port != NULL ? port + 1 : port;
-    unsigned long number = UDP_LINK_PORT;
-    if (port != NULL && *port != '\0') {
-        char *rest = NULL;
-        number = port[0] == ':' && port[1] >= '0' && port[1] <= '9' ? strtoul(port + 1, &rest, 10) : 65536u;
-        if (number > 65535u || *rest != '\0') {
-            return 0;
-        }
-    }
-    memset(address, 0, sizeof *address);
-    if (inet_pton(AF_INET, host, &address->four.sin_addr) == 1) {
-        address->four.sin_family = AF_INET;
-        address->four.sin_port = htons((uint16_t)number);
-        return sizeof address->four;
-    }
-    if (inet_pton(AF_INET6, host, &address->six.sin6_addr) == 1) {
-        address->six.sin6_family = AF_INET6;
-        address->six.sin6_port = htons((uint16_t)number);
-        return sizeof address->six;
-    }
-    return 0;
-}
-
 static bool open_socket(udp_link_t *link, const char *text, char message[UDP_LINK_MESSAGE])
 {
-    address_t address;
-    socklen_t length = parse_address(text, &address);
+    udp_address_t address;
+    socklen_t length = udp_address_parse(text, UDP_LINK_PORT, &address);
     if (length == 0u) {
         (void)snprintf(message, UDP_LINK_MESSAGE, "--link %.80s: no address of this machine; give 127.0.0.1, 0.0.0.0:14555 or [::1]:14555",
                        text);
@@ -372,7 +339,12 @@ static supervisor_config_t config_of(const udp_link_options_t *options, const ui
     if (getrandom(&config.session, sizeof config.session, GRND_NONBLOCK) != (ssize_t)sizeof config.session) { // too early after power-up
         config.session = (uint32_t)(clock_ns(CLOCK_REALTIME) ^ clock_ns(CLOCK_MONOTONIC) << 7u ^ (uint64_t)getpid() << 16u);
     }
-    (void)sscanf(TRACTION_VERSION, "%" SCNu32 ".%" SCNu32 ".%" SCNu32, &config.version[0], &config.version[1], &config.version[2]);
+    const char *at = TRACTION_VERSION;
+    for (size_t i = 0; i < sizeof config.version / sizeof *config.version; i++) {
+        char *end = NULL;
+        config.version[i] = (uint32_t)strtoul(at, &end, 10);
+        at = *end == '.' ? end + 1 : end;
+    }
     return config;
 }
 
@@ -399,7 +371,7 @@ udp_link_t *udp_link_start(const udp_link_options_t *options, char message[UDP_L
                                       .read = options->logs != NULL ? read_log : NULL};
     supervisor_begin(&link->supervisor, &config, &world);
     link->supervisor.config.key = NULL; // it was copied
-    explicit_bzero(key, sizeof key);
+    wipe(key, sizeof key);
     if (!open_socket(link, options->address, message) || pthread_mutex_init(&link->mutex, NULL) != 0) {
         if (link->socket >= 0) {
             (void)close(link->socket);
@@ -428,5 +400,5 @@ void udp_link_finish(udp_link_t *link)
         (void)close(link->log_file);
     }
     (void)close(link->socket);
-    explicit_bzero(&link->supervisor, sizeof link->supervisor); // the key
+    wipe(&link->supervisor, sizeof link->supervisor); // the key
 }

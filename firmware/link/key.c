@@ -1,4 +1,4 @@
-#define _GNU_SOURCE // getrandom, O_NOFOLLOW
+#define _POSIX_C_SOURCE 200809L // O_CLOEXEC, O_NOFOLLOW
 #include "key.h"
 
 #include <errno.h>

@@ -1,5 +1,6 @@
 """peer.py DIALECT_FOLDER PORT KEY_FILE LOG_FILE: an operator of its own making, by pymavlink, before a running tractiond (supervision.sh).
 Signs, drives, lists and fetches a log, asks what a ground station asks, and does what must be refused. LOG_FILE: the fetched log."""
+import random
 import socket
 import sys
 import time
@@ -135,13 +136,21 @@ check(peer.latest["TRACTION_STATUS"].mode == 0, "the rover drives")
 recorded = peer.bytes_of(peer.command(0.3))
 peer.socket.send(recorded)
 peer.socket.send(recorded)
-peer.drive(0.3, 3)
+noise = random.Random(20261122)
+flood = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+flooded, until = 0, time.monotonic() + 4
+while time.monotonic() < until:  # while noise comes from elsewhere
+    for _ in range(10):
+        data = bytearray(noise.randbytes(noise.randrange(1, 300)))
+        data[0] = noise.choice((0xFD, 0xFE, data[0]))
+        flood.sendto(data, ("127.0.0.1", int(port)))
+        flooded += 1
+    peer.send(peer.command(0.3))
+    peer.listen(0.02)
 status = peer.latest["TRACTION_STATUS"]
 check(status.mode == 3 and status.flags & 2, f"not in command: mode {status.mode}")
-check(0.2 < status.speed_m_s < 0.4, f"drives at {status.speed_m_s} m/s, asked for 0.3")  # under way after 3 s, within a third
-check(status.faults == 0, f"faults {status.faults:x}")
-replayed = peer.counts()
-check(replayed.refused_replay - now.refused_replay == 1, "the replayed packet was not counted as such")
+check(0.2 < status.speed_m_s < 0.4, f"drives at {status.speed_m_s} m/s, asked for 0.3")  # under way after 4 s, within a third
+check(status.faults == 0, f"faults {status.faults:x} under {flooded} datagrams of noise")
 
 # then silence: stopped, and told
 silent = time.monotonic()
@@ -152,6 +161,7 @@ check(status.flags & 4 and status.faults & 2, f"silence was not noticed: faults 
 check(status.drive != 3, "the bridges drive on")
 lost = peer.counts()
 check(lost.losses - now.losses == 1, "the loss was not counted")
+check(lost.refused_replay - now.refused_replay == 1, "the replayed packet was not counted as such")
 peer.socket.send(recorded)  # the old packet does not set it going again
 peer.send(peer.command(0, mode=0))
 peer.listen(0.3)
@@ -179,4 +189,4 @@ data = b"".join(pieces[i] for i in range(len(pieces)))[:size]
 with open(log_file, "wb") as file:
     file.write(data)
 check(len(data) == size, f"{len(data)} of {size} bytes of the log")
-print(f"pymavlink: {rate:.1f} statuses a second, {first.param_count} parameters, {size} bytes of log, every refusal counted")
+print(f"pymavlink: {rate:.1f} statuses a second, {first.param_count} parameters, {size} bytes of log, every refusal counted, {flooded} datagrams of noise borne")

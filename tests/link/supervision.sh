@@ -103,6 +103,10 @@ run 0 drive --host 127.0.0.1:"$port" --parameters # anybody may read
 says '^wheel_radius_m *0.057' said
 says '^LINK_BULK_KB_S *1000' said
 
+# by hand, in a terminal
+python3 "$source/tests/link/hand.py" "$traction" "$port" key >hand.txt 2>&1 || { cat hand.txt; fail 'by hand'; }
+cat hand.txt
+
 # the operator's program dies while the rover moves: it stops by itself, and a stop sets it free again
 "$traction" drive --host 127.0.0.1:"$port" --key key --speed 0.3 --for 60 >killed.txt 2>&1 &
 killed=$!
