@@ -29,25 +29,27 @@ uint32_t supervisor_age_ticks(const command_t *order, uint64_t received_ns, uint
 
 static uint16_t sender_of(const mavlink_message_t *packet) { return (uint16_t)(packet->sysid * 256u + packet->compid); }
 
-static void obey(supervisor_t *link, const command_t *command, uint16_t sender)
+static void obey(supervisor_t *link, const command_t *command, uint16_t sender, int peer)
 {
     link->order.command = *command;
     link->order.number++;
     link->counts.accepted++;
     link->heard_ms = link->now_ms;
     link->operator_id = command->mode == MODE_STOP ? 0u : sender;
+    link->operator_peer = peer;
 }
 
 static void obey_stop(supervisor_t *link)
 {
     const command_t stop = {.mode = MODE_STOP};
-    obey(link, &stop, 0);
+    obey(link, &stop, 0, SUPERVISOR_NOBODY);
 }
 
 // Another drives, and is still there.
-static bool taken(const supervisor_t *link, uint16_t sender)
+static bool taken(const supervisor_t *link, uint16_t sender, int peer)
 {
-    return link->operator_id != 0u && link->operator_id != sender && link->now_ms - link->heard_ms < SUPERVISOR_OPERATOR_MS;
+    const bool same = link->operator_id == sender && link->operator_peer == peer;
+    return link->operator_id != 0u && !same && link->now_ms - link->heard_ms < SUPERVISOR_OPERATOR_MS;
 }
 
 static bool within(float value, float limit) { return value >= -limit && value <= limit; } // no NaN is
@@ -60,7 +62,7 @@ static bool allowed(const supervisor_t *link, const mavlink_traction_command_t *
            asked->slip_wheels < 1u << WHEEL_COUNT;
 }
 
-static void take_command(supervisor_t *link, const mavlink_message_t *packet)
+static void take_command(supervisor_t *link, int peer, const mavlink_message_t *packet)
 {
     mavlink_traction_command_t asked;
     mavlink_msg_traction_command_decode(packet, &asked);
@@ -71,7 +73,7 @@ static void take_command(supervisor_t *link, const mavlink_message_t *packet)
         obey_stop(link);
     } else if (asked.session != link->config.session || link->now_ms - asked.rover_time_ms > SUPERVISOR_STALE_MS) {
         link->counts.refused_stale++; // a time in the future too: it wraps
-    } else if (taken(link, sender_of(packet)) || !allowed(link, &asked)) {
+    } else if (taken(link, sender_of(packet), peer) || !allowed(link, &asked)) {
         link->counts.refused_other++;
     } else {
         const command_t command = {.mode = (control_mode_t)asked.mode,
@@ -79,7 +81,7 @@ static void take_command(supervisor_t *link, const mavlink_message_t *packet)
                                    .yaw_rate_rad_s = asked.yaw_rate_rad_s,
                                    .slip_ref = asked.slip_ref,
                                    .slip_wheels = asked.slip_wheels};
-        obey(link, &command, sender_of(packet));
+        obey(link, &command, sender_of(packet), peer);
     }
 }
 
@@ -295,7 +297,7 @@ static void take_packet(supervisor_t *link, int peer, const mavlink_message_t *p
     if (!key) {
         link->counts.refused_unsigned++;
     } else if (packet->msgid == MAVLINK_MSG_ID_TRACTION_COMMAND) {
-        take_command(link, packet);
+        take_command(link, peer, packet);
     } else if (from_before(link, packet)) {
         link->counts.refused_replay++;
     } else if (packet->msgid == MAVLINK_MSG_ID_PARAM_SET) {

@@ -91,6 +91,7 @@ typedef struct {
     bool seen;
     uint32_t now_ms, heard_ms, told_ms[4]; // the operator's last command; when each rate was due last
     uint16_t operator_id;                  // system * 256 + component; 0: nobody
+    int operator_peer;                     // where it is: two of one number are two
     uint32_t told_faults;
     int parameter_peer;
     uint32_t parameter_next, parameter_end;

@@ -311,6 +311,7 @@ void supervisor_moved(supervisor_t *link, int from, int to)
     transfer->listing = transfer->listing && !(gone && transfer->peer == from);
     transfer->reading = transfer->reading && !(gone && transfer->reader == from);
     link->parameter_peer = link->parameter_peer == from ? to : link->parameter_peer;
+    link->operator_peer = link->operator_peer == from ? to : link->operator_peer;
     transfer->peer = transfer->peer == from ? to : transfer->peer;
     transfer->reader = transfer->reader == from ? to : transfer->reader;
 }

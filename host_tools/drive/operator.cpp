@@ -232,6 +232,8 @@ Operator::Operator(const std::string &address, const std::string &key_file, int 
         throw std::runtime_error("--key " + std::string(message.data())); // it is complete
     channel_begin(&self_->channel, our_system, our_component, self_->keyed ? key.data() : nullptr);
     explicit_bzero(key.data(), key.size());
+    // two programs of one number would call each other's packets replays; the rover remembers 16 of number and link
+    self_->channel.signing.link_id = static_cast<std::uint8_t>(getpid() % 8);
     channel_clock(&self_->channel, signing_time());
     self_->connect_to(address);
 }
