@@ -13,6 +13,7 @@
 #include "host_tools/drive/drive.h"
 #include "host_tools/log/write_file.h"
 
+#include <cstdlib>
 #include <unistd.h>
 
 #include <algorithm>

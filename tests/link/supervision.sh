@@ -18,6 +18,16 @@ run() { # run EXPECTED_CODE ARGUMENT...: traction
     "$traction" "$@" >said 2>&1 || code=$?
     [ "$code" -eq "$expected" ] || fail "traction $*: exit $code, expected $expected"
 }
+# A machine that is busy for 80 ms stops the rover, rightly: what must drive for seconds on end has three tries.
+three() { # three NAME COMMAND...
+    name=$1
+    shift
+    for try in 1 2 3; do
+        if "$@" >"$name.txt" 2>&1; then cat "$name.txt"; return 0; fi
+        echo "$name, try $try: $(tail -n 1 "$name.txt")"
+    done
+    fail "$name"
+}
 says() { grep -q -- "$1" "$2" || fail "expected in $2: $1"; }
 
 cat >stand.toml <<'T'
@@ -33,7 +43,9 @@ T
 start() { # start OPTION...: the rover; $port is where it listens
     "$tractiond" --hal sim stand.toml --link 127.0.0.1:0 "$@" 2>rover.err &
     daemon=$!
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    tries=0
+    while [ $tries -lt 80 ]; do
+        tries=$((tries + 1))
         port=$(sed -n 's/.*listens on 127.0.0.1:\([0-9]*\) .*/\1/p' rover.err)
         [ -z "$port" ] || return 0
         sleep 0.25
@@ -84,7 +96,7 @@ start --link-key key --log logs
 run 0 drive --host 127.0.0.1:"$port" --key key --for 1
 run 4 drive --host 127.0.0.1:"$port" --key other --speed 0.3 --for 1
 says 'signs with another key' said
-run 0 drive --host 127.0.0.1:"$port" --key key --speed 0.3 --for 4 --json drive.json
+three driven "$traction" drive --host 127.0.0.1:"$port" --key key --speed 0.3 --for 4 --json drive.json
 python3 - <<'P' || fail "drive.json is not as driven: $(cat drive.json)"
 import json
 told = json.load(open("drive.json"))
@@ -104,8 +116,7 @@ says '^wheel_radius_m *0.057' said
 says '^LINK_BULK_KB_S *1000' said
 
 # by hand, in a terminal
-python3 "$source/tests/link/hand.py" "$traction" "$port" key >hand.txt 2>&1 || { cat hand.txt; fail 'by hand'; }
-cat hand.txt
+three hand python3 "$source/tests/link/hand.py" "$traction" "$port" key
 
 # the operator's program dies while the rover moves: it stops by itself, and a stop sets it free again
 "$traction" drive --host 127.0.0.1:"$port" --key key --speed 0.3 --for 60 >killed.txt 2>&1 &
@@ -136,9 +147,13 @@ end
 if [ -x "$source/.venv/bin/python" ] && "$source/.venv/bin/python" -c 'import pymavlink' 2>/dev/null; then
     "$source/.venv/bin/python" "$source/firmware/link/make_headers.py" "$source/firmware/link/traction.xml" Python "$work/dialect/traction_dialect" >generator.txt 2>&1 ||
         fail "the dialect in Python: $(tail -n 3 generator.txt)"
-    start --link-key key --log peer_logs
-    "$source/.venv/bin/python" "$source/tests/link/peer.py" "$work/dialect" "$port" key peer.ulg >said 2>&1 || fail 'peer.py'
-    cat said
+    with_peer() {
+        end
+        rm -rf peer_logs
+        start --link-key key --log peer_logs
+        "$source/.venv/bin/python" "$source/tests/link/peer.py" "$work/dialect" "$port" key peer.ulg
+    }
+    three peer with_peer
     end
     bytes=$(wc -c <peer.ulg)
     head -c "$bytes" peer_logs/log_000001.ulg | cmp - peer.ulg || fail 'what pymavlink fetched is not what the rover has written'
