@@ -44,6 +44,7 @@ const hal_entry_t *hal_list(size_t *count) {
 hal_result_t hal_open(const char *name, int count, const char *const *argument, hal_opened_t *opened, char message[HAL_MESSAGE]) {
     char known[HAL_MESSAGE / 2] = "";
     message[0] = '\0';
+    *opened = (hal_opened_t){.devices = false}; // what a HAL does not say is not left to chance
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++) {
         const hal_entry_t *entry = &entries[i];
         if (strcmp(entry->name, name) == 0) {

@@ -1,8 +1,6 @@
 #define _POSIX_C_SOURCE 200809L // fileno, fdatasync, clock_gettime
 #include "log_ring.h"
 
-#include "ulog.h"
-
 #include "hal/replay/frames.h"
 
 #include <dirent.h>
@@ -32,10 +30,17 @@ static void fail(log_ring_t *ring, const char *path)
 
 static const char log_name[] = "log", dump_name[] = "fault";
 
+static void path_in(const char *folder, const char *kind, uint32_t number, char path[LOG_RING_PATH])
+{
+    (void)snprintf(path, LOG_RING_PATH, "%s/%s_%06" PRIu32 ".%s", folder, kind, number, strcmp(kind, log_name) == 0 ? "ulg" : "txt");
+}
+
 static void path_of(const log_ring_t *ring, const char *kind, uint32_t number, char path[LOG_RING_PATH])
 {
-    (void)snprintf(path, LOG_RING_PATH, "%s/%s_%06" PRIu32 ".%s", ring->folder, kind, number, strcmp(kind, log_name) == 0 ? "ulg" : "txt");
+    path_in(ring->folder, kind, number, path);
 }
+
+void log_ring_path(const char *folder, uint32_t number, char path[LOG_RING_PATH]) { path_in(folder, log_name, number, path); }
 
 // The number of a file that is one of ours; 0: it is none.
 static uint32_t number_of(const char *name)
@@ -72,6 +77,35 @@ static bool look(const log_ring_t *ring, holdings_t *held)
     }
     (void)closedir(folder);
     return true;
+}
+
+size_t log_ring_list(const char *folder, log_ring_file_t *files, size_t room)
+{
+    size_t count = 0;
+    DIR *all = opendir(folder);
+    for (const struct dirent *entry = all != NULL ? readdir(all) : NULL; entry != NULL; entry = readdir(all)) {
+        const uint32_t number = number_of(entry->d_name);
+        char path[LOG_RING_PATH];
+        struct stat about;
+        log_ring_path(folder, number, path);
+        if (number == 0u || stat(path, &about) != 0 || (count == room && number < files[0].number)) {
+            continue;
+        }
+        if (count == room) { // the oldest gives way
+            memmove(files, files + 1, --count * sizeof *files);
+        }
+        size_t at = count++;
+        for (; at > 0u && files[at - 1u].number > number; at--) {
+            files[at] = files[at - 1u];
+        }
+        files[at] = (log_ring_file_t){.number = number,
+                                      .bytes = about.st_size < (off_t)UINT32_MAX ? (uint32_t)about.st_size : UINT32_MAX,
+                                      .time_s = (uint32_t)about.st_mtime};
+    }
+    if (all != NULL) {
+        (void)closedir(all);
+    }
+    return count;
 }
 
 // Room for one more file within the budget; the newest is never taken away.
@@ -299,6 +333,15 @@ void log_ring_put(log_ring_t *ring, const sensor_frame_t *frame, const command_t
     const bool kept = queue_block(ring, block, length);
     ring->lost_now = kept ? 0u : ring->lost_now + 1u;
     ring->lost += kept ? 0u : 1u;
+    (void)pthread_mutex_unlock(&ring->mutex);
+}
+
+void log_ring_put_link(log_ring_t *ring, uint32_t tick, const uint32_t counts[ULOG_LINK_COUNTS])
+{
+    uint8_t block[ULOG_TEXT];
+    const size_t length = ulog_link(tick, counts, block);
+    (void)pthread_mutex_lock(&ring->mutex);
+    (void)queue_block(ring, block, length);
     (void)pthread_mutex_unlock(&ring->mutex);
 }
 

@@ -11,6 +11,8 @@
 #ifndef TRACTION_FIRMWARE_APP_LOG_RING_H
 #define TRACTION_FIRMWARE_APP_LOG_RING_H
 
+#include "ulog.h"
+
 #include "firmware/core/signals.h"
 
 #include <pthread.h>
@@ -56,6 +58,16 @@ bool log_ring_start(log_ring_t *ring, const char *folder, uint64_t budget_bytes,
 
 // One tick, with a line where a fault is new.
 void log_ring_put(log_ring_t *ring, const sensor_frame_t *frame, const command_t *command, const trace_t *trace);
+
+// What came over the supervision link, as ulog_link has it; lost without a word where the queue is full.
+void log_ring_put_link(log_ring_t *ring, uint32_t tick, const uint32_t counts[ULOG_LINK_COUNTS]);
+
+// The logs of such a folder, the newest `room` of them by rising number; returns how many.
+typedef struct {
+    uint32_t number, bytes, time_s; // bytes: at most 4 GB are told; last written, seconds since 1970
+} log_ring_file_t;
+size_t log_ring_list(const char *folder, log_ring_file_t *files, size_t room);
+void log_ring_path(const char *folder, uint32_t number, char path[LOG_RING_PATH]);
 
 // Waits until all is written; returns how many ticks were lost. What failed stands in `failed`, "" if nothing.
 uint32_t log_ring_finish(log_ring_t *ring);

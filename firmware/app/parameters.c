@@ -204,8 +204,8 @@ static bool tell(const place_t *place, const reading_t *reading, const control_r
     return false;
 }
 
-bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, doppler_template_t *beam,
-                      char message[PARAMETERS_MESSAGE])
+static bool parse_whole(const char *text, size_t length, const char *name, control_config_t *config, rover_parameters_t *rover,
+                        doppler_template_t *beam, char message[PARAMETERS_MESSAGE])
 {
     place_t place = {.file = name, .line = 0, .message = message};
     reading_t reading;
@@ -219,7 +219,16 @@ bool parameters_parse(const char *text, size_t length, const char *name, control
         return tell(&place, &reading, &refusal);
     }
     *config = built;
+    if (rover != NULL) {
+        *rover = reading.read.rover;
+    }
     return true;
+}
+
+bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, doppler_template_t *beam,
+                      char message[PARAMETERS_MESSAGE])
+{
+    return parse_whole(text, length, name, config, NULL, beam, message);
 }
 
 size_t parameters_write(const parameters_t *parameters, const char *about, char text[PARAMETERS_TEXT])
@@ -239,6 +248,12 @@ size_t parameters_write(const parameters_t *parameters, const char *about, char 
 
 bool parameters_read(const char *path, control_config_t *config, doppler_template_t *beam, char message[PARAMETERS_MESSAGE])
 {
+    return parameters_read_whole(path, config, NULL, beam, message);
+}
+
+bool parameters_read_whole(const char *path, control_config_t *config, rover_parameters_t *rover, doppler_template_t *beam,
+                           char message[PARAMETERS_MESSAGE])
+{
     FILE *file = fopen(path, "rb");
     char *text = malloc(FILE_MAX_BYTES);
     bool done = false;
@@ -249,7 +264,7 @@ bool parameters_read(const char *path, control_config_t *config, doppler_templat
         if (ferror(file) != 0 || length == FILE_MAX_BYTES) {
             (void)snprintf(message, PARAMETERS_MESSAGE, "%.120s: cannot be read, or longer than 256 kB", path);
         } else {
-            done = parameters_parse(text, length, path, config, beam, message);
+            done = parse_whole(text, length, path, config, rover, beam, message);
         }
     }
     free(text);

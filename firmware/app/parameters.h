@@ -34,7 +34,11 @@ typedef struct {
 // template of an own radar as long as the config is used; where it is 0, such a file is refused.
 bool parameters_read(const char *path, control_config_t *config, doppler_template_t *beam, char message[PARAMETERS_MESSAGE]);
 
-// The same from text of `length` bytes; `name` is for messages.
+// The same; the primary numbers too where `rover` is not null.
+bool parameters_read_whole(const char *path, control_config_t *config, rover_parameters_t *rover, doppler_template_t *beam,
+                           char message[PARAMETERS_MESSAGE]);
+
+// The same as parameters_read from text of `length` bytes; `name` is for messages.
 bool parameters_parse(const char *text, size_t length, const char *name, control_config_t *config, doppler_template_t *beam,
                       char message[PARAMETERS_MESSAGE]);
 

@@ -9,6 +9,7 @@
 #include "store.h"
 #include "trace_queue.h"
 #include "trace_text.h"
+#include "udp_link.h"
 
 #include "firmware/core/rover_config.h"
 #include "hal/forward.h"
@@ -25,6 +26,8 @@
 
 enum { EXIT_DONE = 0, EXIT_DEVICE_LOST = 1, EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_FILE = 4 };
 
+enum { LINK_LOG_TICKS = 100 }; // once a second
+
 static volatile sig_atomic_t asked_to_stop;
 
 static void ask_to_stop(int signal)
@@ -34,8 +37,8 @@ static void ask_to_stop(int signal)
 }
 
 typedef struct {
-    const char *hal, *parameters, *firmware, *trace, *store, *log;
-    unsigned long log_budget_MB;
+    const char *hal, *parameters, *firmware, *trace, *store, *log, *link, *link_key;
+    unsigned long log_budget_MB, link_system;
     bool hash, realtime, self_test, help;
 } options_t;
 
@@ -52,6 +55,10 @@ static void print_help(void)
         "  --hash              print the FNV-1a hash over all trace lines at the end\n"
         "  --log FOLDER        on-board log: ULog files, the oldest go when the budget is full; a state dump beside it on a fault\n"
         "  --log-budget MB     of that folder, 1 to 100000 (64)\n"
+        "  --link ADDRESS      supervision by MAVLink 2 over UDP on ADDRESS[:14555] of this machine; ticks then take their time "
+        "(docs/supervision.md)\n"
+        "  --link-key FILE     64 hex digits, mode 0600: who has them may drive by `traction drive`; without it telemetry only\n"
+        "  --link-system N     the rover's MAVLink number, 1 to 250 (1)\n"
         "  --store FILE        what must survive a restart (how warm the motors are); read first, kept while driving\n"
         "  --self-test         radar, accelerometer, battery at rest, a small pulse of every wheel, before anything drives\n"
         "  --realtime          a tick of 10 ms takes 10 ms\n"
@@ -67,13 +74,13 @@ static void print_help(void)
                "written.");
 }
 
-static bool parse_budget(const char *text, unsigned long *megabytes)
+static bool parse_number(const char *option, const char *text, unsigned long high, const char *mend, unsigned long *number)
 {
     char *end = NULL;
-    *megabytes = strtoul(text, &end, 10);
-    const bool good = end != text && *end == '\0' && *megabytes >= 1u && *megabytes <= 100000u && text[0] != '-';
+    *number = strtoul(text, &end, 10);
+    const bool good = end != text && *end == '\0' && *number >= 1u && *number <= high && text[0] != '-';
     if (!good) {
-        (void)fprintf(stderr, "tractiond: --log-budget %s: not a size; give whole megabytes from 1 to 100000\n", text);
+        (void)fprintf(stderr, "tractiond: %s %s: %s from 1 to %lu\n", option, text, mend, high);
     }
     return good;
 }
@@ -82,12 +89,21 @@ static bool parse_budget(const char *text, unsigned long *megabytes)
 static bool parse(int argc, char **argv, options_t *options)
 {
     static const struct option known[] = {
-        {"hal", required_argument, NULL, 'H'},      {"parameters", required_argument, NULL, 'p'},
-        {"firmware", required_argument, NULL, 'f'}, {"trace", required_argument, NULL, 't'},
-        {"hash", no_argument, NULL, 'x'},           {"realtime", no_argument, NULL, 'r'},
-        {"log", required_argument, NULL, 'l'},      {"log-budget", required_argument, NULL, 'b'},
-        {"store", required_argument, NULL, 's'},    {"self-test", no_argument, NULL, 'e'},
-        {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
+        {"hal", required_argument, NULL, 'H'},
+        {"parameters", required_argument, NULL, 'p'},
+        {"firmware", required_argument, NULL, 'f'},
+        {"trace", required_argument, NULL, 't'},
+        {"hash", no_argument, NULL, 'x'},
+        {"realtime", no_argument, NULL, 'r'},
+        {"log", required_argument, NULL, 'l'},
+        {"log-budget", required_argument, NULL, 'b'},
+        {"store", required_argument, NULL, 's'},
+        {"self-test", no_argument, NULL, 'e'},
+        {"link", required_argument, NULL, 'L'},
+        {"link-key", required_argument, NULL, 'K'},
+        {"link-system", required_argument, NULL, 'N'},
+        {"help", no_argument, NULL, 'h'},
+        {NULL, 0, NULL, 0},
     };
     for (int letter = 0; (letter = getopt_long(argc, argv, "h", known, NULL)) != -1;) {
         options->hal = letter == 'H' ? optarg : options->hal;
@@ -96,7 +112,12 @@ static bool parse(int argc, char **argv, options_t *options)
         options->trace = letter == 't' ? optarg : options->trace;
         options->store = letter == 's' ? optarg : options->store;
         options->log = letter == 'l' ? optarg : options->log;
-        if (letter == 'b' && !parse_budget(optarg, &options->log_budget_MB)) {
+        options->link = letter == 'L' ? optarg : options->link;
+        options->link_key = letter == 'K' ? optarg : options->link_key;
+        if (letter == 'b' && !parse_number("--log-budget", optarg, 100000u, "not a size; give whole megabytes", &options->log_budget_MB)) {
+            return false;
+        }
+        if (letter == 'N' && !parse_number("--link-system", optarg, 250u, "not a number of a system; give one", &options->link_system)) {
             return false;
         }
         options->self_test = options->self_test || letter == 'e';
@@ -109,6 +130,10 @@ static bool parse(int argc, char **argv, options_t *options)
     }
     if (strcmp(options->firmware, "default") != 0 && strcmp(options->firmware, "paper") != 0) {
         (void)fprintf(stderr, "tractiond: --firmware %s: unknown; give default or paper\n", options->firmware);
+        return false;
+    }
+    if (options->link_key != NULL && options->link == NULL) {
+        (void)fputs("tractiond: --link-key: without --link there is nobody to believe; give --link ADDRESS\n", stderr);
         return false;
     }
     if (options->hal == NULL && !options->help) {
@@ -136,6 +161,7 @@ typedef struct {
     const hal_opened_t *world;
     log_ring_t ring;
     trace_queue_t queue; // what writes the trace and the store beside the ticks
+    udp_link_t *link;    // null: none
     uint64_t hash;
     bool hashed;
     volatile float rise_K[WHEEL_COUNT];
@@ -146,8 +172,21 @@ typedef struct {
 
 static void ask_world(void *context, const sensor_frame_t *frame, command_t *command)
 {
-    const hal_opened_t *world = ((drive_t *)context)->world;
-    world->command(world->hal.context, frame, command);
+    const drive_t *drive = context;
+    drive->world->command(drive->world->hal.context, frame, command);
+    if (drive->link != NULL) {
+        udp_link_command(drive->link, command);
+    }
+}
+
+static void tell_link(drive_t *drive, const command_t *command, const trace_t *trace)
+{
+    udp_link_tick(drive->link, trace, command);
+    if (drive->ring.started && trace->tick % LINK_LOG_TICKS == 0u) {
+        uint32_t counts[ULOG_LINK_COUNTS];
+        udp_link_counts(drive->link, counts);
+        log_ring_put_link(&drive->ring, trace->tick, counts);
+    }
 }
 
 static void log_tick(void *context, const sensor_frame_t *frame, const command_t *command, const trace_t *trace)
@@ -155,6 +194,9 @@ static void log_tick(void *context, const sensor_frame_t *frame, const command_t
     drive_t *drive = context;
     if (drive->ring.started) {
         log_ring_put(&drive->ring, frame, command, trace);
+    }
+    if (drive->link != NULL) {
+        tell_link(drive, command, trace);
     }
     if (drive->queue.file == NULL && !drive->hashed) {
         return;
@@ -188,7 +230,7 @@ static daemon_result_t run(const options_t *options, const control_config_t *con
     stoppable_t stoppable = {.inner = options->realtime ? pace_hal(&pace, &world->hal) : world->hal};
     hal_t hal = hal_forward(&stoppable);
     hal.wait_tick = wait_unless_stopped;
-    const bool logged = drive->queue.file != NULL || drive->hashed || drive->ring.started;
+    const bool logged = drive->queue.file != NULL || drive->hashed || drive->ring.started || drive->link != NULL;
     const daemon_link_t link = {.context = drive, .command = ask_world, .log = logged ? log_tick : NULL};
     store_t kept;
     char message[STORE_MESSAGE];
@@ -248,7 +290,27 @@ static bool close_trace(const options_t *options, FILE *file, unsigned long lost
     return whole && lost == 0u;
 }
 
-static int drive_world(const options_t *options, const control_config_t *config, const hal_opened_t *world)
+// The supervision link, where one is asked for. false: it could not be had, which was told.
+static bool start_link(const options_t *options, const control_config_t *config, const rover_parameters_t *rover, drive_t *drive)
+{
+    if (options->link == NULL) {
+        return true;
+    }
+    char message[UDP_LINK_MESSAGE] = "";
+    const udp_link_options_t link = {.address = options->link,
+                                     .key = options->link_key,
+                                     .logs = options->log,
+                                     .rover = rover,
+                                     .speed_max_m_s = config->speed_control.speed_max_m_s,
+                                     .yaw_max_rad_s = rover->value[ROVER_yaw_rate_max_rad_s],
+                                     .patience_ms = config->safety.command_patience_ticks * TICK_US / 1000u,
+                                     .system = (uint8_t)options->link_system};
+    drive->link = udp_link_start(&link, message);
+    (void)fprintf(stderr, "tractiond: %s\n", message);
+    return drive->link != NULL;
+}
+
+static int drive_world(const options_t *options, const control_config_t *config, const rover_parameters_t *rover, const hal_opened_t *world)
 {
     static drive_t drive; // 500 kB of queues: not on the stack
     drive.world = world;
@@ -272,7 +334,15 @@ static int drive_world(const options_t *options, const control_config_t *config,
         (void)trace_queue_finish(&drive.queue);
         return EXIT_FILE;
     }
+    if (!start_link(options, config, rover, &drive)) {
+        (void)trace_queue_finish(&drive.queue);
+        (void)log_ring_finish(&drive.ring);
+        return EXIT_INPUT;
+    }
     const daemon_result_t result = run(options, config, world, &drive);
+    if (drive.link != NULL) {
+        udp_link_finish(drive.link);
+    }
     const unsigned long lines_lost = trace_queue_finish(&drive.queue);
     const uint32_t ticks_lost = log_ring_finish(&drive.ring);
     int code = report(options, world, &result);
@@ -296,7 +366,7 @@ static int drive_world(const options_t *options, const control_config_t *config,
 
 int main(int argc, char **argv)
 {
-    options_t options = {.firmware = "default", .log_budget_MB = 64};
+    options_t options = {.firmware = "default", .log_budget_MB = 64, .link_system = 1};
     if (!parse(argc, argv, &options)) {
         return EXIT_USAGE;
     }
@@ -307,7 +377,9 @@ int main(int argc, char **argv)
     control_config_t config = strcmp(options.firmware, "paper") == 0 ? rover_config_paper() : rover_config_default();
     static doppler_template_t beam; // of an own radar, as long as the process; 25 kB: not on the stack
     char refused[PARAMETERS_MESSAGE];
-    if (options.parameters != NULL && !parameters_read(options.parameters, &config, &beam, refused)) {
+    rover_parameters_t rover;
+    rover_parameters_reference(&rover);
+    if (options.parameters != NULL && !parameters_read_whole(options.parameters, &config, &rover, &beam, refused)) {
         (void)fprintf(stderr, "tractiond: %s\n", refused);
         return EXIT_INPUT;
     }
@@ -328,7 +400,8 @@ int main(int argc, char **argv)
     (void)sigaction(SIGINT, &stop, NULL);
     (void)sigaction(SIGTERM, &stop, NULL);
     (void)sigaction(SIGPIPE, &ignore, NULL); // a reader that went away is an error of writing, not an end without a stop
-    const int code = drive_world(&options, &config, &world);
+    options.realtime = options.realtime || (options.link != NULL && !world.devices); // an operator's time is the wall clock's
+    const int code = drive_world(&options, &config, &rover, &world);
     world.close(world.hal.context);
     return code;
 }

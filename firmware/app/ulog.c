@@ -54,7 +54,7 @@ static void end(const writer_t *w, uint8_t *start)
 
 static uint64_t stamp_us(uint32_t tick) { return ((uint64_t)tick + 1u) * TICK_US; }
 
-enum { TOPIC_FRAME, TOPIC_RADAR, TOPIC_COMMAND, TOPIC_TRACE, TOPICS };
+enum { TOPIC_FRAME, TOPIC_RADAR, TOPIC_COMMAND, TOPIC_TRACE, TOPIC_LINK, TOPICS };
 
 // In the order of the bytes below.
 static const char *const topic_format[TOPICS] = {
@@ -71,6 +71,8 @@ static const char *const topic_format[TOPICS] = {
     "order_sequence;"
     "int16_t[4] duty_q15;uint8_t mode;uint8_t drive;uint8_t slip_valid;uint8_t saturated;uint8_t encoder_refused;bool radar_fresh;"
     "bool standstill;bool status_led;",
+    "link:uint64_t timestamp;uint32_t accepted;uint32_t refused_unsigned;uint32_t refused_signature;uint32_t refused_replay;uint32_t "
+    "refused_stale;uint32_t refused_other;uint32_t broken;uint32_t losses;",
 };
 
 static void put_info(writer_t *w, const char *key, const char *value)
@@ -247,6 +249,17 @@ size_t ulog_text(uint32_t tick, int level, const char *text, uint8_t out[ULOG_TE
     char cut[201] = "";
     (void)strncat(cut, text, sizeof cut - 1u);
     put_text(&w, cut);
+    end(&w, start);
+    return (size_t)(w.at - out);
+}
+
+size_t ulog_link(uint32_t tick, const uint32_t counts[ULOG_LINK_COUNTS], uint8_t out[ULOG_TEXT])
+{
+    writer_t w = {.at = out};
+    uint8_t *start = begin_data(&w, TOPIC_LINK, tick);
+    for (int i = 0; i < ULOG_LINK_COUNTS; i++) {
+        put32(&w, counts[i]);
+    }
     end(&w, start);
     return (size_t)(w.at - out);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstring>
 
 namespace traction::cli {
 
@@ -13,6 +14,7 @@ namespace {
 constexpr std::array<int, 2> signals{SIGINT, SIGTERM};
 std::array<struct sigaction, signals.size()> before{};
 std::atomic<int> number{0};
+std::atomic<const char *> words{""};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal's handler may use it");
 
 void put_back() {
@@ -23,14 +25,15 @@ void put_back() {
 void ask(int signal) {
     number = signal;
     put_back();
-    constexpr char text[] = "\ntraction: stopping; what was simulated is written. Once more ends it without\n";
-    if (write(STDERR_FILENO, text, sizeof text - 1) < 0) return; // nobody reads it
+    const char *const text = words;
+    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return; // nobody reads it
 }
 
 } // namespace
 
-StopSignal::StopSignal() {
+StopSignal::StopSignal(const char *said) {
     number = 0;
+    words = said;
     struct sigaction fresh {};
     fresh.sa_handler = ask;
     fresh.sa_flags = SA_RESTART;

@@ -5,7 +5,8 @@ namespace traction::cli {
 
 class StopSignal {
   public:
-    StopSignal();  // one at a time in a process; a signal that is ignored (nohup) stays ignored
+    // One at a time in a process; a signal that is ignored (nohup) stays ignored. `words` are written as it comes, and must last.
+    explicit StopSignal(const char *words = "\ntraction: stopping; what was simulated is written. Once more ends it without\n");
     ~StopSignal(); // the handlers of before
     StopSignal(const StopSignal &) = delete;
     StopSignal &operator=(const StopSignal &) = delete;

@@ -4,6 +4,7 @@
 #include "stop_signal.h"
 #include "verbs.h"
 
+#include "firmware/core/fault_name.h"
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 
 namespace traction::cli {
@@ -60,20 +60,9 @@ SimulateOptions options_of(const Arguments &arguments, SimulateOptions options, 
 
 // "stall, low battery": fault_t, firmware/core/signals.h.
 std::string fault_names(std::uint32_t faults) {
-    static const char *const name[] = {"emergency stop",     "command timeout",
-                                       "encoder lost",       "current lost",
-                                       "accelerometer lost", "radar lost",
-                                       "battery lost",       "low battery",
-                                       "over-current",       "stall",
-                                       "missed ticks",       "speeds disagree",
-                                       "over-temperature",   "gyro lost",
-                                       "absurd sensor",      "bridge",
-                                       "motor open",         "encoder against its motor",
-                                       "brown-out",          "speed beyond the radar's band"};
-    static_assert(std::size(name) == FAULT_COUNT);
     std::string text;
-    for (std::size_t bit = 0; bit < std::size(name); ++bit)
-        if ((faults >> bit & 1U) != 0) text += std::string(text.empty() ? "" : ", ") + name[bit];
+    for (std::int32_t bit = 0; bit < FAULT_COUNT; ++bit)
+        if ((faults >> static_cast<unsigned>(bit) & 1U) != 0) text += std::string(text.empty() ? "" : ", ") + fault_name(bit);
     return text;
 }
 

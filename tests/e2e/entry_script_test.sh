@@ -113,12 +113,13 @@ run test
 expect "$calls" '^cmake --preset host$'
 expect "$calls" '^ctest --preset dev$'
 command -v cantools >/dev/null || expect "$work/said" 'no cantools .*: built without the CAN bus' # and everything else went on
+command -v mavgen.py >/dev/null || expect "$work/said" 'no mavgen.py .*: built without the supervision link'
 run test
 refuse "$calls" '^cmake'
 
-# 7. where there is cantools, nothing is asked for
-stand_in cantools </dev/null
+# 7. where there are cantools, pymavlink and pyulog, nothing is asked for
+for program in cantools mavgen.py ulog_info; do stand_in $program </dev/null; done
 run test
 refuse "$calls" '^python3'
-refuse "$work/said" 'CAN bus'
+refuse "$work/said" 'built without'
 echo 'entry script: 7 claims hold'

@@ -5,12 +5,14 @@
 
 #include "firmware/app/daemon.h"
 #include "firmware/core/rover_config.h"
+#include "hal/open.h"
 
 #include <cstdint>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -367,6 +369,16 @@ TEST(SimHal, a_frame_tells_its_time_and_what_was_missed) {
         EXPECT_EQ(next - 1, (frame.tick + 1) * 512 / 100); // the newest: n/512 s <= t
         EXPECT_NEAR(frame.accel_z_count * 0.004, 9.81, 0.5);
     }
+}
+
+TEST(HalOpen, what_a_hal_does_not_say_of_itself_is_no) {
+    hal_opened_t opened;
+    std::memset(static_cast<void *>(&opened), 0xff, sizeof opened); // as memory may be
+    std::array<char, HAL_MESSAGE> message{};
+    const char *const scenario = "scenarios/cruise.toml";
+    ASSERT_EQ(hal_open("sim", 1, &scenario, &opened, message.data()), HAL_OK) << message.data();
+    EXPECT_FALSE(opened.devices); // a daemon with --link takes the wall clock's time then, and its log is patient
+    opened.close(opened.hal.context);
 }
 
 TEST(HalStatus, a_wrapper_hands_on_what_the_devices_say) {

@@ -6,7 +6,8 @@ set(same_folder "[^/]+")
 set(rules
   "firmware/core|${same_folder}|firmware/core/.+|stdint.h|stdbool.h|stddef.h|math.h"
   "firmware/template|${same_folder}|firmware/core/.+|*"  # a template from a radar's numbers: the build machine, the host
-  "firmware/app|${same_folder}|firmware/(core|app)/.+|hal/(hal|open|forward|pace/pace_hal|replay/frames).h|*"
+  "firmware/link|${same_folder}|firmware/core/.+|*"  # protocol alone: its files and sockets are firmware/app's
+  "firmware/app|${same_folder}|firmware/(core|app|link)/.+|hal/(hal|open|forward|pace/pace_hal|replay/frames).h|*"
   "hal|${same_folder}|firmware/core/signals.h|hal/.+|*"
   "hal/sim|${same_folder}|firmware/core/signals.h|hal/.+|sim/.+|*"
   "sim|${same_folder}|sim/.+|*"

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <dirent.h>
@@ -306,10 +307,48 @@ TEST(log_ring, keeps_its_budget_drops_the_oldest_and_begins_a_new_file_at_each_s
         const std::size_t rows = newest.data.at("frame").size();
         EXPECT_EQ(value<std::uint32_t>(newest, "frame", rows - 1, "time_us"), last_time);
         const Log oldest = read_log(folder.read(folder.files().front())); // each stands for itself
-        EXPECT_EQ(oldest.topic.size(), 4u);
+        EXPECT_EQ(oldest.topic.size(), 5u);                               // frame, radar, command, trace, link
     }
+    std::array<log_ring_file_t, 3> some{};
+    log_ring_file_t all[100];
+    ASSERT_EQ(log_ring_list(folder.path.c_str(), all, 100), folder.files().size());       // rising, with their sizes
+    ASSERT_EQ(log_ring_list(folder.path.c_str(), some.data(), some.size()), some.size()); // the newest
+    for (std::size_t i = 0; i < folder.files().size(); i++) {
+        char path[LOG_RING_PATH];
+        log_ring_path(folder.path.c_str(), all[i].number, path);
+        EXPECT_EQ(path, folder.path + "/" + folder.files()[i]);
+        EXPECT_EQ(all[i].bytes, folder.read(folder.files()[i]).size());
+        const std::size_t of_some = i + some.size() - folder.files().size();
+        if (of_some < some.size()) {
+            EXPECT_EQ(some[of_some].number, all[i].number);
+        }
+    }
+    EXPECT_EQ(log_ring_list("/nowhere", all, 100), 0u);
     EXPECT_GT(folder.files().front(), "log_000010.ulg");
     EXPECT_LT(folder.files().back(), "log_000060.ulg");
+}
+
+TEST(log_ring, holds_what_came_over_the_link) {
+    const Folder folder;
+    const auto ring = std::make_unique<log_ring_t>();
+    char message[LOG_RING_MESSAGE];
+    ring->patient = true;
+    ASSERT_TRUE(log_ring_start(ring.get(), folder.path.c_str(), 10000000, message));
+    std::mt19937 random(9);
+    const uint32_t counts[ULOG_LINK_COUNTS] = {1, 2, 3, 4, 5, 6, 7, 0xffffffffu};
+    for (std::uint32_t i = 0; i < 300; i++) {
+        Tick tick = random_tick(i, random);
+        log_ring_put(ring.get(), &tick.frame, &tick.command, &tick.trace);
+        if (i % 100 == 0) log_ring_put_link(ring.get(), i, counts);
+    }
+    EXPECT_EQ(log_ring_finish(ring.get()), 0u);
+    const Log log = read_log(folder.read(folder.files().back()));
+    ASSERT_EQ(log.data.at("link").size(), 3u);
+    EXPECT_EQ(value<std::uint64_t>(log, "link", 1, "timestamp"), 101u * 10000u);
+    const char *const names[ULOG_LINK_COUNTS] = {
+        "accepted", "refused_unsigned", "refused_signature", "refused_replay", "refused_stale", "refused_other", "broken", "losses"};
+    for (std::size_t i = 0; i < ULOG_LINK_COUNTS; i++) EXPECT_EQ(value<std::uint32_t>(log, "link", 1, names[i]), counts[i]) << names[i];
+    EXPECT_EQ(log.data.at("trace").size(), 300u);
 }
 
 TEST(log_ring, tells_a_fault_in_words_and_dumps_the_ticks_around_it) {
