@@ -36,6 +36,7 @@ struct BusConfig {
     std::vector<sim::CanFault> faults;
     int latency_ms = 0; // of an order
     std::uint64_t seed = 1;
+    bool stop_wired = false, sensors_wired = false; // end at the computer: `emergency_stop = "gpio"`, `sensors = "iio"` of [hardware]
 };
 
 // Wheel nodes, sensor node and the computer's side of hal/can. Throws std::runtime_error in a build without cantools.

@@ -15,27 +15,49 @@
 
 #include "hal/can/can_master.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace traction::hal {
 
 namespace {
 
-constexpr can_master_config_t everything{true, true, true};
+constexpr std::uint32_t sensor_bits = FRAME_BATTERY | FRAME_ACCEL | FRAME_ACCEL_YZ | FRAME_GYRO | FRAME_GYRO_XY | FRAME_RADAR;
+
+// What the computer's own converters read.
+void read_sensors(const sensor_frame_t &devices, sensor_frame_t *frame) {
+    frame->present |= devices.present & sensor_bits;
+    frame->battery_count = devices.battery_count;
+    frame->accel_x_count = devices.accel_x_count;
+    frame->accel_y_count = devices.accel_y_count;
+    frame->accel_z_count = devices.accel_z_count;
+    frame->gyro_x_count = devices.gyro_x_count;
+    frame->gyro_y_count = devices.gyro_y_count;
+    frame->gyro_z_count = devices.gyro_z_count;
+    frame->radar_sequence = devices.radar_sequence;
+    frame->radar_samples = devices.radar_samples;
+    std::copy(std::begin(devices.radar_count), std::end(devices.radar_count), frame->radar_count);
+}
 
 // The nodes, and the computer's side of hal/can.
 class CanBus final : public Bus {
   public:
-    explicit CanBus(BusConfig config) : nodes_(std::move(config)) {}
+    explicit CanBus(BusConfig config) : stop_wired_(config.stop_wired), sensors_wired_(config.sensors_wired), nodes_(std::move(config)) {}
 
     void step(std::int64_t now_ms) override { nodes_.step(now_ms); }
     std::optional<BridgeOrder> bridge(int wheel) override { return nodes_.bridge(wheel); }
 
     hal_result_t read(std::int64_t now_ms, const sensor_frame_t &devices, sensor_frame_t *frame) override {
         can_frame_t sync;
-        can_master_sync(&everything, &master_, &sync);
-        for (const can_frame_t &answer : nodes_.answers(now_ms, sync, devices)) (void)can_master_receive(&everything, &master_, &answer);
+        can_master_sync(&heard_, &master_, &sync);
+        for (const can_frame_t &answer : nodes_.answers(now_ms, sync, devices)) (void)can_master_receive(&heard_, &master_, &answer);
         can_master_take(&master_, frame);
+        if (sensors_wired_) read_sensors(devices, frame);
+        if (stop_wired_) {
+            frame->present |= devices.present & static_cast<std::uint32_t>(FRAME_EMERGENCY_STOP);
+            frame->emergency_stop = devices.emergency_stop;
+        }
         const std::uint32_t told = FRAME_ALL & ~static_cast<std::uint32_t>(FRAME_TIME);
         return (frame->present & told) == 0u ? HAL_ERR_TIMEOUT : HAL_OK;
     }
@@ -51,6 +73,8 @@ class CanBus final : public Bus {
     void forget() override { nodes_.forget(); }
 
   private:
+    bool stop_wired_, sensors_wired_;
+    can_master_config_t heard_{true, !sensors_wired_, !stop_wired_};
     CanNodes nodes_;
     can_master_state_t master_{};
 };
