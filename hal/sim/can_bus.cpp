@@ -16,6 +16,7 @@
 #include "hal/can/can_master.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -43,7 +44,9 @@ void read_sensors(const sensor_frame_t &devices, sensor_frame_t *frame) {
 // The nodes, and the computer's side of hal/can.
 class CanBus final : public Bus {
   public:
-    explicit CanBus(BusConfig config) : stop_wired_(config.stop_wired), sensors_wired_(config.sensors_wired), nodes_(std::move(config)) {}
+    explicit CanBus(BusConfig config)
+        : stop_wired_(config.stop_wired), sensors_wired_(config.sensors_wired), late_ms_(std::move(config.order_late_ms)),
+          nodes_(std::move(config)) {}
 
     void step(std::int64_t now_ms) override { nodes_.step(now_ms); }
     std::optional<BridgeOrder> bridge(int wheel) override { return nodes_.bridge(wheel); }
@@ -66,7 +69,9 @@ class CanBus final : public Bus {
         if (nodes_.computer_off(now_ms)) return HAL_ERR_TIMEOUT; // the controller says so
         can_frame_t orders[WHEEL_COUNT];
         can_master_orders(&actuator, orders);
-        for (const can_frame_t &order : orders) nodes_.order(now_ms, order); // if nobody hears them, nobody tells
+        const auto tick = static_cast<std::size_t>(now_ms * 1000 / TICK_US - 1);
+        for (std::size_t i = 0; i < WHEEL_COUNT; i++) // if nobody hears them, nobody tells
+            nodes_.order(now_ms + (tick < late_ms_.size() ? late_ms_[tick][i] : 0), orders[i]);
         return HAL_OK;
     }
 
@@ -74,6 +79,7 @@ class CanBus final : public Bus {
 
   private:
     bool stop_wired_, sensors_wired_;
+    std::vector<std::array<int, WHEEL_COUNT>> late_ms_;
     can_master_config_t heard_{true, !sensors_wired_, !stop_wired_};
     CanNodes nodes_;
     can_master_state_t master_{};

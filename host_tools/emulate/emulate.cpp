@@ -217,8 +217,9 @@ Run run_on_board(const sim::Scenario &scenario, const Options &options) {
 Difference compare_in_process(const sim::Scenario &scenario, const Options &options, const Run &run) {
     const hal::SimHalConfig world = hal::world_of(scenario, options.effects, options.seed);
     auto bus = hal::make_can_bus({.faults = scenario.can_faults,
-                                  .latency_ms = world.bus_latency_ms + static_cast<int>(run.counts.order_least_ms),
+                                  .latency_ms = static_cast<int>(hal::actuation_delay_ms(options.effects)),
                                   .seed = options.seed,
+                                  .order_late_ms = run.counts.order_late_ms,
                                   .stop_wired = true,
                                   .sensors_wired = options.sensors == Sensors::iio});
     control_config_t config = scenario.firmware.config == "paper" ? rover_config_paper() : rover_config_default();
@@ -227,7 +228,8 @@ Difference compare_in_process(const sim::Scenario &scenario, const Options &opti
     const std::string file = options.folder + "/parameters.txt"; // the very one that the board had
     if (!parameters_read(file.c_str(), &config, beam.get(), refused)) throw std::runtime_error(refused);
     if (scenario.firmware.config == "paper") control_config_make_paper(&config);
-    hal::SimRover rover(scenario, options.effects, world, std::move(bus));
+    // the bus has the whole delay of the motors' orders, so that none waits elsewhere
+    hal::SimRover rover(scenario, {}, world, std::move(bus));
     Beside beside(scenario, options.folder + "/trace.txt");
     BoardClock clock{rover.hal(), times_of(run.logs)};
     (void)run_loop(with_clock(clock), config, beside);

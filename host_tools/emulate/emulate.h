@@ -46,8 +46,8 @@ struct Difference {
     std::string here, there; // that line of the trace, in process and on the board
 };
 
-// The run in process beside the trace of the board, with what the board's clock read at each tick (its log tells), and orders that act as
-// late after their tick.
+// The run in process beside the trace of the board, with what the board's clock read at each tick (its log tells), and with its orders
+// as late in their ticks as the board's were.
 Difference compare_in_process(const sim::Scenario &scenario, const Options &options, const Run &run);
 
 } // namespace traction::emulate

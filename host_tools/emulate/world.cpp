@@ -131,9 +131,8 @@ void World::on_sync(std::int64_t time_ns, const lockstep_frame_t &sync, WorldSay
 void World::on_order(std::int64_t time_ns, const lockstep_frame_t &frame) {
     const std::int64_t late_ns = std::max<std::int64_t>(0, time_ns - sync_ns_), late_ms = late_ns / step_ns; // (1)
     counts_.order.add(static_cast<double>(late_ns) * 1e-3);
-    counts_.order_least_ms = ordered_ ? std::min(counts_.order_least_ms, late_ms) : late_ms;
-    counts_.order_most_ms = std::max(counts_.order_most_ms, late_ms);
-    ordered_ = true;
+    counts_.order_late_ms.resize(counts_.ticks);
+    counts_.order_late_ms.back()[frame.id - CAN_ORDER] = static_cast<int>(late_ms);
     wires_->nodes.order(tick_ms * counts_.ticks + late_ms, of_board(frame));
 }
 

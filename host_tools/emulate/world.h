@@ -10,6 +10,7 @@
 #include "hal/sim/sim_rover.h"
 #include "sim/scenario/scenario.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -44,10 +45,10 @@ struct Span_us {
 };
 
 struct Counts {
-    std::uint32_t ticks = 0, unread = 0;                // of the plant; those that no SYNC asked for
-    std::uint64_t frames_from = 0, frames_to = 0;       // the board
-    Span_us late, order;                                // SYNC after t0 + 10 ms k; orders after their SYNC, on the board's clock
-    std::int64_t order_least_ms = 0, order_most_ms = 0; // (1)
+    std::uint32_t ticks = 0, unread = 0;                     // of the plant; those that no SYNC asked for
+    std::uint64_t frames_from = 0, frames_to = 0;            // the board
+    Span_us late, order;                                     // SYNC after t0 + 10 ms k; orders after their SYNC, on the board's clock
+    std::vector<std::array<int, WHEEL_COUNT>> order_late_ms; // (1): of each tick of the plant
 };
 
 class World {
@@ -77,7 +78,7 @@ class World {
     Counts counts_;
     std::int64_t begin_ns_ = 0, sync_ns_ = 0;
     std::uint32_t lines_;
-    bool begun_ = false, over_ = false, ordered_ = false;
+    bool begun_ = false, over_ = false;
 };
 
 } // namespace traction::emulate

@@ -70,7 +70,7 @@ code=0
 if [ "$only" = --if-built ]; then echo "emulated board: the short part holds"; exit 0; fi
 
 # 4. The paper's figures.
-drive blocked 0 fig16_blocked_wheels
+drive blocked 1 fig16_blocked_wheels # a wheel that is held is a stall, here as there
 drive slip 0 fig17_slip_servo_sand
 drive slip_iio 0 fig17_slip_servo_sand --sensors iio
 same slip slip_iio trace_sha256 # wherever the sensors end

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -31,6 +32,7 @@ sim::Scenario scenario_of(const std::string &top, const std::string &more, const
 
 struct Times {
     std::int64_t late_ns = 40000, order_ns = 600000; // SYNC after its tick, orders after their SYNC
+    unsigned order_late_every = 0;                   // ticks; 3 ms more
     int silent_from = -1, silent_ticks = 0;          // the program hangs
 };
 
@@ -98,7 +100,8 @@ class Computer {
         enabled_ = actuator.drive != DRIVE_OFF;
         can_frame_t orders[WHEEL_COUNT];
         can_master_orders(&actuator, orders);
-        for (const can_frame_t &order : orders) (void)say(sync_ns_ + times_.order_ns, &order);
+        const bool late = times_.order_late_every != 0 && tick_ % times_.order_late_every == 0;
+        for (const can_frame_t &order : orders) (void)say(sync_ns_ + times_.order_ns + (late ? 3000000 : 0), &order);
         return HAL_OK;
     }
     std::int64_t due_ns() const { return 1000000000 + std::int64_t{TICK_US} * 1000 * tick_; }
@@ -145,9 +148,13 @@ Traces on_board(const sim::Scenario &scenario, const Times &times, emulate::Coun
     return recording.traces;
 }
 
-Traces in_process(const sim::Scenario &scenario, int order_ms = 0) {
+Traces in_process(const sim::Scenario &scenario, int order_ms = 0, std::vector<std::array<int, WHEEL_COUNT>> order_late_ms = {}) {
     const hal::SimHalConfig world = hal::world_of(scenario, scenario.effects, seed);
-    auto bus = hal::make_can_bus({.faults = scenario.can_faults, .latency_ms = world.bus_latency_ms + order_ms, .seed = seed, .stop_wired = true});
+    auto bus = hal::make_can_bus({.faults = scenario.can_faults,
+                                  .latency_ms = world.bus_latency_ms + order_ms,
+                                  .seed = seed,
+                                  .order_late_ms = std::move(order_late_ms),
+                                  .stop_wired = true});
     hal::SimRover rover(scenario, scenario.effects, world, std::move(bus));
     Recording recording(scenario);
     (void)run_loop(rover.hal(), firmware_of(scenario), recording);
@@ -171,7 +178,7 @@ TEST(emulated_world, a_computer_that_talks_in_time_drives_as_the_simulation_does
         EXPECT_EQ(board.lines, in_process(scenario).lines) << soil;
         EXPECT_EQ(counts.unread, 0u);
         EXPECT_EQ(counts.frames_from, 301u + 4u * 300u); // the last SYNC is answered by the end
-        EXPECT_EQ(counts.order_most_ms, 0);
+        EXPECT_EQ(counts.order_late_ms, (std::vector<std::array<int, WHEEL_COUNT>>(300)));
     }
 }
 
@@ -182,6 +189,24 @@ TEST(emulated_world, an_order_that_is_out_after_a_millisecond_acts_a_millisecond
     const Traces board = on_board(scenario, times);
     EXPECT_EQ(board.lines, in_process(scenario, 1).lines);
     EXPECT_NE(board.lines, in_process(scenario, 0).lines);
+}
+
+// a computer that waits 3 ms for a node that does not answer has its orders out late in that tick, and not in the next
+TEST(emulated_world, orders_that_are_late_in_some_ticks_act_late_in_those) {
+    const sim::Scenario scenario = scenario_of("", "");
+    Times times;
+    times.order_late_every = 7;
+    emulate::Counts counts;
+    const Traces board = on_board(scenario, times, &counts);
+    EXPECT_EQ(counts.order_late_ms[6], (std::array<int, WHEEL_COUNT>{3, 3, 3, 3}));
+    EXPECT_EQ(counts.order_late_ms[7], (std::array<int, WHEEL_COUNT>{}));
+    EXPECT_EQ(board.lines, in_process(scenario, 0, counts.order_late_ms).lines);
+    EXPECT_NE(board.lines, in_process(scenario).lines);
+}
+
+TEST(emulated_world, late_motors_are_as_late) {
+    const sim::Scenario scenario = scenario_of("", "[[effect]]\nname = \"actuation_delay\"\ndelay_s = 0.027\n");
+    EXPECT_EQ(on_board(scenario, {}).lines, in_process(scenario).lines);
 }
 
 TEST(emulated_world, the_stop_comes_by_its_line_and_stops_the_rover) {
@@ -215,8 +240,9 @@ TEST(emulated_world, goes_on_while_the_program_hangs_and_bridges_let_go) {
 }
 
 TEST(emulated_world, refuses_what_no_wire_carries) {
-    for (const std::string &fault : {std::string("[[fault]]\nwhat = \"missed_ticks\"\nticks = 3\nfrom_s = 0.5\n"), can("bus_off", "computer"),
-                                     std::string("[[fault]]\nwhat = \"sensor\"\nsensor = \"encoder\"\nwheel = 1\nhow = \"dropped\"\nfrom_s = 1.0\n")}) {
+    for (const std::string &fault :
+         {std::string("[[fault]]\nwhat = \"missed_ticks\"\nticks = 3\nfrom_s = 0.5\n"), can("bus_off", "computer"),
+          std::string("[[fault]]\nwhat = \"sensor\"\nsensor = \"encoder\"\nwheel = 1\nhow = \"dropped\"\nfrom_s = 1.0\n")}) {
         const sim::Scenario scenario = scenario_of("bus = \"can\"\n", fault);
         EXPECT_THROW(emulate::World(scenario, {}, seed, emulate::Sensors::can), sim::ScenarioError) << fault;
     }
