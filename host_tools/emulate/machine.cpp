@@ -1,5 +1,6 @@
 #include "machine.h"
 
+#include <cstdint>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
