@@ -7,6 +7,7 @@
 
 #include "world.h"
 
+#include <stdexcept>
 #include <sys/types.h>
 
 #include <functional>
