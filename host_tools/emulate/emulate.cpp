@@ -183,12 +183,15 @@ Run run_on_board(const sim::Scenario &scenario, const Options &options) {
     lay_out(scenario, options);
     Run run;
     Machine machine(options.board, options.folder);
-    std::int64_t begin_ns = 0;
+    std::int64_t begin_ns = 0, begin_cpu_ns = 0;
     for (std::uint32_t seconds = 0;;) {
         const BoardSays board = machine.hear();
         const WorldSays answer = world.hear(board);
-        if (world.counts().ticks > 0 && begin_ns == 0) begin_ns = board.head.time_ns;
-        run.cpu_s = static_cast<double>(board.head.cpu_ns) * 1e-9;
+        if (world.counts().ticks > 0 && begin_ns == 0) {
+            begin_ns = board.head.time_ns;
+            begin_cpu_ns = board.head.cpu_ns;
+        }
+        run.cpu_s = static_cast<double>(board.head.cpu_ns - begin_cpu_ns) * 1e-9;
         run.ran_s = begin_ns > 0 ? static_cast<double>(board.head.time_ns - begin_ns) * 1e-9 : 0;
         run.memory_kB = board.head.memory_kB;
         run.status = board.head.status;

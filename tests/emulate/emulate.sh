@@ -20,6 +20,9 @@ TRACTION_BOARD=$(sh "$root/emulate/emulate.sh" "$root" $only) || status=$?
 [ $status -eq 0 ] || fail "cannot be laid out"
 export TRACTION_BOARD
 export TRACTION_ROOT="$root"
+cp "$TRACTION_BOARD/initramfs" once
+sh "$root/emulate/emulate.sh" "$root" $only >/dev/null
+cmp once "$TRACTION_BOARD/initramfs" || fail "laid out again, the initramfs is another"
 
 # json KEY FILE: a value of the first level
 json() { sed -n "s/^ *\"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}$/\1/p" "$2"; }
