@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L // fileno, fdatasync, clock_gettime
 #include "log_ring.h"
 
+#include "thread.h"
+
 #include "hal/replay/frames.h"
 
 #include <dirent.h>
@@ -292,7 +294,7 @@ bool log_ring_start(log_ring_t *ring, const char *folder, uint64_t budget_bytes,
         return false;
     }
     ring->started = pthread_mutex_init(&ring->mutex, NULL) == 0 && pthread_cond_init(&ring->changed, NULL) == 0 &&
-                    pthread_create(&ring->writer, NULL, write_files, ring) == 0;
+                    thread_start(&ring->writer, write_files, ring);
     if (!ring->started) {
         (void)snprintf(message, LOG_RING_MESSAGE, "%.160s: no thread for the log could be started", folder);
     }

@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "trace_queue.h"
 
+#include "thread.h"
+
 #include <string.h>
 #include <time.h>
 
@@ -51,7 +53,7 @@ static void *write_lines(void *context)
 bool trace_queue_start(trace_queue_t *queue)
 {
     queue->started = pthread_mutex_init(&queue->mutex, NULL) == 0 && pthread_cond_init(&queue->changed, NULL) == 0 &&
-                     pthread_create(&queue->writer, NULL, write_lines, queue) == 0;
+                     thread_start(&queue->writer, write_lines, queue);
     return queue->started;
 }
 

@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L // clock_gettime, strnlen
 #include "udp_link.h"
 
+#include "thread.h"
+
 #include "log_ring.h"
 #include "udp_address.h"
 
@@ -382,7 +384,7 @@ udp_link_t *udp_link_start(const udp_link_options_t *options, char message[UDP_L
         const size_t used = strlen(message);
         (void)snprintf(message + used, UDP_LINK_MESSAGE - used, "; no --link-key: telemetry only, no command is accepted");
     }
-    if (pthread_create(&link->thread, NULL, serve, link) != 0) {
+    if (!thread_start(&link->thread, serve, link)) {
         (void)close(link->socket);
         (void)snprintf(message, UDP_LINK_MESSAGE, "--link: no thread could be started");
         return NULL;

@@ -7,6 +7,7 @@
 #include "hal/hal.h"
 #include "sim/sensors/can_fault.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -37,6 +38,9 @@ struct BusConfig {
     std::vector<sim::CanFault> faults;
     int latency_ms = 0; // of an order
     std::uint64_t seed = 1;
+    std::vector<std::array<int, WHEEL_COUNT>> order_late_ms =
+        {};                                         // beyond latency_ms: of each tick's orders; none for ticks that are not there
+    bool stop_wired = false, sensors_wired = false; // end at the computer: `emergency_stop = "gpio"`, `sensors = "iio"` of [hardware]
 };
 
 // Wheel nodes, sensor node and the computer's side of hal/can. Throws std::runtime_error in a build without cantools.

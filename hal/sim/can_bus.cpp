@@ -11,169 +11,78 @@
 #endif
 
 #if HAL_WITH_CAN
-#include "hal/can/can_master.h"
-#include "hal/node/sensor_node.h"
-#include "hal/node/wheel_node.h"
-#include "sim/sensors/random.h"
+#include "can_nodes.h"
 
+#include "hal/can/can_master.h"
+
+#include <algorithm>
 #include <array>
-#include <deque>
+#include <iterator>
 #include <utility>
 
 namespace traction::hal {
 
 namespace {
 
-using sim::CanFaultKind;
-using sim::CanNode;
-constexpr std::int64_t tick_ms = TICK_US / 1000;
-constexpr can_master_config_t everything{true, true, true};
+constexpr std::uint32_t sensor_bits = FRAME_BATTERY | FRAME_ACCEL | FRAME_ACCEL_YZ | FRAME_GYRO | FRAME_GYRO_XY | FRAME_RADAR;
 
+// What the computer's own converters read.
+void read_sensors(const sensor_frame_t &devices, sensor_frame_t *frame) {
+    frame->present |= devices.present & sensor_bits;
+    frame->battery_count = devices.battery_count;
+    frame->accel_x_count = devices.accel_x_count;
+    frame->accel_y_count = devices.accel_y_count;
+    frame->accel_z_count = devices.accel_z_count;
+    frame->gyro_x_count = devices.gyro_x_count;
+    frame->gyro_y_count = devices.gyro_y_count;
+    frame->gyro_z_count = devices.gyro_z_count;
+    frame->radar_sequence = devices.radar_sequence;
+    frame->radar_samples = devices.radar_samples;
+    std::copy(std::begin(devices.radar_count), std::end(devices.radar_count), frame->radar_count);
+}
+
+// The nodes, and the computer's side of hal/can.
 class CanBus final : public Bus {
   public:
-    explicit CanBus(BusConfig config) : config_(std::move(config)), random_(config_.seed, "can") {}
+    explicit CanBus(BusConfig config)
+        : stop_wired_(config.stop_wired), sensors_wired_(config.sensors_wired), late_ms_(std::move(config.order_late_ms)),
+          nodes_(std::move(config)) {}
 
-    void step(std::int64_t now_ms) override {
-        now_ms_ = now_ms;
-        while (!under_way_.empty() && under_way_.front().due_ms <= now_ms) {
-            to_wheels(under_way_.front().frame, nullptr, nullptr);
-            under_way_.pop_front();
-        }
-        for (wheel_node_state_t &node : wheel_) (void)wheel_node_output(&node, static_cast<std::uint32_t>(now_ms));
-    }
-
-    std::optional<BridgeOrder> bridge(int wheel) override {
-        const wheel_node_state_t &node = wheel_.at(static_cast<std::size_t>(wheel));
-        if (!node.in_force && !node.released) return {};
-        return BridgeOrder{node.drive, node.duty_q15};
-    }
+    void step(std::int64_t now_ms) override { nodes_.step(now_ms); }
+    std::optional<BridgeOrder> bridge(int wheel) override { return nodes_.bridge(wheel); }
 
     hal_result_t read(std::int64_t now_ms, const sensor_frame_t &devices, sensor_frame_t *frame) override {
-        now_ms_ = now_ms;
         can_frame_t sync;
-        can_master_sync(&everything, &master_, &sync);
-        Frames answers;
-        if (!cut_off(CanNode::computer)) {
-            Frames heard;
-            send(CanNode::computer, sync, heard);
-            for (const can_frame_t &said : heard) {
-                to_wheels(said, &devices, &answers);
-                to_sensors(said, devices, answers);
-            }
-            for (const can_frame_t &answer : answers) (void)can_master_receive(&everything, &master_, &answer);
-            for (const can_frame_t &answer : late_answers_) (void)can_master_receive(&everything, &master_, &answer);
-        }
-        late_answers_ = std::exchange(later_answers_, {});
+        can_master_sync(&heard_, &master_, &sync);
+        for (const can_frame_t &answer : nodes_.answers(now_ms, sync, devices)) (void)can_master_receive(&heard_, &master_, &answer);
         can_master_take(&master_, frame);
-        const std::uint32_t nodes = FRAME_ALL & ~static_cast<std::uint32_t>(FRAME_TIME);
-        return (frame->present & nodes) == 0u ? HAL_ERR_TIMEOUT : HAL_OK;
+        if (sensors_wired_) read_sensors(devices, frame);
+        if (stop_wired_) {
+            frame->present |= devices.present & static_cast<std::uint32_t>(FRAME_EMERGENCY_STOP);
+            frame->emergency_stop = devices.emergency_stop;
+        }
+        const std::uint32_t told = FRAME_ALL & ~static_cast<std::uint32_t>(FRAME_TIME);
+        return (frame->present & told) == 0u ? HAL_ERR_TIMEOUT : HAL_OK;
     }
 
     hal_result_t write(std::int64_t now_ms, const actuator_frame_t &actuator) override {
-        now_ms_ = now_ms;
-        if (cut_off(CanNode::computer) && off(CanNode::computer)) return HAL_ERR_TIMEOUT; // the controller says so
+        if (nodes_.computer_off(now_ms)) return HAL_ERR_TIMEOUT; // the controller says so
         can_frame_t orders[WHEEL_COUNT];
         can_master_orders(&actuator, orders);
-        if (cut_off(CanNode::computer)) return HAL_OK; // nobody hears it, and nobody tells
-        for (const can_frame_t &order : orders) {
-            Frames now;
-            sending_order_ = true;
-            send(CanNode::computer, order, now);
-            sending_order_ = false;
-            for (const can_frame_t &frame : now) push({now_ms + config_.latency_ms, frame});
-        }
+        const auto tick = static_cast<std::size_t>(now_ms * 1000 / TICK_US - 1);
+        for (std::size_t i = 0; i < WHEEL_COUNT; i++) // if nobody hears them, nobody tells
+            nodes_.order(now_ms + (tick < late_ms_.size() ? late_ms_[tick][i] : 0), orders[i]);
         return HAL_OK;
     }
 
-    void forget() override { under_way_.clear(); }
+    void forget() override { nodes_.forget(); }
 
   private:
-    using Frames = std::vector<can_frame_t>;
-    struct Order {
-        std::int64_t due_ms;
-        can_frame_t frame;
-    };
-
-    void push(const Order &order) {
-        auto at = under_way_.end();
-        while (at != under_way_.begin() && std::prev(at)->due_ms > order.due_ms) --at;
-        under_way_.insert(at, order);
-    }
-
-    bool in_force(const sim::CanFault &fault, CanNode node) const {
-        const double t_s = static_cast<double>(now_ms_) * 1e-3;
-        return t_s >= fault.from_s && t_s < fault.to_s && (fault.node == CanNode::all || fault.node == node);
-    }
-    bool off(CanNode node) const {
-        for (const sim::CanFault &fault : config_.faults)
-            if (fault.kind == CanFaultKind::bus_off && in_force(fault, node)) return true;
-        return false;
-    }
-    bool cut_off(CanNode node) const {
-        for (const sim::CanFault &fault : config_.faults)
-            if ((fault.kind == CanFaultKind::silent || fault.kind == CanFaultKind::bus_off) && in_force(fault, node)) return true;
-        return false;
-    }
-    static CanNode of_wheel(unsigned wheel) { return static_cast<CanNode>(wheel); }
-
-    void spoil(can_frame_t &frame) {
-        const int bits = frame.length * 8, first = random_.below(bits);
-        for (int bit = first; bit < bits && bit < first + 8; bit++) {
-            const bool flips = bit == first || random_.below(2) == 1;
-            std::uint8_t &byte = frame.data[bit / 8];
-            byte = static_cast<std::uint8_t>(byte ^ (flips ? 0x80u >> (static_cast<unsigned>(bit) % 8u) : 0u));
-        }
-    }
-
-    // What of a frame comes out at the other end, now; what is late waits.
-    void send(CanNode from, can_frame_t frame, Frames &out) {
-        bool lost = false, late = false;
-        int copies = 1;
-        for (const sim::CanFault &fault : config_.faults) {
-            if (!in_force(fault, from) || random_.uniform() >= fault.share) continue;
-            lost = lost || fault.kind == CanFaultKind::lost;
-            late = late || fault.kind == CanFaultKind::late;
-            copies += fault.kind == CanFaultKind::duplicated ? 1 : 0;
-            if (fault.kind == CanFaultKind::corrupted) spoil(frame);
-        }
-        for (int i = 0; i < copies && !lost; i++) {
-            if (!late)
-                out.push_back(frame);
-            else if (sending_order_)
-                push({now_ms_ + config_.latency_ms + tick_ms + 1, frame});
-            else if (from != CanNode::computer) // a late SYNC has no answer worth anything: it is lost
-                later_answers_.push_back(frame);
-        }
-    }
-
-    // A frame as every wheel node hears it. Orders come without devices; they are not answered.
-    void to_wheels(const can_frame_t &frame, const sensor_frame_t *devices, Frames *answers) {
-        for (unsigned i = 0; i < WHEEL_COUNT; i++) {
-            if (cut_off(of_wheel(i))) continue;
-            const wheel_node_config_t node{.wheel = static_cast<std::uint8_t>(i), .bus_off_count = 0};
-            wheel_node_input_t input{};
-            if (devices != nullptr) input = {devices->encoder_count[i], devices->current_count[i], devices->bridge_status[i]};
-            can_frame_t answer[WHEEL_NODE_ANSWERS];
-            const std::size_t count = wheel_node_receive(&node, &wheel_[i], static_cast<std::uint32_t>(now_ms_), &input, &frame, answer);
-            for (std::size_t n = 0; n < count && answers != nullptr; n++) send(of_wheel(i), answer[n], *answers);
-        }
-    }
-
-    void to_sensors(const can_frame_t &frame, const sensor_frame_t &devices, Frames &answers) {
-        if (cut_off(CanNode::sensors)) return;
-        can_frame_t answer[SENSOR_NODE_ANSWERS];
-        const std::size_t count = sensor_node_receive(&devices, &frame, answer);
-        for (std::size_t n = 0; n < count; n++) send(CanNode::sensors, answer[n], answers);
-    }
-
-    BusConfig config_;
-    sim::Random random_;
-    std::int64_t now_ms_ = 0;
-    std::array<wheel_node_state_t, WHEEL_COUNT> wheel_{};
+    bool stop_wired_, sensors_wired_;
+    std::vector<std::array<int, WHEEL_COUNT>> late_ms_;
+    can_master_config_t heard_{true, !sensors_wired_, !stop_wired_};
+    CanNodes nodes_;
     can_master_state_t master_{};
-    std::deque<Order> under_way_; // in the order in which they arrive
-    Frames late_answers_, later_answers_;
-    bool sending_order_ = false;
 };
 
 } // namespace

@@ -1,13 +1,17 @@
 #include "sim_hal.h"
 
+#include <utility>
+
 namespace traction::hal {
 
 namespace {
 constexpr int steps_per_tick = TICK_US / 1000; // the plant's step is 1 ms
 } // namespace
 
-SimHal::SimHal(const SimHalConfig &config) : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()) {
-    if (config.can_bus) bus_ = make_can_bus({.faults = config.can_faults, .latency_ms = config.bus_latency_ms, .seed = config.seed});
+SimHal::SimHal(const SimHalConfig &config, std::unique_ptr<Bus> bus)
+    : config_(config), plant_(config.plant), sensors_(config.sensors, config.seed, plant_.truth()), bus_(std::move(bus)) {
+    if (!bus_ && config.can_bus)
+        bus_ = make_can_bus({.faults = config.can_faults, .latency_ms = config.bus_latency_ms, .seed = config.seed});
 }
 
 // An order that comes twice is none. Braking shorts the winding: a driven bridge whose duty is 0.

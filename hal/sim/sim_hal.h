@@ -43,7 +43,8 @@ struct SimHalConfig {
 
 class SimHal {
   public:
-    explicit SimHal(const SimHalConfig &config);
+    // `bus`: instead of the one of config.can_bus.
+    explicit SimHal(const SimHalConfig &config, std::unique_ptr<Bus> bus = nullptr);
     SimHal(const SimHal &) = delete;
     SimHal &operator=(const SimHal &) = delete;
 

@@ -2,6 +2,8 @@
 
 #include "sim/physics/effects/acting.h"
 
+#include <utility>
+
 namespace traction::hal {
 
 namespace {
@@ -54,8 +56,9 @@ SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::Active
 SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed)
     : SimRover(scenario, effects, world_of(scenario, effects, seed)) {}
 
-SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, const SimHalConfig &world)
-    : world_(world), delay_(world_.hal(), static_cast<std::uint32_t>(actuation_delay_ms(effects) / tick_ms)),
+SimRover::SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, const SimHalConfig &world,
+                   std::unique_ptr<Bus> bus)
+    : world_(world, std::move(bus)), delay_(world_.hal(), static_cast<std::uint32_t>(actuation_delay_ms(effects) / tick_ms)),
       faults_(delay_.hal(),
               {.sensors = scenario.sensor_faults, .emergency_stop_s = scenario.emergency_stops, .missed_ticks = scenario.missed_ticks},
               world.scale, world.seed) {}

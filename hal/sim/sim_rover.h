@@ -10,6 +10,7 @@
 #include "sim/scenario/scenario.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,9 @@ class SimRover {
   public:
     // Sensor faults and emergency stops are the scenario's. Noise of sensors and faults is drawn from `seed`.
     SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed);
-    // The same with a world of the caller's making.
-    SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, const SimHalConfig &world);
+    // The same with a world of the caller's making, and a bus (null: the world's).
+    SimRover(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, const SimHalConfig &world,
+             std::unique_ptr<Bus> bus = nullptr);
 
     hal_t hal() { return faults_.hal(); }
     const SimHal &world() const { return world_; } // what no device of the rover tells

@@ -1,10 +1,10 @@
 // verb_simulate.cpp - traction simulate SCENARIO: drives the rover through a scenario and writes the log.
+#include "fault_names.h"
 #include "progress.h"
 #include "rows.h"
 #include "stop_signal.h"
 #include "verbs.h"
 
-#include "firmware/core/fault_name.h"
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
@@ -56,14 +56,6 @@ SimulateOptions options_of(const Arguments &arguments, SimulateOptions options, 
         options.hide = sim::HiddenDraw{
             .seed = static_cast<std::uint64_t>(arguments.hide) + (seed - first), .count = arguments.hide_count, .among = {}};
     return options;
-}
-
-// "stall, low battery": fault_t, firmware/core/signals.h.
-std::string fault_names(std::uint32_t faults) {
-    std::string text;
-    for (std::int32_t bit = 0; bit < FAULT_COUNT; ++bit)
-        if ((faults >> static_cast<unsigned>(bit) & 1U) != 0) text += std::string(text.empty() ? "" : ", ") + fault_name(bit);
-    return text;
 }
 
 // What the self-test found, a sentence each, the wheels beside it.

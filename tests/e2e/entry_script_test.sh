@@ -122,4 +122,21 @@ for program in cantools mavgen.py ulog_info; do stand_in $program </dev/null; do
 run test
 refuse "$calls" '^python3'
 refuse "$work/said" 'built without'
-echo 'entry script: 7 claims hold'
+
+# 8. the emulated board: its own packages (one is known by a file's pattern), the target without tests, and the verb is told where it lies
+mkdir -p "$tree/emulate"
+echo "echo $work/board" >"$tree/emulate/emulate.sh"
+printf '#!/bin/sh\necho "on $TRACTION_BOARD: $*"\n' >"$tree/build/host/host_tools/cli/traction"
+rm -rf "$tree/build/korebot"
+: >"$work/source-9.tar"
+printf 'emulate  traction-source  file:%s/source-*.tar  a kernel\n' "$work" >"$tree/cmake/apt-packages.txt"
+run emulate cruise --seed 3
+[ "$status" -eq 0 ] || fail "emulate ended with $status"
+expect "$calls" '^cmake --preset korebot -DBUILD_TESTING=OFF'
+expect "$calls" '^ninja -C .*/build/korebot tractiond board_init'
+expect "$work/said" "on $work/board: emulate cruise --seed 3"
+refuse "$calls" '^apt-get'
+rm "$work/source-9.tar"
+run emulate cruise
+expect "$calls" '^apt-get install .* traction-source'
+echo 'entry script: 8 claims hold'

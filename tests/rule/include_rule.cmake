@@ -11,7 +11,9 @@ set(rules
   "hal|${same_folder}|firmware/core/signals.h|hal/.+|*"
   "hal/sim|${same_folder}|firmware/core/signals.h|hal/.+|sim/.+|*"
   "sim|${same_folder}|sim/.+|*"
-  "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
+  "emulate|${same_folder}|*"  # on the board, beside the firmware: nothing of it
+  "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*"
+  "host_tools/emulate|${same_folder}|(firmware|hal|sim|host_tools)/.+|emulate/lockstep.h|*")
 # The lab's rooms, in the order in which data goes through them: a room includes itself and the rooms before it. session.h opens model and
 # log for whoever uses the lab, through the gate (host_tools/check), so that it may look into every room and none looks back.
 set(rooms model inputs forward fit decision next result)
@@ -22,12 +24,12 @@ foreach(room IN LISTS rooms)
   list(APPEND rules "host_tools/lab/${room}|${same_folder}|sim/physics/.+|host_tools/log/.+${earlier}|*")
 endforeach()
 # System headers that are somebody's own: folder that may have them
-set(owned "linux/.+=hal/linux" "gpiod.h=hal/linux" "sys/socket.h=(hal/linux|firmware/app|host_tools)"
+set(owned "linux/.+=(hal/linux|emulate)" "gpiod.h=hal/linux" "sys/socket.h=(hal/linux|firmware/app|host_tools|emulate)"
   "ode/.+=sim/plant|tests" "ceres/.+=host_tools/lab" "muParser.h=host_tools/lab")
 
 set(offences "")
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/firmware/*.[ch] ${ROOT}/hal/*.[ch] ${ROOT}/hal/*.cpp ${ROOT}/sim/*.h
-  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp)
+  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp ${ROOT}/emulate/*.[ch])
 foreach(file IN LISTS files)
   set(rule "")
   foreach(candidate IN LISTS rules) # the last that matches is the most specific
