@@ -20,15 +20,16 @@ const tone = (verdict) => (/^(agrees|ok|pass|yes)/i.test(verdict ?? '') ? 'good'
 
 export function figures(result) {
   const all = list(result.figures);
-  const summary = all.length && h('section', { id: 'summary', 'data-short': 'Summary' }, h('h2', {}, 'Summary'),
+  const judged = all.filter((f) => f.paper || f.ours || f.verdict); // a figure without a word on a source is a figure alone
+  const summary = judged.length && h('section', { id: 'summary', 'data-short': 'Summary' }, h('h2', {}, 'Summary'),
     table('Paper and ours', [{ head: 'figure' }, { head: 'paper' }, { head: 'ours' }, { head: 'verdict' }],
-      all.map((f) => [h('a', { href: `#figure-${f.id}` }, f.title || f.id), f.paper ?? '–', f.ours ?? '–',
+      judged.map((f) => [h('a', { href: `#figure-${f.id}` }, f.title || f.id), f.paper ?? '–', f.ours ?? '–',
         h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict ?? '–')])));
   const bodies = all.map((f) => h('section', { id: `figure-${f.id}`, class: 'figure' }, h('h2', {}, f.title || f.id),
     h('figure', {}, f.svg ? drawing(f.svg, f.title || f.id) : null,
       h('figcaption', {},
-        h('dl', { class: 'pair' }, h('dt', {}, 'paper'), h('dd', {}, f.paper ?? '–'), h('dt', {}, 'ours'), h('dd', {}, f.ours ?? '–'),
-          h('dt', {}, 'verdict'), h('dd', {}, h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict ?? '–'))),
+        judged.includes(f) ? h('dl', { class: 'pair' }, h('dt', {}, 'paper'), h('dd', {}, f.paper || '–'), h('dt', {}, 'ours'), h('dd', {}, f.ours || '–'),
+          h('dt', {}, 'verdict'), h('dd', {}, h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict || '–'))) : null,
         f.notes && h('p', {}, f.notes)))));
   const tables = list(result.tables).map((t, i) => h('section', { id: `table-${i + 1}`, 'data-short': t.title }, h('h2', {}, t.title),
     table(t.title, list(t.columns).map((head, c) => ({ head, number: list(t.rows).some((row) => isNumber(row[c])) })),
