@@ -12,6 +12,7 @@
 #include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
 #include "host_tools/lab/result/story.h"
+#include "host_tools/lab/result/words.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
@@ -87,8 +88,8 @@ void measured_run(const fs::path &root, Outcome &outcome) {
                                                     .map = (root / "models/maps/robotino.toml").string(),
                                                     .repeat = ""});
     const lab::Comparison comparison = lab::compare(session.model, session.data, false);
-    std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino_carpet.toml:\n%s",
-                lab::comparison_text(comparison).c_str());
+    print("\n" + lab::wrapped("A measured run of somebody else's machine (Robotino on gray carpet), against models/robotino_carpet.toml:") +
+          lab::comparison_text(comparison));
     outcome.json["measured"] = {{"log", log.filename().string()}, {"error", comparison.error}, {"floor", comparison.floor}};
 }
 
@@ -125,7 +126,8 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     print(lab::diagnosis_text(diagnosis, request.details) + "\n");
     if (next) print("   What would tell them apart:\n" + lab::next_text(*next, request.details));
 
-    std::printf("4. Add what was named, refit, and watch the error.\n");
+    std::printf(diagnosis.accepted.empty() ? "4. Nothing was named: nothing is added.\n"
+                                           : "4. Add what was named, refit, and watch the error.\n");
     if (!diagnosis.accepted.empty()) {
         lab::Model better = diagnosis.model;
         const lab::LadderStep step = lab::fit_model(better, session.data, "fitted");
@@ -140,7 +142,7 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     const std::string words = judged(truth, diagnosis, right);
     const std::string hidden = described(truth.at("effects").at(0));
     std::printf("\n5. The seal is opened.\n");
-    print("The seal: " + hidden + ".\n   " + words + "\n");
+    print(lab::wrapped("The seal: " + hidden + ".", 3) + lab::wrapped("   " + words, 3));
     outcome.json = lab::head_json("diagnose", session.model, session.data);
     lab::put_comparison(outcome.json, comparison);
     lab::put_diagnosis(outcome.json, diagnosis);

@@ -150,6 +150,24 @@ TEST(Words, a_candidate_of_a_tiny_p_is_not_called_insignificant) {
     EXPECT_TRUE(has(diagnosis_text(d), "no sure help"));
 }
 
+// Of an error of 5 times the noise, 4 could be explained; 4.2 after the effect is a fifth of that, 1.5 nearly all.
+TEST(Words, an_effect_that_takes_little_is_said_to_explain_a_part) {
+    Comparison c;
+    c.error = 6, c.adjusted = 5, c.left.error = 5;
+    c.left_after.error = 4.2, c.left_after.part[static_cast<std::size_t>(LeftBy::ground)] = 4.2;
+    Diagnosis d;
+    d.kind = "named", d.effects = {"load_transfer"};
+    CandidateResult r;
+    r.candidate.effect = "load_transfer", r.verdict = "named";
+    d.accepted.push_back(r);
+    d.ladder = {{"baseline", 5, 5, 1}, {"+ load_transfer", 4.2, 4.2, 1}};
+    EXPECT_TRUE(has(tell(c, d, nullptr).headline, "load_transfer explains a part of it")) << tell(c, d, nullptr).headline;
+    EXPECT_TRUE(has(tell(c, d, nullptr).next, "traction next --all"));
+    c.left_after.error = 1.5, d.ladder.back().heldout = 1.5;
+    EXPECT_TRUE(has(tell(c, d, nullptr).headline, "load_transfer explains it")) << tell(c, d, nullptr).headline;
+    EXPECT_FALSE(has(tell(c, d, nullptr).next, "traction next --all"));
+}
+
 TEST(Words, windows_end_with_the_log) {
     const Dataset data = make_dataset(sand(), generated("", 3));
     const double end = data.time(data.count - 1);
@@ -224,6 +242,7 @@ TEST(Wrapping, keeps_every_word_and_the_width) {
     const std::string text = wrapped("one two three four five six seven eight nine ten eleven twelve", 4, 20);
     EXPECT_LE(widest(text), 20u);
     EXPECT_EQ(text, "one two three four\n    five six seven\n    eight nine ten\n    eleven twelve\n");
+    EXPECT_EQ(wrapped("    indented words", 6), "    indented words\n");
     EXPECT_EQ(strip_text({0, 1, std::nan(""), 2}), "▁▅ █");
 }
 

@@ -49,7 +49,7 @@ void add_smoothing_bias(const Model &model, Dataset &data) {
     }
     if (left_out > 0)
         data.messages.push_back(std::to_string(left_out) +
-                                " rows of the torque balances lie at speed steps quicker than the encoder can tell: left out");
+                                " samples of the motor currents were ignored: the wheel's speed changed faster than its encoder can measure");
 }
 
 } // namespace traction::lab

@@ -230,7 +230,7 @@ std::string farthest_words(const Comparison &comparison) {
                                         [](const BalanceComparison &a, const BalanceComparison &b) { return a.nrmse < b.nrmse; });
     if (worst == comparison.balances.end()) return "";
     std::string text;
-    append(text, "Farthest off is the %s: by %.2g %s on average, %s times its noise.",
+    append(text, "Farthest off is the %s: typically by %.2g %s, %s times its noise.",
            worst->title.empty() ? worst->name.c_str() : worst->title.c_str(), worst->rmse, worst->unit.c_str(),
            times(worst->nrmse).c_str());
     return text;

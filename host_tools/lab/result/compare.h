@@ -76,7 +76,7 @@ std::vector<Gap> gaps_of(const Balance &balance, double start_s, double end_s);
 // "The model misses by 22 times the sensor noise; retuning it within its tolerances leaves 18", without a full stop.
 std::string misses_words(const Comparison &comparison);
 
-// "Farthest off is the current of wheel 2, torque balance: by 0.12 A on average, 24 times its noise.", in its unit.
+// "Farthest off is the current of wheel 2, torque balance: typically by 0.12 A, 24 times its noise.", in its unit.
 std::string farthest_words(const Comparison &comparison);
 
 // The worst cell of the heat maps that has at least 20 rows: "worst at slip 0.5 to 0.67 (wheel2.current_A): 31 times the noise"; empty

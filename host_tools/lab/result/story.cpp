@@ -13,6 +13,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double close_to_noise = 1.6; // as compare() has it: little can be left to find
+constexpr double most_of_it = 0.5;     // of the way from the error before to the noise: below it an effect is said to explain a part
 
 std::string joined(const std::vector<std::string> &names, const char *last) {
     std::string text;
@@ -57,11 +58,22 @@ std::string class_words(const Diagnosis &d) {
     return text;
 }
 
+// Of the way that the held-out error could fall, to the noise, the part that it does.
+double explained(const Diagnosis &d) {
+    if (d.ladder.size() < 2) return 0;
+    const double before = d.ladder.front().heldout, after = d.ladder.back().heldout;
+    return before > 1 ? (before - after) / (before - 1) : 0;
+}
+
 std::string good_enough(const Comparison &c, const Diagnosis &d) {
-    if (d.kind == "wrong_model") return "No, and it is not an effect that is missing: " + misses_words(c) + ".";
-    if (!d.accepted.empty() || d.unknown) return "No. " + misses_words(c) + ". " + farthest_words(c);
-    if (c.adjusted < close_to_noise) return "Yes, for this log. " + misses_words(c) + ".";
-    return "Not known. " + misses_words(c) + ", and nothing that was tried explains it. " + farthest_words(c);
+    if (d.kind == "wrong_model")
+        return "No, and no effect is missing that would mend it: a number of the model itself is wrong. " + farthest_words(c);
+    if (!d.accepted.empty())
+        return "No. " + farthest_words(c) + " With what was found, " + times(c.left_after.error) + " times the sensor noise is left" +
+               (c.left_after.error < close_to_noise ? ": close to the noise, good enough for this log." : ".");
+    if (d.unknown) return "No. " + farthest_words(c);
+    if (c.adjusted < close_to_noise) return "Yes, for this log: what is left is close to the noise of the sensors.";
+    return "Not known: the error is more than noise, and nothing that was tried explains it. " + farthest_words(c);
 }
 
 std::string missing(const Diagnosis &d) {
@@ -111,12 +123,15 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
         return "Write the law as an effect of your own, from the expression below, and add it: traction add --effect-file. Then judge it "
                "on "
                "another log (--validate).";
-    if (!d.accepted.empty())
-        return left_after(c, d) < close_to_noise
-                   ? "Keep the better model and judge it on another log (--validate): what is left is close to the noise."
-                   : "Keep the better model and judge it on another log (--validate). What is left needs more logs, not more effects: "
-                     "nothing "
-                     "else in the catalogue takes a sure part of it.";
+    if (!d.accepted.empty()) {
+        text = "Keep the better model and judge it on another log (--validate).";
+        if (left_after(c, d) >= close_to_noise)
+            append(text,
+                   " What is left may be the ground, the sensors, or one of the %zu effects that this log cannot show: traction next --all "
+                   "proposes the drive for those.",
+                   d.not_excited.size());
+        return text;
+    }
     if (c.adjusted < close_to_noise) return "Nothing: use the model.";
     if (d.not_excited.empty()) return "Look at where the model fails, and try a law of your own: traction add --effect-file.";
     return "Drive what this log lacks: traction next --all proposes the drive for what it could not show.";
@@ -134,11 +149,8 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
     if (d.kind == "wrong_model")
         story.headline += ". " + d.text;
     else if (!d.accepted.empty())
-        story.headline += ". " + joined(names_of(d), " and ") +
-                          (d.unknown               ? " explains it partly. "
-                           : d.accepted.size() > 1 ? " explain it. "
-                                                   : " explains it. ") +
-                          story.left;
+        story.headline += ". " + joined(names_of(d), " and ") + (d.accepted.size() > 1 ? " explain " : " explains ") +
+                          (d.unknown || explained(d) < most_of_it ? "a part of it. " : "it. ") + story.left;
     else if (d.unknown)
         story.headline += ". No effect of the catalogue explains it: it depends on " + d.unknown->variable + ".";
     else

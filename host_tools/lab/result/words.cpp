@@ -21,21 +21,21 @@ constexpr double least_share = 0.05; // of the square of what is left: a part be
 } // namespace
 
 std::string wrapped(const std::string &text, std::size_t indent, std::size_t columns) {
-    std::string out, line;
-    std::size_t at = 0;
-    while (at < text.size()) {
+    const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
+    std::string out, line = text.substr(0, first);
+    bool fresh = true; // nothing but blanks in the line
+    for (std::size_t at = first; at < text.size();) {
         const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
         const std::string word = text.substr(at, end - at);
-        if (!word.empty()) {
-            const bool fresh = letters(line) == (out.empty() ? 0 : indent);
-            if (!fresh && letters(line) + 1 + letters(word) > columns) {
-                out += line + "\n";
-                line = std::string(indent, ' ') + word;
-            } else {
-                line += (fresh ? "" : " ") + word;
-            }
-        }
         at = end + 1;
+        if (word.empty()) continue;
+        if (!fresh && letters(line) + 1 + letters(word) > columns) {
+            out += line + "\n";
+            line = std::string(indent, ' ');
+            fresh = true;
+        }
+        line += (fresh ? "" : " ") + word;
+        fresh = false;
     }
     return out + line + "\n";
 }

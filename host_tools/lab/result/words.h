@@ -12,7 +12,7 @@ namespace traction::lab {
 constexpr std::size_t terminal_columns = 80;
 
 // Broken at blanks into lines of at most `columns` letters (UTF-8; a longer word stands alone); every line but the first begins with
-// `indent` blanks. Ends with a newline.
+// `indent` blanks; blanks before the first word stay. Ends with a newline.
 std::string wrapped(const std::string &text, std::size_t indent = 0, std::size_t columns = terminal_columns);
 
 // `text` filled with blanks to so many letters (UTF-8); unchanged where it is longer.

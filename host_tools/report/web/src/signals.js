@@ -25,6 +25,7 @@ export function signals(result) {
   const all = list(result.balances);
   if (!all.length) return [null];
   const order = all.map((b, i) => i).sort((a, b) => (all[b].nrmse ?? 0) - (all[a].nrmse ?? 0));
+  const fell = (b) => (isNumber(b.nrmse_after) ? b.nrmse - b.nrmse_after : 0);
   const views = all.map(balancePlots), after = all.some((b) => list(b.after).length);
   const shown = h('output', { 'aria-live': 'polite' }), place = h('div', {}), about = h('p', { class: 'quiet' });
   const choice = h('select', { id: 'signal', onchange: () => show(+choice.value) },
@@ -49,9 +50,11 @@ export function signals(result) {
     h('div', { class: 'toolbar' }, h('label', { for: 'signal' }, 'Signal '), choice, ' Shown: ', shown, ' ', reset, ' ',
       h('button', { type: 'button', onclick: () => save(all[now]) }, 'Save what is shown (CSV)'),
       h('span', { class: 'quiet' }, ' Drag across a plot to zoom; double click: all. Keys: + − ← → Home.')),
-    place, about, h('details', {}, h('summary', {}, `All ${all.length} signals, the worst first`),
+    place, about, h('details', {}, h('summary', {}, 'Every signal, the worst first'),
       h('div', { class: 'scroll' }, h('table', { class: 'stack' }, h('caption', {}, 'How far off each signal is'),
         h('thead', {}, h('tr', {}, heads.map(([head, number]) => h('th', { scope: 'col', class: number && 'number' }, head)))),
         h('tbody', {}, order.map(row))))));
-  return [node, () => { settle(all); show(order[0]); }];
+  // first the signal whose error fell most, where one did by a tenth; else the worst
+  const best = order.reduce((a, b) => (fell(all[b]) > fell(all[a]) ? b : a));
+  return [node, () => { settle(all); show(fell(all[best]) > 0.1 * all[best].nrmse ? best : order[0]); }];
 }

@@ -71,6 +71,8 @@ function options(host, height, label, series, extra = {}) {
       setScale: [(u, key) => {
         // a drag or a double click on one plot reaches all of them
         if (key !== 'x') return;
+        u.root.dataset.rows = u.data[0].length; // what stands in the picture, for the tests
+        u.root.dataset.most = u.data[1].reduce((most, v) => (v == null ? most : Math.max(most, v)), -Infinity);
         u.root.dataset.range = `${u.scales.x.min} ${u.scales.x.max}`;
         if (u.ready_) queueMicrotask(() => zoom(u.scales.x.min, u.scales.x.max));
       }],
