@@ -54,8 +54,9 @@ std::string described(const nlohmann::json &effect) {
     if (effect.value("wheel", -1) >= 0) text += " on wheel " + std::to_string(effect["wheel"].get<int>());
     for (const auto &[name, value] : effect.at("parameters").items()) {
         char number[40];
-        std::snprintf(number, sizeof number, " %.3g ", value.at("value").get<double>());
-        text += ", " + name + number + value.value("unit", "");
+        std::snprintf(number, sizeof number, " = %.3g", value.at("value").get<double>());
+        const std::string unit = value.value("unit", "1");
+        text += (name == effect.at("parameters").begin().key() ? ": " : ", ") + name + number + (unit == "1" ? "" : " " + unit);
     }
     return text;
 }
@@ -63,14 +64,14 @@ std::string described(const nlohmann::json &effect) {
 // What the seal says against what the lab said, in words; `right` is true only for the effect itself, or its class said as such.
 std::string judged(const nlohmann::json &truth, const lab::Diagnosis &diagnosis, bool &right) {
     const std::string name = truth.at("effects").at(0).at("name");
-    right = !diagnosis.effects.empty() && diagnosis.effects.front().rfind(name, 0) == 0;
-    if (right) return "the lab was right";
     for (const lab::ConfoundedClass &group : diagnosis.classes)
         for (const std::string &member : group.members)
             if (member.rfind(name, 0) == 0) {
                 right = true;
                 return "the lab named a class that holds it, and said that this log cannot tell its members apart";
             }
+    right = !diagnosis.effects.empty() && diagnosis.effects.front().rfind(name, 0) == 0;
+    if (right) return "the lab was right";
     for (const auto &[effect, why] : diagnosis.not_excited)
         if (effect.rfind(name, 0) == 0) return "the lab said beforehand that this log cannot show it: " + why;
     if (diagnosis.kind == "nothing") return "the lab found nothing: the effect stayed below what this log can show";

@@ -24,14 +24,16 @@ namespace {
 void print_table(const char *title, const lab::Parameters &table) {
     for (const auto &[key, p] : table)
         if (std::isfinite(p.low))
-            std::printf("%-10s %-26s %12.5g  [%.5g, %.5g] %s\n", title, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
+            std::printf("%-8s %-24s %10.4g  [%.4g, %.4g]%s%s\n", title, key.c_str(), p.value, p.low, p.high, p.unit == "1" ? "" : " ",
+                        p.unit == "1" ? "" : p.unit.c_str());
 }
 
 // Where a wheel's own tolerance took it elsewhere than the first.
 void print_overrides(std::size_t wheel, const lab::Parameters &table, const lab::Parameters &first) {
     for (const auto &[key, p] : table)
         if (std::isfinite(p.low) && p.value != first.at(key).value)
-            std::printf("wheel %-4zu %-26s %12.5g  [%.5g, %.5g] %s\n", wheel, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
+            std::printf("wheel %-2zu %-24s %10.4g  [%.4g, %.4g]%s%s\n", wheel, key.c_str(), p.value, p.low, p.high,
+                        p.unit == "1" ? "" : " ", p.unit == "1" ? "" : p.unit.c_str());
 }
 
 struct FitRequest {
@@ -70,7 +72,6 @@ void print_profiles(const FitRequest &request, const lab::Session &session, Outc
 void fit(const FitRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     lab::Model model = session.model;
-    for (const std::string &message : session.data.messages) std::printf("note: %s\n", message.c_str());
     const lab::Problem fitted_at = lab::fitted_problem(model, session.data);
     const lab::LadderStep step = lab::store_fit(model, fitted_at, "fitted");
     print_table("rover", model.rover);

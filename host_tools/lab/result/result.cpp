@@ -194,20 +194,26 @@ json identifiability_json(const Identifiability &told, const std::vector<Resonan
 
 std::string identifiability_text(const Identifiability &told, const std::vector<Resonance> &peaks) {
     std::string text;
-    const auto list = [&](const char *words, const std::vector<std::string> &names) {
-        for (std::size_t i = 0; i < names.size(); ++i) append(text, "%s%s", i == 0 ? words : ", ", names[i].c_str());
-        if (!names.empty()) text += "\n";
+    const auto list = [&](const std::string &words, const std::vector<std::string> &names) {
+        std::string line;
+        for (const std::string &name : names) line += (line.empty() ? "" : ", ") + name;
+        if (!names.empty()) text += wrapped(words + line, 2);
     };
     list("this log cannot move: ", told.dead);
     list("hardly held by this log: ", told.flat);
     list("decided by the prior alone: ", told.prior_alone);
-    for (const Identifiability::Pair &p : told.correlated)
-        append(text, "go together (correlation %.3f): %s and %s\n", p.correlation, p.a.c_str(), p.b.c_str());
+    for (const Identifiability::Pair &p : told.correlated) {
+        std::string line;
+        append(line, "go together (correlation %.3f): %s and %s", p.correlation, p.a.c_str(), p.b.c_str());
+        text += wrapped(line, 2);
+    }
     append(text, "condition number %.3g\n", told.condition);
-    for (const Resonance &r : peaks)
-        append(text,
-               "resonance: the residual of %s has a peak at %.2f Hz, %.0f times its surroundings: nothing in the model swings there\n",
+    for (const Resonance &r : peaks) {
+        std::string line;
+        append(line, "resonance: the residual of %s has a peak at %.2f Hz, %.0f times its surroundings: nothing in the model swings there",
                r.balance.c_str(), r.frequency_Hz, r.times);
+        text += wrapped(line, 2);
+    }
     return text;
 }
 

@@ -12,8 +12,9 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double close_to_noise = 1.6; // as compare() has it: little can be left to find
-constexpr double most_of_it = 0.5;     // of the way from the error before to the noise: below it an effect is said to explain a part
+constexpr double close_to_noise = 1.6;  // as compare() has it: little can be left to find
+constexpr double least_gain_one = 0.03; // DiagnoseOptions::least_gain_one
+constexpr double most_of_it = 0.5;      // of the way from the error before to the noise: below it an effect is said to explain a part
 
 std::string joined(const std::vector<std::string> &names, const char *last) {
     std::string text;
@@ -88,26 +89,34 @@ std::string missing(const Diagnosis &d) {
     return text.empty() ? "Nothing that this log can show." : text;
 }
 
-std::string sure(const Diagnosis &d) {
+// Where the error of all signals together hardly falls, what speaks for the effect: the signal that gains most, or the data sheet.
+std::string evidence_words(const Comparison &c) {
+    const BalanceComparison *most = nullptr;
+    double best = least_gain_one;
+    for (const BalanceComparison &b : c.balances)
+        if (!b.after.empty() && b.nrmse > 0 && 1 - b.nrmse_after / b.nrmse > best) best = 1 - b.nrmse_after / b.nrmse, most = &b;
+    if (most == nullptr) return "The data sheet decides: without it, numbers of the model would have to stand far from theirs. ";
+    return "What gains is the " + (most->title.empty() ? most->name : most->title) + ": from " + times(most->nrmse) + " to " +
+           times(most->nrmse_after) + " times its noise. ";
+}
+
+std::string sure(const Comparison &c, const Diagnosis &d) {
     std::string text;
     if (d.kind == "wrong_model") return "No effect is named: the numbers of the model come first.";
     if (!d.accepted.empty()) {
         text = d.classes.empty() ? "Sure of the effect, as far as a log can be: " : "Sure that something is there, not which of them: ";
-        text += "on parts of the log that took no part in the fit, ";
-        append(text, "the error falls by %.0f %% (%s to %s times the noise). ", fall_percent(d.ladder),
+        const double fall = fall_percent(d.ladder);
+        append(text, "on parts of the log that took no part in the fit, the error falls by %.0f %% (%s to %s times the noise). ", fall,
                times(d.ladder.front().heldout).c_str(), times(d.ladder.back().heldout).c_str());
-        text += "The brackets hold the true size in 95 of 100 cases.";
-        return text;
+        if (fall < 1) text += evidence_words(c);
+        return text + (d.classes.empty() ? "The brackets hold" : "If it is the first that is named, the brackets hold") +
+               " the true size in 95 of 100 cases.";
     }
-    if (d.unknown) {
-        append(text, "Sure that it depends on %s; the curve is a description, not a law.", d.unknown->variable.c_str());
-        return text;
-    }
-    append(text,
-           "%zu effects could not have been seen in this log, even at three times the size that matters. The others were tried: none makes "
-           "the parts of the log that took no part in the fit predictable.",
-           d.not_excited.size());
-    return text;
+    if (d.unknown) return "Sure that it depends on " + d.unknown->variable + "; the curve is a description, not a law.";
+    if (!d.not_excited.empty())
+        append(text, "%zu effects could not have been seen in this log, even at three times the size that matters. ", d.not_excited.size());
+    return text + (d.not_excited.empty() ? "Every effect was tried: none " : "The others were tried: none ") +
+           "helps to predict the parts of the log that took no part in the fit.";
 }
 
 std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperiment *next) {
@@ -121,11 +130,11 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
     if (!d.classes.empty()) return "To separate them: " + d.classes.front().separate_by + " (traction next works out the drive).";
     if (d.unknown)
         return "Write the law as an effect of your own, from the expression below, and add it: traction add --effect-file. Then judge it "
-               "on "
-               "another log (--validate).";
+               "on another log (--validate).";
     if (!d.accepted.empty()) {
         text = "Keep the better model and judge it on another log (--validate).";
-        if (left_after(c, d) >= close_to_noise)
+        if (left_after(c, d) >= close_to_noise && d.not_excited.empty()) text += " What is left may be the ground or the sensors.";
+        if (left_after(c, d) >= close_to_noise && !d.not_excited.empty())
             append(text,
                    " What is left may be the ground, the sensors, or one of the %zu effects that this log cannot show: traction next --all "
                    "proposes the drive for those.",
@@ -141,7 +150,7 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
 
 Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) {
     Story story;
-    story.good_enough = good_enough(c, d), story.missing = missing(d), story.sure = sure(d);
+    story.good_enough = good_enough(c, d), story.missing = missing(d), story.sure = sure(c, d);
     story.where = worst_regime_words(c);
     story.left = d.kind == "wrong_model" ? "" : left_words(remainder(c, d), settled(d)) + ".";
     story.next = what_next(c, d, next);
