@@ -1,4 +1,4 @@
-// answers.mjs CHROMIUM FOLDER OUT.md - what the pages FOLDER/SEED/report.html answer to the five questions, from their text, against
+// answers.mjs CHROMIUM FOLDER OUT - what the pages FOLDER/SEED/report.html answer to the five questions, from their text, against
 // FOLDER/SEED/sealed.json. Exit 1 where an answer is missing, names another effect than was hidden, or the page tells another seal.
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';

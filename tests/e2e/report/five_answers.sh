@@ -1,6 +1,6 @@
 #!/bin/sh
-# five_answers.sh TRACTION BROWSER_DIR [OUT.md] - plays the demo with seeds 1 to 10, reads in Chromium what each page answers to the five
-# questions, and checks it against the seal (answers.mjs). BROWSER_DIR: where browser_test.cmake put its packages. With OUT.md: writes it.
+# five_answers.sh TRACTION BROWSER_DIR [OUT] - plays the demo with seeds 1 to 10, reads in Chromium what each page answers to the five
+# questions, and checks it against the seal (answers.mjs). BROWSER_DIR: where browser_test.cmake put its packages. With OUT: writes it.
 set -eu
 traction=$1 browser=$2 out=${3:-}
 here=$(cd "$(dirname "$0")" && pwd)
