@@ -10,6 +10,7 @@
 #include "host_tools/simulate/simulate.h"
 #include "tests/lab/generator/generator.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

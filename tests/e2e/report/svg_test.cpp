@@ -6,6 +6,7 @@
 #include "host_tools/report/svg_text.h"
 #include "xml_check.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>
