@@ -5,12 +5,13 @@ import { check } from './check.js';
 import { h, markScrollers } from './dom.js';
 import { figures } from './figures.js';
 import { lab } from './lab.js';
+import { models } from './models.js';
 
 const result = JSON.parse(document.getElementById('result').textContent);
 const page = document.getElementById('page');
 document.title = result.title || (result.log && typeof result.log === 'string' ? `check: ${result.log}` : 'Traction report');
 
-const { parts, then } = ({ 'traction.figures/1': figures, 'traction.check/1': check }[result.schema] ?? lab)(result);
+const { parts, then } = ({ 'traction.figures/1': figures, 'traction.check/1': check, 'traction.compared/1': models }[result.schema] ?? lab)(result);
 const sections = parts.filter(Boolean);
 
 page.replaceChildren(

@@ -5,7 +5,7 @@ import { balancePlots, gapWords, onZoom, rowsLeftOut, settle, shownCsv, zoom, zo
 import { even, isNumber, list, num, seconds, unit } from './words.js';
 
 // The error over the log as a small picture; where there are no rows it is empty.
-function spark(values, most) {
+export function spark(values, most) {
   const all = list(values), wide = 6, tall = 22;
   if (!all.length) return '–';
   return s('svg', { class: 'spark', viewBox: `0 0 ${all.length * wide} ${tall}`, width: all.length * 4, height: tall, 'aria-hidden': 'true' },

@@ -217,7 +217,36 @@ export function shownCsv(balance) {
   return [['t_s', ...columns.map(([what]) => name(what))].join(','), ...rows].join('\n') + '\n';
 }
 
-// One time range for all; redrawn at other widths, themes and for print.
+const strokes = ['--ink', '--model', '--good', '--residual', '--p3', '--p5', '--p6', '--p7'], dashes = [[], [8, 4], [], [2, 3], [10, 3, 2, 3], [4, 2], [], [6, 6]];
+
+// Residuals of one signal by several results over one another: [{ label, balance }], unit; `fromStart`: each log's own start is time zero.
+export function overlay(all, unit, fromStart) {
+  const host = h('div', { class: 'plots', tabindex: 0, role: 'group', onkeydown: keys,
+    'aria-label': `residual over time of ${all.map((a) => a.label).join(', ')}. Keys: plus and minus zoom, arrows pan, Home shows all.` });
+  const tables = all.map(({ label, balance }) => {
+    const c = columnsOf(balance), start = fromStart ? c.t[0] ?? 0 : 0;
+    const gaps = list(balance.gaps).map((g) => ({ t0_s: g.t0_s - start, t1_s: g.t1_s - start }));
+    const t = c.t.map((x) => x - start);
+    return { label, t, residual: c.residualAfter ?? c.residual, breaks: breaksOf(t, gaps) }; // of the model that a result ends with
+  });
+  const draw = () => {
+    settleOn(tables.map((x) => x.t));
+    const refill = (from, to) => uPlot.join(tables.map((x) => drawn(x.t, [x.residual], thin(x.t, [x.residual], from, to, Math.max(300, Math.round(host.clientWidth * devicePixelRatio))), x.breaks)));
+    const plot = new uPlot(options(host, 260, `residual [${unitText(unit || '1')}]`,
+      tables.map((x, i) => line(x.label, strokes[i % 8], { dash: dashes[i % 8], points: { show: false } })), { last: true }), refill(...whole), host);
+    plots.push({ plot, refill });
+    plot.ready_ = true;
+    zoom(...whole);
+  };
+  return { host, draw, remove: () => { plots = plots.filter(({ plot }) => !host.contains(plot.root) || (plot.destroy(), false)); } };
+}
+
+function settleOn(times) {
+  const low = Math.min(...times.map((t) => t[0] ?? Infinity)), high = Math.max(...times.map((t) => t.at(-1) ?? -Infinity));
+  whole = low < high ? [low, high] : [0, 1];
+}
+
+// One time range for all.
 export function settle(balances) {
   let low = Infinity, high = -Infinity;
   for (const b of balances) {
@@ -225,6 +254,12 @@ export function settle(balances) {
     for (const g of list(b.gaps)) if (isNumber(g.t0_s) && isNumber(g.t1_s)) { low = Math.min(low, g.t0_s); high = Math.max(high, g.t1_s); }
   }
   whole = low < high ? [low, high] : isNumber(low) ? [low - 0.5, low + 0.5] : [0, 1];
+  resizing();
+  return seconds(...whole);
+}
+
+// Redrawn at other widths, in other colours, and for print.
+export function resizing() {
   const fit = (width) => {
     plots.forEach(({ plot }) => plot.setSize({ width: Math.max(260, width ?? plot.root.parentElement.clientWidth), height: plot.height }));
     plots.forEach(({ plot }) => { plot.shown_ = ''; });
@@ -239,5 +274,4 @@ export function settle(balances) {
   const print = matchMedia('print');
   print.addEventListener('change', () => fit(print.matches ? 660 : undefined)); // 660 px: A4 less margins at 96 dpi
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => plots.forEach(({ plot }) => plot.redraw(false)));
-  return seconds(...whole);
 }
