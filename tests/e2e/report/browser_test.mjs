@@ -153,6 +153,15 @@ claim('real_compare: every balance that traction compare put out can be chosen, 
   await close();
 });
 
+claim('method: a verdict on the paper\'s method stands beside that method, not beside ours', async () => {
+  const { page, trouble, close } = await open('method');
+  assert.deepEqual(await page.$$eval('#summary thead th', (all) => all.map((e) => e.textContent)), ['figure', 'paper', "the paper's method here", 'verdict on it', 'ours']);
+  assert.deepEqual(await page.$$eval('#summary tbody tr', (all) => all.map((e) => e.querySelector('.badge').className)), ['badge odd', 'badge good']);
+  assert.deepEqual(await page.$$eval('#figure-table-3 dt', (all) => all.map((e) => e.textContent)), ['paper', "the paper's method here", 'verdict on it', 'ours']);
+  assert.deepEqual(trouble, []);
+  await close();
+});
+
 claim('compared: errors, ladders, residuals over one another, parameters and signals of several results', async () => {
   const { page, trouble, close } = await open('compared');
   assert.deepEqual(await sectionIds(page), ['verdict', 'ladder', 'balances', 'parameters', 'runs']);

@@ -110,6 +110,8 @@ cut.gaps = [{ t0_s: 40, t1_s: 55, rows: 30 }, { t0_s: 70, t1_s: 80, rows: 20 }, 
 const gaps = { ...compare, title: 'A log with gaps', balances: [cut] };
 
 const demo = { ...diagnose, title: 'demo', demo: { seed: 1, hidden: { name: 'slip_sinkage' }, hidden_text: 'slip_sinkage: coefficient = 0.15', named: ['slip_sinkage'], right: true, judgement: 'the lab was right' } };
+const method = { schema: 'traction.figures/1', title: 'A verdict on a method', figures: [{ id: 'table-3', title: 'Table III', paper: '5.1 N', paper_here: '4.13 N', ours: '5.07 N', verdict: 'not reproduced', svg: '@SVG@' },
+  { id: 'fig-10', title: 'Fig. 10', paper: 'mean right', paper_here: '0.18 m/s', ours: '0.175 m/s', verdict: 'reproduced', svg: '@SVG@' }] };
 const compared = { schema: 'traction.compared/1', title: '3 results side by side', results: [{ ...compare, name: 'baseline' }, { ...diagnose, name: 'diagnosed' }, { ...gaps, name: 'other' }] };
 const figures = { schema: 'traction.figures/1', title: 'The experiments of the paper, made again', intro: 'Every figure of the paper from firmware and simulator.\n\nBounds stand beside each.',
   figures: [{ id: 'fig-3', title: 'Fig. 3: drawbar pull against slip', paper: 'fit passes through ±5 N of noise', ours: 'rms 4.9 N', verdict: 'agrees', svg: '@SVG@', notes: 'Sand, dead weight 60 N.' },
@@ -124,5 +126,5 @@ const check = { schema: 'traction.check/1', log: 'sand_identification.csv', map:
 
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
-for (const [name, result] of Object.entries({ check, compare, diagnose, odd, large, figures, gaps, demo, compared, empty: { schema: 'traction.lab/1' } }))
+for (const [name, result] of Object.entries({ check, compare, diagnose, odd, large, figures, gaps, demo, compared, method, empty: { schema: 'traction.lab/1' } }))
   writeFileSync(`${out}/${name}.json`, JSON.stringify(result));
