@@ -1,9 +1,8 @@
 #define _POSIX_C_SOURCE 200809L // clock_gettime, strnlen
 #include "udp_link.h"
 
-#include "thread.h"
-
 #include "log_ring.h"
+#include "thread.h"
 #include "udp_address.h"
 
 #include "firmware/link/key.h"

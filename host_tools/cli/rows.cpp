@@ -27,6 +27,10 @@ Option report_row(std::string &report) {
     return {.name = "--report", .into = &report, .help = "write a report page (HTML)", .value = "FILE", .kind = Kind::output};
 }
 
+Option details_row(bool &details) {
+    return {.name = "--details", .into = &details, .help = "print the statistics too: p, d', bias, R2, intervals of the gains"};
+}
+
 Option despite_row(std::vector<std::string> &despite) {
     return {.name = "--despite",
             .into = &despite,

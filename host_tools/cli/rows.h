@@ -15,6 +15,7 @@ Option model_row(std::string &model);
 Option despite_row(std::vector<std::string> &despite); // --despite ID, may be given again
 Option validate_row(std::vector<std::string> &logs);
 Option report_row(std::string &report);
+Option details_row(bool &details); // --details: the statistics too
 
 // LOG, --model, --map, --repeat, --from, --to: what the lab's verbs read.
 std::vector<Option> lab_rows(lab::Request &request);

@@ -1,9 +1,11 @@
 // verb_compare.cpp - traction compare: how far a model is from a log, balance by balance.
 #include "rows.h"
+#include "terminal.h"
 #include "verbs.h"
 
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/result.h"
+#include "host_tools/lab/result/story.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 
@@ -17,15 +19,16 @@ namespace {
 struct CompareRequest {
     lab::Request input;
     std::string report;
-    bool fitted = false;
+    bool fitted = false, details = false;
 };
 
 void compare(const CompareRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     const lab::Comparison comparison = lab::compare(session.model, session.data, !request.fitted);
-    std::fputs(lab::comparison_text(comparison).c_str(), stdout);
+    print(lab::comparison_text(comparison, request.details));
     outcome.json = lab::head_json("compare", session.model, session.data);
     lab::put_comparison(outcome.json, comparison);
+    outcome.json["story"] = lab::story_json(lab::tell(comparison));
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
     if (comparison.balances.empty()) outcome.exit_code = exit_negative;
 }
@@ -39,6 +42,7 @@ Verb verb_compare() {
             .options = rows(
                 lab_rows(request->input),
                 {{.name = "--fitted", .into = &request->fitted, .help = "show the residual after the parameters moved within their priors"},
+                 details_row(request->details),
                  report_row(request->report)}),
             .run = [request](Outcome &outcome) { compare(*request, outcome); }};
 }

@@ -2,6 +2,8 @@
 //
 // The lab gets what any user's lab gets: the log file and the baseline model file. The seal is written first and read last, here.
 #include "data_files.h"
+#include "rows.h"
+#include "terminal.h"
 #include "trial.h"
 #include "verbs.h"
 
@@ -9,6 +11,8 @@
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
+#include "host_tools/lab/result/story.h"
+#include "host_tools/lab/result/words.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
@@ -20,6 +24,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 namespace traction::cli {
 
@@ -30,6 +35,7 @@ namespace fs = std::filesystem;
 struct DemoRequest {
     std::uint64_t seed = 1;
     std::string folder = "out/demo";
+    bool details = false;
 };
 
 void seal(const std::vector<sim::ActiveEffect> &hidden, const std::string &scenario, std::uint64_t seed, const fs::path &path) {
@@ -48,8 +54,9 @@ std::string described(const nlohmann::json &effect) {
     if (effect.value("wheel", -1) >= 0) text += " on wheel " + std::to_string(effect["wheel"].get<int>());
     for (const auto &[name, value] : effect.at("parameters").items()) {
         char number[40];
-        std::snprintf(number, sizeof number, " %.3g ", value.at("value").get<double>());
-        text += ", " + name + number + value.value("unit", "");
+        std::snprintf(number, sizeof number, " = %.3g", value.at("value").get<double>());
+        const std::string unit = value.value("unit", "1");
+        text += (name == effect.at("parameters").begin().key() ? ": " : ", ") + name + number + (unit == "1" ? "" : " " + unit);
     }
     return text;
 }
@@ -57,14 +64,14 @@ std::string described(const nlohmann::json &effect) {
 // What the seal says against what the lab said, in words; `right` is true only for the effect itself, or its class said as such.
 std::string judged(const nlohmann::json &truth, const lab::Diagnosis &diagnosis, bool &right) {
     const std::string name = truth.at("effects").at(0).at("name");
-    right = !diagnosis.effects.empty() && diagnosis.effects.front().rfind(name, 0) == 0;
-    if (right) return "the lab was right";
     for (const lab::ConfoundedClass &group : diagnosis.classes)
         for (const std::string &member : group.members)
             if (member.rfind(name, 0) == 0) {
                 right = true;
                 return "the lab named a class that holds it, and said that this log cannot tell its members apart";
             }
+    right = !diagnosis.effects.empty() && diagnosis.effects.front().rfind(name, 0) == 0;
+    if (right) return "the lab was right";
     for (const auto &[effect, why] : diagnosis.not_excited)
         if (effect.rfind(name, 0) == 0) return "the lab said beforehand that this log cannot show it: " + why;
     if (diagnosis.kind == "nothing") return "the lab found nothing: the effect stayed below what this log can show";
@@ -82,8 +89,8 @@ void measured_run(const fs::path &root, Outcome &outcome) {
                                                     .map = (root / "models/maps/robotino.toml").string(),
                                                     .repeat = ""});
     const lab::Comparison comparison = lab::compare(session.model, session.data, false);
-    std::printf("\nA measured run of somebody else's machine (Robotino on gray carpet), against models/robotino_carpet.toml:\n%s",
-                lab::comparison_text(comparison).c_str());
+    print("\n" + lab::wrapped("A measured run of somebody else's machine (Robotino on gray carpet), against models/robotino_carpet.toml:") +
+          lab::comparison_text(comparison));
     outcome.json["measured"] = {{"log", log.filename().string()}, {"error", comparison.error}, {"floor", comparison.floor}};
 }
 
@@ -109,24 +116,19 @@ void demo(const DemoRequest &request, Outcome &outcome) {
 
     std::printf("2. Compare the baseline model with the log.\n");
     const lab::Session session = lab::open_session({.model = model_file, .log = log_file, .map = "", .repeat = ""});
-    const lab::Comparison before = lab::compare(session.model, session.data, false);
-    std::printf("%s\n3. Diagnose: what is missing?\n", lab::comparison_text(before).c_str());
+    lab::Comparison comparison = lab::compare(session.model, session.data, false);
+    print(lab::comparison_text(comparison, request.details) + "\n3. Diagnose: what is missing?\n");
     std::fflush(stdout);
     const lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, {});
-    std::printf("%s\n", lab::diagnosis_text(diagnosis).c_str());
+    if (!diagnosis.accepted.empty()) lab::show_after(comparison, diagnosis.model, session.data);
+    std::optional<lab::NextExperiment> next;
+    if (!diagnosis.classes.empty()) next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
+    const lab::Story story = lab::tell(comparison, diagnosis, next ? &*next : nullptr);
+    print(lab::diagnosis_text(diagnosis, request.details) + "\n");
+    if (next) print("   What would tell them apart:\n" + lab::next_text(*next, request.details));
 
-    outcome.json = lab::head_json("diagnose", session.model, session.data);
-    lab::put_comparison(outcome.json, before);
-    lab::put_diagnosis(outcome.json, diagnosis);
-    outcome.json["next"] = nullptr;
-    if (!diagnosis.classes.empty()) {
-        const lab::NextExperiment next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
-        std::printf("   What would tell them apart:\n%s", lab::next_text(next).c_str());
-        outcome.json["next"] = lab::next_json(next);
-    }
-    report::write_html(outcome.json, report_file);
-
-    std::printf("4. Add what was named, refit, and watch the error.\n%s", lab::ladder_text(diagnosis.ladder).c_str());
+    std::printf(diagnosis.accepted.empty() ? "4. Nothing was named: nothing is added.\n"
+                                           : "4. Add what was named, refit, and watch the error.\n");
     if (!diagnosis.accepted.empty()) {
         lab::Model better = diagnosis.model;
         const lab::LadderStep step = lab::fit_model(better, session.data, "fitted");
@@ -134,15 +136,30 @@ void demo(const DemoRequest &request, Outcome &outcome) {
         lab::write_model(better, better_file);
         std::printf("   the better model: %s\n", better_file.c_str());
     }
+    print(lab::story_text(story));
 
     const nlohmann::json truth = open_seal(folder / "sealed.json");
     bool right = false;
     const std::string words = judged(truth, diagnosis, right);
-    std::printf("\n5. The seal: %s.\n   %s\n", described(truth.at("effects").at(0)).c_str(), words.c_str());
+    const std::string hidden = described(truth.at("effects").at(0));
+    std::printf("\n5. The seal is opened.\n");
+    print(lab::wrapped("The seal: " + hidden + ".", 3) + lab::wrapped("   " + words, 3));
+    outcome.json = lab::head_json("diagnose", session.model, session.data);
+    lab::put_comparison(outcome.json, comparison);
+    lab::put_diagnosis(outcome.json, diagnosis);
+    outcome.json["story"] = lab::story_json(story);
+    outcome.json["next"] = next ? lab::next_json(*next) : nlohmann::json(nullptr);
     const lab::LadderStep &first = diagnosis.ladder.front(), &last = diagnosis.ladder.back();
-    outcome.json["demo"] = {
-        {"seed", request.seed}, {"hidden", truth.at("effects").at(0)}, {"named", diagnosis.effects},  {"right", right},
-        {"judgement", words},   {"error_before", first.heldout},       {"error_after", last.heldout}, {"floor", last.floor}};
+    outcome.json["demo"] = {{"seed", request.seed},
+                            {"hidden", truth.at("effects").at(0)},
+                            {"hidden_text", hidden},
+                            {"named", diagnosis.effects},
+                            {"right", right},
+                            {"judgement", words},
+                            {"error_before", first.heldout},
+                            {"error_after", last.heldout},
+                            {"floor", last.floor}};
+    report::write_html(outcome.json, report_file);
     measured_run(root, outcome);
     std::printf("\nOpen the report: %s\n", report_file.c_str());
 }
@@ -162,7 +179,8 @@ Verb verb_demo() {
                          .help = "folder for the log, the seal, the model and the report",
                          .value = "FOLDER",
                          .kind = Kind::folder,
-                         .shows_default = true}},
+                         .shows_default = true},
+                        details_row(request->details)},
             .run = [request](Outcome &outcome) { demo(*request, outcome); }};
 }
 

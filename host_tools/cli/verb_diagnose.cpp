@@ -1,6 +1,7 @@
 // verb_diagnose.cpp - traction diagnose: which physics the model lacks, how sure that is, and what this log cannot say.
 #include "progress.h"
 #include "rows.h"
+#include "terminal.h"
 #include "trial.h"
 #include "verbs.h"
 
@@ -8,12 +9,14 @@
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/next_result.h"
 #include "host_tools/lab/result/result.h"
+#include "host_tools/lab/result/story.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/lab/validate.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace traction::cli {
 
@@ -22,7 +25,7 @@ namespace {
 struct DiagnoseRequest {
     lab::Request input;
     std::string report, out;
-    bool apply = false;
+    bool apply = false, details = false;
 };
 
 void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
@@ -31,16 +34,21 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     Progress progress("diagnose", 500);
     options.progress = [&](int, int) { progress.step(); };
     lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, options);
-    std::fputs(lab::diagnosis_text(diagnosis).c_str(), stdout);
+    lab::Comparison comparison = lab::compare(session.model, session.data, false);
+    if (!diagnosis.accepted.empty()) lab::show_after(comparison, diagnosis.model, session.data);
+    std::optional<lab::NextExperiment> next; // what was not excited alone: `traction next --all`
+    if (!diagnosis.classes.empty()) next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
+    const lab::Story story = lab::tell(comparison, diagnosis, next ? &*next : nullptr);
+    print(lab::story_text(story) + "\n" + lab::diagnosis_text(diagnosis, request.details));
     outcome.json = lab::head_json("diagnose", session.model, session.data);
-    lab::put_comparison(outcome.json, lab::compare(session.model, session.data, false));
+    lab::put_comparison(outcome.json, comparison);
     lab::put_diagnosis(outcome.json, diagnosis);
+    outcome.json["story"] = lab::story_json(story);
     outcome.json["next"] = nullptr;
-    if (!diagnosis.classes.empty()) { // what was not excited alone: `traction next --log`
-        const lab::NextExperiment next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
-        std::printf("\n%s", lab::next_text(next).c_str());
-        if (!next.scenario_toml.empty()) std::printf("(traction next --model MODEL --log LOG --out next.toml writes the scenario)\n");
-        outcome.json["next"] = lab::next_json(next);
+    if (next) {
+        print("\n" + lab::next_text(*next, request.details));
+        if (!next->scenario_toml.empty()) print("(traction next --model MODEL --log LOG --out next.toml writes the scenario)\n");
+        outcome.json["next"] = lab::next_json(*next);
     }
     if (diagnosis.kind != "wrong_model") {
         const std::vector<lab::Validation> validation = lab::validate(session, request.input, diagnosis.model);
@@ -70,6 +78,7 @@ Verb verb_diagnose() {
     return {.name = "diagnose",
             .summary = "which physics the model lacks, by held-out error",
             .options = rows(lab_rows(request->input), {report_row(request->report),
+                                                       details_row(request->details),
                                                        validate_row(request->input.validate),
                                                        {.name = "--apply",
                                                         .into = &request->apply,

@@ -1,5 +1,6 @@
 // verb_fit.cpp - traction fit: a model's parameters from a log, with intervals, whiteness and held-out error.
 #include "rows.h"
+#include "terminal.h"
 #include "verbs.h"
 
 #include "host_tools/lab/result/addition.h"
@@ -23,37 +24,39 @@ namespace {
 void print_table(const char *title, const lab::Parameters &table) {
     for (const auto &[key, p] : table)
         if (std::isfinite(p.low))
-            std::printf("%-10s %-26s %12.5g  [%.5g, %.5g] %s\n", title, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
+            std::printf("%-8s %-24s %10.4g  [%.4g, %.4g]%s%s\n", title, key.c_str(), p.value, p.low, p.high, p.unit == "1" ? "" : " ",
+                        p.unit == "1" ? "" : p.unit.c_str());
 }
 
 // Where a wheel's own tolerance took it elsewhere than the first.
 void print_overrides(std::size_t wheel, const lab::Parameters &table, const lab::Parameters &first) {
     for (const auto &[key, p] : table)
         if (std::isfinite(p.low) && p.value != first.at(key).value)
-            std::printf("wheel %-4zu %-26s %12.5g  [%.5g, %.5g] %s\n", wheel, key.c_str(), p.value, p.low, p.high, p.unit.c_str());
+            std::printf("wheel %-2zu %-24s %10.4g  [%.4g, %.4g]%s%s\n", wheel, key.c_str(), p.value, p.low, p.high,
+                        p.unit == "1" ? "" : " ", p.unit == "1" ? "" : p.unit.c_str());
 }
 
 struct FitRequest {
     lab::Request input;
     std::string out, report, figure;
-    bool profiled = false;
+    bool profiled = false, details = false;
     std::vector<std::string> profile;
 };
 
-// One panel per parameter over the distance from the best value in Wald standard errors, so that a parabola looks the same everywhere.
+// One panel per parameter, over the parameter in its unit.
 report::Figure profile_figure(const std::vector<lab::Profile> &profiles) {
-    report::Figure figure{.title = "Profile likelihood", .x_label = "distance from the best value [robust standard errors]"};
+    report::Figure figure{.title = "Profile likelihood: how much worse the fit becomes"};
     for (const lab::Profile &p : profiles) {
-        report::Series curve{.name = "profile", .x = {}, .y = {}}, parabola{.name = "Wald", .x = {}, .y = {}};
-        for (std::size_t i = 0; i < p.x.size(); ++i) {
-            const double z = (p.x[i] - p.value) / p.standard_error;
-            curve.x.push_back(z), curve.y.push_back(p.rise[i]);
-            if (std::fabs(z) < 3) parabola.x.push_back(z), parabola.y.push_back(z * z);
+        report::Series curve{.name = "profile", .x = p.x, .y = p.rise}, parabola{.name = "Wald", .x = {}, .y = {}};
+        for (const double x : p.x) {
+            const double z = (x - p.value) / p.standard_error;
+            if (std::fabs(z) < 3) parabola.x.push_back(x), parabola.y.push_back(z * z);
         }
         figure.panels.push_back({.title = p.parameter + ": " + p.verdict,
                                  .y_label = "rise [1]",
+                                 .x_label = p.parameter + " [" + (p.unit.empty() ? "1" : p.unit) + "]",
                                  .series = {curve, parabola},
-                                 .rules = {{.value = 3.84, .name = "95 %"}},
+                                 .rules = {{.value = 3.84, .name = "95 %"}, {.value = p.value, .name = "best", .vertical = true}},
                                  .from_zero = true});
     }
     return figure;
@@ -69,7 +72,6 @@ void print_profiles(const FitRequest &request, const lab::Session &session, Outc
 void fit(const FitRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     lab::Model model = session.model;
-    for (const std::string &message : session.data.messages) std::printf("note: %s\n", message.c_str());
     const lab::Problem fitted_at = lab::fitted_problem(model, session.data);
     const lab::LadderStep step = lab::store_fit(model, fitted_at, "fitted");
     print_table("rover", model.rover);
@@ -84,9 +86,9 @@ void fit(const FitRequest &request, Outcome &outcome) {
     print_table("sensors", model.sensors);
     for (const lab::EffectUse &use : model.effects) print_table(use.name.c_str(), use.parameters);
     const lab::Comparison comparison = lab::compare(model, session.data, true);
-    std::fputs(lab::comparison_text(comparison).c_str(), stdout);
+    print(lab::comparison_text(comparison, request.details));
     for (const lab::BalanceComparison &b : comparison.balances) {
-        if (b.acf.value.size() < 2) continue;
+        if (b.acf.value.size() < 2 || !request.details) continue;
         int outside = 0;
         for (std::size_t i = 1; i < b.acf.value.size(); ++i) outside += std::fabs(b.acf.value[i]) > b.acf.band;
         std::printf("whiteness  %-28s %d of %zu lags outside the 99 %% band\n", b.name.c_str(), outside, b.acf.value.size() - 1);
@@ -96,7 +98,7 @@ void fit(const FitRequest &request, Outcome &outcome) {
     const std::vector<lab::Limit> limits = lab::limits_of(fitted_at);
     std::fputs(lab::limits_text(limits).c_str(), stdout);
     std::fputs(lab::identifiability_text(told, peaks).c_str(), stdout);
-    std::printf("error on training %.3f, held out %.3f (in units of noise; 5 s blocks, each predicted by a refit to the others)\n",
+    std::printf("error %.3f x noise in the fit, %.3f on what was not fitted (5 s blocks, each\npredicted by a refit to the others)\n",
                 step.train, step.heldout);
     outcome.json = lab::head_json("fit", model, session.data);
     lab::put_comparison(outcome.json, comparison);
@@ -142,6 +144,7 @@ Verb verb_fit() {
             lab_rows(request->input),
             {{.name = "--out", .into = &request->out, .help = "write the fitted model to this file", .value = "FILE", .kind = Kind::output},
              report_row(request->report),
+             details_row(request->details),
              validate_row(request->input.validate),
              {.name = "--profile",
               .into = &request->profile,

@@ -1,5 +1,6 @@
 // verb_next.cpp - traction next: the drive that answers what a log left open, with the predicted d' of every question.
 #include "rows.h"
+#include "terminal.h"
 #include "trial.h"
 #include "verbs.h"
 
@@ -20,7 +21,7 @@ struct NextRequest {
     lab::Request input;
     std::string out;
     std::vector<std::string> effects;
-    bool all = false;
+    bool all = false, details = false;
 };
 
 void next(const NextRequest &request, Outcome &outcome) {
@@ -41,7 +42,7 @@ void next(const NextRequest &request, Outcome &outcome) {
     else
         outcome.json = {{"schema", "traction.lab/1"}, {"verb", "next"}};
     outcome.json["next"] = lab::next_json(answer);
-    std::fputs(lab::next_text(answer).c_str(), stdout);
+    print(lab::next_text(answer, request.details));
     bool stuck = false;
     for (const lab::Question &q : answer.questions) stuck = stuck || q.status == "never";
     if (answer.scenario_toml.empty()) {
@@ -82,6 +83,7 @@ Verb verb_next() {
               .help = "also ask for every effect that the log could not have shown, beside classes",
               .needs = {"--log"},
               .excludes = {"--effects"}},
+             details_row(request->details),
              {.name = "--out", .into = &request->out, .help = "write the scenario to this file", .value = "FILE", .kind = Kind::output}},
         .run = [request](Outcome &outcome) { next(*request, outcome); }};
 }

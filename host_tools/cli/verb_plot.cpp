@@ -6,6 +6,8 @@
 #include "host_tools/report/log_figure.h"
 #include "host_tools/report/report.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -33,7 +35,9 @@ void plot(const PlotOptions &options, Outcome &outcome) {
     nlohmann::json panels = nlohmann::json::array();
     for (const report::Panel &panel : figure.panels) {
         nlohmann::json signals = nlohmann::json::array();
-        for (const report::Series &series : panel.series) signals.push_back({{"name", series.name}, {"samples", series.x.size()}});
+        for (const report::Series &series : panel.series)
+            signals.push_back({{"name", series.name}, // gaps are no samples
+                               {"samples", std::count_if(series.y.begin(), series.y.end(), [](double y) { return !std::isnan(y); })}});
         panels.push_back({{"label", panel.y_label}, {"signals", signals}});
     }
     outcome.json = {{"schema", "traction.plot/1"}, {"figure", options.out}, {"panels", panels}, {"repairs", log.repairs}};

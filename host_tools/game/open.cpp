@@ -2,6 +2,7 @@
 #include "game.h"
 
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/result/words.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/report/report.h"
 #include "sim/physics/effects/catalogue.h"
@@ -83,7 +84,9 @@ Turn open(const std::string &folder) {
     Played played;
     played.error_before = state["ladder"].front()["heldout"].get<double>();
     played.error_after = state["ladder"].back()["heldout"].get<double>();
-    played.floor = lab::fit_model(told, session.data, "truth").heldout;
+    const lab::Problem truthful = lab::fitted_problem(told, session.data);
+    const lab::Remainder left = lab::remainder_of(truthful);
+    played.floor = lab::store_fit(told, truthful, "truth").heldout;
     for (const lab::EffectUse &use : kept.effects)
         if (use.name == truth.name) played.named = true, played.wheel_right = played.wheel_right || use.wheel == truth.wheel;
     std::vector<std::string> wrong;
@@ -97,11 +100,14 @@ Turn open(const std::string &folder) {
     state["error_before"] = played.error_before, state["error_after"] = played.error_after, state["floor"] = played.floor;
     state["error_over_floor"] = played.error_after / played.floor, state["named"] = played.named, state["wheel_right"] = played.wheel_right;
     report::write_text(state.dump(1) + "\n", path("game.json"));
-    char line[400];
-    std::snprintf(line, sizeof line,
-                  "held-out error %.3f -> %.3f x noise; told the truth, the model leaves %.3f: you stand at %.3f of that\nwrong guesses: "
-                  "%d\n%d points of 100\n",
-                  played.error_before, played.error_after, played.floor, played.error_after / played.floor, played.wrong_guesses, score);
+    char line[300];
+    std::snprintf(
+        line, sizeof line,
+        "Error on what was not fitted: %.3f -> %.3f x noise. Told the truth, the model\nleaves %.3f: you stand at %.3f of that.\n",
+        played.error_before, played.error_after, played.floor, played.error_after / played.floor);
+    std::string score_text = line + lab::wrapped("No model can do better on this log: " + lab::left_words(left, true) + ".");
+    std::snprintf(line, sizeof line, "wrong guesses: %d\n%d points of 100\n", played.wrong_guesses, score);
+    score_text += line;
     std::string text = "The seal: " + described(truth) + ".\n";
     if (played.named)
         text += played.wheel_right ? "Your model has it.\n" : "Your model has it, on other wheels.\n";
@@ -109,7 +115,7 @@ Turn open(const std::string &folder) {
         text += "Your model has another effect that leaves as little: this log hardly tells them apart.\n";
     else
         text += "Your model does not have it.\n";
-    return {text + line, state};
+    return {text + score_text, state};
 }
 
 } // namespace traction::game

@@ -60,12 +60,11 @@ std::vector<Validation> validate(const Session &session, const Request &request,
 std::string validation_text(const std::vector<Validation> &list) {
     if (list.empty()) return "";
     char buffer[300];
-    std::snprintf(buffer, sizeof buffer, "%-44s %9s %9s %9s   (error in units of noise, on what was not fitted)\n", "validation", "stated",
-                  "fitted", "result");
+    std::snprintf(buffer, sizeof buffer, "%-30s %9s %9s %9s\n", "validation, error x noise", "stated", "fitted", "result");
     std::string text = buffer;
     for (const Validation &v : list) {
-        std::snprintf(buffer, sizeof buffer, "%-44s %9.3f %9.3f %9.3f   %s\n", v.log.c_str(), v.stated, v.fitted, v.result,
-                      v.left_out ? "left out, fitted to the other runs" : "never fitted");
+        std::snprintf(buffer, sizeof buffer, "%-30s %9.3f %9.3f %9.3f  %s\n", v.log.c_str(), v.stated, v.fitted, v.result,
+                      v.left_out ? "left out in turn" : "never fitted");
         text += buffer;
     }
     return text;

@@ -97,12 +97,46 @@ std::vector<const log::Signal *> chosen_signals(const log::Log &log, const std::
     return chosen;
 }
 
-Series series_of(const log::Signal &signal, const LogFigureOptions &options) {
+// A silence of the sensor: longer than five spacings of the signal, of which 19 in 20 are shorter than what is taken for one.
+double longest_spacing(const log::Signal &signal) {
+    std::vector<double> apart;
+    for (std::size_t i = 1; i < signal.t_s.size(); ++i) apart.push_back(signal.t_s[i] - signal.t_s[i - 1]);
+    if (apart.size() < 20) return std::numeric_limits<double>::infinity();
+    const auto at = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() * 19 / 20);
+    std::nth_element(apart.begin(), at, apart.end());
+    return *at > 0 ? 5 * *at : std::numeric_limits<double>::infinity();
+}
+
+// Whether a slip means something at each sample: the log's own `slip_valid` of that wheel, held until its next sample. nullptr: no word.
+const log::Signal *validity_of(const log::Log &log, const std::string &name) {
+    if (!name.ends_with(".slip")) return nullptr;
+    const std::string wanted = name + "_valid";
+    for (const log::Signal &signal : log.signals)
+        if (signal.name == wanted && !signal.t_s.empty()) return &signal;
+    return nullptr;
+}
+
+// What is invalid, and the silences, are gaps of the line (NaN); nothing is drawn across them.
+Series series_of(const log::Log &log, const log::Signal &signal, const LogFigureOptions &options) {
     Series series{.name = signal.name};
+    const log::Signal *valid = validity_of(log, signal.name);
+    const double longest = longest_spacing(signal);
+    const auto gap = [&](double t_s) { series.x.push_back(t_s), series.y.push_back(std::nan("")); };
+    std::size_t told = 0;
+    double last = std::nan("");
     for (std::size_t i = 0; i < signal.t_s.size(); ++i) {
-        if (signal.t_s[i] < options.from_s || signal.t_s[i] > options.to_s) continue;
-        series.x.push_back(signal.t_s[i]);
-        series.y.push_back(signal.value[i]);
+        const double t_s = signal.t_s[i];
+        if (t_s < options.from_s || t_s > options.to_s) continue;
+        if (t_s - last > longest) gap(0.5 * (last + t_s));
+        last = t_s;
+        if (valid != nullptr) {
+            while (told + 1 < valid->t_s.size() && valid->t_s[told + 1] <= t_s) ++told;
+            if (valid->t_s[told] <= t_s && valid->value[told] < 0.5) {
+                gap(t_s);
+                continue;
+            }
+        }
+        series.x.push_back(t_s), series.y.push_back(signal.value[i]);
     }
     return series;
 }
@@ -130,7 +164,7 @@ Figure log_figure(const log::Log &log, const LogFigureOptions &options) {
             keys.push_back(key);
             figure.panels.emplace_back();
         }
-        figure.panels[at].series.push_back(series_of(*signal, options));
+        figure.panels[at].series.push_back(series_of(log, *signal, options));
     }
     for (std::size_t i = 0; i < keys.size(); ++i) figure.panels[i].y_label = panel_label(keys[i], figure.panels[i].series);
     return figure;

@@ -29,10 +29,16 @@ std::string embeddable(const nlohmann::json &result) {
 
 std::string to_html(const nlohmann::json &result) {
     const std::string schema = result.is_object() ? result.value("schema", nlohmann::json()).dump() : "no object";
-    if (schema != "\"traction.lab/1\"" && schema != "\"traction.figures/1\"" && schema != "\"traction.check/1\"")
+    if (schema != "\"traction.lab/1\"" && schema != "\"traction.figures/1\"" && schema != "\"traction.check/1\"" &&
+        schema != "\"traction.compared/1\"")
         throw ReportError("schema: " + schema +
                           ": no page shows it; give what --json of check, compare, diagnose, add, fit or reproduce wrote "
                           "(traction.check/1, traction.lab/1, traction.figures/1)");
+    if (schema == "\"traction.compared/1\"")
+        for (const nlohmann::json &one : result.value("results", nlohmann::json::array()))
+            if (!one.is_object() || one.value("schema", nlohmann::json()) != "traction.lab/1")
+                throw ReportError(
+                    "results: only results of the lab stand beside one another (traction.lab/1: compare, diagnose, add, fit)");
     const std::string_view page = page_template(), mark = "__TRACTION_RESULT__";
     const std::size_t place = page.find(mark);
     if (place == std::string_view::npos) throw std::logic_error("the report page has no place for its data");

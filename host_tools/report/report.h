@@ -3,6 +3,7 @@
 // The page is chosen by result["schema"]:
 //   "traction.lab/1"      what compare, diagnose, add and fit put out (docs/json_schema.md)
 //   "traction.check/1"    what check puts out
+//   "traction.compared/1" several of the lab's side by side: { "schema", "title": str, "results": [{ "name": str, ...traction.lab/1 }] }
 //   "traction.figures/1"  a set of figures with what a source says beside what we measured:
 //     { "schema": "traction.figures/1", "title": str, "intro": str,
 //       "figures": [ { "id": str, "title": str, "paper": str, "ours": str, "verdict": "agrees|differs|<words>",

@@ -333,24 +333,25 @@ Axis up_axis(const Panel &panel, double height) {
     return axis;
 }
 
-Axis across_axis(const Figure &figure, double width) {
+// Over one panel's own series, or over those of all panels that share the axis.
+Axis across_axis(const std::vector<Panel> &panels, double width, bool own) {
     Range range;
-    for (const Panel &panel : figure.panels)
+    for (const Panel &panel : panels)
         for (const Series &series : panel.series)
-            if (series.mark != Mark::bar)
+            if (series.mark != Mark::bar && own == !panel.x_label.empty())
                 for (const double x : series.x) range.include(x);
     return make_axis(range, 0, std::max(2, static_cast<int>(width / 80)));
 }
 
 bool has_heat(const Panel &panel) { return panel.heat.x_edges.size() >= 2; }
 
-// Heat maps and bars have an x axis of their own.
-bool shares_x(const Panel &panel) { return !has_heat(panel) && panel.categories.empty(); }
+// Heat maps, bars and panels with a label of their own have an x axis of their own.
+bool shares_x(const Panel &panel) { return !has_heat(panel) && panel.categories.empty() && panel.x_label.empty(); }
 
 std::string draw_panel(const Panel &panel, Frame frame, const Figure &figure, bool lowest) {
     if (has_heat(panel)) return draw_heat(frame, panel);
     frame.up = up_axis(panel, frame.height);
-    std::string out = draw_axes(frame, panel, lowest, figure.x_label);
+    std::string out = draw_axes(frame, panel, lowest, panel.x_label.empty() ? figure.x_label : panel.x_label);
     std::size_t slots = 0, slot = 0;
     for (const Series &series : panel.series) slots += series.mark == Mark::bar ? 1 : 0;
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -386,7 +387,7 @@ double height_of(const Panel &panel, std::size_t panels) {
 std::string to_svg(const Figure &figure) {
     const double width = std::clamp(figure.width_px, 200.0, 8000.0);
     const double inner = width - left_px - right_px;
-    const Axis across = across_axis(figure, inner);
+    const Axis across = across_axis(figure.panels, inner, false);
     std::string body;
     double y = 8;
     if (!figure.title.empty()) {
@@ -403,8 +404,12 @@ std::string to_svg(const Figure &figure) {
         body += draw_legend(legend, left_px, y, inner);
         if (!legend.empty()) y += (legend.back().row + 1) * legend_row_px + 2;
         const double height = height_of(panel, figure.panels.size());
-        const bool lowest = has_heat(panel) || (shares_x(panel) && (i + 1 == figure.panels.size() || !shares_x(figure.panels[i + 1])));
-        body += "<g class=\"panel\">\n" + draw_panel(panel, {left_px, y, inner, height, across, {}}, figure, lowest) + "</g>\n";
+        const bool own = !panel.x_label.empty();
+        const bool lowest =
+            has_heat(panel) || own || (shares_x(panel) && (i + 1 == figure.panels.size() || !shares_x(figure.panels[i + 1])));
+        body += "<g class=\"panel\">\n" +
+                draw_panel(panel, {left_px, y, inner, height, own ? across_axis({panel}, inner, true) : across, {}}, figure, lowest) +
+                "</g>\n";
         const bool labelled = lowest || !panel.categories.empty();
         y += height + gap_px + (labelled ? tick_room_px : 0) + (lowest ? x_label_px : 0) - (labelled ? gap_px / 2 : 0);
     }

@@ -48,6 +48,7 @@ struct HeatMap {
 struct Panel {
     std::string title{};
     std::string y_label{}; // with unit, "current [A]"
+    std::string x_label{}; // with unit; not empty: the panel has an x axis of its own
     std::vector<Series> series{};
     std::vector<Rule> rules{};
     std::vector<std::string> categories{}; // names under the bars

@@ -15,10 +15,12 @@ if ! "$tractiond" --hal sim sand.toml effect=slip_sinkage:coefficient=0.2 --log 
 fi
 "$traction" convert log/log_000001.ulg --rover "$source/rovers/lhomme_desages.toml" --out run.csv >convert.txt
 "$traction" check run.csv >check.txt
-"$traction" diagnose --model "$source/models/rover_sand.toml" --log run.csv --apply --out better.toml >diagnose.txt
+"$traction" diagnose --model "$source/models/rover_sand.toml" --log run.csv --apply --out better.toml --json diagnose.json >diagnose.txt
 # 0.2 was hidden; the interval must hold it
-awk '/^slip_sinkage .* named, coefficient/ { named = 1; n = split($0, part, /[][,]/); low = part[n-2]; high = part[n-1]; if (low + 0 <= 0.2 && high + 0 >= 0.2) held = 1 }
-     END { if (!named) { print "slip_sinkage is not named"; exit 1 } if (!held) { print "its interval misses 0.2"; exit 1 } }' diagnose.txt || { cat diagnose.txt; exit 1; }
+awk '/^ "/ { inside = $1 == "\"accepted\":" } !inside { next }
+     $1 == "\"effect\":" { named = $2 == "\"slip_sinkage\"," ; seen = seen || named }
+     named && $1 == "\"high\":" { high = $2 + 0 } named && $1 == "\"low\":" { low = $2 + 0; if (low <= 0.2 && high >= 0.2) held = 1 }
+     END { if (!seen) { print "slip_sinkage is not named"; exit 1 } if (!held) { print "its interval misses 0.2"; exit 1 } }' diagnose.json || { cat diagnose.txt; exit 1; }
 "$traction" export --model better.toml --firmware rover.txt >/dev/null
 "$tractiond" --hal sim sand.toml effect=slip_sinkage:coefficient=0.2 --parameters rover.txt --log log 2>err || { cat err; exit 1; }
 grep -q 'faults seen 00000000' err || { cat err; exit 1; }

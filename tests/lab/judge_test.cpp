@@ -381,7 +381,7 @@ TEST(Words, say_what_was_found_and_what_was_not) {
     d.kind = "class";
     d.ladder = {{"baseline", 2, 2.5, 1}, {"+ a", 1, 1.25, 1}};
     const std::string text = verdict_text(d);
-    EXPECT_NE(text.find("2.500 -> 1.250"), std::string::npos) << text;
+    EXPECT_NE(text.find("falls by 50 %, from 2.500 to 1.250 x noise"), std::string::npos) << text;
     EXPECT_NE(text.find("tell a, b from c."), std::string::npos) << text;
     d.unknown = UnknownShape{};
     d.unknown->variable = "time", d.unknown->balance = "friction of the wheels";

@@ -1,6 +1,7 @@
 // The sentence that ends a diagnosis.
 #include "diagnose.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace traction::lab {
@@ -13,16 +14,19 @@ std::string verdict_text(const Diagnosis &d) {
     if (d.kind == "nothing") {
         std::snprintf(
             buffer, sizeof buffer,
-            "Nothing found that the log supports; the held-out error stands at %.2f x noise (%.2f in the fit). %zu effects could not "
-            "have been seen in it.",
-            before, d.ladder.empty() ? 0 : d.ladder.front().train, d.not_excited.size());
+            "Nothing found that the log supports; the error stands at %.2f x noise on what was not fitted (%.2f in the fit). %zu effects "
+            "could not have been seen in it%s.",
+            before, d.ladder.empty() ? 0 : d.ladder.front().train, d.not_excited.size(),
+            d.not_excited.empty() ? "" : ": traction next --all proposes the drive for them");
         return buffer;
     }
     std::string text;
     if (!names.empty()) {
-        std::snprintf(buffer, sizeof buffer,
-                      "The model lacks %s: held-out error %.3f -> %.3f x noise (5 s blocks, each predicted by a refit to the others).",
-                      names.c_str(), before, after);
+        std::snprintf(
+            buffer, sizeof buffer,
+            "The model lacks %s: on what was not fitted the error falls by %.0f %%, from %.3f to %.3f x noise (5 s blocks, each predicted "
+            "by a refit to the others).",
+            names.c_str(), before > 0 ? std::max(0.0, 100 * (1 - after / before)) : 0.0, before, after);
         text = buffer;
     }
     for (const ConfoundedClass &c : d.classes) {

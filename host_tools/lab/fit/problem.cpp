@@ -210,7 +210,8 @@ double Problem::speed_range(double t0, double t1) const {
 // Variance of each row of a balance as a sum of non-negative parts: constant, traction squared (ground that is not even), jerk
 // squared, slip sensitivity squared (encoder noise through a stiff soil), speed squared (vibration), squared range of the speed within
 // the row's window (a Doppler radar reads one of its speeds). Multiplicative updates of a weighted least squares.
-Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squares, double floor_variance) const {
+Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squares, double floor_variance,
+                                      Eigen::VectorXd *part_means) const {
     const Balance &balance = data_->balance[b];
     const auto n = static_cast<Eigen::Index>(balance.measured.size());
     const Motion &m = forward_.motion();
@@ -244,7 +245,23 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
         for (int i = 0; i < 200; ++i) x = x.cwiseProduct(target.cwiseQuotient((gram * x).cwiseMax(1e-300)));
         variance = (F * x).cwiseMax(floor_variance);
     }
+    if (part_means != nullptr)
+        for (Eigen::Index c = 0; c < parts; ++c) (*part_means)[c] = x[c] * F.col(c).mean();
     return variance;
+}
+
+Eigen::VectorXd Problem::clipped_squares(const Eigen::VectorXd &e) const {
+    std::vector<double> size(static_cast<std::size_t>(e.size()));
+    for (Eigen::Index r = 0; r < e.size(); ++r) size[static_cast<std::size_t>(r)] = std::fabs(e[r]);
+    const double cut = 4 * std::max(1.0, 1.4826 * median(size)); // the largest residuals count as four robust deviations
+    return e.cwiseAbs().cwiseMin(cut).cwiseAbs2();
+}
+
+Eigen::VectorXd Problem::variance_parts(std::size_t b) const {
+    Eigen::VectorXd parts = Eigen::VectorXd::Zero(6);
+    const auto first = static_cast<Eigen::Index>(forward_.first_row(b)), n = static_cast<Eigen::Index>(data_->balance[b].measured.size());
+    if (n > 0) row_variance(b, clipped_squares(residual.segment(first, n).cwiseQuotient(noise_rows().segment(first, n))), 1.0, &parts);
+    return parts;
 }
 
 void Problem::set_scales() {
@@ -252,12 +269,8 @@ void Problem::set_scales() {
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
         const auto first = static_cast<Eigen::Index>(forward_.first_row(b)),
                    n = static_cast<Eigen::Index>(data_->balance[b].measured.size());
-        Eigen::VectorXd e = residual.segment(first, n).cwiseQuotient(noise.segment(first, n)); // in units of the row's noise
-        std::vector<double> size(static_cast<std::size_t>(n));
-        for (Eigen::Index r = 0; r < n; ++r) size[static_cast<std::size_t>(r)] = std::fabs(e[r]);
-        const double cut = 4 * std::max(1.0, 1.4826 * median(size)); // the largest residuals count as four robust deviations
-        const Eigen::VectorXd squares = e.cwiseAbs().cwiseMin(cut).cwiseAbs2();
-        const Eigen::VectorXd variance = row_variance(b, squares, 1.0);
+        const Eigen::VectorXd e = residual.segment(first, n).cwiseQuotient(noise.segment(first, n)); // in units of the row's noise
+        const Eigen::VectorXd variance = row_variance(b, clipped_squares(e), 1.0);
         sigma[b] = std::sqrt(variance.mean()) * data_->balance[b].noise;
         for (Eigen::Index r = 0; r < n; ++r) {
             const double scale = std::sqrt(variance[r]), ratio = std::fabs(e[r]) / scale;

@@ -50,6 +50,11 @@ class Problem {
     Eigen::VectorXd smoothing_bias_rows() const; // Balance::smoothing_bias of each row
     double balance_rms(std::size_t balance, bool in_noise) const;
 
+    // What the six parts of a balance's variance (above) come to at the present residual, mean over its rows, in squares of the noise:
+    // constant, traction, wheel acceleration, slip sensitivity, speed, range of the speed. Residuals beyond four robust deviations count as
+    // four.
+    Eigen::VectorXd variance_parts(std::size_t balance) const;
+
     Eigen::VectorXd scaled_residual(const Physics &at,
                                     unsigned touched); // of a physics that differs in these stages, on the present scales
     bool at_bound(std::size_t parameter) const;
@@ -78,7 +83,9 @@ class Problem {
     void set_scales();                                  // the Jacobian, if there is one, is scaled anew
     void update_residual();                             // prediction and residual at the present increments; the Jacobian stays
     double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
-    Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance) const;
+    Eigen::VectorXd clipped_squares(const Eigen::VectorXd &in_noise) const; // of residuals in units of each row's noise
+    Eigen::VectorXd row_variance(std::size_t balance, const Eigen::VectorXd &squares, double floor_variance,
+                                 Eigen::VectorXd *part_means = nullptr) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
 

@@ -48,8 +48,9 @@ void add_smoothing_bias(const Model &model, Dataset &data) {
         b = std::move(kept);
     }
     if (left_out > 0)
-        data.messages.push_back(std::to_string(left_out) +
-                                " rows of the torque balances lie at speed steps quicker than the encoder can tell: left out");
+        data.messages.push_back(
+            std::to_string(left_out) +
+            " samples of the motor currents were ignored: the wheel's speed changed faster than its encoder can measure");
 }
 
 } // namespace traction::lab

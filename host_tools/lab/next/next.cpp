@@ -340,7 +340,7 @@ NextExperiment next_experiment(const Diagnosis &d, const Model &model, const Dat
     for (const ConfoundedClass &c : d.classes) in_class.insert(c.members.begin(), c.members.end());
     for (const CandidateResult &a : d.accepted) // what was named for sure belongs to the machine
         if (in_class.count(a.candidate.label()) == 0) plan.base.effects.push_back(effect_of(a.candidate, a.value));
-    plan.undecided = !d.classes.empty();
+    plan.undecided = true; // whatever is asked here, the diagnosis has looked at this log and could not say
     for (const ConfoundedClass &c : d.classes) {
         std::vector<int> places;
         for (const std::string &label : c.members)

@@ -3,6 +3,7 @@
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/screen.h"
 #include "result.h"
+#include "words.h"
 
 #include "sim/physics/effects/catalogue.h"
 
@@ -112,7 +113,7 @@ std::string added_text(const Added &added) {
                       p.unit.c_str(), p.fixed ? " (shape)" : "");
         text += buffer;
     }
-    return text + limits_text(added.limits) + ladder_text(added.ladder) + added.text + "\n";
+    return text + limits_text(added.limits) + ladder_text(added.ladder) + wrapped(added.text);
 }
 
 } // namespace traction::lab

@@ -1,5 +1,8 @@
 #include "compare.h"
 
+#include "append.h"
+#include "words.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,8 +12,10 @@ namespace traction::lab {
 namespace {
 
 constexpr double window_s = 5;
+constexpr std::size_t strip_parts = 24;
+constexpr double least_rows = 20; // of a heat map's cell that is named: assumed
 
-std::vector<Worst> worst_windows(const std::vector<double> &t, const std::vector<double> &e) {
+std::vector<Worst> worst_windows(const std::vector<double> &t, const std::vector<double> &e, double end_s) {
     std::vector<Worst> list;
     std::vector<std::pair<double, int>> sums;
     if (t.empty()) return list;
@@ -22,8 +27,8 @@ std::vector<Worst> worst_windows(const std::vector<double> &t, const std::vector
     }
     for (std::size_t w = 0; w < count; ++w)
         if (sums[w].second > 0)
-            list.push_back({t.front() + static_cast<double>(w) * window_s, t.front() + static_cast<double>(w + 1) * window_s,
-                            std::sqrt(sums[w].first / sums[w].second)});
+            list.push_back({t.front() + static_cast<double>(w) * window_s,
+                            std::min(end_s, t.front() + static_cast<double>(w + 1) * window_s), std::sqrt(sums[w].first / sums[w].second)});
     std::stable_sort(list.begin(), list.end(), [](const Worst &a, const Worst &b) { return a.rmse > b.rmse; });
     if (list.size() > 5) list.resize(5);
     return list;
@@ -64,6 +69,21 @@ std::vector<double> at_rows(const Dataset &data, const Balance &b, const std::ve
     return out;
 }
 
+// RMS of the residual in units of noise over equal parts of the log.
+std::vector<double> strip_of(const std::vector<double> &t, const std::vector<double> &e, const std::vector<double> &noise, double start_s,
+                             double end_s) {
+    std::vector<double> sum(strip_parts, 0), count(strip_parts, 0);
+    for (std::size_t i = 0; i < t.size() && end_s > start_s; ++i) {
+        const double at = std::clamp((t[i] - start_s) / (end_s - start_s), 0.0, 1.0) * strip_parts;
+        const std::size_t k = std::min(strip_parts - 1, static_cast<std::size_t>(at));
+        sum[k] += e[i] * e[i] / (noise[i] * noise[i]), count[k] += 1;
+    }
+    for (std::size_t k = 0; k < strip_parts; ++k) sum[k] = count[k] > 0 ? std::sqrt(sum[k] / count[k]) : std::nan("");
+    return sum;
+}
+
+double end_of(const Dataset &data) { return data.count > 0 ? data.time(data.count - 1) : data.start_s; }
+
 BalanceComparison compare_balance(Problem &problem, std::size_t b) {
     const Dataset &data = problem.data();
     const Balance &balance = data.balance[b];
@@ -87,7 +107,11 @@ BalanceComparison compare_balance(Problem &problem, std::size_t b) {
     out.rmse = std::sqrt(squares / count);
     out.nrmse = problem.balance_rms(b, true);
     out.r2 = spread > 0 ? 1 - squares / spread : 0;
-    out.worst = worst_windows(out.t_s, e);
+    if (!data.independent_rows) out.gaps = gaps_of(balance, data.start_s, end_of(data));
+    const Eigen::VectorXd noise = problem.noise_rows();
+    for (std::size_t r = 0; r < n; ++r) out.in_noise.push_back(noise[static_cast<Eigen::Index>(problem.forward().first_row(b) + r)]);
+    out.worst = worst_windows(out.t_s, e, std::max(end_of(data), n > 0 ? out.t_s.back() : 0.0));
+    out.strip = strip_of(out.t_s, e, out.in_noise, data.start_s, end_of(data));
     const double step = n > 1 ? (out.t_s.back() - out.t_s.front()) / (count - 1) : 1;
     out.acf = correlation(e, e, step, "itself");
     const Motion &m = problem.forward().motion();
@@ -107,7 +131,15 @@ BalanceComparison compare_balance(Problem &problem, std::size_t b) {
 // Heat map: one row per balance, columns along a quantity.
 template <typename Value>
 Regime regime(Problem &problem, const std::string &title, const std::string &x_label, double low, double high, Value &&value_at) {
-    Regime map{title, x_label, {}, {}, {}, {}};
+    const std::size_t bracket = x_label.find(" [");
+    Regime map{x_label.substr(0, std::min(bracket, x_label.find(" ("))),
+               bracket == std::string::npos ? "" : x_label.substr(bracket + 2, x_label.find(']') - bracket - 2),
+               title,
+               x_label,
+               {},
+               {},
+               {},
+               {}};
     constexpr std::size_t columns = 12;
     if (!(high > low)) high = low + 1;
     for (std::size_t c = 0; c <= columns; ++c) map.x_edges.push_back(low + (high - low) * static_cast<double>(c) / columns);
@@ -159,7 +191,83 @@ std::vector<Regime> regimes(Problem &problem) {
     return maps;
 }
 
+// compare() tests nothing: whether what is left means something is for `diagnose` to say.
+std::string verdict_of(const Comparison &c) {
+    const double ratio = c.adjusted / c.floor;
+    if (ratio < 1.15) return misses_words(c) + ". That is the noise of the sensors: for this log the model is good enough.";
+    if (ratio < 1.6) return misses_words(c) + ". That is close to the noise of the sensors: little can be left to find.";
+    return misses_words(c) + ". Whether an effect is missing, traction diagnose tells.";
+}
+
 } // namespace
+
+std::string misses_words(const Comparison &c) {
+    return "The model misses by " + times(c.error / c.floor) + " times the sensor noise; retuning it within its tolerances leaves " +
+           times(c.adjusted / c.floor);
+}
+
+std::vector<Gap> gaps_of(const Balance &balance, double start_s, double end_s) {
+    std::vector<Gap> gaps;
+    const std::size_t n = balance.measured.size();
+    if (n < 3) return gaps;
+    const auto middle = [&](std::size_t r) { return 0.5 * (balance.t0_s[r] + balance.t1_s[r]); };
+    std::vector<double> apart;
+    for (std::size_t r = 1; r < n; ++r) apart.push_back(middle(r) - middle(r - 1));
+    std::nth_element(apart.begin(), apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2), apart.end());
+    const double usual = apart[apart.size() / 2];
+    if (!(usual > 0)) return gaps;
+    const auto note = [&](double from, double to, double centres) {
+        if (centres > 1.5 * usual && to > from) gaps.push_back({from, to, std::max(1, static_cast<int>(std::lround(centres / usual)) - 1)});
+    };
+    note(start_s, balance.t0_s[0], balance.t0_s[0] - start_s + usual);
+    for (std::size_t r = 1; r < n; ++r) note(balance.t1_s[r - 1], balance.t0_s[r], middle(r) - middle(r - 1));
+    note(balance.t1_s[n - 1], end_s, end_s - balance.t1_s[n - 1] + usual);
+    return gaps;
+}
+
+std::string farthest_words(const Comparison &comparison) {
+    const auto worst = std::max_element(comparison.balances.begin(), comparison.balances.end(),
+                                        [](const BalanceComparison &a, const BalanceComparison &b) { return a.nrmse < b.nrmse; });
+    if (worst == comparison.balances.end()) return "";
+    std::string text;
+    append(text, "Farthest off is the %s: typically by %.2g %s, %s times its noise.",
+           worst->title.empty() ? worst->name.c_str() : worst->title.c_str(), worst->rmse, worst->unit.c_str(),
+           times(worst->nrmse).c_str());
+    return text;
+}
+
+std::string worst_regime_words(const Comparison &comparison) {
+    const Regime *map = nullptr;
+    std::size_t row = 0, column = 0;
+    double most = 1.5 * comparison.adjusted;
+    for (const Regime &r : comparison.regimes)
+        for (std::size_t y = 0; y < r.value.size(); ++y)
+            for (std::size_t x = 0; x < r.value[y].size(); ++x)
+                if (r.count[y][x] >= least_rows && r.value[y][x] > most) most = r.value[y][x], map = &r, row = y, column = x;
+    if (map == nullptr) return "";
+    std::string text;
+    append(text, "The model fails most at %s %.3g to %.3g%s%s, in %s: %s times the noise.", map->quantity.c_str(), map->x_edges[column],
+           map->x_edges[column + 1], map->unit.empty() ? "" : " ", map->unit.c_str(), map->y_labels[row].c_str(), times(most).c_str());
+    return text;
+}
+
+void show_after(Comparison &comparison, const Model &better, const Dataset &data) {
+    if (comparison.balances.empty()) return;
+    Problem problem = fitted_problem(better, data);
+    for (std::size_t b = 0; b < comparison.balances.size(); ++b) {
+        BalanceComparison &out = comparison.balances[b];
+        double squares = 0;
+        out.after.clear();
+        for (std::size_t r = 0; r < out.measured.size(); ++r) {
+            const double e = problem.residual[static_cast<Eigen::Index>(problem.forward().first_row(b) + r)];
+            out.after.push_back(out.measured[r] - e);
+            squares += e * e;
+        }
+        out.rmse_after = out.measured.empty() ? 0 : std::sqrt(squares / static_cast<double>(out.measured.size()));
+        out.nrmse_after = problem.balance_rms(b, true);
+    }
+    comparison.left_after = remainder_of(problem);
+}
 
 Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     Comparison out;
@@ -181,14 +289,8 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     Problem &shown = as_is ? problem : adjusted;
     for (std::size_t b = 0; b < data.balance.size(); ++b) out.balances.push_back(compare_balance(shown, b));
     out.regimes = regimes(shown);
-    char text[256];
-    const double ratio = out.adjusted / out.floor;
-    const char *what = ratio < 1.15  ? "the model explains this log down to the noise"
-                       : ratio < 1.6 ? "close to the noise: little is left to find"
-                                     : "there is something to find";
-    std::snprintf(text, sizeof text, "error %.2f x noise floor (%.2f x when the parameters move within their priors): %s",
-                  out.error / out.floor, ratio, what);
-    out.verdict = text;
+    out.left = remainder_of(adjusted);
+    out.verdict = verdict_of(out);
     return out;
 }
 

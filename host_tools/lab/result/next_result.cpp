@@ -2,6 +2,7 @@
 
 #include "append.h"
 #include "host_tools/lab/next/manoeuvre.h"
+#include "words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ std::string joined(const std::vector<std::string> &members) {
 
 const char *status_words(const Question &q) {
     const std::string &status = q.status;
-    if (status == "told") return q.members.size() > 1 ? "the log tells already" : "this log should show it already";
+    if (status == "told") return q.members.size() > 1 ? "this log tells: traction diagnose" : "this log can show it: traction diagnose";
     if (status == "answered") return "answered by this drive";
     if (status == "never") return "not by driving";
     return "by another drive";
@@ -53,17 +54,11 @@ nlohmann::json next_json(const NextExperiment &next) {
     return out;
 }
 
-std::string next_text(const NextExperiment &next) {
+namespace {
+
+// Every manoeuvre alone, and what each question's d' was and becomes.
+std::string statistics(const NextExperiment &next) {
     std::string text;
-    if (next.questions.empty()) return "nothing is left open: no manoeuvre is needed\n";
-    for (const std::string &n : next.notes) append(text, "note: %s\n", n.c_str());
-    if (!next.predicted) {
-        append(text, "no numbers: the simulated rover cannot stand in for this machine (%s).\n", next.why_not.c_str());
-        for (const Question &q : next.questions) append(text, "open: %s\n", joined(q.members).c_str());
-        append(text, next.tried.empty() ? "no manoeuvre of the library is known for these\n" : "manoeuvres known to help:\n");
-        for (const Tried &t : next.tried) append(text, "  %s\n", t.title.c_str());
-        return text;
-    }
     std::vector<Tried> order = next.tried;
     std::stable_sort(order.begin(), order.end(), [](const Tried &a, const Tried &b) {
         return a.answered != b.answered ? a.answered > b.answered : a.least / a.duration_s > b.least / b.duration_s;
@@ -72,17 +67,41 @@ std::string next_text(const NextExperiment &next) {
     for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i)
         append(text, "%-66s %7.0f %9d %9.2f\n", order[i].title.c_str(), order[i].duration_s, order[i].answered, order[i].least);
     append(text, "%-58s %9s %9s\n", "question", "d' before", "d' after");
-    for (const Question &q : next.questions)
-        append(text, "%-58s %9.2f %9.2f  %s\n", joined(q.members).c_str(), q.before, q.after, status_words(q));
-    for (const Question &q : next.questions)
-        if (q.status == "never")
-            append(text, "%s: cannot be separated by driving (d' stays %.2f); %s\n", joined(q.members).c_str(), std::max(q.best, q.after),
-                   q.measure.c_str());
-    if (next.scenario_toml.empty())
-        append(text, "no drive is proposed\n");
-    else
-        append(text, "next: %s (%.0f s)\n", next.title.c_str(), next.duration_s);
+    for (const Question &q : next.questions) append(text, "%-58s %9.2f %9.2f\n", joined(q.members).c_str(), q.before, q.after);
     return text;
+}
+
+} // namespace
+
+std::string next_text(const NextExperiment &next, bool details) {
+    std::string text;
+    if (next.questions.empty()) return "nothing is left open: no manoeuvre is needed\n";
+    for (const std::string &n : next.notes) text += wrapped("note: " + n, 6);
+    if (!next.predicted) {
+        text += wrapped("no numbers: the simulated rover cannot stand in for this machine (" + next.why_not + ").");
+        for (const Question &q : next.questions) text += wrapped("open: " + joined(q.members), 6);
+        text += next.tried.empty() ? "no manoeuvre of the library is known for these\n" : "manoeuvres known to help:\n";
+        for (const Tried &t : next.tried) text += wrapped("  " + t.title, 4);
+        return text;
+    }
+    text += "what this log leaves open:\n";
+    for (const Question &q : next.questions) {
+        const std::string question = "  " + padded(joined(q.members), 52) + " ", words = status_words(q);
+        text += question.size() + words.size() <= terminal_columns ? question + words + "\n"
+                                                                   : wrapped("  " + joined(q.members) + ": " + words, 4);
+    }
+    for (const Question &q : next.questions)
+        if (q.status == "never") {
+            std::string spread;
+            append(spread, "%s: cannot be separated by driving (d' stays %.2f); %s", joined(q.members).c_str(), std::max(q.best, q.after),
+                   q.measure.c_str());
+            text += wrapped(spread, 2);
+        }
+    if (details) text += statistics(next);
+    if (next.scenario_toml.empty()) return text + "no drive is proposed\n";
+    std::string drive;
+    append(drive, "next: %s (%.0f s)", next.title.c_str(), next.duration_s);
+    return text + wrapped(drive, 6);
 }
 
 } // namespace traction::lab

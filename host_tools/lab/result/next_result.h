@@ -9,7 +9,7 @@
 
 namespace traction::lab {
 
-nlohmann::json next_json(const NextExperiment &next); // null when there is no question
-std::string next_text(const NextExperiment &next);
+nlohmann::json next_json(const NextExperiment &next);                    // null when there is no question
+std::string next_text(const NextExperiment &next, bool details = false); // details: d' of every question
 
 } // namespace traction::lab

@@ -1,6 +1,10 @@
 #include "result.h"
 
 #include "append.h"
+#include "series.h"
+#include "words.h"
+
+#include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +18,9 @@ namespace {
 
 json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-json series(const std::vector<double> &values, std::size_t every = 1) {
+json series(const std::vector<double> &values) {
     json out = json::array();
-    for (std::size_t i = 0; i < values.size(); i += every) out.push_back(finite(values[i]));
+    for (const double value : values) out.push_back(finite(value));
     return out;
 }
 
@@ -34,6 +38,13 @@ json correlation_json(const Correlation &c) {
     return {{"with", c.with}, {"lag_s", series(c.lag_s)}, {"value", series(c.value)}, {"band", finite(c.band)}};
 }
 
+constexpr double sure_p = 0.003; // DiagnoseOptions::p_limit
+
+// Where the evidence is sure and the gain is not worth a name, "not significant" would be false.
+std::string verdict_word(const CandidateResult &r) {
+    return r.verdict == "not_significant" && r.p_value < sure_p ? "too_little" : r.verdict;
+}
+
 json candidate_json(const CandidateResult &r, int rank) {
     json variant = json::object(), parameters = json::object(), evidence = json::array();
     for (const auto &[key, value] : r.candidate.variant) variant[key] = finite(value);
@@ -49,58 +60,66 @@ json candidate_json(const CandidateResult &r, int rank) {
                 {"effect", r.candidate.effect},
                 {"variant", variant},
                 {"heldout_gain", finite(r.heldout_gain)},
-                {"gain_low", finite(r.gain_low)},
-                {"gain_high", finite(r.gain_high)},
+                {"gain_low", finite(std::max(-1.0, r.gain_low))}, // none can gain more than all there is
+                {"gain_high", finite(std::min(1.0, r.gain_high))},
                 {"p_value", finite(r.p_value)},
                 {"parameters", parameters},
-                {"verdict", r.verdict},
+                {"verdict", verdict_word(r)},
                 {"class", r.class_index ? json(*r.class_index) : json(nullptr)},
                 {"detectability", finite(r.detectability)},
                 {"evidence", evidence},
                 {"explains", r.explains}};
     out["wheel"] = r.candidate.wheel >= 0 ? json(r.candidate.wheel) : json(nullptr);
+    if (const sim::Effect *effect = sim::find_effect(r.candidate.effect); effect != nullptr)
+        out["title"] = effect->title, out["equation"] = effect->equation, out["signature"] = effect->signature;
     return out;
-}
-
-std::string strengths_text(const CandidateResult &r) {
-    std::string text;
-    for (std::size_t j = 0; j < r.value.size(); ++j) {
-        append(text, "%s%s = %.4g [%.4g, %.4g] %s", j > 0 ? ", " : "", r.candidate.strengths[j].key.c_str(), r.value[j], r.low[j],
-               r.high[j], r.candidate.strengths[j].unit == "1" ? "" : r.candidate.strengths[j].unit.c_str());
-    }
-    for (const auto &[key, value] : r.candidate.variant) {
-        const auto refined = std::find_if(r.shapes.begin(), r.shapes.end(), [&](const ShapeEstimate &s) { return s.key == key; });
-        if (refined == r.shapes.end())
-            append(text, ", %s = %g", key.c_str(), value);
-        else
-            append(text, ", %s = %.4g [%.4g, %.4g] %s", key.c_str(), value, refined->low, refined->high, refined->unit.c_str());
-    }
-    return text;
 }
 
 } // namespace
 
-// The verdict of a candidate for people.
-static std::string verdict_words(const CandidateResult &r, const Diagnosis &d) {
+std::string candidate_words(const CandidateResult &r, const Diagnosis &d) {
+    const std::string verdict = verdict_word(r);
     std::string names;
     for (const std::string &name : d.effects) names += (names.empty() ? "" : ", ") + name;
-    if (r.verdict == "not_needed" && !names.empty()) return "not needed beside " + names;
-    if (r.verdict == "not_needed" && d.unknown) return "not needed beside " + d.unknown->balance;
-    if (r.verdict == "not_held_out") return "predicts blocks left out no better";
-    std::string words = r.verdict;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    return words;
+    if (verdict == "not_needed" && !names.empty()) return "not needed beside " + names;
+    if (verdict == "not_needed" && d.unknown) return "not needed beside " + d.unknown->balance;
+    static const std::pair<const char *, const char *> words[] = {{"named", "found"},
+                                                                  {"class", "possible: this log cannot tell it from the others marked so"},
+                                                                  {"nearest", "comes near, and is not the cause"},
+                                                                  {"not_needed", "not needed beside what was found"},
+                                                                  {"not_held_out", "predicts the rest of the log no better"},
+                                                                  {"not_significant", "no sure help"},
+                                                                  {"too_little", "there, but helps too little to matter"},
+                                                                  {"too_small", "there, but too small to matter"},
+                                                                  {"beyond_range", "helps only at a size that is not plausible"},
+                                                                  {"wrong_sign", "helps only with a sign that is not physical"},
+                                                                  {"not_excited", "this log cannot show it"},
+                                                                  {"wrong_model", "not judged: the model's numbers come first"}};
+    for (const auto &[word, said] : words)
+        if (verdict == word) return said;
+    return verdict;
 }
 
 json head_json(const std::string &verb, const Model &model, const Dataset &data) {
     json effects = json::array();
     for (const EffectUse &use : model.effects) effects.push_back(effect_json(use));
-    return {
-        {"schema", "traction.lab/1"},
-        {"verb", verb},
-        {"title", verb + ": " + model.name + " against " + data.log_file},
-        {"log", {{"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}, {"despite", data.despite}}},
-        {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
+    json out = {{"schema", "traction.lab/1"},
+                {"verb", verb},
+                {"title", verb + ": " + model.name + (data.log_file.empty() ? "" : " against " + data.log_file)},
+                {"model", {{"file", model.file.substr(model.file.find_last_of('/') + 1)}, {"name", model.name}, {"effects", effects}}}};
+    if (!data.log_file.empty())
+        out["log"] = {
+            {"file", data.log_file}, {"scenario", data.scenario}, {"duration_s", finite(data.duration_s)}, {"despite", data.despite}};
+    return out;
+}
+
+static json remainder_json(const Remainder &left) {
+    static constexpr const char *names[] = {"sensors",   "ground",      "encoders",   "steep_soil",
+                                            "vibration", "mixed_speed", "everywhere", "outliers"};
+    json parts = json::array();
+    for (std::size_t c = 0; c < left_by_count; ++c)
+        parts.push_back({{"cause", names[c]}, {"error", finite(left.part[c])}, {"text", words_of(static_cast<LeftBy>(c))}});
+    return {{"error", finite(left.error)}, {"parts", parts}};
 }
 
 void put_comparison(json &out, const Comparison &c) {
@@ -111,18 +130,22 @@ void put_comparison(json &out, const Comparison &c) {
                     {"verdict", c.verdict}};
     json balances = json::array();
     for (const BalanceComparison &b : c.balances) {
-        const std::size_t every = b.t_s.size() / 3000 + 1;
-        json worst = json::array(), ccf = json::array();
+        const SeriesRows rows = rows_to_show(b);
+        json worst = json::array(), ccf = json::array(), gaps = json::array();
         for (const Worst &w : b.worst) worst.push_back({{"t0_s", finite(w.t0_s)}, {"t1_s", finite(w.t1_s)}, {"rmse", finite(w.rmse)}});
         for (const Correlation &k : b.ccf) ccf.push_back(correlation_json(k));
+        for (const Gap &g : b.gaps) gaps.push_back({{"t0_s", finite(g.t0_s)}, {"t1_s", finite(g.t1_s)}, {"rows", g.rows}});
         balances.push_back({{"name", b.name},
                             {"title", b.title},
                             {"unit", b.unit},
                             {"sigma", finite(b.noise)},
                             {"sigma_source", b.noise_source},
-                            {"t_s", series(b.t_s, every)},
-                            {"measured", series(b.measured, every)},
-                            {"model", series(b.model, every)},
+                            {"rows", b.t_s.size()},
+                            {"t_s", series(rows.t_s)},
+                            {"measured", series(rows.measured)},
+                            {"model", series(rows.model)},
+                            {"gaps", gaps},
+                            {"strip", series(b.strip)},
                             {"rmse", finite(b.rmse)},
                             {"nrmse", finite(b.nrmse)},
                             {"bias", finite(b.bias)},
@@ -130,8 +153,14 @@ void put_comparison(json &out, const Comparison &c) {
                             {"worst", worst},
                             {"acf", correlation_json(b.acf)},
                             {"ccf", ccf}});
+        if (b.after.empty()) continue;
+        balances.back()["after"] = series(rows.after);
+        balances.back()["rmse_after"] = finite(b.rmse_after);
+        balances.back()["nrmse_after"] = finite(b.nrmse_after);
     }
     out["balances"] = balances;
+    out["left"] = {{"before", remainder_json(c.left)}};
+    if (c.left_after.error > 0) out["left"]["after"] = remainder_json(c.left_after);
     json regimes = json::array();
     for (const Regime &r : c.regimes) {
         json value = json::array(), count = json::array();
@@ -165,20 +194,26 @@ json identifiability_json(const Identifiability &told, const std::vector<Resonan
 
 std::string identifiability_text(const Identifiability &told, const std::vector<Resonance> &peaks) {
     std::string text;
-    const auto list = [&](const char *words, const std::vector<std::string> &names) {
-        for (std::size_t i = 0; i < names.size(); ++i) append(text, "%s%s", i == 0 ? words : ", ", names[i].c_str());
-        if (!names.empty()) text += "\n";
+    const auto list = [&](const std::string &words, const std::vector<std::string> &names) {
+        std::string line;
+        for (const std::string &name : names) line += (line.empty() ? "" : ", ") + name;
+        if (!names.empty()) text += wrapped(words + line, 2);
     };
     list("this log cannot move: ", told.dead);
     list("hardly held by this log: ", told.flat);
     list("decided by the prior alone: ", told.prior_alone);
-    for (const Identifiability::Pair &p : told.correlated)
-        append(text, "go together (correlation %.3f): %s and %s\n", p.correlation, p.a.c_str(), p.b.c_str());
+    for (const Identifiability::Pair &p : told.correlated) {
+        std::string line;
+        append(line, "go together (correlation %.3f): %s and %s", p.correlation, p.a.c_str(), p.b.c_str());
+        text += wrapped(line, 2);
+    }
     append(text, "condition number %.3g\n", told.condition);
-    for (const Resonance &r : peaks)
-        append(text,
-               "resonance: the residual of %s has a peak at %.2f Hz, %.0f times its surroundings: nothing in the model swings there\n",
+    for (const Resonance &r : peaks) {
+        std::string line;
+        append(line, "resonance: the residual of %s has a peak at %.2f Hz, %.0f times its surroundings: nothing in the model swings there",
                r.balance.c_str(), r.frequency_Hz, r.times);
+        text += wrapped(line, 2);
+    }
     return text;
 }
 
@@ -195,7 +230,7 @@ json limits_json(const std::vector<Limit> &limits) {
 
 std::string limits_text(const std::vector<Limit> &limits) {
     std::string text;
-    for (const Limit &l : limits) append(text, "at its limit: %s\n", limit_text(l).c_str());
+    for (const Limit &l : limits) text += wrapped("at its limit: " + limit_text(l), 2);
     return text;
 }
 
@@ -209,7 +244,10 @@ json ladder_json(const std::vector<LadderStep> &ladder) {
 void put_diagnosis(json &out, const Diagnosis &d) {
     json candidates = json::array(), classes = json::array(), not_excited = json::array(), accepted = json::array();
     int rank = 0;
-    for (const CandidateResult &r : d.ranking) candidates.push_back(candidate_json(r, ++rank));
+    for (const CandidateResult &r : d.ranking) {
+        candidates.push_back(candidate_json(r, ++rank));
+        candidates.back()["words"] = candidate_words(r, d);
+    }
     rank = 0;
     for (const CandidateResult &r : d.accepted) accepted.push_back(candidate_json(r, ++rank));
     for (const ConfoundedClass &c : d.classes) classes.push_back({{"members", c.members}, {"separate_by", c.separate_by}});
@@ -226,62 +264,10 @@ void put_diagnosis(json &out, const Diagnosis &d) {
                           {"unit_x", u.unit_x},     {"unit_y", u.unit_y},   {"expression", u.expression}};
     }
     out["verdict"] = {{"kind", d.kind}, {"effects", d.effects}, {"nearest", d.nearest}, {"text", d.text}};
+    out["heldout_fall"] = finite(fall_percent(d.ladder) / 100);
     out["ladder"] = ladder_json(d.ladder);
     out["limits"] = limits_json(d.limits);
     out["messages"] = d.messages;
-}
-
-std::string comparison_text(const Comparison &c) {
-    std::string text;
-    for (const std::string &m : c.messages) append(text, "note: %s\n", m.c_str());
-    append(text, "%-28s %10s %10s %8s %9s %7s  %s\n", "balance", "rmse", "noise", "x noise", "bias", "R2", "worst 5 s window");
-    for (const BalanceComparison &b : c.balances) {
-        append(text, "%-28s %10.4g %10.4g %8.2f %9.3g %7.4f", b.name.c_str(), b.rmse, b.noise, b.nrmse, b.bias, b.r2);
-        if (!b.worst.empty()) append(text, "  %.1f to %.1f s", b.worst[0].t0_s, b.worst[0].t1_s);
-        append(text, " %s\n", b.unit.c_str());
-    }
-    text += limits_text(c.limits);
-    append(text, "%s\n", c.verdict.c_str());
-    return text;
-}
-
-std::string ladder_text(const std::vector<LadderStep> &ladder) {
-    std::string text;
-    append(text, "%-36s %10s %10s   (in units of noise)\n", "ladder", "training", "held out");
-    for (const LadderStep &r : ladder) append(text, "%-36s %10.3f %10.3f\n", r.label.c_str(), r.train, r.heldout);
-    append(text, "%-36s %10.3f %10.3f\n", "noise floor", ladder.empty() ? 1.0 : ladder.back().floor,
-           ladder.empty() ? 1.0 : ladder.back().floor);
-    return text;
-}
-
-std::string diagnosis_text(const Diagnosis &d) {
-    std::string text;
-    for (const std::string &m : d.messages) append(text, "note: %s\n", m.c_str());
-    append(text, "%-34s %9s %19s %9s  %s\n", "candidate", "explains", "95 %", "p", "verdict, size [95 %]");
-    int shown = 0;
-    for (const CandidateResult &r : d.ranking) {
-        if (++shown > 8) break;
-        append(text, "%-34s %7.1f %% %8.1f to %5.1f %% %9.1e  %s, %s\n", r.candidate.label().c_str(), 100 * r.heldout_gain,
-               100 * r.gain_low, 100 * r.gain_high, r.p_value, verdict_words(r, d).c_str(), strengths_text(r).c_str());
-    }
-    for (const ConfoundedClass &c : d.classes) {
-        append(text, "cannot be told apart in this log:");
-        for (const std::string &m : c.members) append(text, " %s", m.c_str());
-        append(text, "\n  to separate them: %s\n", c.separate_by.c_str());
-    }
-    if (d.unknown)
-        append(text, "unexplained: %s depends on %s (explains %.1f %%): %s\n", d.unknown->target.c_str(), d.unknown->variable.c_str(),
-               100 * d.unknown->gain, d.unknown->expression.c_str());
-    if (!d.not_excited.empty()) {
-        append(text, "this log cannot show:");
-        for (const auto &[effect, why] : d.not_excited) append(text, " %s", effect.c_str());
-        append(text, "\n");
-    }
-    for (const CandidateResult &r : d.accepted) append(text, "found: %s: %s\n", r.candidate.label().c_str(), strengths_text(r).c_str());
-    text += limits_text(d.limits);
-    text += ladder_text(d.ladder);
-    append(text, "%s\n", d.text.c_str());
-    return text;
 }
 
 } // namespace traction::lab

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <vector>
 
 namespace traction::lab {
 
@@ -19,8 +20,13 @@ nlohmann::json limits_json(const std::vector<Limit> &limits);
 std::string limits_text(const std::vector<Limit> &limits);
 nlohmann::json ladder_json(const std::vector<LadderStep> &ladder);
 
-std::string comparison_text(const Comparison &comparison);
-std::string diagnosis_text(const Diagnosis &diagnosis);
+// Why a candidate was or was not named, for people.
+std::string candidate_words(const CandidateResult &candidate, const Diagnosis &diagnosis);
+
+// Tables for a terminal of 80 columns (text.cpp). `details`: the statistics too (bias, R2, p, d'), in wider lines.
+std::string comparison_text(const Comparison &comparison, bool details = false);
+std::string diagnosis_text(const Diagnosis &diagnosis, bool details = false); // without the five answers: story.h
 std::string ladder_text(const std::vector<LadderStep> &ladder);
+std::string messages_text(const std::vector<std::string> &messages);
 
 } // namespace traction::lab

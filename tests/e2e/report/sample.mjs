@@ -1,6 +1,6 @@
 // sample.mjs OUT_DIR - writes results of every kind for the report page to be looked at: made-up numbers, seeded, in the shape of
 // docs/json_schema.md. diagnose.json has every part; compare.json few; empty.json none; odd.json values that would break a
-// careless page; large.json 20 balances of 3000 points; figures.json the page of `traction reproduce`.
+// careless page; large.json 11 balances of 1000 s, 20000 rows each; gaps.json rows left out and single rows; figures.json the page of `traction reproduce`.
 import { mkdirSync, writeFileSync } from 'node:fs';
 
 let state = 20240607n; // seed of splitmix64 (Steele, Lea and Flood 2014)
@@ -15,10 +15,10 @@ const normal = () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math
 
 const drive = (t) => 0.35 * Math.sin(0.25 * t) + 0.15 * Math.sin(1.7 * t) + (t > 60 && t < 80 ? 0.3 : 0);
 
-function balance(name, title, unit, sigma, points, missing) {
+function balance(name, title, unit, sigma, points, missing, duration = 120) {
   const t_s = [], measured = [], model = [];
   for (let i = 0; i < points; ++i) {
-    const t = (120 * i) / points;
+    const t = (duration * i) / points;
     const y = drive(t + name.length) * sigma * 40;
     t_s.push(+t.toFixed(4));
     model.push(+y.toPrecision(6));
@@ -27,7 +27,7 @@ function balance(name, title, unit, sigma, points, missing) {
   const r = measured.map((m, i) => m - model[i]);
   const rmse = Math.sqrt(r.reduce((a, x) => a + x * x, 0) / points), bias = r.reduce((a, x) => a + x, 0) / points;
   const lag_s = Array.from({ length: 51 }, (_, i) => +(i * 0.04).toFixed(2));
-  return { name, title, unit, sigma, sigma_source: 'the model file', t_s, measured, model, rmse, nrmse: rmse / sigma, bias, r2: 1 - (0.02 + missing * 0.2),
+  return { name, title, unit, sigma, sigma_source: 'the model file', t_s, measured, model, rmse, nrmse: rmse / sigma, bias, rows: points, gaps: [], strip: Array.from({ length: 24 }, (_, i) => (i === 3 ? null : 1 + missing * Math.max(0, drive(5 * i)) * 9)), r2: 1 - (0.02 + missing * 0.2),
     worst: [60, 65, 20].map((t0) => ({ t0_s: t0, t1_s: t0 + 5, rmse: rmse * (2 - t0 / 100) })),
     acf: { lag_s, value: lag_s.map((l) => (l === 0 ? 1 : missing * Math.exp(-l / 0.7) + 0.02 * normal())), band: 0.047 },
     ccf: [{ with: 'wheel2.set_speed_rad_s', lag_s: lag_s.map((l) => +(l - 1).toFixed(2)), value: lag_s.map((l) => missing * 0.5 * Math.exp(-Math.abs(l - 1.2)) + 0.02 * normal()), band: 0.047 }] };
@@ -46,7 +46,9 @@ const compare = {
   schema: 'traction.lab/1', verb: 'compare', title: 'sand_identification.csv against the baseline rover',
   log: { file: 'sand_identification.csv', scenario: 'identification on sand', duration_s: 120 },
   model: { file: 'rover_baseline.toml', name: 'baseline rover', effects: [] },
-  score: { error: 3.12, floor: 1.006, ratio: 3.1, verdict: 'there is something to find' }, balances,
+  score: { error: 5.31, adjusted: 3.12, floor: 1, ratio: 3.1, verdict: 'The model misses by 5.3 times the sensor noise; retuning it within its tolerances leaves 3.1. Whether an effect is missing, traction diagnose tells.' }, balances,
+  left: { before: { error: 3.12, parts: [{ cause: 'sensors', error: 1, text: 'noise of the sensors' }, { cause: 'ground', error: 2.9, text: 'how the ground varies from place to place' }, { cause: 'encoders', error: 0.57, text: 'quick changes of a wheel\'s speed, which the encoders blur' }] } },
+  story: { headline: 'The model misses by 5.3 times the sensor noise; retuning it within its tolerances leaves 3.1.', where: 'The model fails most at slip 0.3 to 0.6, in 0.1 to 0.2 m/s: 6.3 times the noise.' },
   regimes: [
     { title: 'Slip and speed, wheel 2', x_label: 'slip', x_edges: [-1, -0.6, -0.3, -0.1, 0.1, 0.3, 0.6], y_labels: ['0 to 0.1 m/s', '0.1 to 0.2 m/s', '0.2 to 0.4 m/s'],
       value: [[1.1, 1.0, 1.0, 1.3, 2.2, 4.1], [1.0, 1.1, 1.0, 1.5, 3.0, 6.3], [null, 1.0, 1.1, 1.6, 3.4, null]], count: [[40, 210, 260, 800, 130, 60], [22, 150, 340, 900, 210, 45], [0, 30, 80, 340, 60, 0]] },
@@ -57,11 +59,16 @@ const compare = {
 };
 
 const diagnose = { ...compare, verb: 'diagnose', title: 'What is missing in the baseline rover on sand',
-  verdict: { kind: 'named', effects: ['slip_sinkage'], text: 'slip_sinkage is missing: 0.15 [0.13 to 0.17]. With it, the held-out error falls from 3.1 to 1.02 times the noise floor.' },
+  verdict: { kind: 'named', effects: ['slip_sinkage'], text: 'The model lacks slip_sinkage: on what was not fitted the error falls by 67 %, from 3.120 to 1.030 x noise.' },
+  story: { headline: 'The model misses by 5.3 times the sensor noise; retuning it within its tolerances leaves 3.1. slip_sinkage explains it. 1.1 times the sensor noise is left, of which 1.0 is noise of the sensors.',
+    good_enough: 'No. The model misses by 5.3 times the sensor noise.', missing: 'slip_sinkage (resistance grows with slip): coefficient = 0.15 [0.13, 0.17].', sure: 'Sure of the effect, as far as a log can be: on parts of the log that took no part in the fit, the error falls by 67 %.',
+    left: '1.1 times the sensor noise is left, of which 1.0 is noise of the sensors.', next: 'Drive this, it tells them apart: one wheel drags (40 s).', where: compare.story.where },
+  left: { before: compare.left.before, after: { error: 1.1, parts: [{ cause: 'sensors', error: 1, text: 'noise of the sensors' }, { cause: 'ground', error: 0.46, text: 'how the ground varies from place to place' }] } },
+  balances: balances.map((b) => ({ ...b, after: b.model.map((m, i) => +(m + 0.8 * (b.measured[i] - m)).toPrecision(6)), rmse_after: b.sigma * 1.05, nrmse_after: 1.05 })),
   candidates: [
     candidate(1, 'slip_sinkage', 0.66, 'named', { coefficient: parameter(0.15, '1', 0.02) }, { explains: 'rolling resistance that grows with slip: front wheels, 60 to 80 s' }),
-    candidate(2, 'mesh_loss', 0.41, 'class', { fraction: parameter(0.22, '1', 0.06) }, { class: 1 }),
-    candidate(3, 'coulomb_friction', 0.12, 'not_significant', { torque_Nm: parameter(0.0062, 'N m', 0.005) }, { wheel: 2, p_value: 0.21 }),
+    candidate(2, 'mesh_loss', 0.41, 'class', { fraction: parameter(0.22, '1', 0.06) }, { class: 1, words: 'possible: this log cannot tell it from the others marked so' }),
+    candidate(3, 'coulomb_friction', 0.12, 'not_significant', { torque_Nm: parameter(0.0062, 'N m', 0.005) }, { wheel: 2, p_value: 0.21, words: 'no sure help' }),
     candidate(4, 'stribeck_friction', 0.08, 'too_small', { torque_Nm: parameter(0.0009, 'N m', 0.0004) }, { variant: { speed_rad_s: 2 } }),
     candidate(5, 'rolling_resistance', 0.05, 'wrong_sign', { coefficient: parameter(-0.04, '1', 0.01) }),
     candidate(6, 'multi_pass', 0.02, 'not_excited', { gain: parameter(0.1, '1', 0.4) }, { p_value: 0.7, evidence: [] })],
@@ -89,8 +96,23 @@ const odd = { schema: 'traction.lab/1', title: '</script><b>"quoted" & odd</b>',
   regimes: [{ title: 'nothing', x_label: '', x_edges: [], y_labels: [], value: [] }], candidates: [{ effect: 'bare' }], classes: [{ members: [] }],
   unknown: { variable: 'v', x: [], y: [] }, ladder: [{ label: 'only', train: null, heldout: null, floor: null }], next: {}, messages: [] };
 
-const large = { ...compare, title: 'Large log', balances: Array.from({ length: 20 }, (_, i) => balance(`wheel${i}.current_A`, `Motor current, wheel ${i}`, 'A', 0.02, 3000, i % 3 === 0 ? 0.5 : 0)) };
+const large = { ...compare, title: 'Large log', log: { file: 'long.csv', duration_s: 1000 },
+  balances: names.map(([name, title, unit, sigma, missing], i) => balance(name, title, unit, sigma, 20000, i % 3 === 0 ? missing : 0, 1000)) };
+large.balances[0].measured[7777] = 9.5; // one row stands out: a picture without it lies
 
+// 30 rows are missing from 40 to 55 s, one row stands alone at 80 s, the log goes on after the last row
+const cut = balance('wheel0.current_A', 'Motor current, wheel 0', 'A', 0.02, 240, 0.3);
+const stays = cut.t_s.map((s) => s < 40 || (s >= 55 && s < 70) || s === 80 || (s >= 90 && s < 110));
+for (const key of ['t_s', 'measured', 'model']) cut[key] = cut[key].filter((_, i) => stays[i]);
+cut.after = cut.model.map((m) => +(m * 1.02).toPrecision(6));
+cut.nrmse_after = 1.1;
+cut.gaps = [{ t0_s: 40, t1_s: 55, rows: 30 }, { t0_s: 70, t1_s: 80, rows: 20 }, { t0_s: 80.5, t1_s: 90, rows: 19 }, { t0_s: 110, t1_s: 120, rows: 20 }];
+const gaps = { ...compare, title: 'A log with gaps', balances: [cut] };
+
+const demo = { ...diagnose, title: 'demo', demo: { seed: 1, hidden: { name: 'slip_sinkage' }, hidden_text: 'slip_sinkage: coefficient = 0.15', named: ['slip_sinkage'], right: true, judgement: 'the lab was right' } };
+const method = { schema: 'traction.figures/1', title: 'A verdict on a method', figures: [{ id: 'table-3', title: 'Table III', paper: '5.1 N', paper_here: '4.13 N', ours: '5.07 N', verdict: 'not reproduced', svg: '@SVG@' },
+  { id: 'fig-10', title: 'Fig. 10', paper: 'mean right', paper_here: '0.18 m/s', ours: '0.175 m/s', verdict: 'reproduced', svg: '@SVG@' }] };
+const compared = { schema: 'traction.compared/1', title: '3 results side by side', results: [{ ...compare, name: 'baseline' }, { ...diagnose, name: 'diagnosed' }, { ...gaps, name: 'other' }] };
 const figures = { schema: 'traction.figures/1', title: 'The experiments of the paper, made again', intro: 'Every figure of the paper from firmware and simulator.\n\nBounds stand beside each.',
   figures: [{ id: 'fig-3', title: 'Fig. 3: drawbar pull against slip', paper: 'fit passes through ±5 N of noise', ours: 'rms 4.9 N', verdict: 'agrees', svg: '@SVG@', notes: 'Sand, dead weight 60 N.' },
     { id: 'fig-8', title: 'Fig. 8: radar spectrum at 0.18 m/s', paper: 'peak near 11 Hz', ours: '11.2 Hz', verdict: 'differs', svg: 'not a drawing', notes: '' }],
@@ -104,5 +126,5 @@ const check = { schema: 'traction.check/1', log: 'sand_identification.csv', map:
 
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
-for (const [name, result] of Object.entries({ check, compare, diagnose, odd, large, figures, empty: { schema: 'traction.lab/1' } }))
+for (const [name, result] of Object.entries({ check, compare, diagnose, odd, large, figures, gaps, demo, compared, method, empty: { schema: 'traction.lab/1' } }))
   writeFileSync(`${out}/${name}.json`, JSON.stringify(result));

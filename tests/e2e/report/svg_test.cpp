@@ -6,6 +6,7 @@
 #include "host_tools/report/svg_text.h"
 #include "xml_check.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <random>
 #include <regex>
 #include <sstream>
 
@@ -109,6 +111,59 @@ TEST(Svg, a_missing_sample_leaves_a_gap) {
     EXPECT_EQ(curve_points(svg, 1).size(), 2u);
 }
 
+// The first two samples, at 0 and 1, tell where the axes lie; coordinates are rounded to 0.01 px.
+TEST(Svg, no_drawn_point_is_not_in_the_data_and_no_extreme_of_a_pixel_column_is_lost) {
+    std::mt19937 random(20261122);
+    for (int run = 0; run < 60; ++run) {
+        std::vector<double> x{0, 1}, y{0, 1};
+        const int n = static_cast<int>(random() % 20000) + 2;
+        for (int i = 2; i < n; ++i) x.push_back(i), y.push_back(static_cast<double>(random() % 100000) * 1e-5);
+        const auto points = curve_points(to_svg(of(x, y)));
+        const double left = points.front().first, right = points.back().first, step = (right - left) / (n - 1);
+        const double bottom = points[0].second;
+        double top = bottom;
+        for (const auto &point : points) top = std::min(top, point.second);
+        const auto py = [&](double value) { return bottom + (top - bottom) * value; };
+        std::vector<double> low, high; // of the drawn points, by half pixel column
+        std::vector<double> low_data, high_data;
+        const auto note = [](std::vector<double> &least, std::vector<double> &most, double px, double value) {
+            const auto column = static_cast<std::size_t>(std::lround(px * 2));
+            least.resize(std::max(least.size(), column + 1), 1e9), most.resize(least.size(), -1e9);
+            least[column] = std::min(least[column], value), most[column] = std::max(most[column], value);
+        };
+        for (const auto &[px, value] : points) {
+            note(low, high, px, value);
+            const auto i = static_cast<std::size_t>(std::lround((px - left) / step)); // columns finer than the rounding: any near sample
+            bool there = false;
+            const auto reach = static_cast<std::size_t>(std::ceil(0.02 / step));
+            for (std::size_t k = i > reach ? i - reach : 0; k < std::min(y.size(), i + reach + 1); ++k)
+                there = there || std::fabs(py(y[k]) - value) < 0.021; // two roundings on either side
+            ASSERT_TRUE(there) << "run " << run << ", " << px << " " << value;
+        }
+        for (std::size_t i = 0; i < y.size(); ++i) note(low_data, high_data, left + step * static_cast<double>(i), py(y[i]));
+        for (std::size_t c = 1; c + 1 < low_data.size(); ++c) { // a sample on an edge may have gone to the neighbour
+            EXPECT_LT(std::min({low[c - 1], low[c], low[c + 1]}), low_data[c] + 0.021) << "run " << run;
+            EXPECT_GT(std::max({high[c - 1], high[c], high[c + 1]}), high_data[c] - 0.021) << "run " << run;
+        }
+    }
+}
+
+TEST(Svg, a_panel_with_a_label_of_its_own_has_an_axis_of_its_own) {
+    Figure figure;
+    for (const double scale : {1.0, 1e-3})
+        figure.panels.push_back({.y_label = "rise [1]",
+                                 .x_label = scale == 1 ? "mass [kg]" : "height [m]",
+                                 .series = {{.x = {scale, 2 * scale}, .y = {0, 1}}}});
+    const std::string svg = to_svg(figure);
+    expect_sound(svg);
+    const auto first = curve_points(svg, 0), second = curve_points(svg, 1);
+    EXPECT_NEAR(first[0].first, second[0].first, 0.011); // both span the whole width
+    EXPECT_NEAR(first[1].first, second[1].first, 0.011);
+    EXPECT_NE(svg.find(">mass [kg]<"), std::string::npos);
+    EXPECT_NE(svg.find(">height [m]<"), std::string::npos);
+    EXPECT_NE(svg.find(">0.0018<"), std::string::npos); // a tick in the parameter's unit
+}
+
 TEST(Svg, no_data_whatever_breaks_the_drawing) {
     const std::vector<std::vector<double>> sets{{},
                                                 {1},
@@ -193,6 +248,30 @@ TEST(LogFigure, signals_of_one_unit_share_a_panel) {
     EXPECT_EQ(figure.panels[0].series[1].y, (std::vector<double>{2, 3}));
     EXPECT_EQ(figure.panels[5].y_label, "accel_x [m/s\u00b2]");
     EXPECT_EQ(log_figure(log, {.signals = {"wheel*.current_A", "wheel0.*"}}).panels.size(), 4u);
+}
+
+TEST(LogFigure, a_slip_that_is_not_valid_is_not_drawn) {
+    traction::log::Log log;
+    log.source = "drive.csv";
+    log.signals.push_back({.name = "wheel0.slip", .t_s = {0, 1, 2, 3, 4}, .value = {1, -1, 0.1, 0.2, 1}});
+    log.signals.push_back({.name = "wheel0.slip_valid", .t_s = {0, 2, 4}, .value = {0, 1, 0}}); // held until its next sample
+    const Series slip = log_figure(log, {.signals = {"wheel0.slip"}}).panels[0].series[0];
+    ASSERT_EQ(slip.y.size(), 5u);
+    for (const std::size_t i : {0u, 1u, 4u}) EXPECT_TRUE(std::isnan(slip.y[i])) << i;
+    EXPECT_EQ(slip.y[2], 0.1);
+    EXPECT_EQ(slip.y[3], 0.2);
+}
+
+TEST(LogFigure, a_sensor_that_fell_silent_leaves_a_gap) {
+    traction::log::Log log;
+    log.source = "drive.csv";
+    traction::log::Signal radar{.name = "radar.speed_m_s", .t_s = {}, .value = {}};
+    for (int i = 0; i < 100; ++i)
+        if (i < 40 || i > 60) radar.t_s.push_back(0.125 * i), radar.value.push_back(i);
+    log.signals.push_back(radar);
+    const Series series = log_figure(log, {}).panels[0].series[0];
+    EXPECT_EQ(std::count_if(series.y.begin(), series.y.end(), [](double y) { return std::isnan(y); }), 1);
+    EXPECT_EQ(series.y.size(), radar.value.size() + 1);
 }
 
 TEST(LogFigure, an_unknown_signal_is_told_with_the_nearest_names) {

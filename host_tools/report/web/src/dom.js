@@ -17,14 +17,28 @@ export const h = (tag, attributes, ...children) => make(document.createElement(t
 export const s = (tag, attributes, ...children) =>
   make(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
 
-// A table with a caption, column heads and rows. A column: { head, number, title }. A cell: text, node or array of them.
+// A table with a caption, column heads and rows; on a narrow screen each row becomes a card (page.css). A column: { head, number, title }.
+// A cell: text, node or array of them.
 export function table(caption, columns, rows) {
   const head = columns.map((c) => h('th', { scope: 'col', class: c.number && 'number', title: c.title }, c.head));
   const body = rows.map((row) =>
     h('tr', {}, row.map((cell, i) =>
       i === 0
         ? h('th', { scope: 'row', class: columns[i]?.number && 'number' }, cell)
-        : h('td', { class: columns[i]?.number && 'number' }, cell))));
-  return h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption },
-    h('table', {}, h('caption', {}, caption), h('thead', {}, h('tr', {}, head)), h('tbody', {}, body)));
+        : h('td', { class: columns[i]?.number && 'number', 'data-head': columns[i]?.head }, cell))));
+  return h('div', { class: 'scroll' },
+    h('table', { class: 'stack' }, h('caption', {}, caption), h('thead', {}, h('tr', {}, head)), h('tbody', {}, body)));
+}
+
+// What runs over its box can be reached by keys, and what does not is no stop on the way.
+export function markScrollers(root) {
+  for (const box of root.querySelectorAll('.scroll')) {
+    if (box.scrollWidth <= box.clientWidth) {
+      for (const name of ['tabindex', 'role', 'aria-label']) box.removeAttribute(name);
+      continue;
+    }
+    box.tabIndex = 0;
+    box.setAttribute('role', 'region');
+    box.setAttribute('aria-label', box.querySelector('caption')?.textContent ?? 'table');
+  }
 }

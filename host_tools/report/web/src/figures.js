@@ -16,24 +16,29 @@ function drawing(text, title) {
   return document.importNode(root, true);
 }
 
-const tone = (verdict) => (/^(agrees|ok|pass|yes)/i.test(verdict ?? '') ? 'good' : verdict ? 'odd' : '');
+const LONG = 15; // rows of a table that a reader sees without asking for more
+const tone = (verdict) => (/^(agrees|reproduced|ok|pass|yes)/i.test(verdict ?? '') ? 'good' : verdict ? 'odd' : '');
 
 export function figures(result) {
   const all = list(result.figures);
-  const summary = all.length && h('section', { id: 'summary', 'data-short': 'Summary' }, h('h2', {}, 'Summary'),
-    table('Paper and ours', [{ head: 'figure' }, { head: 'paper' }, { head: 'ours' }, { head: 'verdict' }],
-      all.map((f) => [h('a', { href: `#figure-${f.id}` }, f.title || f.id), f.paper ?? '–', f.ours ?? '–',
-        h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict ?? '–')])));
+  const judged = all.filter((f) => f.paper || f.ours || f.verdict); // a figure without a word on a source is a figure alone
+  const method = judged.some((f) => f.paper_here), HERE = "the paper's method here"; // then the verdict is of that method, not of ours
+  const summary = judged.length && h('section', { id: 'summary', 'data-short': 'Summary' }, h('h2', {}, 'Summary'),
+    table('Paper and ours', [{ head: 'figure' }, { head: 'paper' }, ...(method ? [{ head: HERE }, { head: 'verdict on it' }] : []), { head: 'ours' }, ...(method ? [] : [{ head: 'verdict' }])],
+      judged.map((f) => {
+        const badge = h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict || '–');
+        return [h('a', { href: `#figure-${f.id}` }, f.title || f.id), f.paper || '–', ...(method ? [f.paper_here || '–', badge, f.ours || '–'] : [f.ours || '–', badge])];
+      })));
   const bodies = all.map((f) => h('section', { id: `figure-${f.id}`, class: 'figure' }, h('h2', {}, f.title || f.id),
     h('figure', {}, f.svg ? drawing(f.svg, f.title || f.id) : null,
       h('figcaption', {},
-        h('dl', { class: 'pair' }, h('dt', {}, 'paper'), h('dd', {}, f.paper ?? '–'), h('dt', {}, 'ours'), h('dd', {}, f.ours ?? '–'),
-          h('dt', {}, 'verdict'), h('dd', {}, h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict ?? '–'))),
+        judged.includes(f) ? h('dl', { class: 'pair' }, h('dt', {}, 'paper'), h('dd', {}, f.paper || '–'), f.paper_here && [h('dt', {}, HERE), h('dd', {}, f.paper_here)],
+          h('dt', {}, method ? 'verdict on it' : 'verdict'), h('dd', {}, h('span', { class: `badge ${tone(f.verdict)}` }, f.verdict || '–')), h('dt', {}, 'ours'), h('dd', {}, f.ours || '–')) : null,
         f.notes && h('p', {}, f.notes)))));
+  const rows = (t) => [table(t.title, list(t.columns).map((head, c) => ({ head, number: list(t.rows).some((row) => isNumber(row[c])) })),
+    list(t.rows).map((row) => row.map((cell) => (isNumber(cell) ? num(cell, 4) : cell ?? '–')))), t.notes && h('p', {}, t.notes)];
   const tables = list(result.tables).map((t, i) => h('section', { id: `table-${i + 1}`, 'data-short': t.title }, h('h2', {}, t.title),
-    table(t.title, list(t.columns).map((head, c) => ({ head, number: list(t.rows).some((row) => isNumber(row[c])) })),
-      list(t.rows).map((row) => row.map((cell) => (isNumber(cell) ? num(cell, 4) : cell ?? '–')))),
-    t.notes && h('p', {}, t.notes)));
+    list(t.rows).length > LONG ? h('details', {}, h('summary', {}, `All ${t.rows.length} rows`), rows(t)) : rows(t)));
   return { parts: [result.intro && h('section', { id: 'intro' }, ...result.intro.split(/\n\n+/).map((text) => h('p', {}, text))),
-    summary, ...tables, ...bodies] };
+    summary, ...bodies, ...tables] };
 }

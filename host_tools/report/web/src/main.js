@@ -2,25 +2,29 @@
 import 'uplot/dist/uPlot.min.css';
 import './page.css'; // after uPlot's own, which it mends
 import { check } from './check.js';
-import { h } from './dom.js';
+import { h, markScrollers } from './dom.js';
 import { figures } from './figures.js';
 import { lab } from './lab.js';
+import { models } from './models.js';
 
 const result = JSON.parse(document.getElementById('result').textContent);
 const page = document.getElementById('page');
 document.title = result.title || (result.log && typeof result.log === 'string' ? `check: ${result.log}` : 'Traction report');
 
-const { parts, then } = ({ 'traction.figures/1': figures, 'traction.check/1': check }[result.schema] ?? lab)(result);
+const { parts, then } = ({ 'traction.figures/1': figures, 'traction.check/1': check, 'traction.compared/1': models }[result.schema] ?? lab)(result);
 const sections = parts.filter(Boolean);
 
 page.replaceChildren(
-  h('header', {}, h('h1', {}, document.title),
+  h('header', {}, sections.some((p) => p.id === 'balances') && h('a', { class: 'skip', href: '#signal' }, 'To the plots'), h('h1', {}, document.title),
     h('nav', { 'aria-label': 'Contents' }, h('ul', {}, sections.filter((p) => p.id && p.dataset.short).map((p) =>
       h('li', {}, h('a', { href: `#${p.id}` }, p.dataset.short)))))),
   ...sections,
   h('footer', {}, h('button', { type: 'button', onclick: save }, 'Save the data (JSON)'),
     ' The whole result stands inside this file; nothing is loaded from anywhere.'));
 then?.();
+markScrollers(page);
+new ResizeObserver(() => markScrollers(page)).observe(page);
+page.addEventListener('toggle', () => markScrollers(page), true); // a folded table has no width
 document.documentElement.dataset.ready = 'yes';
 
 function save() {

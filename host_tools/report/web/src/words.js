@@ -51,35 +51,18 @@ export function effectName(c) {
   return (c.effect ?? c.name ?? '') + (isNumber(c.wheel) && c.wheel >= 0 ? ` (wheel ${c.wheel})` : '');
 }
 
-// mark: readable without colour
-const verdicts = {
-  named: ['✔', 'named'],
-  class: ['≈', 'cannot be told apart'],
-  not_significant: ['·', 'not significant'],
-  too_small: ['·', 'too small to matter'],
-  beyond_range: ['·', 'only beyond its range'],
-  wrong_sign: ['✘', 'unphysical sign'],
-  not_excited: ['?', 'this log cannot show it'],
-};
+// mark: readable without colour; the words are the lab's own (candidates[].words)
+const marks = { named: '✔', class: '≈', nearest: '≈', wrong_sign: '✘', not_excited: '?' };
 export function candidateVerdict(c) {
-  const [mark, words] = verdicts[c.verdict] ?? ['', String(c.verdict ?? '–').replaceAll('_', ' ')];
-  return `${mark} ${words}${c.verdict === 'class' && isNumber(c.class) ? ` (class ${c.class})` : ''}`;
+  return `${marks[c.verdict] ?? '·'} ${c.words || String(c.verdict ?? '–').replaceAll('_', ' ')}`;
 }
 
 const kinds = {
-  named: 'An effect is named',
-  class: 'One of several, which this log cannot tell apart',
-  partial: 'An effect is named, but explains only a part',
-  unknown: 'None of the known effects',
-  nothing: 'Nothing to find',
+  named: 'What is missing was found',
+  class: 'One of several is missing, and this log cannot tell which',
+  partial: 'A part of what is missing was found',
+  unknown: 'Something is missing that is in no catalogue',
+  nothing: 'Nothing was found to be missing',
+  wrong_model: 'The numbers of the model are wrong',
 };
-export const verdictKind = (v) => kinds[v.kind] ?? v.kind;
-
-// "error 3.1 × noise floor: there is something to find"; 1.1: half of what the noise of two runs can move the ratio by, *assumed*
-export function scoreLine(score) {
-  if (!score) return '';
-  const ratio = isNumber(score.ratio) ? score.ratio : score.error / score.floor;
-  if (!isNumber(ratio)) return score.verdict ?? `error ${num(score.error)}, noise floor unknown`;
-  const words = score.verdict || (ratio > 1.1 ? 'there is something to find' : 'nothing to find');
-  return words.includes('noise floor') ? words : `error ${num(ratio)} × noise floor: ${words}`;
-}
+export const verdictKind = (v) => kinds[v.kind] ?? v.kind ?? 'Verdict';
