@@ -2,13 +2,12 @@
 #include "rows.h"
 #include "verbs.h"
 
-#include "host_tools/lab/result/compare.h"
-#include "host_tools/lab/result/result.h"
-#include "host_tools/lab/session.h"
+#include "host_tools/lab/answer.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 namespace traction::cli {
 
@@ -22,12 +21,11 @@ struct CompareRequest {
 
 void compare(const CompareRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
-    const lab::Comparison comparison = lab::compare(session.model, session.data, !request.fitted);
-    std::fputs(lab::comparison_text(comparison).c_str(), stdout);
-    outcome.json = lab::head_json("compare", session.model, session.data);
-    lab::put_comparison(outcome.json, comparison);
+    lab::Answer answer = lab::compare_answer(session, request.fitted);
+    std::fputs(answer.text.c_str(), stdout);
+    outcome.json = std::move(answer.json);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
-    if (comparison.balances.empty()) outcome.exit_code = exit_negative;
+    if (answer.negative) outcome.exit_code = exit_negative;
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 //
 // The lab gets what any user's lab gets: the log file and the baseline model file. The seal is written first and read last, here.
 #include "data_files.h"
-#include "trial.h"
 #include "verbs.h"
 
 #include "host_tools/lab/result/addition.h"
@@ -13,6 +12,7 @@
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
 #include "host_tools/simulate/simulate.h"
+#include "host_tools/simulate/trial.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,19 +1,15 @@
 // verb_diagnose.cpp - traction diagnose: which physics the model lacks, how sure that is, and what this log cannot say.
 #include "progress.h"
 #include "rows.h"
-#include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/result/addition.h"
-#include "host_tools/lab/result/compare.h"
-#include "host_tools/lab/result/next_result.h"
-#include "host_tools/lab/result/result.h"
-#include "host_tools/lab/session.h"
-#include "host_tools/lab/validate.h"
+#include "host_tools/lab/answer.h"
 #include "host_tools/report/report.h"
+#include "host_tools/simulate/trial.h"
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 namespace traction::cli {
 
@@ -27,39 +23,21 @@ struct DiagnoseRequest {
 
 void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
-    lab::DiagnoseOptions options;
     Progress progress("diagnose", 500);
-    options.progress = [&](int, int) { progress.step(); };
-    lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, options);
-    std::fputs(lab::diagnosis_text(diagnosis).c_str(), stdout);
-    outcome.json = lab::head_json("diagnose", session.model, session.data);
-    lab::put_comparison(outcome.json, lab::compare(session.model, session.data, false));
-    lab::put_diagnosis(outcome.json, diagnosis);
-    outcome.json["next"] = nullptr;
-    if (!diagnosis.classes.empty()) { // what was not excited alone: `traction next --log`
-        const lab::NextExperiment next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
-        std::printf("\n%s", lab::next_text(next).c_str());
-        if (!next.scenario_toml.empty()) std::printf("(traction next --model MODEL --log LOG --out next.toml writes the scenario)\n");
-        outcome.json["next"] = lab::next_json(next);
-    }
-    if (diagnosis.kind != "wrong_model") {
-        const std::vector<lab::Validation> validation = lab::validate(session, request.input, diagnosis.model);
-        std::fputs(lab::validation_text(validation).c_str(), stdout);
-        outcome.json["validation"] = lab::validation_json(validation);
-    }
+    lab::Answer answer = lab::diagnose_answer(session, request.input,
+                                              {.progress = [&](int, int) { progress.step(); }, .drive = simulated_rover()}, request.apply);
+    std::fputs(answer.text.c_str(), stdout);
+    outcome.json = std::move(answer.json);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
-    if (diagnosis.kind == "nothing") outcome.exit_code = exit_negative;
-    if (diagnosis.kind == "wrong_model") outcome.exit_code = exit_bad_input;
+    if (answer.kind == "nothing") outcome.exit_code = exit_negative;
+    if (answer.kind == "wrong_model") outcome.exit_code = exit_bad_input;
     if (!request.apply) return;
-    if (diagnosis.accepted.empty()) {
+    if (!answer.model) {
         std::printf("nothing to add: no model is written\n");
-        if (diagnosis.kind != "wrong_model") outcome.exit_code = exit_negative;
+        if (answer.kind != "wrong_model") outcome.exit_code = exit_negative;
         return;
     }
-    lab::Model model = diagnosis.model;
-    const lab::LadderStep step = lab::fit_model(model, session.data, "fitted");
-    lab::append_lineage(model, session.data, diagnosis.ladder, step);
-    lab::write_model(model, request.out);
+    lab::write_model(*answer.model, request.out);
     std::printf("wrote %s\n", request.out.c_str());
 }
 

@@ -9,6 +9,7 @@
 #include "host_tools/report/report.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/batch.h"
+#include "host_tools/simulate/fault_names.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
 
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 
 namespace traction::cli {
@@ -56,25 +56,6 @@ SimulateOptions options_of(const Arguments &arguments, SimulateOptions options, 
         options.hide = sim::HiddenDraw{
             .seed = static_cast<std::uint64_t>(arguments.hide) + (seed - first), .count = arguments.hide_count, .among = {}};
     return options;
-}
-
-// "stall, low battery": fault_t, firmware/core/signals.h.
-std::string fault_names(std::uint32_t faults) {
-    static const char *const name[] = {"emergency stop",     "command timeout",
-                                       "encoder lost",       "current lost",
-                                       "accelerometer lost", "radar lost",
-                                       "battery lost",       "low battery",
-                                       "over-current",       "stall",
-                                       "missed ticks",       "speeds disagree",
-                                       "over-temperature",   "gyro lost",
-                                       "absurd sensor",      "bridge",
-                                       "motor open",         "encoder against its motor",
-                                       "brown-out",          "speed beyond the radar's band"};
-    static_assert(std::size(name) == FAULT_COUNT);
-    std::string text;
-    for (std::size_t bit = 0; bit < std::size(name); ++bit)
-        if ((faults >> bit & 1U) != 0) text += std::string(text.empty() ? "" : ", ") + name[bit];
-    return text;
 }
 
 // What the self-test found, a sentence each, the wheels beside it.
