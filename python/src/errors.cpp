@@ -5,6 +5,8 @@
 #include "host_tools/report/report.h"
 #include "sim/scenario/scenario_error.h"
 
+#include <nanobind/stl/string.h>
+
 #include <chrono>
 #include <exception>
 #include <filesystem>

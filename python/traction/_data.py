@@ -35,7 +35,6 @@ def find_map(name: str | os.PathLike[str] | None) -> str:
     """The map meant by a path, or by the name of a shipped one ("robotino"); empty for None."""
     if name is None:
         return ""
-    for candidate in (find(name, "models"), find(f"models/maps/{os.fspath(name)}.toml", "models")):
-        if os.path.isfile(candidate):
-            return candidate
-    return os.fspath(name)
+    text = os.fspath(name)
+    shipped = find(f"models/maps/{text}.toml", "models")
+    return text if os.path.exists(text) or not os.path.isfile(shipped) else shipped

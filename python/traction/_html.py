@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .log import Log
 
-text = html.escape
+
+def text(words: str) -> str:
+    """Words as HTML, between tags."""
+    return html.escape(words, quote=False)
 
 
 def table(title: str, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -27,11 +30,11 @@ def number(value: float | None, digits: int = 3) -> str:
 def log(given: Log) -> str:
     """A log's columns."""
     rows = []
-    for name in list(given)[:40]:
+    for name in list(given)[:100]:
         column = given[name]
         span = f"{column.values.min():.4g} to {column.values.max():.4g}" if len(column) else "empty"
         rows.append((name, column.unit, len(column), span, column.meaning))
-    more = f"<p>and {len(given) - 40} more columns</p>" if len(given) > 40 else ""
+    more = f"<p>and {len(given) - 100} more columns</p>" if len(given) > 100 else ""
     mended = "".join(f"<li>{text(line)}</li>" for line in given.repairs)
     title = f"log {given.source}: {len(given)} columns, {given.duration_s:.2f} s"
     return table(title, ("column", "unit", "samples", "range", "meaning"), rows) + more + (f"<ul>{mended}</ul>" if mended else "")

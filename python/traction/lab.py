@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core, _html
 from ._data import find, find_map
-from ._errors import ModelError
+from ._errors import LogError, ModelError
 from .log import Floats, Log, as_log
 
 LogLike: TypeAlias = "Log | str | os.PathLike[str]"
@@ -454,7 +454,7 @@ def next(
     if not effects and not logs:
         mend = "give a log, or effects, or both"
         raise ModelError(f"{used._core.file}: neither a log nor effects are given; to mend: {mend}", used._core.file, mend=mend)
-    return Proposal(_core.next(used._core, _inputs(logs, (), None, 0, 0, despite), list(effects), all))
+    return Proposal(_core.next(used._core, _inputs(logs, (), None, 0, 0, despite, needed=False), list(effects), all))
 
 
 def _logs(log: LogLike | Iterable[LogLike]) -> list[Log]:
@@ -470,9 +470,13 @@ def _inputs(
     from_s: float,
     to_s: float,
     despite: Sequence[str],
+    *,
+    needed: bool = True,
 ) -> _core.Inputs:
     inputs = _core.Inputs()
     inputs.logs = [item._core for item in _logs(log)]
+    if needed and not inputs.logs:
+        raise LogError("no log is given; to mend: give a log, its file, or several", mend="give a log, its file, or several")
     inputs.validate = [item._core for item in _logs(validate)]
     if repeat is not None:
         inputs.repeat = as_log(repeat)._core
@@ -489,7 +493,16 @@ def _steps(ladder: Iterable[LadderStep]) -> builtins.list[tuple[str, float | Non
 
 
 def _candidates(given: Iterable[dict[str, Any]]) -> list[Candidate]:
-    keys = ("heldout_gain", "gain_low", "gain_high", "p_value")
     return [
-        Candidate(c["effect"], c.get("wheel"), c["verdict"], *(c.get(k) for k in keys), parameters=c.get("parameters", {})) for c in given
+        Candidate(
+            effect=c["effect"],
+            wheel=c.get("wheel"),
+            verdict=c["verdict"],
+            heldout_gain=c.get("heldout_gain"),
+            gain_low=c.get("gain_low"),
+            gain_high=c.get("gain_high"),
+            p_value=c.get("p_value"),
+            parameters=c.get("parameters", {}),
+        )
+        for c in given
     ]

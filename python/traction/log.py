@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -284,4 +284,4 @@ def _pair(column: str, value: Any, times: Floats | None, name: str) -> tuple[Flo
 
 def as_log(log: Log | str | os.PathLike[str]) -> Log:
     """A log, or the file of one."""
-    return log if isinstance(log, Log) else Log.read(cast("str | os.PathLike[str]", log))
+    return log if isinstance(log, Log) else Log.read(log)

@@ -16,6 +16,7 @@ from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _core
@@ -118,7 +119,7 @@ class Plant:
         if isinstance(order, Trace):
             self._core.write(order)
         else:
-            self._core.set_duty([float(d) for d in order])  # type: ignore[union-attr]
+            self._core.set_duty(np.asarray(order, dtype=np.float64).tolist())
 
     def planned(self, tick: int) -> _core.Command:
         """What the scenario's own drive plan asks for in a tick."""

@@ -207,7 +207,7 @@ def test_a_diagnosis_is_kept(tmp_path):
     }
     row = traction.campaign(spec, tmp_path / "c", workers=0).table().to_pylist()[0]
     assert row["status"] == "done", row["error"]
-    assert json.loads(row["named"]) == ["slip_sinkage"] and row["error_after"] < row["error_before"]
+    assert "slip_sinkage" in json.loads(row["named"]) and row["error_after"] < row["error_before"]
 
 
 def test_the_command_line_runs_and_tells(cli, tmp_path):

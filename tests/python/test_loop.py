@@ -27,9 +27,6 @@ def test_a_loop_of_ones_own_is_simulates_drive():
     traces = drive(Plant(SHORT), Firmware(SHORT), 300)
     speed = np.array([t.speed_m_s for t in traces])
     np.testing.assert_allclose(log["estimate.speed_m_s"].values, speed, atol=5e-7)  # the log rounds to 1e-6
-    np.testing.assert_allclose(
-        log["wheel2.slip"].values if "wheel2.slip" in log else 0, 0 if "wheel2.slip" not in log else log["wheel2.slip"].values
-    )
     duty = np.array([t.duty[1] for t in traces])
     np.testing.assert_allclose(log["wheel1.duty"].values, duty, atol=1 / 32767)  # the log has what was written: Q15
 
@@ -102,14 +99,14 @@ def test_check_env_finds_nothing_and_seeds_are_to_the_bit():
             bits.append(seen.tobytes() + np.float64(reward).tobytes())
         runs.append(bits)
     assert runs[0] == runs[1]
-    assert env.reset(seed=6)[0].tobytes() != runs[0][0] or True
+    assert env.reset(seed=6)[0].tobytes() != runs[0][0]
     assert env.reset(seed=5)[0].tobytes() == runs[0][0]
     first, second = env.reset()[0], env.reset()[0]
     assert first.tobytes() != second.tobytes()  # the next episode's noise is another
 
 
 class SlipPI:
-    """A PI slip controller in ten lines: the front wheels' duty so that they slip by 0.3."""
+    """A PI slip controller in ten lines: the front wheels slip by 0.3 against the drag of the rear wheels, whose windings are shorted."""
 
     def __init__(self, slip=0.3, kp=0.2, ki=0.8):
         self.slip, self.kp, self.ki, self.sum = slip, kp, ki, np.zeros(4)
@@ -118,7 +115,9 @@ class SlipPI:
         error = self.slip - seen[4:8]
         error[seen[4:8] == 0] = 0.1  # slip has no meaning yet: pull away
         self.sum = np.clip(self.sum + self.ki * 0.01 * error, -0.9, 0.9)
-        return np.clip(self.kp * error + self.sum, -1, 1).astype(np.float32)
+        duty = np.clip(self.kp * error + self.sum, -1, 1).astype(np.float32)
+        duty[:2] = 0
+        return duty
 
 
 def test_a_pi_slip_controller_in_ten_lines_drives_the_rover():
@@ -136,7 +135,8 @@ def test_a_pi_slip_controller_in_ten_lines_drives_the_rover():
         ended = terminated or truncated
         slips.append(info["truth"]["wheel_slip"])
     assert truncated and not terminated and info["truth"]["position_m"][0] > 0.5
-    assert abs(np.median(np.array(slips)[600:]) - 0.3) < 0.1  # the last six seconds
+    # The last six seconds. What is held is the firmware's slip; speed is known to 0.015 m/s (README), here of 0.12: (1 - 0.3) 0.015/0.12
+    assert np.all(np.abs(np.median(np.array(slips)[600:, 2:], axis=0) - 0.3) < 0.09)
 
 
 def test_a_thousand_steps_are_much_faster_than_real_time():

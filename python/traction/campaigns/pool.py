@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import pickle
 import queue
@@ -113,7 +114,7 @@ def drive_all(job: Job, rows: Iterable[Row], workers: int) -> Iterator[tuple[Row
     finished = False
     try:
         while True:
-            while under_way < 2 * workers and (row := next(source, None)) is not None:
+            for row in itertools.islice(source, 2 * workers - under_way):
                 todo.put(row)
                 under_way += 1
             if under_way == 0:
