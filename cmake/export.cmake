@@ -1,4 +1,4 @@
-# traction-targets.cmake in the build folder: every library of ours, for the Python package (python/CMakeLists.txt) to link as they are.
+# The file of targets in the build folder: every library of ours, for the Python package (python/CMakeLists.txt) to link as they are.
 function(traction_libraries_in folder result)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
   get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)

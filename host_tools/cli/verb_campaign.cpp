@@ -18,12 +18,12 @@ namespace traction::cli {
 namespace {
 
 struct Request {
-    std::string file, out;
+    std::string file, out, scheduler;
     int workers = 0;
     bool status = false, dry_run = false, workers_given = false;
 };
 
-constexpr int no_package = 69; // EX_UNAVAILABLE of sysexits.h
+constexpr int no_package = 69; // EX_UNAVAILABLE
 
 // Says so with its own exit code where the package, or what campaigns need beside it, is not there.
 constexpr const char *script = R"(import sys
@@ -51,6 +51,7 @@ void run(const Request &request, Outcome &outcome) {
     if (!request.file.empty()) arguments.push_back(request.file);
     if (!request.out.empty()) arguments.insert(arguments.end(), {"--out", request.out});
     if (request.workers_given) arguments.insert(arguments.end(), {"--workers", std::to_string(request.workers)});
+    if (!request.scheduler.empty()) arguments.insert(arguments.end(), {"--scheduler", request.scheduler});
     if (request.status) arguments.push_back("--status");
     if (request.dry_run) arguments.push_back("--dry-run");
     std::fflush(stdout);
@@ -88,6 +89,11 @@ Verb verb_campaign() {
                          .value = "N",
                          .range = Range{0, 1024},
                          .given = &request->workers_given},
+                        {.name = "--scheduler",
+                         .into = &request->scheduler,
+                         .help = "a Dask scheduler, tcp://HOST:PORT, whose workers drive",
+                         .value = "ADDRESS",
+                         .excludes = {"--workers"}},
                         {.name = "--status", .into = &request->status, .help = "how far the campaign in FOLDER is; drives nothing"},
                         {.name = "--dry-run", .into = &request->dry_run, .help = "how many drives, and the first rows; drives nothing"}},
             .run = [request](Outcome &outcome) { run(*request, outcome); }};

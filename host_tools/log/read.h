@@ -5,6 +5,10 @@
 
 #include "log.h"
 
+#include <map>
+#include <string>
+#include <vector>
+
 namespace traction::log {
 
 // One thing the reader mended.

@@ -5,6 +5,7 @@
 #include "host_tools/lab/gate.h"
 #include "host_tools/log/vocabulary.h"
 
+#include <memory>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>

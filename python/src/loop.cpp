@@ -6,11 +6,13 @@
 #include "hal/sim/sim_rover.h"
 #include "host_tools/rover/rover.h"
 
+#include <cstdint>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <optional>
 
 #include <array>
 #include <cmath>

@@ -10,7 +10,8 @@ set(rules
   "hal|${same_folder}|firmware/core/signals.h|hal/.+|*"
   "hal/sim|${same_folder}|firmware/core/signals.h|hal/.+|sim/.+|*"
   "sim|${same_folder}|sim/.+|*"
-  "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
+  "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*"
+  "python|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
 # The lab's rooms, in the order in which data goes through them: a room includes itself and the rooms before it. session.h opens model and
 # log for whoever uses the lab, through the gate (host_tools/check), so that it may look into every room and none looks back.
 set(rooms model inputs forward fit decision next result)
@@ -26,7 +27,7 @@ set(owned "linux/.+=hal/linux" "gpiod.h=hal/linux" "sys/socket.h=(hal/linux|firm
 
 set(offences "")
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/firmware/*.[ch] ${ROOT}/hal/*.[ch] ${ROOT}/hal/*.cpp ${ROOT}/sim/*.h
-  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp)
+  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp ${ROOT}/python/*.h ${ROOT}/python/*.cpp)
 foreach(file IN LISTS files)
   set(rule "")
   foreach(candidate IN LISTS rules) # the last that matches is the most specific

@@ -29,6 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("spec", nargs="?", metavar="FILE.toml", help="what varies, and what is kept of each drive")
     parser.add_argument("--out", metavar="FOLDER", help="where results go; a stopped campaign goes on there")
     parser.add_argument("--workers", type=int, metavar="N", help="processes (one a core)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, tcp://HOST:PORT: its workers drive")
     parser.add_argument("--status", action="store_true", help="how far the campaign in FOLDER is; drives nothing")
     parser.add_argument("--dry-run", action="store_true", help="the number of drives, and the first rows; drives nothing")
     parser.add_argument("--json", metavar="FILE", help="the result for programs, schema traction.campaign/1")
@@ -48,7 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
             for row in spec.rows[:5]:
                 print("  " + ", ".join(f"{key}={value}" for key, value in row.items()))
             return 0
-        return _told(campaign(spec, given.out, workers=given.workers, progress=bar(spec.title)), given.json)
+        return _told(campaign(spec, given.out, workers=given.workers, scheduler=given.scheduler, progress=bar(spec.title)), given.json)
     except KeyboardInterrupt:
         print("\nstopped; the same command goes on where it was", file=sys.stderr)
         return 130

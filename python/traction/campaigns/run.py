@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _html
+from . import cluster
 from .drive import Job
 from .pool import drive_all
 from .spec import Spec
@@ -81,6 +82,7 @@ def campaign(
     folder: str | os.PathLike[str],
     *,
     workers: int | None = None,
+    scheduler: Any = None,
     progress: Callable[[Progress], None] | None = None,
 ) -> Campaign:
     """Run a campaign, or go on with one that was stopped: what is done is not driven again.
@@ -89,6 +91,7 @@ def campaign(
         spec: a TOML file, or a dict of its keys (docs/campaign.md).
         folder: where results go; made where it is not there. One campaign a folder, one writer at a time.
         workers: processes; None for one a core, 0 for this process alone. The table is the same, bit for bit.
+        scheduler: address of a Dask scheduler ("tcp://host:8786"), or a distributed.Client: its workers drive instead of processes here.
         progress: called after each drive, at most ten times a second.
 
     Returns:
@@ -105,11 +108,11 @@ def campaign(
     if workers is None:
         workers = len(os.sched_getaffinity(0))
     with store.writing(spec):
-        _run(spec, store, workers, progress)
+        _run(spec, store, workers, scheduler, progress)
     return Campaign(folder)
 
 
-def _run(spec: Spec, store: Store, workers: int, progress: Callable[[Progress], None] | None) -> None:
+def _run(spec: Spec, store: Store, workers: int, scheduler: Any, progress: Callable[[Progress], None] | None) -> None:
     schema, rows, size = schema_of(spec), spec.rows, spec.part
     parts = set(store.parts())
     waiting: dict[int, int] = {}  # drives in the inbox, a part
@@ -126,7 +129,8 @@ def _run(spec: Spec, store: Store, workers: int, progress: Callable[[Progress], 
     done = len(kept) + sum(len(of_part[p]) for p in parts)
     todo = (row for row in rows if row["drive"] // size not in parts and row["drive"] not in kept)
     began, before, told = time.monotonic(), done, 0.0
-    for row, answer in drive_all(Job.of(spec, store.folder), todo, workers):
+    job = Job.of(spec, store.folder)
+    for row, answer in drive_all(job, todo, workers) if scheduler is None else cluster.drive_all(job, todo, scheduler):
         drive, part = row["drive"], row["drive"] // size
         store.put(drive, table_of(schema, [{**row, **answer}]))
         waiting[part] = waiting.get(part, 0) + 1
