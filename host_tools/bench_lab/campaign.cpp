@@ -4,6 +4,7 @@
 
 #include "host_tools/log/write_file.h"
 
+#include <algorithm>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <time.h>

@@ -15,6 +15,7 @@
 #include "hal/hal.h"
 
 #include <array>
+#include <stdexcept>
 #include <string>
 
 namespace traction {

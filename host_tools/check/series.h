@@ -3,6 +3,7 @@
 
 #include "check.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 

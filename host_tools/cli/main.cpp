@@ -7,7 +7,9 @@
 #include "host_tools/log/log.h"
 #include "host_tools/log/write_file.h"
 
+#include <cstdlib>
 #include <fcntl.h>
+#include <stdexcept>
 #include <unistd.h>
 
 #include <cerrno>

@@ -5,6 +5,7 @@
 #include "sim/scenario/rover.h"
 
 #include <map>
+#include <stdexcept>
 #include <string>
 
 namespace traction {

@@ -7,6 +7,7 @@
 #include "sim/scenario/scenario.h"
 
 #include <map>
+#include <stdexcept>
 #include <string>
 
 namespace traction {

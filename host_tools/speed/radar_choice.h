@@ -4,6 +4,7 @@
 #include "speed.h"
 
 #include <optional>
+#include <stdexcept>
 
 namespace traction::speed {
 

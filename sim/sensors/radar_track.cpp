@@ -3,6 +3,7 @@
 #include "random.h"
 #include "sim/physics/math.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace traction::sim {

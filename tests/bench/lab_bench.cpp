@@ -10,6 +10,7 @@
 #include "host_tools/log/write_file.h"
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include <cstdio>
 #include <cstdlib>

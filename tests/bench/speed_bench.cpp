@@ -8,6 +8,7 @@
 #include "sim/sensors/radar.h"
 #include "tests/unit/clutter.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,7 @@
 // The table of reactions of docs/can.md, row by row: a rover on a CAN bus drives at 0.3 m/s on concrete, and from 4 s on the bus fails.
 #include "host_tools/simulate/simulate.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 

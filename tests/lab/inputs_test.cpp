@@ -8,7 +8,9 @@
 #include "host_tools/lab/inputs/stretch.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include <cmath>
 #include <numbers>

@@ -7,6 +7,7 @@
 #include "sim/physics/effects/catalogue.h"
 #include "tests/lab/generator/generator.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -7,6 +7,7 @@
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include <algorithm>
 #include <string>

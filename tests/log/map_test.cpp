@@ -3,6 +3,7 @@
 
 #include "host_tools/log/read.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>

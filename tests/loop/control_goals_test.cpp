@@ -3,6 +3,7 @@
 #include "host_tools/simulate/simulate.h"
 
 #include <cstdint>
+#include <cstdio>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 // 10 degrees; it must be named within half a second (or the time its row states), by its own name and wheel, and answered as the row says.
 #include "host_tools/simulate/simulate.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 

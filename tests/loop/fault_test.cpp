@@ -6,6 +6,7 @@
 #include "hal/sim/sim_hal.h"
 #include "host_tools/loop/loop.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include "firmware/core/rover_config.h"
 
 #include <cstdint>
+#include <cstdio>
 #include <gtest/gtest.h>
 
 #include <algorithm>

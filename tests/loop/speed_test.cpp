@@ -4,6 +4,7 @@
 #include "host_tools/speed/radar_choice.h"
 #include "host_tools/speed/speed.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 

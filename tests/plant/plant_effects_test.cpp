@@ -4,6 +4,7 @@
 // an effect each residual vanishes, so a residual is the effect itself.
 #include "sim/plant/plant.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // Numerics gates of the plant: parked creep, order of the step, energy balance, repeatability, wheel contact, robustness.
 #include "sim/plant/plant.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "sim/physics/ground.h"
 #include "sim/physics/terramechanics.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #!/bin/sh
-# own_headers.sh ROOT [--fix] - a file that names one of these types includes its header itself, or the header of its own name does.
-# What another header happens to bring along differs between compilers: gcc 13 and 14 stopped twice at a missing <cstdint>.
+# own_headers.sh ROOT [--fix] - a file that names one of these includes its header itself, or the header of its own name does.
+# What another header happens to bring along differs between compilers: gcc 13 and 14 stopped at a missing <cstdint> and <algorithm>.
 set -eu
 cd "${1:?own_headers.sh: which folder?}"
 fix=${2-}
@@ -28,4 +28,11 @@ needs functional 'std::function<'
 needs memory 'std::(unique|shared)_ptr<'
 needs map 'std::map<'
 needs span 'std::span<'
+needs algorithm 'std::(clamp|(stable_)?sort|(min|max|minmax)_element|(any|all|none)_of|find(_if)?|count(_if)?|transform|fill(_n)?|copy(_if|_n)?|nth_element|max|min|minmax|reverse|(lower|upper)_bound|remove_if|unique|equal|replace|rotate|generate|is_sorted|adjacent_find)\('
+needs numeric 'std::(accumulate|inner_product|iota|partial_sum|gcd|lcm)\('
+needs stdexcept 'std::(runtime_error|logic_error|invalid_argument|out_of_range|length_error|domain_error)\b'
+needs cstdio 'std::(s?nprintf|v?snprintf|printf|fprintf|fputs|puts|fopen|fflush|rename|perror)\('
+needs cstdlib 'std::(getenv|strto(d|f|l|ll|ul|ull)|abort|exit|system|atof|atoi)\('
+needs tuple 'std::(tuple<|tie\(|make_tuple\()'
+needs limits 'std::numeric_limits<'
 [ ! -s "$failures" ] || { echo "sh tests/rule/own_headers.sh . --fix mends them"; exit 1; }

@@ -2,6 +2,7 @@
 #include "firmware/core/fft_table.h"
 #include "tests/unit/clutter.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "firmware/core/rover_config.h"
 #include "tests/unit/clutter.h"
 
+#include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 #include "firmware/core/slip_pi.h"
 
 #include <gtest/gtest.h>
+#include <tuple>
 
 #include <cmath>
 #include <limits>

@@ -5,6 +5,7 @@
 #include "hal/replay/frames.h"
 
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include <cstdint>
 #include <cstring>

@@ -1,8 +1,10 @@
 // The independent rover obeys what it states: (17)-(20) in steady motion, momentum, repeatability. Truth here is closed form.
 #include "tests/lab/generator/generator.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include <cmath>
 #include <numbers>

@@ -2,6 +2,7 @@
 #include "host_tools/bench_lab/score.h"
 
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 using namespace traction::bench_lab;
 using nlohmann::json;

@@ -2,6 +2,7 @@
 #include "spoil.h"
 #include "tamper.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace traction::gate {

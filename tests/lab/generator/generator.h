@@ -7,6 +7,7 @@
 #include "host_tools/log/log.h"
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
