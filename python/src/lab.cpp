@@ -10,6 +10,7 @@
 #include "host_tools/simulate/trial.h"
 #include "sim/physics/effects/catalogue.h"
 
+#include <algorithm>
 #include <memory>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>

@@ -7,6 +7,7 @@
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario_table.h"
 
+#include <cstdio>
 #include <memory>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>

@@ -199,15 +199,13 @@ def test_formulas_are_what_numpy_says():
 
 
 def test_a_diagnosis_is_kept(tmp_path):
-    spec = {
-        "scenario": "demo_sand",
-        "method": "list",
-        "row": [{"effect.slip_sinkage.coefficient": 0.2}],
-        "keep": {"diagnosis": "rover_sand"},
-    }
+    point = {"effect.slip_sinkage.coefficient": 0.3}
+    spec = {"scenario": "sweep_sand", "row": [point], "keep": {"diagnosis": "rover_sand"}}
     row = traction.campaign(spec, tmp_path / "c", workers=0).table().to_pylist()[0]
     assert row["status"] == "done", row["error"]
-    assert "slip_sinkage" in json.loads(row["named"]) and row["error_after"] < row["error_before"]
+    told = traction.diagnose("rover_sand", traction.simulate("sweep_sand", seed=row["seed"], effects=["slip_sinkage:coefficient=0.3"]))
+    assert (row["verdict"], json.loads(row["named"])) == (told.kind, list(told.verdict.effects))
+    assert row["error_after"] == told.ladder[-1].heldout <= row["error_before"]
 
 
 def test_the_command_line_runs_and_tells(cli, tmp_path):
