@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import traction
+from conftest import CLI, ROOT
 from traction.campaigns.formula import Formula
 
 pytest.importorskip("pyarrow")
@@ -131,6 +132,18 @@ def test_two_campaigns_in_one_folder_are_refused_by_name(reference, tmp_path):
         traction.campaign(SPEC, tmp_path / "mine")
 
 
+def test_a_scenario_finds_the_rover_that_lies_beside_it(tmp_path):
+    (tmp_path / "rovers").mkdir()
+    (tmp_path / "rovers" / "own.toml").write_text((ROOT / "rovers" / "heavy.toml").read_text())
+    text = 'rover = "rovers/own.toml"\nduration_s = 1.0\n[ground]\nsoil = "sand"\n[[drive]]\nfor_s = 1.0\nmode = "stop"\n'
+    (tmp_path / "own.toml").write_text(text)
+    (tmp_path / "c.toml").write_text('scenario = "own.toml"\n[vary]\nground.slope_rad = [0.0, 0.1]\n')
+    rows = traction.campaign(tmp_path / "c.toml", tmp_path / "c", workers=1).table().to_pylist()
+    assert [r["status"] for r in rows] == ["done", "done"], rows[0]["error"]
+    alone = traction.simulate(tmp_path / "own.toml", seed=rows[1]["seed"], ground__slope_rad=0.1)
+    assert alone.run.trace_hash == rows[1]["trace_hash"] != rows[0]["trace_hash"]
+
+
 def test_rows_that_come_do_not_change_the_others(reference):
     more = json.loads(json.dumps(SPEC))
     more["vary"]["ground.soil"] = ["sand", "gravel", "butter"]
@@ -214,7 +227,6 @@ def test_the_command_line_runs_and_tells(cli, tmp_path):
         '[keep.figures]\nv = "mean(estimate.speed_m_s)"\n'
     )
     env = {**os.environ, "TRACTION_PYTHON": sys.executable}
-    from conftest import CLI
 
     def run(*words):
         return subprocess.run([CLI, "campaign", *words], cwd=tmp_path, env=env, capture_output=True, text=True)

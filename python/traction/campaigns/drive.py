@@ -24,12 +24,13 @@ class Job:
 
     table: dict[str, Any]
     texts: dict[str, str]
+    paths: dict[str, str]
     logs: str  # folder for whole logs; empty: none is kept
 
     @staticmethod
     def of(spec: Spec, folder: str | os.PathLike[str]) -> Job:
         """Of a campaign that writes into `folder`."""
-        return Job(spec.table, spec.texts, str(Path(folder) / "logs") if spec.keep.get("logs") else "")
+        return Job(spec.table, spec.texts, spec.paths, str(Path(folder) / "logs") if spec.keep.get("logs") else "")
 
 
 def run_row(job: Job, row: Row) -> Row:
@@ -74,14 +75,10 @@ def _scenario(job: Job, given: Row) -> _core.ScenarioData:
     rovers = {key: Rover.parse(job.texts[f"{key}:{given[key]}"], str(given[key])) for key in ("rover", "believes") if key in given}
     name = given.get("scenario", job.table.get("scenario"))
     changes = {key: value for key, value in given.items() if key not in ("scenario", "rover", "believes")}
-    text: Any = name if isinstance(name, Mapping) else job.texts[f"scenario:{name}"] + "\n"
-    return load(
-        text,
-        changes,
-        rover=rovers.get("rover"),
-        believes=rovers.get("believes"),
-        name="scenario" if isinstance(name, Mapping) else str(name),
-    )
+    if isinstance(name, Mapping):
+        return load(name, changes, rover=rovers.get("rover"), believes=rovers.get("believes"))
+    text, file = job.texts[f"scenario:{name}"] + "\n", job.paths[f"scenario:{name}"]
+    return load(text, changes, rover=rovers.get("rover"), believes=rovers.get("believes"), name=file)
 
 
 def _effects(given: Row) -> list[str]:

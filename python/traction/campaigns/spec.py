@@ -66,7 +66,8 @@ class Spec:
     file: str = ""
     factors: dict[str, Range | list[Any]] = field(default_factory=dict)
     formulas: dict[str, Formula] = field(default_factory=dict)
-    texts: dict[str, str] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)  # of the files that it names
+    paths: dict[str, str] = field(default_factory=dict)  # where they were, for messages and what they name beside them
 
     @staticmethod
     def read(file: str | os.PathLike[str]) -> Spec:
@@ -252,6 +253,7 @@ class Spec:
             folder = _FILES.get(key, "models")
             beside = base / name
             path = str(beside) if self.file and beside.is_file() else find(name, folder)
+            self.paths[f"{key}:{name}"] = os.path.abspath(path)
             try:
                 self.texts[f"{key}:{name}"] = Path(path).read_text(encoding="utf-8")
             except OSError as error:
