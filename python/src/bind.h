@@ -30,7 +30,7 @@ class Signals {
     double next_s_ = 0;
 };
 
-// A Python value (None, bool, int, float, str, list, tuple, dict) as TOML text's node is made in scenario.cpp.
+// Each part of the package, into the module.
 void bind_errors(nb::module_ &m);
 void bind_log(nb::module_ &m);
 void bind_scenario(nb::module_ &m);

@@ -62,7 +62,13 @@ template <typename T> void pickles(nb::class_<T> &type) {
 }
 
 void bind_frame(nb::module_ &m) {
-    nb::class_<sensor_frame_t> frame(m, "Frame");
+    nb::class_<sensor_frame_t> frame(
+        m, "Frame",
+        "What the devices gave in one tick of 10 ms: raw counts (firmware/core/signals.h). Arrays are views that can be written to.\n\n"
+        "Of the wheels, shape (4,): encoder_count int32 (cumulative), current_count uint16, bridge_status uint8. radar_count uint16, "
+        "shape\n"
+        "(64,), of which radar_samples are filled. present: bits of what was heard; a clear bit's field has no meaning. time_us: clock "
+        "[us].");
     frame.def("__init__", [](sensor_frame_t *self) { new (self) sensor_frame_t{}; });
 #define FIELD(name) .def_rw(#name, &sensor_frame_t::name)
     frame FIELD(tick) FIELD(elapsed_ticks) FIELD(time_us) FIELD(present) FIELD(battery_count) FIELD(accel_x_count) FIELD(accel_y_count)
@@ -109,7 +115,12 @@ template <auto Member> auto flags_of_wheels() {
 }
 
 void bind_trace(nb::module_ &m) {
-    nb::class_<trace_t> trace(m, "Trace");
+    nb::class_<trace_t> trace(
+        m, "Trace",
+        "What one tick came to (firmware/core/signals.h). Of the wheels, float32, shape (4,), read-only views: wheel_speed_rad_s,\n"
+        "wheel_accel_rad_s2, set_speed_rad_s, current_A, torque_Nm, traction_N, slip, slip_std, duty; slip_valid, saturated: four bools.\n"
+        "Of the rover: speed_m_s and speed_std_m_s (fused ground speed), radar_speed_m_s, accel_x_m_s2, accel_bias_m_s2, gyro_z_rad_s,\n"
+        "battery_voltage_V, standstill, mode in force, faults (bits, latched), fault_wheels (bits).");
 #define FIELD(name) .def_ro(#name, &trace_t::name)
     trace FIELD(tick) FIELD(faults) FIELD(fault_wheels) FIELD(present) FIELD(battery_voltage_V) FIELD(accel_x_m_s2) FIELD(gyro_z_rad_s)
         FIELD(radar_speed_m_s) FIELD(radar_fresh) FIELD(speed_m_s) FIELD(speed_std_m_s) FIELD(accel_bias_m_s2) FIELD(standstill);
