@@ -8,6 +8,8 @@
 Numbers are the command line's own. Every unit is SI and stands in the name.
 """
 
+from importlib.metadata import version as _version
+
 from ._errors import CampaignError, FileError, InputError, LogError, ModelError, Refused, ScenarioError
 from .campaigns import Campaign, Spec, campaign
 from .lab import (
@@ -36,6 +38,8 @@ from .lab import (
 from .log import Column, Log, Run
 from .loop import Command, Firmware, Frame, Mode, Plant, Trace
 from .scenario import Effect, EffectParameter, Rover, RoverParameter, effects, simulate
+
+__version__ = _version("traction")
 
 __all__ = [
    "Addition", "Balance", "Campaign", "CampaignError", "Candidate", "Check", "Column", "Command", "Comparison", "Diagnosis", "Effect",

@@ -328,6 +328,10 @@ class Check:
         """What the drive went through."""
         return dict(self.json["excitation"])
 
+    def report(self, file: str | os.PathLike[str]) -> None:
+        """Write it as one HTML page."""
+        _core.write_report(json.dumps(self.json), os.fspath(file))
+
     def __bool__(self) -> bool:
         return self.passed
 

@@ -86,7 +86,7 @@ def load(
     changed = {key.replace("__", "."): _plain(value) for key, value in (changes or {}).items()}
     if isinstance(scenario, Mapping):
         core = _core.ScenarioData.of_dict(_plain(scenario), name, changed)
-    elif isinstance(scenario, str) and ("\n" in scenario or "=" in scenario):
+    elif isinstance(scenario, str) and ("\n" in scenario or ("=" in scenario and not os.path.exists(scenario))):
         core = _core.ScenarioData.of_text(scenario, name, changed)
     else:
         file = find(scenario, "scenarios")

@@ -108,6 +108,8 @@ def test_a_report_is_the_command_lines_page(cli, sand_log, tmp_path):
     cli("compare", "--model", path, "--log", sand_log, "--report", "cli.html")
     traction.compare(path, sand_log).report(tmp_path / "python.html")
     assert (tmp_path / "python.html").read_bytes() == (tmp_path / "cli.html").read_bytes()
+    traction.check(sand_log, path).report(tmp_path / "check.html")
+    assert "traction.check/1" in (tmp_path / "check.html").read_text()
 
 
 def test_a_spoilt_log_is_refused_and_taken_only_aloud(sand_log):
