@@ -16,7 +16,8 @@ std::filesystem::filesystem_error cannot(const std::string &what, const std::fil
     return {what, file, std::error_code(error, std::generic_category())};
 }
 
-// The exit code of the program; what it was ended by counts as an internal error.
+} // namespace
+
 int run_program(const std::string &program, std::vector<std::string> &arguments) {
     std::vector<char *> argv;
     for (std::string &argument : arguments) argv.push_back(argument.data());
@@ -33,8 +34,6 @@ int run_program(const std::string &program, std::vector<std::string> &arguments)
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw cannot("cannot run", program, EACCES);
     return WIFEXITED(status) ? WEXITSTATUS(status) : exit_internal;
 }
-
-} // namespace
 
 std::string own_program() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 

@@ -2,16 +2,13 @@
 #include "rows.h"
 #include "verbs.h"
 
-#include "host_tools/lab/result/addition.h"
-#include "host_tools/lab/result/compare.h"
-#include "host_tools/lab/result/result.h"
-#include "host_tools/lab/session.h"
-#include "host_tools/lab/validate.h"
+#include "host_tools/lab/answer.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 namespace traction::cli {
 
@@ -28,20 +25,13 @@ void add_effect(const AddRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
     if (std::filesystem::exists(request.out) && std::filesystem::equivalent(request.out, request.input.model))
         throw lab::ModelError(request.out, 0, "--out", "is the model that is read", "give another name: the old model stays as it is");
-    const lab::Added added = lab::add_effect(session.model, session.data, request.effect, request.wheel, request.from_file);
-    lab::write_model(added.model, request.out);
-    std::fputs(lab::added_text(added).c_str(), stdout);
+    lab::Answer answer = lab::add_answer(session, request.input, request.effect, request.wheel, request.from_file);
+    lab::write_model(*answer.model, request.out);
+    std::fputs(answer.text.c_str(), stdout);
     std::printf("wrote %s\n", request.out.c_str());
-    outcome.json = lab::head_json("add", added.model, session.data);
-    lab::put_comparison(outcome.json, lab::compare(added.model, session.data, true));
-    outcome.json["ladder"] = lab::ladder_json(added.ladder);
-    outcome.json["limits"] = lab::limits_json(added.limits);
-    outcome.json["verdict"] = {{"kind", added.helps ? "named" : "nothing"}, {"effects", {request.effect}}, {"text", added.text}};
-    const std::vector<lab::Validation> validation = lab::validate(session, request.input, added.model);
-    std::fputs(lab::validation_text(validation).c_str(), stdout);
-    outcome.json["validation"] = lab::validation_json(validation);
+    outcome.json = std::move(answer.json);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
-    if (!added.helps) outcome.exit_code = exit_negative;
+    if (answer.negative) outcome.exit_code = exit_negative;
 }
 
 } // namespace

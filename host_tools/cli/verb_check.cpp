@@ -2,7 +2,7 @@
 #include "rows.h"
 #include "verbs.h"
 
-#include "host_tools/check/check.h"
+#include "host_tools/check/report_json.h"
 #include "host_tools/lab/gate.h"
 #include "host_tools/lab/model/model.h"
 
@@ -17,54 +17,6 @@ namespace {
 struct CheckOptions {
     std::string log, map, model;
 };
-
-nlohmann::json excitation_json(const check::Excitation &e) {
-    nlohmann::json wheels = nlohmann::json::array();
-    for (const check::WheelExcitation &w : e.wheel) {
-        wheels.push_back({{"wheel", w.wheel},
-                          {"speed_min_rad_s", w.speed_min_rad_s},
-                          {"speed_max_rad_s", w.speed_max_rad_s},
-                          {"slip_low", w.slip_low},
-                          {"slip_high", w.slip_high},
-                          {"accel_rms_rad_s2", w.accel_rms_rad_s2},
-                          {"current_low_A", w.current_low_A},
-                          {"current_high_A", w.current_high_A}});
-    }
-    return {{"duration_s", e.duration_s},         {"speed_min_m_s", e.speed_min_m_s},
-            {"speed_max_m_s", e.speed_max_m_s},   {"reverse_s", e.reverse_s},
-            {"accel_rms_m_s2", e.accel_rms_m_s2}, {"starts", e.starts},
-            {"standstill_s", e.standstill_s},     {"moving_s", e.moving_s},
-            {"turning_s", e.turning_s},           {"yaw_rate_max_rad_s", e.yaw_rate_max_rad_s},
-            {"revisited", e.revisited},           {"path_m", e.path_m},
-            {"wheels_apart", e.wheels_apart},     {"slip_low", e.slip_low},
-            {"slip_high", e.slip_high},           {"constant_input", e.constant_input},
-            {"duty_saturated", e.duty_saturated}, {"wheels", wheels}};
-}
-
-nlohmann::json report_json(const CheckOptions &options, const check::Report &report) {
-    nlohmann::json findings = nlohmann::json::array(), rates = nlohmann::json::array();
-    for (const check::Finding &f : report.findings) {
-        findings.push_back({{"id", f.id},
-                            {"severity", check::severity_name(f.severity)},
-                            {"signal", f.signal},
-                            {"text", f.text},
-                            {"mend", f.mend},
-                            {"value", f.value},
-                            {"t0_s", f.t0_s},
-                            {"t1_s", f.t1_s}});
-    }
-    for (const check::Rate &r : report.rates) {
-        rates.push_back({{"signal", r.signal},
-                         {"samples", r.samples},
-                         {"median_s", r.median_s},
-                         {"jitter", r.jitter},
-                         {"missing", r.missing},
-                         {"largest_gap_s", r.largest_gap_s}});
-    }
-    return {
-        {"schema", "traction.check/1"}, {"log", options.log},   {"map", options.map}, {"model", options.model},
-        {"passed", report.passed()},    {"findings", findings}, {"rates", rates},     {"excitation", excitation_json(report.excitation)}};
-}
 
 void print_report(const CheckOptions &options, const check::Report &report) {
     int count[3] = {};
@@ -89,7 +41,7 @@ void run_check(const CheckOptions &options, Outcome &outcome) {
     const check::Machine machine = options.model.empty() ? check::Machine{} : lab::machine_of(lab::read_model(options.model));
     const check::Report report = check::check_file(options.log, options.map, machine);
     print_report(options, report);
-    outcome.json = report_json(options, report);
+    outcome.json = check::report_json(report, options.log, options.map, options.model);
     outcome.exit_code = report.passed() ? exit_done : exit_negative;
 }
 

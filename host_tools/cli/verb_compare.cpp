@@ -3,14 +3,12 @@
 #include "terminal.h"
 #include "verbs.h"
 
-#include "host_tools/lab/result/compare.h"
-#include "host_tools/lab/result/result.h"
-#include "host_tools/lab/result/story.h"
-#include "host_tools/lab/session.h"
+#include "host_tools/lab/answer.h"
 #include "host_tools/report/report.h"
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 namespace traction::cli {
 
@@ -24,13 +22,11 @@ struct CompareRequest {
 
 void compare(const CompareRequest &request, Outcome &outcome) {
     const lab::Session session = lab::open_session(request.input);
-    const lab::Comparison comparison = lab::compare(session.model, session.data, !request.fitted);
-    print(lab::comparison_text(comparison, request.details));
-    outcome.json = lab::head_json("compare", session.model, session.data);
-    lab::put_comparison(outcome.json, comparison);
-    outcome.json["story"] = lab::story_json(lab::tell(comparison));
+    lab::Answer answer = lab::compare_answer(session, request.fitted, request.details);
+    print(answer.text);
+    outcome.json = std::move(answer.json);
     if (!request.report.empty()) report::write_html(outcome.json, request.report);
-    if (comparison.balances.empty()) outcome.exit_code = exit_negative;
+    if (answer.negative) outcome.exit_code = exit_negative;
 }
 
 } // namespace

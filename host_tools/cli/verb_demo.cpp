@@ -4,7 +4,6 @@
 #include "data_files.h"
 #include "rows.h"
 #include "terminal.h"
-#include "trial.h"
 #include "verbs.h"
 
 #include "host_tools/lab/result/addition.h"
@@ -17,6 +16,7 @@
 #include "host_tools/log/log.h"
 #include "host_tools/report/report.h"
 #include "host_tools/simulate/simulate.h"
+#include "host_tools/simulate/trial.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -2,10 +2,9 @@
 #include "rows.h"
 #include "verbs.h"
 
-#include "host_tools/lab/model/model.h"
+#include "host_tools/lab/answer.h"
 
 #include <cstdio>
-#include <limits>
 #include <memory>
 
 namespace traction::cli {
@@ -18,16 +17,8 @@ struct DropRequest {
 };
 
 void drop(const DropRequest &request, Outcome &outcome) {
-    lab::Model model = lab::read_model(request.model);
-    const std::size_t dropped = std::erase_if(model.effects, [&](const lab::EffectUse &use) {
-        return use.name == request.effect && (request.wheel < -1 || use.wheel == request.wheel);
-    });
-    if (dropped == 0)
-        throw lab::ModelError(request.model, 0, "effect", "there is no \"" + request.effect + "\" in it",
-                              "`traction history` lists what the model has");
-    model.lineage.push_back({"- " + request.effect, "", "", {}, {}, {}});
-    model.lineage.back().train = model.lineage.back().heldout = model.lineage.back().floor = std::numeric_limits<double>::quiet_NaN();
-    lab::write_model(model, request.out);
+    std::size_t dropped = 0;
+    lab::write_model(lab::without_effect(lab::read_model(request.model), request.effect, request.wheel, dropped), request.out);
     std::printf("wrote %s without %s; run `traction fit` to fit the rest again\n", request.out.c_str(), request.effect.c_str());
     outcome.json = {{"schema", "traction.lab/1"}, {"verb", "drop"}, {"dropped", dropped}};
 }

@@ -2,6 +2,7 @@
 #include "rows.h"
 #include "verbs.h"
 
+#include "host_tools/lab/result/effects_json.h"
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
@@ -11,44 +12,6 @@
 namespace traction::cli {
 
 namespace {
-
-const char *place_of(sim::ActsOn where) {
-    switch (where) {
-    case sim::ActsOn::wheel_torque:
-        return "wheel torque";
-    case sim::ActsOn::wheel_force:
-        return "wheel force";
-    case sim::ActsOn::body_force:
-        return "body force";
-    case sim::ActsOn::motor_voltage:
-        return "motor voltage";
-    case sim::ActsOn::kinematics:
-        return "kinematics";
-    case sim::ActsOn::load:
-        return "load";
-    case sim::ActsOn::sensor:
-        return "sensor";
-    }
-    return "";
-}
-
-nlohmann::json effect_json(const sim::Effect &effect) {
-    nlohmann::json parameters = nlohmann::json::array();
-    for (const sim::EffectParameter &p : effect.parameters) {
-        parameters.push_back({{"name", p.name},
-                              {"unit", p.unit},
-                              {"meaning", p.meaning},
-                              {"strength", p.strength},
-                              {"minimum", p.minimum},
-                              {"maximum", p.maximum},
-                              {"typical", p.typical},
-                              {"of_interest", p.of_interest},
-                              {"variants", p.variants}});
-    }
-    return {{"name", effect.name},           {"title", effect.title},       {"acts_on", place_of(effect.acts_on)},
-            {"per_wheel", effect.per_wheel}, {"equation", effect.equation}, {"source", effect.source},
-            {"signature", effect.signature}, {"reveals", effect.reveals},   {"parameters", parameters}};
-}
 
 void wrap(const char *label, std::string_view text) {
     constexpr std::size_t width = 84;
@@ -72,7 +35,7 @@ void wrap(const char *label, std::string_view text) {
 void explain(const sim::Effect &effect) {
     std::printf("%s: %s\n\n", std::string(effect.name).c_str(), std::string(effect.title).c_str());
     wrap("law", effect.equation);
-    wrap("acts on", place_of(effect.acts_on) + std::string(effect.per_wheel ? ", of all wheels or of one (wheel = i)" : ""));
+    wrap("acts on", lab::place_of(effect.acts_on) + std::string(effect.per_wheel ? ", of all wheels or of one (wheel = i)" : ""));
     wrap("source", effect.source);
     wrap("looks like", effect.signature);
     wrap("shown by", effect.reveals);
@@ -104,11 +67,12 @@ void effects(const std::string &name, Outcome &outcome) {
         need_effect("NAME", name, "");
         const sim::Effect &effect = *sim::find_effect(name);
         explain(effect);
-        list.push_back(effect_json(effect));
+        list.push_back(lab::effect_json(effect));
     } else {
         for (const sim::Effect &effect : sim::catalogue()) {
-            std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), place_of(effect.acts_on), std::string(effect.title).c_str());
-            list.push_back(effect_json(effect));
+            std::printf("%-22s %-14s %s\n", std::string(effect.name).c_str(), lab::place_of(effect.acts_on),
+                        std::string(effect.title).c_str());
+            list.push_back(lab::effect_json(effect));
         }
         std::printf("\n%zu effects. `traction effects NAME` explains one.\n", sim::catalogue().size());
     }

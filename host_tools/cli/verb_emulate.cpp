@@ -2,7 +2,6 @@
 #include "verbs.h"
 
 #if TRACTION_WITH_EMULATE
-#include "fault_names.h"
 #include "progress.h"
 #include "rows.h"
 #include "stop_signal.h"
@@ -11,6 +10,7 @@
 #include "host_tools/emulate/emulate.h"
 #include "host_tools/report/report.h"
 #include "host_tools/rover/rover.h"
+#include "host_tools/simulate/fault_names.h"
 #include "sim/scenario/hidden.h"
 #include "sim/scenario/scenario.h"
 #endif

@@ -1,17 +1,16 @@
 // verb_next.cpp - traction next: the drive that answers what a log left open, with the predicted d' of every question.
 #include "rows.h"
 #include "terminal.h"
-#include "trial.h"
 #include "verbs.h"
 
-#include "host_tools/lab/result/next_result.h"
-#include "host_tools/lab/result/result.h"
-#include "host_tools/lab/session.h"
+#include "host_tools/lab/answer.h"
 #include "host_tools/report/report.h"
+#include "host_tools/simulate/trial.h"
 
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace traction::cli {
 
@@ -29,31 +28,20 @@ void next(const NextRequest &request, Outcome &outcome) {
     for (const std::string &name : request.effects) need_effect("--effects", name, ":");
     std::optional<lab::Session> session;
     if (!request.input.log.empty()) session = lab::open_session(request.input);
-    lab::NextExperiment answer;
-    if (request.effects.empty()) {
-        answer = lab::next_experiment(lab::diagnose(session->model, session->data, {}), session->model, session->data, request.all,
-                                      simulated_rover());
-    } else {
-        const lab::Model model = session ? session->model : lab::read_model(request.input.model);
-        answer = lab::next_experiment(request.effects, model, session ? &session->data : nullptr, simulated_rover());
-    }
-    if (session)
-        outcome.json = lab::head_json("next", session->model, session->data);
-    else
-        outcome.json = {{"schema", "traction.lab/1"}, {"verb", "next"}};
-    outcome.json["next"] = lab::next_json(answer);
-    print(lab::next_text(answer, request.details));
-    bool stuck = false;
-    for (const lab::Question &q : answer.questions) stuck = stuck || q.status == "never";
-    if (answer.scenario_toml.empty()) {
+    const lab::Model model = session ? session->model : lab::read_model(request.input.model);
+    lab::NextAnswer answer = lab::next_answer(session ? &*session : nullptr, model, request.effects, request.all,
+                                              {.progress = {}, .drive = simulated_rover(), .details = request.details});
+    outcome.json = std::move(answer.json);
+    print(answer.text);
+    if (answer.negative) outcome.exit_code = exit_negative;
+    if (answer.scenario.empty()) {
         if (!request.out.empty()) std::printf("%s is not written: there is no drive to write\n", request.out.c_str());
-        if (stuck || (!answer.questions.empty() && !answer.predicted)) outcome.exit_code = exit_negative;
         return;
     }
     if (request.out.empty())
-        std::fputs(("\n" + answer.scenario_toml).c_str(), stdout);
+        std::fputs(("\n" + answer.scenario).c_str(), stdout);
     else
-        report::write_text(answer.scenario_toml, request.out);
+        report::write_text(answer.scenario, request.out);
 }
 
 } // namespace

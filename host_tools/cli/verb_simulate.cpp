@@ -1,5 +1,5 @@
 // verb_simulate.cpp - traction simulate SCENARIO: drives the rover through a scenario and writes the log.
-#include "fault_names.h"
+
 #include "progress.h"
 #include "rows.h"
 #include "stop_signal.h"
@@ -10,6 +10,7 @@
 #include "host_tools/report/report.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/batch.h"
+#include "host_tools/simulate/fault_names.h"
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
 

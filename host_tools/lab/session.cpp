@@ -7,13 +7,14 @@
 #include "host_tools/lab/inputs/long_log.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace traction::lab {
 
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,
                      std::vector<std::string> &told, std::vector<std::string> &despite) {
     std::vector<log::Repair> repairs;
-    log::Log log = log::read_csv(file, map, repairs);
+    log::Log log = request.read ? request.read(file, map, repairs) : log::read_csv(file, map, repairs);
     keep_part(log, request.from_s, request.to_s);
     for (std::string &sentence : pass_gate(check::check(log, repairs, machine_of(model)), file, request.despite, despite))
         told.push_back(std::move(sentence));
@@ -24,9 +25,11 @@ log::Log checked_log(const Request &request, const std::string &file, const std:
     return log;
 }
 
-Session open_session(const Request &request) {
+Session open_session(const Request &request) { return open_session(request, read_model(request.model)); }
+
+Session open_session(const Request &request, Model model) {
     Session session;
-    session.model = read_model(request.model);
+    session.model = std::move(model);
     std::vector<std::string> told, despite, files = request.logs, maps = request.maps;
     if (!request.log.empty()) files.insert(files.begin(), request.log);
     if (!request.map.empty()) maps.insert(maps.begin(), request.map);

@@ -3,7 +3,9 @@
 
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/model/model.h"
+#include "host_tools/log/read.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,8 @@ struct Request {
     std::vector<std::string> logs = {};     // runs of one machine, beside `log`
     std::vector<std::string> maps = {};     // one for all logs, or one for each; beside `map`
     std::vector<std::string> validate = {}; // logs that the result is judged on, never fitted
+    // How a log is read; empty: from its file (log::read_csv). For a caller that holds logs in memory under names of its own.
+    std::function<log::Log(const std::string &file, const std::string &map, std::vector<log::Repair> &repairs)> read = {};
     std::string map_of_validation() const { return maps.empty() ? map : maps.front(); }
 };
 
@@ -28,6 +32,9 @@ struct Session {
 // Every log has passed the gate, or was let through despite an error: data.despite and data.messages say so. Throws ModelError,
 // log::LogError, Refused (gate.h).
 Session open_session(const Request &request);
+
+// The same with a model that was read already; request.model is for messages.
+Session open_session(const Request &request, Model model);
 
 // One log, the part that is asked for, through the gate. `told`: warnings and what was overridden; `despite`: ids overridden.
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,

@@ -24,9 +24,9 @@ std::string printable(std::string text) {
 } // namespace
 
 LogError::LogError(std::string file_name, std::size_t line_number, std::size_t column_number, const std::string &what_is_wrong,
-                   const std::string &mend)
-    : std::runtime_error(printable(place(file_name, line_number, column_number) + ": " + what_is_wrong + "; to mend: " + mend)),
-      file(std::move(file_name)), line(line_number), column(column_number) {}
+                   const std::string &mend_)
+    : std::runtime_error(printable(place(file_name, line_number, column_number) + ": " + what_is_wrong + "; to mend: " + mend_)),
+      file(std::move(file_name)), line(line_number), column(column_number), mend(mend_) {}
 
 const Signal *Log::find(std::string_view name) const {
     for (const Signal &signal : signals) {

@@ -35,6 +35,7 @@ struct LogError : std::runtime_error {
     std::string file;
     std::size_t line;   // 1-based; 0 when the whole file is meant
     std::size_t column; // 1-based field number; 0 when the whole line is meant
+    std::string mend;
 };
 
 // The file itself cannot be opened, read or written.

@@ -5,6 +5,10 @@
 
 #include "log.h"
 
+#include <map>
+#include <string>
+#include <vector>
+
 namespace traction::log {
 
 // One thing the reader mended.
@@ -29,5 +33,11 @@ struct ClockJump : LogError {
 
 // As read_csv of log.h, and the repairs as data.
 Log read_csv(const std::string &path, const std::string &map_path, std::vector<Repair> &repairs, const ReadLimits &limits = {});
+
+// A log from columns in memory, mended as a file's would be: NaN is "no sample", infinities are dropped and told, times are put in order, a
+// known quantity in another unit is converted. `name` stands for the file in messages. Throws LogError where a column's lengths differ or
+// its clock was set back (ClockJump).
+Log log_of_columns(std::vector<Signal> columns, const std::map<std::string, std::string> &header, const std::string &name,
+                   std::vector<Repair> &repairs);
 
 } // namespace traction::log

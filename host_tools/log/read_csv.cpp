@@ -4,7 +4,9 @@
 #include "vocabulary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
 #include <utility>
 
 namespace traction::log {
@@ -44,20 +46,57 @@ void say_unknown(const std::vector<std::string> &unknown, std::size_t columns, s
     repairs.push_back({"unknown_name", unknown.front(), unknown.size(), 0, text});
 }
 
-Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Repair> &repairs, const ReadLimits &limits) {
-    Table table = read_table(bytes.view(), path, Dialect{}, limits, repairs);
-    Log log;
-    log.header = std::move(table.header);
-    log.source = path;
-    std::vector<std::string> names = table.names, unknown;
-    for (Column &column : table.columns) {
-        put_in_order(column, path, repairs);
+// Ordered, named in the vocabulary, into the log.
+void take_columns(Log &log, std::vector<Column> &columns, std::vector<std::string> names, std::vector<Repair> &repairs) {
+    std::vector<std::string> unknown;
+    for (Column &column : columns) {
+        put_in_order(column, log.source, repairs);
         const std::string before = column.signal.name;
         name_in_vocabulary(column, names, repairs, unknown);
         if (column.signal.name != before) names.push_back(column.signal.name); // rpm and deg_s of one quantity: the first wins
         log.signals.push_back(std::move(column.signal));
     }
-    say_unknown(unknown, table.columns.size(), repairs);
+    say_unknown(unknown, columns.size(), repairs);
+}
+
+// A column in memory as the reader of a file leaves one.
+Column column_of(Signal &&given, std::size_t number, const std::string &file, std::vector<Repair> &repairs) {
+    if (given.t_s.size() != given.value.size())
+        throw LogError(file, 0, number,
+                       "'" + given.name + "' has " + std::to_string(given.t_s.size()) + " times and " + std::to_string(given.value.size()) +
+                           " values",
+                       "give one time for each value");
+    Column column;
+    column.number = number;
+    column.signal.name = std::move(given.name);
+    column.signal.t_s.reserve(given.t_s.size());
+    column.signal.value.reserve(given.value.size());
+    for (std::size_t i = 0; i < given.t_s.size(); ++i) {
+        if (std::isnan(given.value[i]) || std::isnan(given.t_s[i])) continue;
+        if (!std::isfinite(given.value[i]) || !std::isfinite(given.t_s[i])) {
+            if (column.not_finite++ == 0) column.not_finite_line = i + 1;
+            continue;
+        }
+        if (!column.signal.t_s.empty() && given.t_s[i] <= column.signal.t_s.back()) {
+            if (column.back_steps++ == 0) column.back_line = i + 1;
+            if (given.t_s[i] < column.signal.t_s.back() && column.backs.size() < 64)
+                column.backs.emplace_back(column.signal.t_s.size(), i + 1);
+        }
+        column.signal.t_s.push_back(given.t_s[i]);
+        column.signal.value.push_back(given.value[i]);
+    }
+    if (column.not_finite != 0)
+        repairs.push_back({"not_finite", column.signal.name, column.not_finite, column.not_finite_line,
+                           std::to_string(column.not_finite) + " values of '" + column.signal.name + "' are infinite, left out"});
+    return column;
+}
+
+Log read_native(const FileBytes &bytes, const std::string &path, std::vector<Repair> &repairs, const ReadLimits &limits) {
+    Table table = read_table(bytes.view(), path, Dialect{}, limits, repairs);
+    Log log;
+    log.header = std::move(table.header);
+    log.source = path;
+    take_columns(log, table.columns, table.names, repairs);
     return log;
 }
 
@@ -74,6 +113,25 @@ Log read_csv(const std::string &path, const std::string &map_path, std::vector<R
         log = read_through_map(bytes, path, map, repairs, limits);
         join_second_file(log, map, repairs, limits);
     }
+    for (std::size_t i = before; i < repairs.size(); ++i) log.repairs.push_back(repairs[i].text);
+    return log;
+}
+
+Log log_of_columns(std::vector<Signal> columns, const std::map<std::string, std::string> &header, const std::string &name,
+                   std::vector<Repair> &repairs) {
+    const std::size_t before = repairs.size();
+    Log log;
+    log.header = header;
+    log.source = name;
+    std::vector<Column> taken;
+    std::vector<std::string> names;
+    for (Signal &column : columns) {
+        if (std::find(names.begin(), names.end(), column.name) != names.end())
+            throw LogError(name, 0, taken.size() + 1, "there are two columns '" + column.name + "'", "give each column a name of its own");
+        names.push_back(column.name);
+        taken.push_back(column_of(std::move(column), taken.size() + 1, name, repairs));
+    }
+    take_columns(log, taken, names, repairs);
     for (std::size_t i = before; i < repairs.size(); ++i) log.repairs.push_back(repairs[i].text);
     return log;
 }

@@ -63,9 +63,9 @@ std::size_t distance(std::string_view a, std::string_view b) {
 } // namespace
 
 ScenarioError::ScenarioError(const std::string &file_, std::size_t line_, const std::string &key_, const std::string &value_,
-                             const std::string &what_is_wrong, const std::string &mend)
-    : std::runtime_error(build_message(file_, line_, key_, value_, what_is_wrong, mend)), file(file_), line(line_), key(key_),
-      value(value_) {}
+                             const std::string &what_is_wrong, const std::string &mend_)
+    : std::runtime_error(build_message(file_, line_, key_, value_, what_is_wrong, mend_)), file(file_), line(line_), key(key_),
+      value(value_), mend(mend_) {}
 
 Keys::Keys(const toml::table &table, std::string file, std::string path) : table_(table), file_(std::move(file)), path_(std::move(path)) {}
 

@@ -1,6 +1,7 @@
 #include "scenario.h"
 
 #include "read_parts.h"
+#include "scenario_table.h"
 
 #include <algorithm>
 #include <array>
@@ -63,8 +64,11 @@ void read_all(Keys &top, const std::string &file, Scenario &scenario) {
 
 } // namespace
 
-Scenario parse_scenario(const std::string &text, const std::string &file) {
-    const toml::table table = parse_toml(text, file);
+Scenario parse_scenario(const std::string &text, const std::string &file) { return scenario_of_table(parse_toml(text, file), text, file); }
+
+toml::table scenario_table(const std::string &text, const std::string &file) { return parse_toml(text, file); }
+
+Scenario scenario_of_table(const toml::table &table, const std::string &text, const std::string &file) {
     Scenario scenario;
     scenario.name = name_of(file);
     scenario.file = file;

@@ -14,6 +14,7 @@ struct ScenarioError : std::runtime_error {
     std::size_t line; // 1-based; 0 when the whole file or the command line is meant
     std::string key;
     std::string value; // as written; empty when the key is missing
+    std::string mend;
 };
 
 } // namespace traction::sim

@@ -13,7 +13,8 @@ set(rules
   "sim|${same_folder}|sim/.+|*"
   "emulate|${same_folder}|*"  # on the board, beside the firmware: nothing of it
   "host_tools|${same_folder}|(firmware|hal|sim|host_tools)/.+|*"
-  "host_tools/emulate|${same_folder}|(firmware|hal|sim|host_tools)/.+|emulate/lockstep.h|*")
+  "host_tools/emulate|${same_folder}|(firmware|hal|sim|host_tools)/.+|emulate/lockstep.h|*"
+  "python|${same_folder}|(firmware|hal|sim|host_tools)/.+|*")
 # The lab's rooms, in the order in which data goes through them: a room includes itself and the rooms before it. session.h opens model and
 # log for whoever uses the lab, through the gate (host_tools/check), so that it may look into every room and none looks back.
 set(rooms model inputs forward fit decision next result)
@@ -29,7 +30,7 @@ set(owned "linux/.+=(hal/linux|emulate)" "gpiod.h=hal/linux" "sys/socket.h=(hal/
 
 set(offences "")
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/firmware/*.[ch] ${ROOT}/hal/*.[ch] ${ROOT}/hal/*.cpp ${ROOT}/sim/*.h
-  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp ${ROOT}/emulate/*.[ch])
+  ${ROOT}/sim/*.cpp ${ROOT}/host_tools/*.h ${ROOT}/host_tools/*.cpp ${ROOT}/emulate/*.[ch] ${ROOT}/python/*.h ${ROOT}/python/*.cpp)
 foreach(file IN LISTS files)
   set(rule "")
   foreach(candidate IN LISTS rules) # the last that matches is the most specific

@@ -1,5 +1,7 @@
 #include "problem.h"
 
+#include "checkpoint.h"
+
 #include "host_tools/lab/inputs/smooth.h"
 #include "normal_equations.h"
 #include "sparse_jacobian.h"
@@ -168,6 +170,7 @@ class RowsCost : public ceres::CostFunction {
 };
 
 void Problem::solve(int iterations) {
+    checkpoint();
     if (parameters.empty() || measured_.size() == 0) {
         linearise();
         return;
@@ -305,6 +308,7 @@ void Problem::within_bounds() {
 }
 
 void Problem::quick_fit(const Problem &base, int iterations) {
+    checkpoint();
     keep_scales(base);
     const Eigen::Index n = base.theta.size(), all = theta.size(), rows = measured_.size();
     jacobian.resize(rows, all);
@@ -392,6 +396,7 @@ void Problem::update_residual() {
 }
 
 void Problem::gauss_newton(int fresh) {
+    checkpoint();
     constexpr int steps = 5;      // with the same sensitivities
     constexpr double worth = 0.3; // fall of the cost below which a step is the last: well below one squared standard deviation
     const Eigen::VectorXd precision = prior_precision();

@@ -402,9 +402,9 @@ void read_lineage(const toml::table &root, Model &model) {
 
 } // namespace
 
-ModelError::ModelError(const std::string &file, std::size_t line, const std::string &key, const std::string &what_is_wrong,
-                       const std::string &mend)
-    : std::runtime_error(complete_message(file, line, key, what_is_wrong, mend)) {}
+ModelError::ModelError(const std::string &file_, std::size_t line_, const std::string &key_, const std::string &what_is_wrong,
+                       const std::string &mend_)
+    : std::runtime_error(complete_message(file_, line_, key_, what_is_wrong, mend_)), file(file_), line(line_), key(key_), mend(mend_) {}
 
 const EffectUse *Model::find_effect(const std::string &effect, int wheel_index) const {
     for (const EffectUse &use : effects)

@@ -17,6 +17,9 @@ namespace traction::lab {
 struct ModelError : std::runtime_error {
     ModelError(const std::string &file, std::size_t line, const std::string &key, const std::string &what_is_wrong,
                const std::string &mend);
+    std::string file;
+    std::size_t line; // 1-based; 0 when the whole file is meant
+    std::string key, mend;
 };
 
 struct Parameter {

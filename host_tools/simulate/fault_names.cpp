@@ -3,7 +3,7 @@
 #include "firmware/core/fault_name.h"
 #include "firmware/core/signals.h"
 
-namespace traction::cli {
+namespace traction {
 
 std::string fault_names(std::uint32_t faults) {
     std::string text;
@@ -12,4 +12,4 @@ std::string fault_names(std::uint32_t faults) {
     return text;
 }
 
-} // namespace traction::cli
+} // namespace traction

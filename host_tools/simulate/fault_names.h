@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
-namespace traction::cli {
+namespace traction {
 
-// "stall, low battery" of the bits of fault_t (firmware/core/signals.h); "" of none.
+// "stall, low battery": bits of fault_t (firmware/core/signals.h); empty for none.
 std::string fault_names(std::uint32_t faults);
 
-} // namespace traction::cli
+} // namespace traction

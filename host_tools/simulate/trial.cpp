@@ -1,10 +1,10 @@
 #include "trial.h"
 
-#include "host_tools/simulate/simulate.h"
+#include "simulate.h"
 
-namespace traction::cli {
+namespace traction {
 
-lab::DriveScenario simulated_rover() {
+std::function<log::Log(const std::string &scenario_toml)> simulated_rover() {
     return [](const std::string &scenario_toml) {
         sim::Scenario scenario = sim::parse_scenario(scenario_toml, "the lab's manoeuvre");
         scenario.firmware.believes = sim::RoverDescription(); // what the lab has learnt of the rover has not reached its firmware
@@ -12,4 +12,4 @@ lab::DriveScenario simulated_rover() {
     };
 }
 
-} // namespace traction::cli
+} // namespace traction

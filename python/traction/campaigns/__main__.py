@@ -1,0 +1,65 @@
+"""`python -m traction.campaigns FILE.toml --out FOLDER`: what `traction campaign` runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+
+from .._errors import FileError, InputError
+from . import Campaign, Spec, campaign
+from .run import bar
+
+
+def _told(result: Campaign, file: str | None) -> int:
+    status = result.status
+    failed = f", {status.failed} of them failed (column `error`)" if status.failed else ""
+    print(f"{result.title}: {status.done} of {status.total} drives{failed}, in {result.folder}/results")
+    if file is not None:
+        about = {"schema": "traction.campaign/1", "title": result.title, "folder": str(result.folder)}
+        with open(file, "w", encoding="utf-8") as stream:
+            json.dump({**about, "drives": status.total, "done": status.done, "failed": status.failed}, stream)
+    return 1 if status.failed else 0
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit codes as the command line's: 0 done, 1 some drives failed, 2 wrong command line, 3 bad input, 4 file error, 130 stopped."""
+    parser = argparse.ArgumentParser(prog="traction campaign", description="many drives from one file, into one table (docs/campaign.md)")
+    parser.add_argument("spec", nargs="?", metavar="FILE.toml", help="what varies, and what is kept of each drive")
+    parser.add_argument("--out", metavar="FOLDER", help="where results go; a stopped campaign goes on there")
+    parser.add_argument("--workers", type=int, metavar="N", help="processes (one a core)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, tcp://HOST:PORT: its workers drive")
+    parser.add_argument("--status", action="store_true", help="how far the campaign in FOLDER is; drives nothing")
+    parser.add_argument("--dry-run", action="store_true", help="the number of drives, and the first rows; drives nothing")
+    parser.add_argument("--json", metavar="FILE", help="the result for programs, schema traction.campaign/1")
+    given = parser.parse_args(arguments)
+    if given.workers is not None and given.workers < 0:
+        parser.error("--workers: give 0 (this process alone) or more")
+    if not given.status and given.spec is None:
+        parser.error("FILE.toml is missing")
+    if given.out is None and not given.dry_run:
+        parser.error("--out is missing")
+    try:
+        if given.status:
+            return _told(Campaign(given.out), given.json)
+        spec = Spec.read(given.spec)
+        if given.dry_run:
+            print(f"{spec.title}: {len(spec.rows)} drives")
+            for row in spec.rows[:5]:
+                print("  " + ", ".join(f"{key}={value}" for key, value in row.items()))
+            return 0
+        return _told(campaign(spec, given.out, workers=given.workers, scheduler=given.scheduler, progress=bar(spec.title)), given.json)
+    except KeyboardInterrupt:
+        print("\nstopped; the same command goes on where it was", file=sys.stderr)
+        return 130
+    except InputError as error:
+        print(f"traction: {error}", file=sys.stderr)
+        return 4 if isinstance(error, FileError) else 3
+    except OSError as error:
+        print(f"traction: {error.filename or given.out}: {os.strerror(error.errno or 0)}", file=sys.stderr)
+        return 4
+
+
+if __name__ == "__main__":
+    sys.exit(main())
