@@ -43,7 +43,12 @@ static float rim_hint_m_s(const control_config_t *config, const sense_output_t *
 // [rad/s] assumed: half a rim speed of 0.11 m/s of the reference. A wheel that is blocked or spins alone, or a turn on the spot.
 static const float part_rad_s = 2.0f;
 
-static bool wheels_part(const sense_output_t *sense)
+typedef struct {
+    bool part;
+    float slowest_rad_s; // where all turn one way, else 0
+} wheels_t;
+
+static wheels_t compare_wheels(const sense_output_t *sense)
 {
     float low = sense->speed_rad_s[0];
     float high = low;
@@ -51,7 +56,11 @@ static bool wheels_part(const sense_output_t *sense)
         low = fixed_greater(low, sense->speed_rad_s[i]) ? sense->speed_rad_s[i] : low;
         high = fixed_greater(sense->speed_rad_s[i], high) ? sense->speed_rad_s[i] : high;
     }
-    return fixed_greater(high - low, part_rad_s);
+    const wheels_t out = {
+        .part = fixed_greater(high - low, part_rad_s),
+        .slowest_rad_s = fixed_greater(low, 0.0f) ? low : fixed_greater(0.0f, high) ? high : 0.0f,
+    };
+    return out;
 }
 
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
@@ -62,6 +71,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     const doppler_arrival_t arrival = {frame->radar_sequence, sense->elapsed_ticks, radar ? most : 0};
     const int32_t missing = doppler_missing(&config->doppler, &state->doppler, &arrival);
     doppler_gap(&config->doppler, &state->doppler, missing, frame->radar_count[0]);
+    const wheels_t wheels = compare_wheels(sense);
     doppler_output_t doppler = state->heard;
     doppler.late_samples += missing + arrival.count;
     state->heard = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
@@ -74,7 +84,8 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
         .wheel_m_s = rim_hint_m_s(config, sense),
-        .wheels_part = wheels_part(sense),
+        .slowest_m_s = wheels.slowest_rad_s * config->slip.wheel_radius_m,
+        .wheels_part = wheels.part,
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
         .doppler_quiet = doppler.quiet,

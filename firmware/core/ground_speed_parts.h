@@ -79,6 +79,8 @@ void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed
 float ground_speed_force_odds(const ground_speed_config_t *config, const ground_speed_state_t *state);
 // The same of the wheels' sign alone.
 float ground_speed_wheel_odds(const ground_speed_config_t *config, float measured, float wheel_m_s);
+// The wheels' hint for a value: their mean rim speed, or that of one that rolls beside others that spin.
+float ground_speed_hint(const ground_speed_config_t *config, const ground_speed_input_t *input, float measured);
 void ground_speed_split(ground_speed_state_t *state, ground_speed_side_t *side, const ground_speed_track_t *track);
 // Instead of that, where one sign is taken alone.
 void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_state_t *state);

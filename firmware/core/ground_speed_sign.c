@@ -17,6 +17,19 @@ float ground_speed_wheel_odds(const ground_speed_config_t *config, float measure
     return wheel_m_s < 0.0f ? -odds : odds;
 }
 
+static const float rolls_share = 0.15f; // of its rim speed, and beside it, what a wheel may slip that is hardly driven: assumed
+static const float rolls_m_s = 0.02f;
+
+// Where the wheels part, one that nothing drives rolls with the ground, whatever those that spin beside it do: the hint is its rim speed,
+// if the radar's value agrees with it.
+float ground_speed_hint(const ground_speed_config_t *config, const ground_speed_input_t *input, float measured)
+{
+    const float rim = fabsf(input->slowest_m_s);
+    const bool rolls = input->wheels_part && fixed_greater(rim, config->still_m_s) &&
+                       fixed_greater(rolls_m_s + rolls_share * rim, fabsf(measured - rim));
+    return rolls ? input->slowest_m_s : input->wheel_m_s;
+}
+
 // What a body that its wheels push cannot do is overtake them: a radius and a radar's angle that are 10 % off, and a value's noise
 // (assumed).
 static const float overtaken_share = 0.1f;

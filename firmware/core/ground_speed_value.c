@@ -119,7 +119,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_change_m_s = window.change_m_s;
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
-    state->value_wheel_m_s = input->wheel_m_s;
+    state->value_wheel_m_s = ground_speed_hint(config, input, measured);
     if (!early) {
         ground_speed_remember(state);
     }
@@ -138,7 +138,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     }
     state->refused = 0;
     state->accepted = true;
-    state->value_sign = ground_speed_choose_sign(config, state, &track, measured, middle, spread, input->wheel_m_s);
+    state->value_sign = ground_speed_choose_sign(config, state, &track, measured, middle, spread, state->value_wheel_m_s);
     state->waits = 2;
     ground_speed_correct(config, &track, state->value_sign * measured - middle, own.tau_s, noise);
     ground_speed_keep_best(state, &track);

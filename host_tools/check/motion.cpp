@@ -168,10 +168,15 @@ void Motion::heading() {
     }
     if (n < 40) return;
     const double together = std::hypot(c, s) / n, mirrored = std::hypot(cm, sm) / n, offset = std::atan2(s, c);
-    heading_fits_ = together > 0.9 && std::fabs(offset) < 0.35;
+    // A mean hides a mirror where most of the path runs one way: what the mirror image leaves is compared with what the path leaves.
+    const bool is_mirrored = turned > 0.5 && mirrored > 0.9 && (together <= 0.9 || 1 - mirrored < 0.25 * (1 - together));
+    heading_fits_ = together > 0.9 && std::fabs(offset) < 0.35 && !is_mirrored;
     if (heading_fits_) return;
     const double widest = std::max(std::fabs(quantile(grid_.camera_yaw, 0.01)), std::fabs(quantile(grid_.camera_yaw, 0.99)));
-    if (together > 0.9 && std::fabs(offset) > 2.8) {
+    if (is_mirrored) {
+        add("sign", Severity::error, "camera.y_m", "the camera's path is the mirror image of the one that its heading describes",
+            "turn the sign of camera.y_m round (an image has y down), or of the heading", mirrored);
+    } else if (together > 0.9 && std::fabs(offset) > 2.8) {
         add("sign", Severity::error, "camera.yaw_rad",
             say("the camera sees the machine drive backwards when its wheels turn forwards (heading off by %.2f rad)", offset),
             "add pi to the heading, or turn the sign of all wheel speeds round", offset);
@@ -179,9 +184,6 @@ void Motion::heading() {
         add("heading", Severity::error, "camera.yaw_rad",
             say("the camera's heading is %.2f rad away from the direction of travel", -offset), say("add %.4f to it (map: offset)", offset),
             -offset);
-    } else if (turned > 0.5 && mirrored > 0.9) {
-        add("sign", Severity::error, "camera.y_m", "the camera's path is the mirror image of the one that its heading describes",
-            "turn the sign of camera.y_m round (an image has y down), or of the heading", mirrored);
     } else if (widest > 15) {
         add("unit", Severity::error, "camera.yaw_rad",
             say("'camera.yaw_rad' reaches %.4g and does not point along the path: it looks like degrees", widest),

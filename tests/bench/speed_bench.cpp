@@ -124,6 +124,7 @@ void run(const Profile &profile, const Samples &samples, int seed, const Variant
                                             .doppler_m_s = d.speed_m_s,
                                             .doppler_late_s = static_cast<float>(d.late_samples) / 512.0f,
                                             .wheel_m_s = static_cast<float>(v * 1.1),
+                                            .slowest_m_s = 0.0f,
                                             .wheels_part = false,
                                             .accel_valid = true,
                                             .doppler_fresh = d.fresh,

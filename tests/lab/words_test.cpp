@@ -163,7 +163,11 @@ TEST(Words, an_effect_that_takes_little_is_said_to_explain_a_part) {
     d.accepted.push_back(r);
     d.ladder = {{"baseline", 5, 5, 1}, {"+ load_transfer", 4.2, 4.2, 1}};
     EXPECT_TRUE(has(tell(c, d, nullptr).headline, "load_transfer explains a part of it")) << tell(c, d, nullptr).headline;
-    EXPECT_TRUE(has(tell(c, d, nullptr).next, "traction next --all"));
+    EXPECT_TRUE(has(tell(c, d, nullptr).next, "the ground or the sensors")) << tell(c, d, nullptr).next; // all others were tried
+    EXPECT_FALSE(has(tell(c, d, nullptr).next, "traction next --all")) << tell(c, d, nullptr).next;
+    d.not_excited = {{"sinkage", "too little load"}};
+    EXPECT_TRUE(has(tell(c, d, nullptr).next, "one of the 1 effects that this log cannot show: traction next --all"))
+        << tell(c, d, nullptr).next;
     c.left_after.error = 1.5, d.ladder.back().heldout = 1.5;
     EXPECT_TRUE(has(tell(c, d, nullptr).headline, "load_transfer explains it")) << tell(c, d, nullptr).headline;
     EXPECT_FALSE(has(tell(c, d, nullptr).next, "traction next --all"));

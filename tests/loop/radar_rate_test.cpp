@@ -53,6 +53,7 @@ double worst_error(const doppler_window_t &window, double rate_Hz, double a) {
                                             .doppler_m_s = static_cast<float>(fresh ? mean / weight : 0),
                                             .doppler_late_s = 0,
                                             .wheel_m_s = static_cast<float>(speed_at(t)),
+                                            .slowest_m_s = 0.0f,
                                             .wheels_part = false,
                                             .accel_valid = true,
                                             .doppler_fresh = fresh,

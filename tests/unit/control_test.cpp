@@ -327,6 +327,7 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
                                             .doppler_m_s = value.speed_m_s,
                                             .doppler_late_s = static_cast<float>(value.late_samples) / 512.0f,
                                             .wheel_m_s = 0.25f * turning * config.slip.wheel_radius_m,
+                                            .slowest_m_s = 0.0f,
                                             .wheels_part = false,
                                             .accel_valid = true,
                                             .doppler_fresh = value.fresh && !value.beyond && !value.spoilt,

@@ -26,6 +26,7 @@ TEST(GroundSpeed, is_bounded_for_any_input) {
                                                         .doppler_m_s = b,
                                                         .doppler_late_s = c,
                                                         .wheel_m_s = a,
+                                                        .slowest_m_s = 0.0f,
                                                         .wheels_part = false,
                                                         .accel_valid = true,
                                                         .doppler_fresh = true,

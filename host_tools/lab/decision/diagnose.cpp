@@ -22,8 +22,9 @@ namespace traction::lab {
 namespace {
 
 // Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
-// machine and the steps of no integration are known that well. Assumed.
-constexpr double least_fall = 0.002;
+// machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
+// own. Assumed.
+constexpr double least_fall = 0.002, least_fall_of_one = 0.02;
 
 std::string one_decimal(double value) {
     char buffer[64];
@@ -248,6 +249,18 @@ class Search {
         std::string rival; // a tolerance that explains as much; empty: none does
     };
 
+    bool falls_notably(const HeldOut &held) const {
+        Eigen::Index row = 0;
+        double most = 0;
+        for (const Balance &b : data_.balance) {
+            const auto n = static_cast<Eigen::Index>(b.measured.size());
+            const double before = held_.residual.segment(row, n).norm();
+            if (before > 0) most = std::max(most, 1 - held.residual.segment(row, n).norm() / before);
+            row += n;
+        }
+        return held.error < (1 - least_fall) * held_.error || most > least_fall_of_one;
+    }
+
     // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks
     // left out must fall. A data sheet that is wrong by more than it states is asked first.
     std::optional<Next> with(Trial &t, const Problem &before) {
@@ -291,7 +304,7 @@ class Search {
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
-        if (!by_priors && !(held.error < (1 - least_fall) * held_.error)) return std::nullopt;
+        if (!by_priors && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
