@@ -45,21 +45,26 @@ static const float part_rad_s = 2.0f;
 
 typedef struct {
     bool part;
-    float slowest_rad_s; // where all turn one way, else 0
+    float slowest_m_s; // rim speed, where they part and all turn one way; else 0
 } wheels_t;
 
-static wheels_t compare_wheels(const sense_output_t *sense)
+static wheels_t compare_wheels(const control_config_t *config, const sense_output_t *sense)
 {
     float low = sense->speed_rad_s[0];
     float high = low;
     for (int i = 1; i < WHEEL_COUNT; i++) {
-        low = fixed_greater(low, sense->speed_rad_s[i]) ? sense->speed_rad_s[i] : low;
-        high = fixed_greater(sense->speed_rad_s[i], high) ? sense->speed_rad_s[i] : high;
+        const float speed = sense->speed_rad_s[i];
+        if (fixed_greater(low, speed)) {
+            low = speed;
+        } else if (fixed_greater(speed, high)) {
+            high = speed;
+        }
     }
-    const wheels_t out = {
-        .part = fixed_greater(high - low, part_rad_s),
-        .slowest_rad_s = fixed_greater(low, 0.0f) ? low : fixed_greater(0.0f, high) ? high : 0.0f,
-    };
+    wheels_t out = {.part = fixed_greater(high - low, part_rad_s), .slowest_m_s = 0.0f};
+    if (out.part) {
+        const float slowest_rad_s = fixed_greater(low, 0.0f) ? low : fixed_greater(0.0f, high) ? high : 0.0f;
+        out.slowest_m_s = slowest_rad_s * config->slip.wheel_radius_m;
+    }
     return out;
 }
 
@@ -71,7 +76,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     const doppler_arrival_t arrival = {frame->radar_sequence, sense->elapsed_ticks, radar ? most : 0};
     const int32_t missing = doppler_missing(&config->doppler, &state->doppler, &arrival);
     doppler_gap(&config->doppler, &state->doppler, missing, frame->radar_count[0]);
-    const wheels_t wheels = compare_wheels(sense);
+    const wheels_t wheels = compare_wheels(config, sense);
     doppler_output_t doppler = state->heard;
     doppler.late_samples += missing + arrival.count;
     state->heard = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
@@ -84,7 +89,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
         .wheel_m_s = rim_hint_m_s(config, sense),
-        .slowest_m_s = wheels.slowest_rad_s * config->slip.wheel_radius_m,
+        .slowest_m_s = wheels.slowest_m_s,
         .wheels_part = wheels.part,
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
         .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,

@@ -205,7 +205,7 @@ typedef struct {
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
-    float slowest_m_s;    // rim speed of the slowest wheel, where all turn one way; else 0
+    float slowest_m_s;    // rim speed of the slowest wheel, where they part and all turn one way; else 0
     bool wheels_part;     // they turn at speeds so different that their mean tells little
     bool accel_valid;
     bool doppler_fresh;

@@ -25,8 +25,7 @@ static const float rolls_m_s = 0.02f;
 float ground_speed_hint(const ground_speed_config_t *config, const ground_speed_input_t *input, float measured)
 {
     const float rim = fabsf(input->slowest_m_s);
-    const bool rolls = input->wheels_part && fixed_greater(rim, config->still_m_s) &&
-                       fixed_greater(rolls_m_s + rolls_share * rim, fabsf(measured - rim));
+    const bool rolls = fixed_greater(rim, config->still_m_s) && fixed_greater(rolls_m_s + rolls_share * rim, fabsf(measured - rim));
     return rolls ? input->slowest_m_s : input->wheel_m_s;
 }
 

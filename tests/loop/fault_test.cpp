@@ -267,6 +267,24 @@ class Cruise : public Link {
     std::vector<trace_t> traces;
 };
 
+// Two wheels spin in sand after a stop, two roll: the wrong sign held until the fault latched 8 s later (seed 1), or for 7 s (12, 35).
+TEST(Fault, none_where_wheels_that_roll_tell_the_sign_beside_wheels_that_spin) {
+    sim::Scenario scenario = sim::read_scenario("scenarios/sweep_sand.toml");
+    scenario.effects.push_back(sim::parse_effect("slip_sinkage:coefficient=0.3"));
+    for (const std::uint64_t seed : {1, 12, 35}) {
+        SimulateOptions options;
+        options.seed = seed, options.truth = true;
+        const SimulationResult result = simulate(scenario, options);
+        const log::Signal &told = *result.log.find("estimate.speed_m_s"), &speed = *result.truth.find("truth.speed_m_s");
+        const log::Signal &faults = *result.log.find("control.faults");
+        EXPECT_EQ(*std::max_element(faults.value.begin(), faults.value.end()), 0) << seed;
+        double wrong_s = 0;
+        for (std::size_t k = 0; k < std::min(told.value.size(), speed.value.size()); k++)
+            if (std::fabs(speed.value[k]) > 0.03 && told.value[k] * speed.value[k] < 0) wrong_s += 0.01;
+        EXPECT_LE(wrong_s, 3) << seed;
+    }
+}
+
 } // namespace
 
 TEST(Fault, lost_ticks_turn_the_motors_off_in_the_first_tick_that_follows) {
