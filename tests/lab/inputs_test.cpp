@@ -2,11 +2,13 @@
 #include "host_tools/lab/fit/screen.h"
 #include "host_tools/lab/forward/forward.h"
 #include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/forward/rounding.h"
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/inputs/long_log.h"
 #include "host_tools/lab/inputs/smooth.h"
 #include "host_tools/lab/inputs/stretch.h"
 #include "host_tools/simulate/simulate.h"
+#include "tests/lab/generator/generator.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -262,6 +264,56 @@ TEST(Inputs, a_parameter_that_the_smoothing_could_fake_has_the_wider_error) {
     const double with = inertia_error();
     for (Balance &b : data.balance) b.smoothing_bias.clear();
     EXPECT_GT(with, inertia_error());
+}
+
+double half_of(const Dataset &data) {
+    double widest = 0;
+    for (const WheelInput &in : data.wheel) widest = std::max(widest, in.half_s);
+    return widest;
+}
+
+generator::GeneratorConfig rover_of(generator::Size size, generator::Soil soil) {
+    generator::GeneratorConfig config;
+    config.size = size, config.soil = soil, config.seed = 3, config.duration_s = 60;
+    return config;
+}
+
+// 60 kg on concrete turn 1 % of a slip into more than the current's noise: its wheels are read over a wider window, and what the encoders'
+// rounding leaves in the torques falls. On sand the same rounding is nothing: there the narrow window stays.
+TEST(Inputs, wheels_are_smoothed_as_widely_as_the_machine_asks_for) {
+    const generator::GeneratorConfig heavy = rover_of(generator::Size::large, generator::Soil::concrete),
+                                     light = rover_of(generator::Size::small, generator::Soil::sand);
+    const Model stiff = parse_model(generator::data_sheet(heavy), "heavy"), soft = parse_model(generator::data_sheet(light), "light");
+    const log::Log on_concrete = generator::generate(heavy), on_sand = generator::generate(light);
+    const Dataset narrow = measured_data(stiff, on_concrete), wide = make_dataset(stiff, on_concrete);
+    EXPECT_GT(half_of(wide), 1.2 * half_of(narrow));
+    const auto scatter = [&](const Dataset &data) { // of half of the torques' rows at least so much, in squares of their noise
+        const Eigen::VectorXd squares = rounding_squares(data, make_physics(stiff), 4);
+        std::vector<double> all;
+        Eigen::Index row = 0;
+        for (const Balance &b : data.balance)
+            for (std::size_t r = 0; r < b.measured.size(); ++r, ++row)
+                if (b.kind == BalanceKind::current_torque) all.push_back(squares[row] / (b.noise * b.noise));
+        std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+        return all[all.size() / 2];
+    };
+    EXPECT_LT(scatter(wide), 0.8 * scatter(narrow));
+    EXPECT_NEAR(half_of(make_dataset(soft, on_sand)), half_of(measured_data(soft, on_sand)), 1e-9);
+}
+
+// A centimetre a second, 0.175 rad/s of this wheel, within 1.25 and 3 % of the top speed of the log.
+TEST(Inputs, a_wheel_stands_below_a_centimetre_a_second_and_within_the_logs_own_speeds) {
+    const Model model = bench();
+    const auto stands = [&](double factor) {
+        log::Log log = motor(0);
+        for (log::Signal &s : log.signals)
+            if (s.name == "wheel0.encoder_count")
+                for (double &v : s.value) v = std::floor(factor * v);
+        return make_dataset(model, log).standstill_rad_s; // top speed: 2 rad/s times the factor
+    };
+    EXPECT_NEAR(stands(4), 0.01 / 0.057, 1e-3);
+    EXPECT_NEAR(stands(1), 0.03 * 2, 1e-3);
+    EXPECT_NEAR(stands(10), 0.0125 * 20, 2e-3);
 }
 
 } // namespace
