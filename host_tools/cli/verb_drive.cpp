@@ -6,7 +6,7 @@
 #define TRACTION_WITH_LINK 0
 #endif
 
-#if TRACTION_WITH_LINK
+#ifdef TRACTION_WITH_LINK
 #include "stop_signal.h"
 
 #include "firmware/core/signals.h"
@@ -40,7 +40,7 @@ struct DriveOptions {
          parameters = false;
 };
 
-#if TRACTION_WITH_LINK
+#ifdef TRACTION_WITH_LINK
 
 drive::Order order_of(const DriveOptions &o) {
     drive::Order order{.mode = o.slips   ? MODE_SLIP

@@ -121,6 +121,7 @@ class Search {
         std::map<std::string, Trial> best;
         std::vector<std::string> order;
         for (const Candidate &c : catalogue_candidates(d_.model, data_, problem.forward().motion())) {
+            if (c.effect == "coulomb_friction" && c.wheel < 0) friction_of_interest_Nm_ = c.of_interest[0];
             Trial t = screen_candidate(c, screen, columns);
             const auto found = best.find(c.label());
             if (found == best.end()) {
@@ -304,7 +305,8 @@ class Search {
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
-        if (!by_priors && !falls_notably(held)) return std::nullopt;
+        const bool tolerances_pay = rival && spared > options_.least_prior_reduction;
+        if (!tolerances_pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
@@ -418,7 +420,7 @@ class Search {
             again = false;
             std::vector<Candidate> named;
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
-            ShapeFindings findings = find_unknown(first, last, named, options_);
+            ShapeFindings findings = find_unknown(first, last, named, options_, friction_of_interest_Nm_);
             if (findings.shape) d_.unknown = findings.shape;
             std::vector<std::size_t> &rest = findings.replaced;
             for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);
@@ -433,7 +435,7 @@ class Search {
             }
             again = again && !d_.accepted.empty();
             if (d_.accepted.empty() && !named.empty()) // a shape that took the last name's place must be worth a word by itself
-                d_.unknown = find_unknown(first, last, {}, options_).shape;
+                d_.unknown = find_unknown(first, last, {}, options_, friction_of_interest_Nm_).shape;
         }
     }
 
@@ -552,6 +554,7 @@ class Search {
         d_.text = verdict_text(d_);
     }
 
+    double friction_of_interest_Nm_ = 0;            // at this machine's scale
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
     static constexpr double least_reduction = 9;    // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
