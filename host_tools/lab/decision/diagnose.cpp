@@ -121,7 +121,6 @@ class Search {
         std::map<std::string, Trial> best;
         std::vector<std::string> order;
         for (const Candidate &c : catalogue_candidates(d_.model, data_, problem.forward().motion())) {
-            if (c.effect == "coulomb_friction" && c.wheel < 0) friction_of_interest_Nm_ = c.of_interest[0];
             Trial t = screen_candidate(c, screen, columns);
             const auto found = best.find(c.label());
             if (found == best.end()) {
@@ -420,7 +419,7 @@ class Search {
             again = false;
             std::vector<Candidate> named;
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
-            ShapeFindings findings = find_unknown(first, last, named, options_, friction_of_interest_Nm_);
+            ShapeFindings findings = find_unknown(first, last, named, options_);
             if (findings.shape) d_.unknown = findings.shape;
             std::vector<std::size_t> &rest = findings.replaced;
             for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);
@@ -435,7 +434,7 @@ class Search {
             }
             again = again && !d_.accepted.empty();
             if (d_.accepted.empty() && !named.empty()) // a shape that took the last name's place must be worth a word by itself
-                d_.unknown = find_unknown(first, last, {}, options_, friction_of_interest_Nm_).shape;
+                d_.unknown = find_unknown(first, last, {}, options_).shape;
         }
     }
 
@@ -554,7 +553,6 @@ class Search {
         d_.text = verdict_text(d_);
     }
 
-    double friction_of_interest_Nm_ = 0;            // at this machine's scale
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
     static constexpr double least_reduction = 9;    // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;

@@ -277,13 +277,6 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     return u;
 }
 
-// How far f(X) goes from its middle, either way.
-double reach_of(const ShapeScore &s) {
-    if (s.candidate.order > 0) return s.assessment.strength.norm();
-    const double low = s.assessment.strength.minCoeff(), high = s.assessment.strength.maxCoeff();
-    return is_bump(s.candidate) ? std::max(std::fabs(low), std::fabs(high)) : 0.5 * (high - low);
-}
-
 // A problem less one of its effects, at the same linearisation: its columns are handed out and what it contributes goes back into the
 // residual.
 Problem without_effect(const Problem &last, const Candidate &effect, Eigen::MatrixXd &columns) {
@@ -402,8 +395,7 @@ class Smoothing {
 
 } // namespace
 
-ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options,
-                           double least_torque_Nm) {
+ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
     const std::size_t named_count = named.size();
     ShapeFindings findings;
     Problem at_last = last, at_first = first; // their forward models are moved about
@@ -423,7 +415,6 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     Smoothing smoothing(last, scatter);
     for (const ShapeScore &s : scores) {
         if (!(s.p_value < options.shape_p_limit) || !material(s) || !repeats(s)) continue;
-        if (s.candidate.target == TermTarget::wheel_torque && !(reach_of(s) > least_torque_Nm)) continue;
         ShapeScore sharp = s;
         const double smoothed = smoothing.of(s);
         sharp.assessment.gain -= smoothed;

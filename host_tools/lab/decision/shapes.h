@@ -17,9 +17,7 @@ struct ShapeFindings {
     std::optional<UnknownShape> cause; // that shape
 };
 
-// `first`: the baseline; `last`: with all that was named. `least_torque_Nm`: a torque at a wheel that goes less far from its middle is
-// not worth a word, as an effect of that size is not (sim::EffectParameter::of_interest, at this machine's scale).
-ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options,
-                           double least_torque_Nm);
+// `first`: the baseline; `last`: with all that was named.
+ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options);
 
 } // namespace traction::lab
