@@ -2,10 +2,6 @@
 #include "rows.h"
 #include "verbs.h"
 
-#ifndef TRACTION_WITH_LINK
-#define TRACTION_WITH_LINK 0
-#endif
-
 #ifdef TRACTION_WITH_LINK
 #include "stop_signal.h"
 
