@@ -1,6 +1,10 @@
 // verb_emulate.cpp - traction emulate SCENARIO: the shipped tractiond on the emulated board, in lockstep with the scenario's plant.
 #include "verbs.h"
 
+#ifndef TRACTION_WITH_EMULATE
+#define TRACTION_WITH_EMULATE 0
+#endif
+
 #if TRACTION_WITH_EMULATE
 #include "progress.h"
 #include "rows.h"
