@@ -29,7 +29,7 @@ refuses() {
 copy() {
     mkdir -p "$work/copy/cmake"
     cp -R "$root/docs" "$root/mkdocs.yml" "$work/copy/"
-    cp "$root/cmake/docs.sh" "$root/cmake/Doxyfile" "$work/copy/cmake/"
+    cp "$root/cmake/docs.sh" "$root/cmake/Doxyfile" "$root/cmake/doxygen_comments.awk" "$work/copy/cmake/"
     ln -s "$root/.venv" "$work/copy/.venv"
     mkdir -p "$work/copy/firmware/core" "$work/copy/hal"
 }

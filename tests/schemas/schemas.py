@@ -190,7 +190,7 @@ class Runs:
         self.run("drop", "viscous_friction", "--model", "added.toml", "--out", "dropped.toml")
         self.run("diagnose", *gravel, codes=(0, 1))
         self.run("next", "--model", "rover_sand", "--effects", "slip_sinkage", "mesh_loss", codes=(0, 1))
-        self.run("next", *gravel, codes=(0, 1))
+        self.run("next", *gravel, "--effects", "grade", codes=(0, 1))
         self.run("export", *gravel, "--residuals", "residuals.csv", "--firmware", "firmware.toml")
         self.run("export", "--model", "rover_gravel", "--firmware", "firmware.toml")
         self.run("replay", "run.csv")
