@@ -12,7 +12,7 @@ add_custom_target(traction_pages ALL DEPENDS ${pages}/man1/traction.1)
 
 set(share ${CMAKE_INSTALL_DATADIR})
 install(TARGETS traction RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-foreach(folder scenarios models rovers)
+foreach(folder scenarios models rovers schemas)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${share}/traction)
   endif()

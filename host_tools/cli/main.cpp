@@ -143,7 +143,8 @@ int run(Parsed parsed) {
         const std::vector<log::Claim> claims = claim_outputs(parsed);
         place_words(parsed.quiet, takes_standard_output(parsed));
         verb.run(outcome);
-        if (!parsed.json_file.empty()) log::write_file(outcome.json.dump(1) + '\n', parsed.json_file);
+        // a verb that ends without an answer (exit code) writes none
+        if (!parsed.json_file.empty() && !outcome.json.is_null()) log::write_file(outcome.json.dump(1) + '\n', parsed.json_file);
     } catch (const UsageError &error) {
         return fail(exit_usage, verb.name + ": " + error.what());
     } catch (const log::FileError &error) {

@@ -117,8 +117,8 @@ command -v mavgen.py >/dev/null || expect "$work/said" 'no mavgen.py .*: built w
 run test
 refuse "$calls" '^cmake'
 
-# 7. where there are cantools, pymavlink and pyulog, nothing is asked for
-for program in cantools mavgen.py ulog_info; do stand_in $program </dev/null; done
+# 7. where there are cantools, pymavlink, pyulog, jsonschema and mkdocs nothing is asked for
+for program in cantools mavgen.py ulog_info jsonschema mkdocs; do stand_in $program </dev/null; done
 run test
 refuse "$calls" '^python3'
 refuse "$work/said" 'built without'

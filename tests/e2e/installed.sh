@@ -7,7 +7,7 @@ rm -rf "$work"
 mkdir -p "$work/elsewhere"
 DESTDIR="$work/root" "$cmake" --install "$build" --prefix /usr >"$work/install.log" 2>&1 || { tail -n 5 "$work/install.log"; exit 1; }
 usr=$work/root/usr
-for file in share/traction/scenarios/demo_sand.toml share/traction/models/rover_sand.toml share/doc/traction/README.md \
+for file in share/traction/scenarios/demo_sand.toml share/traction/models/rover_sand.toml share/traction/schemas/traction.lab.1.schema.json share/doc/traction/README.md \
     share/doc/traction/docs/tutorial.md share/doc/traction/copyright share/man/man1/traction.1 share/man/man1/traction-simulate.1 \
     share/man/man1/traction-bench-lab.1 share/bash-completion/completions/traction share/zsh/vendor-completions/_traction; do
     [ -s "$usr/$file" ] || { echo "not installed: $file"; exit 1; }

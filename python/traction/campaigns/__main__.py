@@ -12,14 +12,19 @@ from . import Campaign, Spec, campaign
 from .run import bar
 
 
+def _write(file: str | None, title: str, folder: str | None, drives: int, done: int, failed: int) -> None:
+    if file is None:
+        return
+    about = {"schema": "traction.campaign/1", "title": title, "folder": folder}
+    with open(file, "w", encoding="utf-8") as stream:
+        json.dump({**about, "drives": drives, "done": done, "failed": failed}, stream)
+
+
 def _told(result: Campaign, file: str | None) -> int:
     status = result.status
     failed = f", {status.failed} of them failed (column `error`)" if status.failed else ""
     print(f"{result.title}: {status.done} of {status.total} drives{failed}, in {result.folder}/results")
-    if file is not None:
-        about = {"schema": "traction.campaign/1", "title": result.title, "folder": str(result.folder)}
-        with open(file, "w", encoding="utf-8") as stream:
-            json.dump({**about, "drives": status.total, "done": status.done, "failed": status.failed}, stream)
+    _write(file, result.title, str(result.folder), status.total, status.done, status.failed)
     return 1 if status.failed else 0
 
 
@@ -48,6 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"{spec.title}: {len(spec.rows)} drives")
             for row in spec.rows[:5]:
                 print("  " + ", ".join(f"{key}={value}" for key, value in row.items()))
+            _write(given.json, spec.title, None, len(spec.rows), 0, 0)
             return 0
         return _told(campaign(spec, given.out, workers=given.workers, scheduler=given.scheduler, progress=bar(spec.title)), given.json)
     except KeyboardInterrupt:
