@@ -100,8 +100,9 @@ def _share(values: Floats, log: bool) -> Floats:
 
 
 def _parallel(axes: Any, points: Points) -> None:
-    """A line a row through its factors and figures; coloured by the first figure."""
+    """A line a row through its factors and figures; coloured by the first figure that varies."""
     figures = [Factor(name, values, values) for name, values in points.figures.items() if not np.isnan(values).all()]
+    leading = next((i for i, figure in enumerate(figures) if np.nanmin(figure.values) < np.nanmax(figure.values)), None)
     shown = [*points.factors, *figures]
     places = np.column_stack([_share(factor.values, factor.log) for factor in shown])
     sound = np.flatnonzero(~np.isnan(places).any(axis=1))
@@ -118,15 +119,15 @@ def _parallel(axes: Any, points: Points) -> None:
         rasterized=len(places) > AS_PIXELS // 4,
     )
     lines.set_clip_on(False)  # it is inside; and matplotlib names a clip path by its address, which changes from run to run
-    if figures:
-        lines.set_array(places[:, len(points.factors)])
+    if leading is not None:
+        lines.set_array(places[:, len(points.factors) + leading])
     axes.add_collection(lines)
     axes.set_xlim(-0.3, len(shown) - 0.7)
     axes.set_ylim(-0.14, 1.14)
     axes.grid(False)
     axes.set_yticks([])
     axes.set_xticks(at, [_short(factor.name) for factor in shown])
-    coloured = f"; colour: {figures[0].name}" if figures else ""
+    coloured = "" if leading is None else f"; colour: {figures[leading].name}"
     axes.set_title(_safe(f"factors and figures of {len(places)} rows{coloured}"), loc="left")
     for spine in ("left", "right", "top", "bottom"):
         axes.spines[spine].set_visible(False)

@@ -88,9 +88,10 @@ def read_points(store: Store) -> Points:
         raise _cannot(where, "keeps no figure", "write [keep.figures] with a formula each, or diagnosis, and drive it into another folder")
     rows = pq.read_table(store.folder / "rows.parquet")
     keys = [name for name in rows.column_names if name not in ("drive", "repeat", "seed", "hide_seed")]
-    table = store.table(["drive", "repeat", "status", "error", *figures]) if store.parts() or store.letters() else None
-    if table is None or table.num_rows == 0:
+    figures = [name for name in store.columns() if name in figures]  # in the table's order
+    if not figures:
         raise _cannot(where, f"none of its {rows.num_rows} drives is finished", "drive it: traction campaign FILE.toml --out FOLDER")
+    table = store.table(["drive", "repeat", "status", "error", *figures])
     status = table.column("status").to_pylist()
     order = np.array([i for i, word in enumerate(status) if word == "done"], dtype=np.int64)
     failed = len(status) - len(order)
