@@ -118,7 +118,7 @@ def _parallel(axes: Any, points: Points) -> None:
         alpha=max(0.08, min(0.8, 60 / max(1, len(places)))),
         rasterized=len(places) > AS_PIXELS // 4,
     )
-    lines.set_clip_on(False)  # it is inside; and matplotlib names a clip path by its address, which changes from run to run
+    lines.set_clip_on(False)  # it is inside; and the name of its clip path was seen to change from run to run
     if leading is not None:
         lines.set_array(places[:, len(points.factors) + leading])
     axes.add_collection(lines)
