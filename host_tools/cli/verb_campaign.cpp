@@ -18,7 +18,7 @@ namespace traction::cli {
 namespace {
 
 struct Request {
-    std::string file, out, scheduler;
+    std::string file, out, scheduler, plot;
     int workers = 0;
     bool status = false, dry_run = false, workers_given = false;
 };
@@ -43,8 +43,13 @@ std::string interpreter() {
     return std::filesystem::exists(own) ? own.string() : "/usr/bin/python3";
 }
 
+std::string check_ending(const std::string &path) {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    return ending == ".svg" || ending == ".png" ? "" : "must end in .svg or .png";
+}
+
 void run(const Request &request, Outcome &outcome) {
-    if (request.file.empty() && !request.status) throw UsageError("FILE is missing");
+    if (request.file.empty() && !request.status && request.plot.empty()) throw UsageError("FILE is missing");
     if (request.out.empty() && !request.dry_run) throw UsageError("--out is missing: the folder where results go");
     const std::filesystem::path json = std::filesystem::temp_directory_path() / ("traction_campaign_" + std::to_string(getpid()) + ".json");
     std::vector<std::string> arguments = {interpreter(), "-c", script, "--json", json.string()};
@@ -52,6 +57,7 @@ void run(const Request &request, Outcome &outcome) {
     if (!request.out.empty()) arguments.insert(arguments.end(), {"--out", request.out});
     if (request.workers_given) arguments.insert(arguments.end(), {"--workers", std::to_string(request.workers)});
     if (!request.scheduler.empty()) arguments.insert(arguments.end(), {"--scheduler", request.scheduler});
+    if (!request.plot.empty()) arguments.insert(arguments.end(), {"--plot", request.plot});
     if (request.status) arguments.push_back("--status");
     if (request.dry_run) arguments.push_back("--dry-run");
     std::fflush(stdout);
@@ -94,8 +100,21 @@ Verb verb_campaign() {
                          .help = "a Dask scheduler, tcp://HOST:PORT, whose workers drive",
                          .value = "ADDRESS",
                          .excludes = {"--workers"}},
-                        {.name = "--status", .into = &request->status, .help = "how far the campaign in FOLDER is; drives nothing"},
-                        {.name = "--dry-run", .into = &request->dry_run, .help = "how many drives, and the first rows; drives nothing"}},
+                        {.name = "--plot",
+                         .into = &request->plot,
+                         .help = "a picture of the drives that are done: parallel coordinates, each figure over each factor, Sobol "
+                                 "indices; without FILE it drives nothing",
+                         .value = "FILE.svg|png",
+                         .kind = Kind::output,
+                         .check = check_ending},
+                        {.name = "--status",
+                         .into = &request->status,
+                         .help = "how far the campaign in FOLDER is; drives nothing",
+                         .excludes = {"--plot"}},
+                        {.name = "--dry-run",
+                         .into = &request->dry_run,
+                         .help = "how many drives, and the first rows; drives nothing",
+                         .excludes = {"--plot"}}},
             .run = [request](Outcome &outcome) { run(*request, outcome); }};
 }
 

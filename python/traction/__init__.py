@@ -11,7 +11,7 @@ Numbers are the command line's own. Every unit is SI and stands in the name.
 from importlib.metadata import version as _version
 
 from ._errors import CampaignError, FileError, InputError, LogError, ModelError, Refused, ScenarioError
-from .campaigns import Campaign, Spec, campaign
+from .campaigns import Campaign, Spec, campaign, plot_campaign
 from .lab import (
     Addition,
     Balance,
@@ -45,5 +45,5 @@ __all__ = [
    "Addition", "Balance", "Campaign", "CampaignError", "Candidate", "Check", "Column", "Command", "Comparison", "Diagnosis", "Effect",
    "EffectParameter", "FileError", "Finding", "Firmware", "Fit", "FittedValue", "Frame", "InputError", "LadderStep", "Log", "LogError",
    "Mode", "Model", "ModelError", "Plant", "Proposal", "Refused", "Result", "Rover", "RoverParameter", "Run", "ScenarioError", "Spec",
-   "Trace", "Verdict", "add", "campaign", "check", "compare", "diagnose", "drop", "effects", "fit", "next", "simulate",
+   "Trace", "Verdict", "add", "campaign", "check", "compare", "diagnose", "drop", "effects", "fit", "next", "plot_campaign", "simulate",
 ]  # fmt: skip

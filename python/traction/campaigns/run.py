@@ -13,7 +13,10 @@ from typing import Any
 from .. import _html
 from . import cluster
 from .drive import Job
+from .picture import check_ending, draw
+from .points import read_points
 from .pool import drive_all
+from .sensitivity import Sensitivity, analyse
 from .spec import Spec
 from .store import Store, schema_of, table_of
 
@@ -58,6 +61,31 @@ class Campaign:
     def to_pandas(self) -> Any:
         """The same as a pandas frame."""
         return self.table().to_pandas()
+
+    def sensitivity(self) -> Sensitivity:
+        """The effect of each factor on each figure, of the drives that are done, by Sobol indices or what comes nearest (extra `plot`).
+
+        Raises CampaignError where there is no figure, no drive that is done or no number that varies; ImportError without SALib.
+        """
+        return analyse(read_points(self._store))
+
+    def plot(self, file: str | os.PathLike[str]) -> Sensitivity:
+        """Write one picture of the drives that are done: parallel coordinates, each figure over each factor, effects (extra `plot`).
+
+        Args:
+            file: where to, ending in .svg or .png; it needs no other file. The same rows make the same bytes.
+
+        Returns:
+            the effects that it shows.
+
+        Raises CampaignError as `sensitivity` does, FileError for a file that cannot be written, ImportError without SALib or matplotlib.
+
+        """
+        check_ending(file)
+        points = read_points(self._store)
+        told = analyse(points)
+        draw(points, told, file)
+        return told
 
     @property
     def status(self) -> Progress:
@@ -110,6 +138,11 @@ def campaign(
     with store.writing(spec):
         _run(spec, store, workers, scheduler, progress)
     return Campaign(folder)
+
+
+def plot_campaign(folder: str | os.PathLike[str], out: str | os.PathLike[str]) -> Sensitivity:
+    """Write the picture of the campaign in `folder` to `out` (.svg or .png): `Campaign(folder).plot(out)`."""
+    return Campaign(folder).plot(out)
 
 
 def _run(spec: Spec, store: Store, workers: int, scheduler: Any, progress: Callable[[Progress], None] | None) -> None:

@@ -18,10 +18,11 @@ from typing import Any
 from .. import _core
 from .._data import find
 from .._errors import CampaignError
+from .._extras import extra
 from .formula import Formula
 
-METHODS = ("grid", "latin_hypercube", "sobol", "list")
-_KEYS = ("title", "about", "scenario", "seed", "method", "drives", "repeats", "hide", "set", "vary", "row", "keep", "part")
+METHODS = ("grid", "latin_hypercube", "sobol", "saltelli", "list")
+_KEYS = ("title", "about", "scenario", "seed", "method", "drives", "base", "repeats", "hide", "set", "vary", "row", "keep", "part")
 _KEEP = ("figures", "columns", "rate_Hz", "logs", "diagnosis")
 _FILES = {"scenario": "scenarios", "rover": "rovers", "believes": "rovers"}
 OWN = (
@@ -104,7 +105,7 @@ class Spec:
                     near = difflib.get_close_matches(key, known, 1)
                     mend = f"is {near[0]!r} meant?" if near else "the keys are " + " ".join(known)
                     raise _wrong(self.file, prefix + key, None, "is no key of a campaign", mend)
-        for key, low in (("drives", 1), ("repeats", 1), ("seed", 0), ("hide", 0), ("part", 1)):
+        for key, low in (("drives", 1), ("base", 1), ("repeats", 1), ("seed", 0), ("hide", 0), ("part", 1)):
             value = self.table.get(key, low)
             if not isinstance(value, int) or isinstance(value, bool) or value < low or (key == "hide" and value > 5):
                 raise _wrong(
@@ -158,6 +159,14 @@ class Spec:
         if self.method in ("latin_hypercube", "sobol") and ("drives" not in self.table or not self.factors):
             raise _wrong(self.file, "drives", None, f"and [vary] are what {self.method} needs", "say how many drives, and of what")
 
+        base = self.table.get("base")
+        if self.method == "saltelli" and (base is None or not self.factors or base & (base - 1)):
+            mend = "give a power of two, 64 or more for indices of use; the drives are base x (factors + 2)"
+            raise _wrong(self.file, "base", base, "cannot be" if base and self.factors else "and [vary] are what saltelli needs", mend)
+        for key, factor in self.factors.items():
+            if self.method == "saltelli" and isinstance(factor, list) and len(factor) < 2:
+                raise _wrong(self.file, f"vary.{key}", factor, "does not vary", "put it under [set], or give more values")
+
     @property
     def title(self) -> str:
         """For people."""
@@ -193,22 +202,30 @@ class Spec:
         if self.method == "grid":
             axes = [factor.values if isinstance(factor, Range) else factor for factor in self.factors.values()]
             return [dict(zip(self.factors, values, strict=True)) for values in itertools.product(*axes)]
-        from scipy.stats import qmc
-
-        make = qmc.Sobol if self.method == "sobol" else qmc.LatinHypercube
-        sampler = make(d=len(self.factors), seed=int(self.table.get("seed", 0)))
-        import warnings
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # Sobol points that are no power of two: balance is the user's choice
-            shares = sampler.random(int(self.table["drives"]))
         return [
             {
                 k: f.at(float(u)) if isinstance(f, Range) else f[min(int(u * len(f)), len(f) - 1)]
                 for (k, f), u in zip(self.factors.items(), point, strict=True)
             }
-            for point in shares
+            for point in self._shares()
         ]
+
+    def _shares(self) -> Any:
+        """Points of the unit cube, of shape (points, factors), by the campaign's seed."""
+        seed = int(self.table.get("seed", 0))
+        if self.method == "saltelli":
+            names = list(self.factors)
+            problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
+            return extra("SALib.sample.sobol", "plot").sample(problem, int(self.table["base"]), calc_second_order=False, seed=seed)
+        from scipy.stats import qmc
+
+        make = qmc.Sobol if self.method == "sobol" else qmc.LatinHypercube
+        sampler = make(d=len(self.factors), seed=seed)
+        import warnings
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # Sobol points that are no power of two: balance is the user's choice
+            return sampler.random(int(self.table["drives"]))
 
     @cached_property
     def rows(self) -> list[Row]:

@@ -189,6 +189,18 @@ class Store:
         for drive in drives:
             self._letter(drive).unlink(missing_ok=True)
 
+    def columns(self) -> list[str]:
+        """Names of the table's columns, in its order; empty where no drive is done."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        if parts := self.parts():
+            return list(pq.read_schema(self._part(parts[0])).names)
+        for drive in self.letters():
+            with pa.OSFile(str(self._letter(drive)), "rb") as stream:
+                return list(pa.ipc.open_file(stream).schema.names)
+        return []
+
     def table(self, columns: list[str] | None = None) -> Any:
         """Every drive that is done, in the order of rows; all columns, or these."""
         import pyarrow as pa
