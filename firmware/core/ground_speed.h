@@ -21,7 +21,8 @@
 // slope begins; when L passes its limit, it is taken.
 // (8): values that scatter more than they should are trusted less.
 // (9): a mixer tells |v| alone. Where one sign is not far more likely than the other, both are followed, each with its own [v, b], until
-// the values tell; the wheels' sign is a weak witness. While both live, the standard deviation holds both. (10): what the accelerometer
+// the values tell; the wheels' sign is a weak witness, and of wheels that part the slowest speaks, if its rim agrees with d: it rolls
+// beside others that spin. While both live, the standard deviation holds both. (10): what the accelerometer
 // lets the speed change and the wheels do not, as long as no Doppler value tells of it, is slip or a slope: the variance grows by a share
 // of X^2 - least^2, and (7) needs less. (11): the likelihood follows the window's fastest part; through zero it hears k |a| where the mean
 // is 0. (12): an accelerometer feels no gravity that the body gives way to; it feels what the wheels do to the body, and dry friction acts
