@@ -13,28 +13,38 @@ from .._extras import extra
 from . import Campaign, Spec, campaign
 from .picture import check_ending
 from .run import bar
+from .sensitivity import Sensitivity
 
 
 def _write(
-    file: str | None, title: str, folder: str | None, drives: int, done: int, failed: int, shown: dict[str, Any] | None = None
+    file: str | None,
+    title: str,
+    folder: str | None,
+    drives: int,
+    done: int,
+    failed: int,
+    picture: str | None = None,
+    effects: Sensitivity | None = None,
 ) -> None:
     if file is None:
         return
-    about = {"schema": "traction.campaign/1", "title": title, "folder": folder}
+    about: dict[str, Any] = {"schema": "traction.campaign/1", "title": title, "folder": folder}
+    about |= {"drives": drives, "done": done, "failed": failed}
+    if effects is not None:
+        about |= {"plot": picture, "sensitivity": effects.json}
     with open(file, "w", encoding="utf-8") as stream:
-        json.dump({**about, "drives": drives, "done": done, "failed": failed, **(shown or {})}, stream)
+        json.dump(about, stream)
 
 
 def _told(result: Campaign, file: str | None, picture: str | None = None) -> int:
     status = result.status
     failed = f", {status.failed} of them failed (column `error`)" if status.failed else ""
     print(f"{result.title}: {status.done} of {status.total} drives{failed}, in {result.folder}/results")
-    shown: dict[str, Any] = {}
+    effects = None
     if picture is not None:
-        told = result.plot(picture)
-        shown = {"plot": picture, "sensitivity": told.json}
-        print(told.text)
-    _write(file, result.title, str(result.folder), status.total, status.done, status.failed, shown)
+        effects = result.plot(picture)
+        print(effects.text)
+    _write(file, result.title, str(result.folder), status.total, status.done, status.failed, picture, effects)
     return 1 if status.failed else 0
 
 
