@@ -2,7 +2,7 @@
 #include "rows.h"
 #include "verbs.h"
 
-#ifdef TRACTION_WITH_LINK
+#if TRACTION_WITH_LINK
 #include "stop_signal.h"
 
 #include "firmware/core/signals.h"
@@ -36,7 +36,7 @@ struct DriveOptions {
          parameters = false;
 };
 
-#ifdef TRACTION_WITH_LINK
+#if TRACTION_WITH_LINK
 
 drive::Order order_of(const DriveOptions &o) {
     drive::Order order{.mode = o.slips   ? MODE_SLIP

@@ -1,7 +1,7 @@
 // verb_emulate.cpp - traction emulate SCENARIO: the shipped tractiond on the emulated board, in lockstep with the scenario's plant.
 #include "verbs.h"
 
-#ifdef TRACTION_WITH_EMULATE
+#if TRACTION_WITH_EMULATE
 #include "progress.h"
 #include "rows.h"
 #include "stop_signal.h"
@@ -33,7 +33,7 @@ struct Arguments {
     std::vector<std::string> effects;
 };
 
-#ifdef TRACTION_WITH_EMULATE
+#if TRACTION_WITH_EMULATE
 using namespace emulate;
 
 // Where the run's files lie: the user's folder, or one that goes with this object.
