@@ -42,6 +42,14 @@ TEST(Diagnose, names_nothing_when_nothing_is_hidden) {
     }
 }
 
+// rolling_resistance for 0.05 % of the error: the rows told next to nothing, and the tolerances gained less than nine squared deviations.
+TEST(Diagnose, names_nothing_that_hardly_helps_where_the_tolerances_gain_little_by_it) {
+    const generator::BlindCase drawn = generator::draw_fleet_case(340008, "clean");
+    const Model sheet = parse_model(generator::data_sheet(drawn.config), "sheet");
+    const Diagnosis d = diagnose(sheet, make_dataset(sheet, generator::generate(drawn.config)), {});
+    EXPECT_TRUE(d.accepted.empty()) << d.text;
+}
+
 TEST(Diagnose, names_slip_sinkage_and_its_size_and_the_error_falls) {
     const Diagnosis d = ask(Soil::sand, log_with(Soil::sand, "slip_sinkage:coefficient=0.2", 5));
     ASSERT_FALSE(d.accepted.empty());
