@@ -236,3 +236,10 @@ def test_the_command_line_runs_and_tells(cli, tmp_path):
     assert "2 of 2 drives" in run("--status", "--out", "r").stdout
     wrong = run("nowhere.toml", "--out", "r")
     assert wrong.returncode == 3 and "nowhere.toml" in wrong.stderr
+
+
+def test_the_documented_example_is_a_specification(tmp_path):
+    text = (ROOT / "docs" / "campaign.md").read_text(encoding="utf-8")
+    example = tmp_path / "slopes.toml"
+    example.write_text(text.split("```toml\n")[1].split("```")[0], encoding="utf-8")
+    assert len(traction.Spec.read(example).rows) == 5 * 2 * 3 * 3  # grid of three factors, each point three times
