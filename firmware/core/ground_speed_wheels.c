@@ -141,7 +141,8 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
         const float departs = force - state->bias_m_s2;
         const bool back = state->apart_m_s < 0.0f;
         const bool felt = fixed_greater(back ? -departs : departs, config->slip_force_m_s2); // else it is the wheels that depart: they spin
-        const bool pushed = fixed_greater(back ? force : -force, config->slip_force_m_s2);   // along the slip that X would be
+        const float felt_m_s2 = ground_speed_felt_force(config, state, force);
+        const bool pushed = fixed_greater(back ? felt_m_s2 : -felt_m_s2, config->slip_force_m_s2); // along the slip that X would be
         if (felt && !pushed && !radar_departs(config, state, 0.0f)) {
             begin_rolling(config, state);
         }
