@@ -4,7 +4,8 @@
 //   seen
 //                                                    from a body that turns (x forward, y left, z up); cosines of slopes taken as 1
 //   lean = sum of the changes of f_x            (2)  0 at the start: what the slope is there is the bias of ground_speed.h
-//   w less its mean while the rover stands; until it has stood for a second, less its mean of all that came         (3)
+//   w less its mean while the rover stands; until it has stood for a second, less its mean of all that came, and only where that is
+//   more than 3 deg/s: a slope that begins, no offset and no mean that a slope has moved                            (3)
 //   f is what the accelerometer reads while it stands; below a slope of 3 deg it is left out of (1): it may be the device's own offset (4)
 // Whole numbers only. Derived here.
 #ifndef TRACTION_FIRMWARE_CORE_LEAN_H
@@ -20,6 +21,7 @@ extern "C" {
 typedef struct {
     int32_t turn_q52;   // radians a tick per 2^-8 count of a gyro [2^-52]
     int32_t gravity_q8; // g [2^-8 accelerometer count], at most 2^24
+    int32_t sudden_q8;  // of (3) [2^-8 gyro count]
     int32_t steep_q8;   // of (4), of |f_x| + |f_y|
 } lean_config_t;        // gravity_q8 0: the gyros are not looked at
 

@@ -48,7 +48,8 @@ static void build_sense(const float *v, sense_config_t *sense)
     const bool fine = gravity_q8 < 16777216.0f && turn_q52 < 2147483520.0f;          // as it is for any gyro that could tell
     sense->lean.gravity_q8 = fine ? (int32_t)(gravity_q8 + 0.5f) : 0;
     sense->lean.turn_q52 = fine ? (int32_t)turn_q52 : 0;
-    sense->lean.steep_q8 = fine ? (int32_t)(0.05f * gravity_q8 + 0.5f) : 0; // 3 deg, assumed
+    sense->lean.sudden_q8 = fine ? (int32_t)(256.0f * 0.05f / v[ROVER_gyro_rad_s_per_count] + 0.5f) : 0; // 3 deg/s, assumed
+    sense->lean.steep_q8 = fine ? (int32_t)(0.05f * gravity_q8 + 0.5f) : 0;                              // 3 deg, assumed
     for (int32_t i = 0; i < WHEEL_COUNT; i++) {
         sense->encoder_sign[i] = v[ROVER_encoder_sign_0 + i] < 0.0f ? -1 : 1;
         sense->current_offset_count[i] = whole(v[ROVER_current_offset_count_0 + i]);
@@ -165,6 +166,7 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .misfit_max = 30.0f,
         .quiet_needed = 3,
         .lean_m_s2_per_q8 = v[ROVER_accel_m_s2_per_count] / 256.0f,
+        .lean_told_q8 = (int32_t)(256.0f * 0.2f / v[ROVER_accel_m_s2_per_count] + 0.5f), // [m/s^2] 0.2: 1 deg, assumed
         .quiet_noise_m2_s2 = 9e-4f * (deaf * deaf), // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
