@@ -202,17 +202,17 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         char note[256] = "";
         if (std::getenv("OUTDOORS_TRACE") != nullptr) {
             const ground_speed_state_t &g = state.ground_speed;
-            std::snprintf(note, sizeof note,
-                          " lean %.3f b %.2f+-%.2f z %.3f%s refused %d misfit %.2f other %d %.2f odds %.1f quiet %d agile %.2f %.2f L %.1f tone %d "
-                          "%.2f Hz %.0f",
-                          static_cast<double>(state.sense.lean.lean_q8) * static_cast<double>(config.sense.level_m_s2_per_q8),
-                          static_cast<double>(g.bias_m_s2), std::sqrt(static_cast<double>(g.p_bb)),
-                          static_cast<double>(trace.radar_speed_m_s), trace.radar_fresh ? "!" : "", g.refused,
-                          static_cast<double>(g.misfit), g.other_alive, static_cast<double>(g.other.at.speed_m_s),
-                          static_cast<double>(g.odds), g.quiet, static_cast<double>(g.agile.at.speed_m_s),
-                          static_cast<double>(g.agile.at.bias_m_s2), static_cast<double>(g.agile_sum), state.doppler.tone.found,
-                          static_cast<double>(state.doppler.tone.turn) / 4294967296.0 * radar_Hz,
-                          std::hypot(state.doppler.tone.a_re, state.doppler.tone.a_im) / 32);
+            std::snprintf(
+                note, sizeof note,
+                " lean %.3f b %.2f+-%.2f z %.3f%s refused %d misfit %.2f other %d %.2f odds %.1f quiet %d agile %.2f %.2f L %.1f tone %d "
+                "%.2f Hz %.0f",
+                static_cast<double>(state.sense.lean.lean_q8) * static_cast<double>(config.sense.level_m_s2_per_q8),
+                static_cast<double>(g.bias_m_s2), std::sqrt(static_cast<double>(g.p_bb)), static_cast<double>(trace.radar_speed_m_s),
+                trace.radar_fresh ? "!" : "", g.refused, static_cast<double>(g.misfit), g.other_alive,
+                static_cast<double>(g.other.at.speed_m_s), static_cast<double>(g.odds), g.quiet, static_cast<double>(g.agile.at.speed_m_s),
+                static_cast<double>(g.agile.at.bias_m_s2), static_cast<double>(g.agile_sum), state.doppler.tone.found,
+                static_cast<double>(state.doppler.tone.turn) / 4294967296.0 * radar_Hz,
+                std::hypot(state.doppler.tone.a_re, state.doppler.tone.a_im) / 32);
         }
         run.steps.push_back(
             {t, speed, static_cast<double>(trace.speed_m_s), static_cast<double>(trace.speed_std_m_s), wheel, trace.faults, note});
