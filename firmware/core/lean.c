@@ -1,7 +1,5 @@
 #include "lean.h"
 
-#include "fixed.h"
-
 enum {
     STANDING_TICKS = 256,    // memory of (3) and (4) while it stands: 2.6 s, assumed
     LOG2_STANDING_TICKS = 8, //
