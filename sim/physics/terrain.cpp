@@ -139,7 +139,7 @@ double Relief::node_m(std::int64_t i, std::int64_t j) {
                     const double cos_by = math::cos(by), sin_by = math::sin(by);
                     double re = wave.amplitude_m * math::cos(at), im = wave.amplitude_m * math::sin(at);
                     for (int column = 0; column < block; ++column) {
-                        (*found)[static_cast<std::size_t>(row * block + column)] += re;
+                        (*found)[static_cast<std::size_t>(row) * block + static_cast<std::size_t>(column)] += re;
                         const double next = re * cos_by - im * sin_by;
                         im = re * sin_by + im * cos_by;
                         re = next;
@@ -221,12 +221,12 @@ Rest Relief::rest(double x_m, double y_m, double c, double s, double radius_m, d
         const double value = carried(u);
         if (value > best) best = value, at = u, corner = is_corner;
     };
-    for (double u = step; u <= most; u += step) offer(u, false), offer(-u, false);
+    for (int i = 1; i * step <= most; ++i) offer(i * step, false), offer(-i * step, false);
     if (std::fabs(cut.along) > 1e-6)
         for (const ProfilePoint &point : terrain_.profile)
             for (const double edge : {-0.5, 0.5}) offer((point.distance_m + edge * cut.blur_m - cut.origin_m) / cut.along, true);
     if (!corner) // the vertex of a parabola, twice
-        for (double h = 0.5 * step; h > 0.05 * step; h *= 0.2) {
+        for (const double h : {0.5 * step, 0.1 * step}) {
             const double before = carried(std::max(at - h, -most)), after = carried(std::min(at + h, most));
             const double bend = before - 2 * best + after;
             if (bend < 0) offer(std::clamp(at + 0.5 * h * (before - after) / bend, at - h, at + h), false);

@@ -3,6 +3,7 @@
 #include "sim/physics/math.h"
 #include "sim/physics/terramechanics.h"
 
+#include <array>
 #include <ode/ode.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // The firmware on ground that is not flat: scenarios of the repository, in lockstep with the plant.
 #include "host_tools/simulate/simulate.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,9 @@
 // Ground that is not flat, against closed forms: where a disc rests, what a slope takes, what a step asks for, the spectrum of ISO 8608.
 #include "sim/plant/plant.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include <algorithm>
 #include <cmath>
