@@ -102,8 +102,8 @@ Answer diagnose_answer(const Session &session, const Request &request, const Ans
     how.progress = options.progress;
     const Diagnosis diagnosis = diagnose(session.model, session.data, how);
     Answer answer;
-    Comparison comparison = compare(session.model, session.data, false);
-    if (!diagnosis.accepted.empty()) show_after(comparison, diagnosis.model, session.data);
+    Comparison comparison = compare(session.model, session.data, false, diagnosis.stated_fit.get());
+    if (!diagnosis.accepted.empty()) show_after(comparison, diagnosis.model, session.data, diagnosis.model_fit.get());
     std::optional<NextExperiment> next; // what was not excited alone: `traction next --all`
     if (!diagnosis.classes.empty() && options.drive) next = next_experiment(diagnosis, session.model, session.data, false, options.drive);
     const Story story = tell(comparison, diagnosis, next ? &*next : nullptr);
@@ -123,7 +123,8 @@ Answer diagnose_answer(const Session &session, const Request &request, const Ans
     answer.negative = diagnosis.kind == "nothing";
     if (!apply || diagnosis.accepted.empty()) return answer;
     answer.model = diagnosis.model;
-    const LadderStep step = fit_model(*answer.model, session.data, "fitted");
+    const LadderStep step =
+        diagnosis.model_fit ? store_fit(*answer.model, *diagnosis.model_fit, "fitted") : fit_model(*answer.model, session.data, "fitted");
     append_lineage(*answer.model, session.data, diagnosis.ladder, step);
     return answer;
 }

@@ -274,6 +274,16 @@ TEST(Columns, of_all_wheels_are_the_sum_of_each_and_of_a_patch_the_sum_of_its_ha
     EXPECT_NEAR(one.norm() / direct.norm(), 1, 0.25);
 }
 
+// What a diagnosis hands on for whoever asks the same again is what they would find.
+void expect_same_fit(const Problem *handed_on, const Model &model, const Dataset &data) {
+    ASSERT_NE(handed_on, nullptr);
+    const Problem anew = fitted_problem(model, data);
+    EXPECT_EQ(handed_on->theta, anew.theta);
+    EXPECT_EQ(handed_on->residual, anew.residual);
+    EXPECT_EQ(handed_on->jacobian, anew.jacobian);
+    EXPECT_EQ(handed_on->row_scale, anew.row_scale);
+}
+
 // One minute each: what is named, what is not, and that every part of the answer fits the others.
 TEST(Verdict, of_a_hidden_law_of_the_catalogue) {
     const Log log("slip_sinkage:coefficient=0.3");
@@ -291,6 +301,8 @@ TEST(Verdict, of_a_hidden_law_of_the_catalogue) {
     ASSERT_EQ(d.model.effects.size(), 1U);
     EXPECT_EQ(d.model.effects[0].name, "slip_sinkage");
     EXPECT_NEAR(d.model.effects[0].parameters.at("coefficient").value, d.accepted[0].value[0], 0.02);
+    expect_same_fit(d.stated_fit.get(), log.model, log.data);
+    expect_same_fit(d.model_fit.get(), d.model, log.data);
     EXPECT_FALSE(d.unknown);
     EXPECT_TRUE(d.nearest.empty());
     ASSERT_FALSE(d.ranking.empty());

@@ -10,6 +10,9 @@
 #include <array>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 namespace traction::lab {
 namespace {
 
@@ -176,6 +179,74 @@ TEST(Tangent, four_wheels_side_by_side_are_the_wheels_one_by_one) {
             four.commit(), one.commit();
         }
     }
+}
+
+// One pass over the known motion serves several of them.
+TEST(Tangent, neighbours_side_by_side_are_to_the_bit_what_each_is_alone) {
+    const auto [model, data, stated] = sand(20);
+    for (const double relaxation_m : {0.0, 0.02}) {
+        Physics physics = stated;
+        for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m;
+        Forward forward(data);
+        forward.set_base(physics);
+        std::vector<Physics> moved;
+        std::vector<unsigned> touched;
+        std::vector<int> wheel;
+        for (const FreeParameter &p : free_parameters(model, physics)) {
+            Physics one = physics;
+            p.add(one, p.step);
+            if (!forward.is_neighbour(one, p.touched)) continue;
+            moved.push_back(one), touched.push_back(p.touched), wheel.push_back(p.own ? p.slots[0].wheel : -1);
+        }
+        ASSERT_GT(moved.size(), 6U); // every wheel's radius, the ground
+        const Eigen::MatrixXd all = forward.predict_neighbours(moved, touched, wheel);
+        for (std::size_t i = 0; i < moved.size(); ++i)
+            EXPECT_EQ(all.col(static_cast<Eigen::Index>(i)), forward.predict_from_base(moved[i], touched[i], wheel[i])) << i;
+    }
+}
+
+// Of a straight line, the value in the middle of the window, `delay` earlier (windows.h, (1)); whatever was asked for before.
+TEST(Windows, take_the_mean_at_whatever_delay_and_remember_none_but_their_own) {
+    const auto [model, data, physics] = sand(20);
+    std::vector<double> line, other;
+    for (std::size_t k = 0; k < data.count; ++k) line.push_back(3 + 0.5 * data.time(k)), other.push_back(std::sin(data.time(k)));
+    for (const Balance &balance : data.balance) {
+        const auto rows = static_cast<Eigen::Index>(balance.measured.size());
+        Windows kept(data, balance);
+        for (const double delay : {0.0, 0.013, 0.0, 0.021, 0.013, 0.013, 0.0}) {
+            Windows anew(data, balance);
+            Eigen::VectorXd by_kept = Eigen::VectorXd::Zero(rows), by_anew = by_kept, mean = by_kept;
+            kept.mean(other, delay, false, by_kept);
+            anew.mean(other, delay, false, by_anew);
+            EXPECT_EQ(by_kept, by_anew) << balance.name << " " << delay;
+            kept.mean(line, delay, false, mean);
+            for (Eigen::Index r = 1; r + 1 < rows; ++r) { // the outermost windows are cut at the log's ends
+                const auto i = static_cast<std::size_t>(r);
+                EXPECT_NEAR(mean[r], 3 + 0.5 * (0.5 * (balance.t0_s[i] + balance.t1_s[i]) - delay), 1e-9) << balance.name; // rounding
+            }
+        }
+    }
+}
+
+TEST(Fit, that_need_not_be_ready_ends_where_the_other_does_and_gets_ready_when_asked) {
+    const auto [model, data, physics] = sand(30);
+    int put_off = 0;
+    for (const int iterations : {1, 2, 3, 4}) {
+        Problem whole(data, physics, free_parameters(model, physics)), bare = whole;
+        whole.fit({.iterations = iterations});
+        bare.fit({.iterations = iterations, .ready = false});
+        EXPECT_EQ(whole.theta, bare.theta);
+        EXPECT_EQ(whole.residual, bare.residual);
+        EXPECT_EQ(whole.row_scale, bare.row_scale);
+        put_off += whole.jacobian != bare.jacobian ? 1 : 0;
+        bare.get_ready();
+        EXPECT_EQ(whole.jacobian, bare.jacobian);
+        Problem on = whole; // both go on alike, on other scales
+        bare.row_scale *= 0.5, on.row_scale *= 0.5;
+        bare.gauss_newton(2), on.gauss_newton(2);
+        EXPECT_EQ(on.theta, bare.theta);
+    }
+    EXPECT_GT(put_off, 0); // or the test shows nothing
 }
 
 } // namespace

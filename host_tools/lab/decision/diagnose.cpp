@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <memory>
 
 namespace traction::lab {
 
@@ -47,6 +48,7 @@ class Search {
 
     Diagnosis run() {
         Problem problem = fitted_problem(d_.model, data_);
+        d_.stated_fit = std::make_shared<const Problem>(problem);
         Problem first = problem;
         for (int round = 0; round <= options_.most_effects; ++round) {
             const Screen screen(problem);
@@ -236,7 +238,7 @@ class Search {
         moved.theta = best->baseline;
         moved.within_bounds();
         moved.jacobian.resize(0, 0);
-        moved.gauss_newton(3);
+        moved.gauss_newton(3, false);
         if (moved.cost() > before - least_reduction) return false;
         moved.fit({});
         problem = std::move(moved);
@@ -286,8 +288,7 @@ class Search {
         if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
             const Scatter scatter(before);
             const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
-            const Eigen::VectorXd smoothed =
-                (rounding_squares(data_, before.physics()) - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
+            const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
             scaled.sum -= smoothed.dot(weight);
             noise.sum -= smoothed.dot(noise_weight(before));
             if (!(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight))) return std::nullopt;
@@ -456,9 +457,9 @@ class Search {
     // `fit` begins where the model's file stands, this search where the last round ended: the better of the two is what both tell.
     void settle_last(Problem &last) {
         if (d_.accepted.empty()) return;
-        Problem anew = fitted_problem(d_.model, data_);
-        if (!(overall_error(anew) < overall_error(last))) return;
-        last = std::move(anew);
+        d_.model_fit = std::make_shared<const Problem>(fitted_problem(d_.model, data_));
+        if (!(overall_error(*d_.model_fit) < overall_error(last))) return;
+        last = *d_.model_fit;
         d_.ladder.back().train = overall_error(last), d_.ladder.back().heldout = held_out(last).error;
         refresh(last, Screen(last));
     }
@@ -509,6 +510,7 @@ class Search {
             }
         }
         d_.model = std::move(freed);
+        d_.model_fit.reset();
         for (EffectUse &use : d_.model.effects)
             for (const ShapeEstimate &shape : a.shapes)
                 if (use.name == a.candidate.effect && use.wheel == a.candidate.wheel) {

@@ -8,6 +8,7 @@
 #include "host_tools/lab/inputs/dataset.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -79,6 +80,9 @@ struct Diagnosis {
     Model model;               // with the accepted effects, refitted
     std::vector<Limit> limits; // at which parameters of the final model stand
     std::vector<std::string> messages;
+    // fitted_problem() of the stated model and of `model`, on the data that were diagnosed and while these live: for who asks the same
+    // again. Null where the search did not come by.
+    std::shared_ptr<const Problem> stated_fit, model_fit;
 };
 
 Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOptions &options);

@@ -111,7 +111,7 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
         if (!set_free(model, datum, start)) return {};
         const Physics physics = make_physics(model);
         Problem problem(data, physics, free_parameters(model, physics));
-        problem.fit({.iterations = 3});
+        problem.fit({.iterations = 3, .ready = false});
         const double error = overall_error(problem);
         double moved = 0, ratio = 1;
         std::string unit;
@@ -249,7 +249,7 @@ std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first) {
     if (out.empty()) return out;
     const Physics physics = make_physics(held);
     Problem as_stated(first.data(), physics, free_parameters(held, physics));
-    as_stated.fit({.iterations = 3});
+    as_stated.fit({.iterations = 3, .ready = false});
     if (!(overall_error(first) < notable * overall_error(as_stated))) out.clear(); // the log hardly asks for them: they wander
     return out;
 }
@@ -264,6 +264,7 @@ bool strained(const Problem &problem) {
 
 // By how many standard errors the freed datum predicts blocks left out better than the model with what was named.
 double lead_of(const Problem &last, Problem &datum) {
+    datum.get_ready();
     datum.keep_scales(last);
     datum.gauss_newton(2);
     const Fall fall = fall_between(held_out(last), held_out(datum), noise_weight(last));

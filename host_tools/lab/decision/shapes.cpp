@@ -380,17 +380,15 @@ class Smoothing {
     double of(const ShapeScore &s) {
         if ((s.candidate.touched & stage_motion) == 0 || s.candidate.some_wheels) return 0;
         Physics with = problem_.physics();
-        if (plain_.size() == 0) plain_ = rounding_squares(problem_.data(), with);
         s.candidate.prepare(with);
         for (std::size_t j = 0; j < with.terms.back().coefficients.size(); ++j)
             with.terms.back().coefficients[j] = s.assessment.strength[static_cast<Eigen::Index>(j)];
-        return (plain_ - rounding_squares(problem_.data(), with)).cwiseProduct(scatter_.part).dot(problem_.row_scale.cwiseAbs2());
+        return (scatter_.squares - rounding_squares(problem_.data(), with)).cwiseProduct(scatter_.part).dot(problem_.row_scale.cwiseAbs2());
     }
 
   private:
     const Problem &problem_;
     const Scatter &scatter_;
-    Eigen::VectorXd plain_;
 };
 
 } // namespace

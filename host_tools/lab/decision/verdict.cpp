@@ -54,6 +54,7 @@ void name_nothing(Diagnosis &d, const Model &stated, const std::string &look_at)
     d.accepted.clear(), d.classes.clear(), d.effects.clear(), d.nearest.clear(), d.not_excited.clear();
     d.unknown.reset();
     d.model = stated;
+    d.model_fit = d.stated_fit;
     d.kind = "wrong_model";
     char buffer[200];
     std::snprintf(buffer, sizeof buffer, "This model does not describe this log: its error is %.3g x noise, and no effect is named. ",

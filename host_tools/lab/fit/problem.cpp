@@ -15,7 +15,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double huber = 3.0; // in units of the balance's scale
+constexpr double huber = 3.0;             // in units of the balance's scale
+constexpr std::size_t passes_at_once = 4; // neighbours of the motion side by side: their own series must stay near too
 
 // The wheel that all slots are of; -1: several, or the body.
 int wheel_of(const FreeParameter &p) {
@@ -115,21 +116,55 @@ bool Problem::at_bound(std::size_t i) const {
 
 void Problem::linearise() {
     const Physics at = physics();
+    put_off_ = false;
     update_residual();
     jacobian.resize(measured_.size(), theta.size());
-    for (std::size_t i = parameters.size(); i-- > 0;) { // what wheels share after what is theirs
-        if (const std::vector<Eigen::Index> own = own_of(parameters, i); !own.empty() && forward_.has_linear_base()) {
-            jacobian.col(static_cast<Eigen::Index>(i)) = jacobian(Eigen::all, own).rowwise().sum();
-            continue;
-        }
-        double low = 0, high = 0;
-        bounds(i, low, high);
-        // whole integrations need a step that is large against the 1e-9 m/s of their search
-        const double size =
-            (parameters[i].touched & stage_motion) != 0 && !forward_.has_linear_base() ? 100 * parameters[i].step : parameters[i].step;
-        jacobian.col(static_cast<Eigen::Index>(i)) =
-            column(at, parameters[i], theta[static_cast<Eigen::Index>(i)] + size > high ? -size : size);
+    std::vector<std::size_t> beside, shared; // of the motion, to be had in one pass; sums of what is each wheel's own
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        if (forward_.has_linear_base() && !own_of(parameters, i).empty())
+            shared.push_back(i);
+        else if (forward_.is_neighbour(moved(at, i), parameters[i].touched))
+            beside.push_back(i);
+        else
+            jacobian.col(static_cast<Eigen::Index>(i)) = column(at, parameters[i], difference(i));
     }
+    for (std::size_t first = 0; first < beside.size(); first += passes_at_once)
+        columns_beside(at, {beside.begin() + static_cast<std::ptrdiff_t>(first),
+                            beside.begin() + static_cast<std::ptrdiff_t>(std::min(beside.size(), first + passes_at_once))});
+    for (const std::size_t i : shared)
+        jacobian.col(static_cast<Eigen::Index>(i)) = jacobian(Eigen::all, own_of(parameters, i)).rowwise().sum();
+}
+
+// The step of the difference by parameter i, away from its upper bound.
+double Problem::difference(std::size_t i) const {
+    double low = 0, high = 0;
+    bounds(i, low, high);
+    // whole integrations need a step that is large against the 1e-9 m/s of their search
+    const double size =
+        (parameters[i].touched & stage_motion) != 0 && !forward_.has_linear_base() ? 100 * parameters[i].step : parameters[i].step;
+    return theta[static_cast<Eigen::Index>(i)] + size > high ? -size : size;
+}
+
+Physics Problem::moved(const Physics &at, std::size_t i) const {
+    Physics physics = at;
+    parameters[i].add(physics, difference(i));
+    return physics;
+}
+
+// As column() has them, into the Jacobian.
+void Problem::columns_beside(const Physics &at, const std::vector<std::size_t> &list) {
+    std::vector<Physics> physics;
+    std::vector<unsigned> touched;
+    std::vector<int> wheel;
+    for (const std::size_t i : list) {
+        physics.push_back(moved(at, i));
+        touched.push_back(parameters[i].touched);
+        wheel.push_back(wheel_of(parameters[i]));
+    }
+    const Eigen::MatrixXd rows = forward_.predict_neighbours(physics, touched, wheel);
+    for (std::size_t j = 0; j < list.size(); ++j)
+        jacobian.col(static_cast<Eigen::Index>(list[j])) =
+            (rows.col(static_cast<Eigen::Index>(j)) - forward_.base()).cwiseProduct(row_scale) / difference(list[j]);
 }
 
 // All rows as one residual block, the priors as further residuals.
@@ -395,12 +430,13 @@ void Problem::update_residual() {
     residual = measured_ - forward_.base();
 }
 
-void Problem::gauss_newton(int fresh) {
+void Problem::gauss_newton(int fresh, bool ready) {
     checkpoint();
     constexpr int steps = 5;      // with the same sensitivities
     constexpr double worth = 0.3; // fall of the cost below which a step is the last: well below one squared standard deviation
     const Eigen::VectorXd precision = prior_precision();
     if (jacobian.rows() != measured_.size() || jacobian.cols() != theta.size()) linearise(), --fresh;
+    get_ready();
     for (;; --fresh) {
         const SparseJacobian sparse(*data_, jacobian);
         Eigen::MatrixXd normal = sparse.gram();
@@ -424,8 +460,11 @@ void Problem::gauss_newton(int fresh) {
         const Eigen::VectorXd moved = theta - start;
         if (fresh <= 0 || moved.dot(normal * moved) < 0.1)
             return update_residual(); // a third of a standard deviation: the sensitivities serve there too
+        const bool last = first - best < worth;
+        put_off_ = last && !ready;
+        if (put_off_) return update_residual();
         linearise();
-        if (first - best < worth) return;
+        if (last) return;
     }
 }
 
@@ -441,7 +480,7 @@ void Problem::fit(const FitOptions &options) {
     if (options.thorough)
         solve(options.iterations);
     else
-        gauss_newton(options.iterations);
+        gauss_newton(options.iterations, options.ready);
 }
 
 void Problem::settle() {

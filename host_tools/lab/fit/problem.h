@@ -19,6 +19,7 @@ struct FitOptions {
     int iterations = 2;    // linearisations (Ceres: iterations) after the last reweighting
     bool reweight = true;  // set the scale of each balance from its residual and Huber weights, then fit again
     bool thorough = false; // Ceres to its own convergence; else Gauss-Newton that keeps its sensitivities while they serve
+    bool ready = true;     // leave the problem linearised; without, get_ready() does what is left of that
 };
 
 class Problem {
@@ -29,6 +30,9 @@ class Problem {
     void settle();           // fit() until its scales no longer move the error: the optimum of `fit`, `add`, `compare` and `diagnose` alike
     void settle_from_here(); // the same without the first steps
     void linearise();        // prediction, residual and Jacobian at the present increments
+    void get_ready() {       // what a fit that was not asked for it has put off; before the scales change
+        if (put_off_) linearise();
+    }
 
     const Dataset &data() const { return *data_; }
     Forward &forward() { return forward_; }
@@ -66,8 +70,8 @@ class Problem {
     void quick_fit(const Problem &base, int iterations);
 
     // Gauss-Newton with the scales as they are: sensitivities are computed afresh at most `fresh` times, and serve for several steps
-    // each. Leaves the problem linearised at its optimum.
-    void gauss_newton(int fresh);
+    // each. Leaves the problem linearised at its optimum, or, not `ready`, at its optimum alone.
+    void gauss_newton(int fresh, bool ready = true);
 
     // Gauss-Newton step by an active set: what would leave its bound is held there, the others solve without it.
     Eigen::VectorXd step_within_bounds(const Eigen::MatrixXd &normal, const Eigen::VectorXd &moment) const;
@@ -88,11 +92,15 @@ class Problem {
                                  Eigen::VectorXd *part_means = nullptr) const;
     void solve(int iterations);
     void bounds(std::size_t i, double &low, double &high) const;
+    double difference(std::size_t i) const;
+    Physics moved(const Physics &at, std::size_t i) const;
+    void columns_beside(const Physics &at, const std::vector<std::size_t> &list);
 
     const Dataset *data_;
     Physics base_;
     Forward forward_;
     Eigen::VectorXd measured_;
+    bool put_off_ = false;  // the last linearisation of a fit
     bool has_base_ = false; // the forward model has a base, at:
     Eigen::VectorXd base_theta_;
 };

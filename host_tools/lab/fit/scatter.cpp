@@ -4,19 +4,20 @@
 
 namespace traction::lab {
 
-Scatter::Scatter(const Problem &problem) : part(Eigen::VectorXd::Zero(problem.residual.size())) {
-    const Eigen::VectorXd all = rounding_squares(problem.data(), problem.physics()), noise = problem.noise_rows().cwiseAbs2(),
-                          weight = problem.row_scale.cwiseAbs2(), left = problem.residual.cwiseAbs2();
+Scatter::Scatter(const Problem &problem)
+    : squares(rounding_squares(problem.data(), problem.physics())), part(Eigen::VectorXd::Zero(problem.residual.size())) {
+    const Eigen::VectorXd noise = problem.noise_rows().cwiseAbs2(), weight = problem.row_scale.cwiseAbs2(),
+                          left = problem.residual.cwiseAbs2();
     Eigen::Index first = 0;
     for (const Balance &b : problem.data().balance) {
         const auto n = static_cast<Eigen::Index>(b.measured.size());
-        const auto sum = [&](const Eigen::VectorXd &squares) { return squares.segment(first, n).dot(weight.segment(first, n)); };
-        if (const double most = sum(all); most > 0)
+        const auto sum = [&](const Eigen::VectorXd &of_rows) { return of_rows.segment(first, n).dot(weight.segment(first, n)); };
+        if (const double most = sum(squares); most > 0)
             part.segment(first, n).setConstant(std::clamp((sum(left) - sum(noise)) / most, 0.0, 1.0));
         first += n;
     }
     const double whole = left.dot(weight);
-    share = whole > 0 ? part.cwiseProduct(all).dot(weight) / whole : 0;
+    share = whole > 0 ? part.cwiseProduct(squares).dot(weight) / whole : 0;
 }
 
 } // namespace traction::lab

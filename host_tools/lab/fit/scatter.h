@@ -16,8 +16,9 @@ inline constexpr double of_scatter = 0.15;
 // (1) as far as the residual of a fitted problem shows it: per balance no more than it leaves beyond the measurement noise. (Samples of
 // a rounding encoder are not white: what (1) says of them is an upper estimate.)
 struct Scatter {
-    Eigen::VectorXd part; // of (1), row by row, that counts
-    double share = 0;     // of the problem's scaled squares that scatter may be
+    Eigen::VectorXd squares; // (1) at the problem's physics
+    Eigen::VectorXd part;    // of (1), row by row, that counts
+    double share = 0;        // of the problem's scaled squares that scatter may be
     explicit Scatter(const Problem &problem);
 };
 

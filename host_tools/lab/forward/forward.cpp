@@ -77,8 +77,11 @@ void Forward::rows_of(std::size_t balance, const std::vector<double> &series, do
 const Eigen::VectorXd &Forward::mean_voltage(std::size_t balance, double delay_s, double lag_s) const {
     const Balance &b = data_->balance[balance];
     const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
-    MeanVoltage &known = mean_voltage_[static_cast<std::size_t>(b.wheel)];
-    if (known.mean_V.size() != 0 && known.delay_s == delay_s && known.lag_s == lag_s) return known.mean_V;
+    auto &[known, other] = mean_voltage_[static_cast<std::size_t>(b.wheel)];
+    const auto is_it = [&](const MeanVoltage &m) { return m.mean_V.size() != 0 && m.delay_s == delay_s && m.lag_s == lag_s; };
+    if (is_it(known)) return known.mean_V;
+    std::swap(known, other);
+    if (is_it(known)) return known.mean_V;
     known = {delay_s, lag_s, Eigen::VectorXd(static_cast<Eigen::Index>(b.measured.size()))};
     VoltageIntegral integral_to(in.voltage_t_s, data_->voltage_integral(in, lag_s));
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
@@ -202,28 +205,42 @@ double Forward::current_of_others(const Physics &physics, std::size_t wheel, std
 void Forward::electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
                               ElectricSeries &out) const {
     const Dataset &d = *data_;
-    const WheelPhysics &p = physics.wheel[wheel];
-    const WheelInput &in = d.wheel[wheel];
-    const std::vector<double> &traction = motion.wheel[wheel].traction_N;
-    const double gain = count_gain(p), radius = rolling_radius(p);
     std::vector<const ExtraTerm *> terms;
     for (const ExtraTerm &term : physics.terms)
         if ((target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && (term.wheel < 0 || term.wheel == static_cast<int>(wheel)))
             terms.push_back(&term);
     current.resize(d.count);
     for (auto *series : {&out.reading, &out.lost, &out.per_V, &out.shaft}) series->resize(d.count);
+    const bool heats = physics.wheel[wheel].heating_K_W != 0;
+    if (heats || !terms.empty() || !lead_current_.empty())
+        electric_steps<false>(physics, motion, wheel, terms, current, out);
+    else
+        electric_steps<true>(physics, motion, wheel, terms, current, out);
+}
+
+// cold: nothing heats, no lead is shared, and there are no terms: then most of it is the same at every step.
+template <bool cold>
+void Forward::electric_steps(const Physics &physics, const Motion &motion, std::size_t wheel, const std::vector<const ExtraTerm *> &terms,
+                             std::vector<double> &current, ElectricSeries &out) const {
+    const Dataset &d = *data_;
+    const WheelPhysics p = physics.wheel[wheel]; // a copy: what is written below cannot change it
+    const WheelInput &in = d.wheel[wheel];
+    const std::vector<double> &traction = motion.wheel[wheel].traction_N;
+    const double gain = count_gain(p), radius = rolling_radius(p), soft_rad_s = friction_share * d.standstill_rad_s, start_s = d.start_s;
+    const double by_voltage = sim::law::voltage_gain(1, physics.body.voltage_gain);
+    const bool unsigned_current = physics.unsigned_current;
     double heat_K = 0;
-    for (std::size_t k = 0; k < d.count; ++k) {
+    for (std::size_t k = 0, count = d.count; k < count; ++k) {
         const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
         double KG = sim::motor_constant(p.KG, p, heat_K), ke = sim::motor_constant(p.ke, p, heat_K);
         double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
-        if (!lead_current_.empty()) u_lost += sim::law::shared_lead_V(p.shared_ohm, current_of_others(physics, wheel, k));
+        if (!cold && !lead_current_.empty()) u_lost += sim::law::shared_lead_V(p.shared_ohm, current_of_others(physics, wheel, k));
         const double viscous = sim::viscous_friction_Nm(p.b, p, std::fabs(w)), angle = gain * in.angle_rad[k];
-        const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k], d.time(k) - d.start_s);
-        const double side = soft_sign(w, friction_share * data_->standstill_rad_s);
+        const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k], d.time(k) - start_s);
+        const double side = soft_sign(w, soft_rad_s);
         double gear = friction * side, current_factor = sim::law::current_gain(1, p.current_gain);
         gear += sim::periodic_Nm<law::Library>(p, angle, false) + sim::periodic_Nm<law::Library>(p, angle, true) * side;
-        if (!terms.empty()) {
+        if (!cold && !terms.empty()) {
             Signals s = signals_of(physics, motion, wheel, k);
             s.I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
             for (const ExtraTerm *term : terms) {
@@ -246,11 +263,11 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
         current[k] = I;
         out.shaft[k] = radius * traction[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
         const double I_read = sim::law::current_offset(current_factor * I + p.current_offset0, p.current_offset_A);
-        out.reading[k] = physics.unsigned_current ? std::fabs(I_read) : I_read;
+        out.reading[k] = unsigned_current ? std::fabs(I_read) : I_read;
         const double ohm = sim::circuit_ohm(Ra, p), per_V = ohm > 0 ? current_factor / ohm : 0;
-        out.per_V[k] = per_V / sim::law::voltage_gain(1, physics.body.voltage_gain);
+        out.per_V[k] = per_V / by_voltage;
         out.lost[k] = sim::law::current_offset(per_V * (u_lost + ke * w) - p.current_offset0, -p.current_offset_A);
-        heat_K += d.step_s / p.heating_time_s * sim::heating_gap_K(p, I, p.Ra, heat_K);
+        if (!cold) heat_K += d.step_s / p.heating_time_s * sim::heating_gap_K(p, I, p.Ra, heat_K);
     }
 }
 
@@ -399,7 +416,7 @@ void Forward::set_base(const Physics &physics) {
     std::swap(base_motion_, scratch_);
     have_base_ = true;
     base_physics_ = physics;
-    linear_base_ = !base_motion_.tangent.empty() && has_neighbours(*data_, physics, physics);
+    linear_base_ = !base_motion_.tangent.empty() && has_neighbours(physics, physics);
     share_leads(physics, base_motion_);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i)
         electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
@@ -409,11 +426,31 @@ void Forward::set_base(const Physics &physics) {
 Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {
     if (data_->count < 3) return base_prediction_;
     const bool moves = (touched & stage_motion) != 0;
-    if (moves && !(linear_base_ && has_neighbours(*data_, base_physics_, physics))) return predict(physics);
+    if (moves && !is_neighbour(physics, touched)) return predict(physics);
     if (moves) neighbour(*data_, physics, base_motion_, wheel, has_electric_terms(physics), scratch_);
     Eigen::VectorXd out = base_prediction_;
     observe_beside(physics, moves ? scratch_ : base_motion_, touched, wheel, out);
     return out;
+}
+
+bool Forward::is_neighbour(const Physics &physics, unsigned touched) const {
+    return data_->count >= 3 && (touched & stage_motion) != 0 && linear_base_ && has_neighbours(base_physics_, physics);
+}
+
+Eigen::MatrixXd Forward::predict_neighbours(const std::vector<Physics> &moved, const std::vector<unsigned> &touched,
+                                            const std::vector<int> &wheel) {
+    std::vector<Beside> list;
+    beside_.resize(std::max(beside_.size(), moved.size()));
+    for (std::size_t i = 0; i < moved.size(); ++i) list.push_back({&moved[i], wheel[i], has_electric_terms(moved[i]), &beside_[i]});
+    neighbours(*data_, base_motion_, list);
+    Eigen::MatrixXd columns(base_prediction_.size(), static_cast<Eigen::Index>(moved.size()));
+    Eigen::VectorXd out;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        out = base_prediction_;
+        observe_beside(moved[i], beside_[i], touched[i], wheel[i], out);
+        columns.col(static_cast<Eigen::Index>(i)) = out;
+    }
+    return columns;
 }
 
 } // namespace traction::lab

@@ -15,6 +15,7 @@
 
 #include <Eigen/Core>
 
+#include <utility>
 #include <vector>
 
 namespace traction::lab {
@@ -33,6 +34,10 @@ class Forward {
 
     // The same to first order, beside `base`, the prediction of the last set_base().
     Eigen::VectorXd predict_from_base(const Physics &physics, unsigned touched, int wheel); // wheel -1: any
+    // True where that is a recursion beside the base (neighbour() of motion.h): then several cost less in one pass, a column each.
+    bool is_neighbour(const Physics &physics, unsigned touched) const;
+    Eigen::MatrixXd predict_neighbours(const std::vector<Physics> &moved, const std::vector<unsigned> &touched,
+                                       const std::vector<int> &wheel);
     // What one unit of each coefficient of a shape f(X) changes in each row, beside the base: of a shape that moves the body, and of one of
     // the torque and voltage balances alone. Holds where nothing but the motion remembers (no heating, no other terms).
     // each_wheel: of the shape on each wheel alone, one after the other (wheels x count columns, at most most_shapes).
@@ -64,6 +69,9 @@ class Forward {
                     Eigen::VectorXd &out) const;
     void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
                          ElectricSeries &out) const;
+    template <bool cold>
+    void electric_steps(const Physics &physics, const Motion &motion, std::size_t wheel, const std::vector<const ExtraTerm *> &terms,
+                        std::vector<double> &current, ElectricSeries &out) const;
     // Currents of all wheels, for those that share a lead; nothing where none does.
     void share_leads(const Physics &physics, const Motion &motion) const;
     double current_of_others(const Physics &physics, std::size_t wheel, std::size_t k) const;
@@ -87,13 +95,13 @@ class Forward {
     mutable std::vector<double> series_, current_;
     mutable ElectricSeries electric_;
     mutable std::vector<std::vector<double>> lead_current_; // per wheel, where leads are shared
-    std::vector<Motion> shaped_;
+    std::vector<Motion> shaped_, beside_;
     mutable std::vector<Windows> windows_; // per balance
     struct MeanVoltage {
         double delay_s = 0, lag_s = 0;
         Eigen::VectorXd mean_V;
     };
-    mutable std::vector<MeanVoltage> mean_voltage_; // per wheel, the last one asked for
+    mutable std::vector<std::pair<MeanVoltage, MeanVoltage>> mean_voltage_; // per wheel: the one asked for last, and the one before it
     std::vector<std::vector<double>> base_current_;
     Eigen::VectorXd base_prediction_;
     bool have_base_ = false, linear_base_ = false; // linear: its neighbours follow from its tangents

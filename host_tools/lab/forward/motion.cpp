@@ -89,7 +89,9 @@ class Solver {
 
     Vector3d residual(const Vector3d &q) {
         rate_ = rate(q);
-        return q - right_ - implicit_step_ * rate_;
+        at_ = q;
+        left_ = q - right_ - implicit_step_ * rate_;
+        return left_;
     }
 
     // From a near start: chord iteration with an inverse that each step mends (Broyden's good update). A last change smaller than
@@ -122,12 +124,12 @@ class Solver {
         Vector3d f;
         if (freedom_.yaw || freedom_.vy) {
             q = newton(q);
-            f = residual(q);
+            f = q == at_ ? left_ : residual(q); // most often the search ended where it looked last
             if (std::fabs(f[0]) < 1e-6 || freedom_.vy) return q;
         }
         const double half_range = implicit_step_ * most_ + std::fabs(right_[0] - centre_);
         q[0] = bracketed_root([&](double v) { return residual({v, q[1], q[2]})[0]; }, right_[0] - half_range, right_[0] + half_range, q[0]);
-        residual(q);
+        if (q != at_) residual(q);
         return q;
     }
 
@@ -241,7 +243,7 @@ class Solver {
                 break;
             if (small < 1e-9 || size(f) < 1e-18) break;
             if (slow || f == f_old)
-                f = residual(x), jacobian();
+                jacobian();
             else
                 J += (change_f - J * moved) * moved.transpose() / moved.squaredNorm();
         }
@@ -254,6 +256,7 @@ class Solver {
     detail::Freedom freedom_;
     bool keeps_; // the tangents will be asked for
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
+    Vector3d at_ = Vector3d::Zero(), left_ = Vector3d::Zero(); // where the residual was taken last, and what it is there
     std::array<Vector3d, most_wheels> force_{};
     Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
     double implicit_step_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;

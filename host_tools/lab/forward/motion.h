@@ -52,11 +52,19 @@ struct Motion {
 void integrate(const Dataset &data, const Physics &physics, Motion &motion, const Motion *guess, bool keep);
 
 // True where neighbour() holds: free motion, no play in the gears, and slip lags at the same wheels.
-bool has_neighbours(const Dataset &data, const Physics &base, const Physics &moved);
+bool has_neighbours(const Physics &base, const Physics &moved);
 
 // Motion of `moved`, to first order, beside a known motion with its tangents. `wheel`: the only wheel whose numbers differ; -1: any.
 // whole: slip, wheel speed and load too, else the body and the tractions alone.
 void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &motion);
+// Several at once: the known motion, megabytes of it, is read once for all.
+struct Beside {
+    const Physics *moved = nullptr;
+    int wheel = -1;
+    bool whole = false;
+    Motion *motion = nullptr; // where it goes
+};
+void neighbours(const Dataset &data, const Motion &known, const std::vector<Beside> &list);
 
 // What one unit of a term does at each step of a known motion, per wheel: shapes f(X) share it, each with its own f.
 struct UnitResponse {

@@ -4,9 +4,11 @@
 #include "wheel_step.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
-
 #include <cmath>
+#include <memory>
+#include <vector>
 
 namespace traction::lab {
 
@@ -24,8 +26,8 @@ class Moved {
     Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
         step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
-        for (std::size_t i = first_; i < last_; ++i)
-            step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
+        for (std::size_t i = first_; i < last_; ++i) // who does not lag has no use for it
+            if (step_.lags(i)) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
         Vector3d force = Vector3d::Zero();
         if (first_ == 0 && last_ == p_.wheel.size())
             force = step_.forces(q, nullptr);
@@ -60,80 +62,115 @@ class Moved {
     std::size_t first_, last_;
 };
 
-// (3): the motion beside the known one, from what `change` says of each step.
-template <typename Change> void follow(const Dataset &data, const Physics &moved, const Motion &known, Change &change, Motion &m) {
-    const std::size_t wheels = moved.wheel.size();
-    const detail::Freedom freedom = detail::freedom_of(data, moved);
-    Vector3d q = Vector3d::Zero(), before = q; // of the change, as are the next
-    double accel = 0, path = 0;
-    std::array<double, most_wheels> slip{}, side{};
-    for (std::size_t k = 0; k < data.count; ++k) {
-        const Vector3d at(known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]);
-        const std::size_t j = k == 0 ? 0 : k - 1;
+// (3): the motion beside the known one, step by step.
+class Follower {
+  public:
+    Follower(const Dataset &data, const Physics &moved, const Motion &known, std::size_t first, std::size_t last, Motion &motion)
+        : data_(data), moved_(moved), known_(known), change_(data, moved, known, first, last), freedom_(detail::freedom_of(data, moved)),
+          m_(motion) {
+        detail::resize(m_, data.count, moved.wheel.size(), false, false);
+    }
+
+    void steps(std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) step(k);
+    }
+
+    // What a plain prediction does not read.
+    void rest() {
+        const WheelStep &step = change_.step();
+        for (std::size_t i = 0; i < moved_.wheel.size(); ++i) {
+            for (std::size_t k = 0; k < data_.count; ++k) {
+                const auto &s = step.state(i);
+                const double along = (m_.v_m_s[k] - s.y * m_.yaw_rate_rad_s[k]) * s.c + (m_.vy_m_s[k] + s.x * m_.yaw_rate_rad_s[k]) * s.s;
+                m_.wheel[i].ground_speed_m_s[k] = along;
+                m_.wheel[i].side_slip[k] = known_.wheel[i].side_slip[k];
+                m_.wheel[i].slip[k] =
+                    step.lags(i) ? known_.wheel[i].slip[k] : slip_of(s.radius * s.gain * data_.wheel[i].speed_rad_s[k], along);
+                m_.wheel[i].load_N[k] = known_.wheel[i].load_N[k];
+            }
+        }
+    }
+
+  private:
+    void step(std::size_t k) {
+        const Vector3d at(known_.v_m_s[k], known_.vy_m_s[k], known_.yaw_rate_rad_s[k]);
+        const std::size_t j = k == 0 ? 0 : k - 1, wheels = moved_.wheel.size();
         const Vector3d moved_rate =
-            change.rate_change(k, at, k == 0 ? at[0] : known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j]);
-        const StepTangent &t = known.tangent[k];
-        const double implicit_step = (k < 2 ? 1.0 : 2.0 / 3) * data.step_s;
-        Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
-        if (!freedom.yaw) right[2] = 0;
+            change_.rate_change(k, at, k == 0 ? at[0] : known_.v_m_s[j], k == 0 ? 0 : known_.rate[j][0], k == 0 ? 0 : known_.path_m[j]);
+        const StepTangent &t = known_.tangent[k];
+        const double implicit_step = (k < 2 ? 1.0 : 2.0 / 3) * data_.step_s;
+        Vector3d right = k < 2 ? q_ : Vector3d((4 * q_ - before_) / 3);
+        if (!freedom_.yaw) right[2] = 0;
         Vector3d by_slip = Vector3d::Zero();
         for (std::size_t i = 0; i < wheels; ++i)
-            if (change.step().lags(i)) by_slip += known.wheel[i].force_by_slip[k] * slip[i] + known.wheel[i].force_by_side[k] * side[i];
+            if (change_.step().lags(i))
+                by_slip += known_.wheel[i].force_by_slip[k] * slip_[i] + known_.wheel[i].force_by_side[k] * side_[i];
         by_slip = by_slip.cwiseProduct(
-            Vector3d(1 / moved.body.mass, freedom.vy ? 1 / moved.body.mass : 0, freedom.yaw ? 1 / moved.body.yaw_inertia : 0));
+            Vector3d(1 / moved_.body.mass, freedom_.vy ? 1 / moved_.body.mass : 0, freedom_.yaw ? 1 / moved_.body.yaw_inertia : 0));
         const Vector3d next =
-            t.inverse * (right + implicit_step * (moved_rate + t.rate_by_accel * accel + t.rate_by_path * path + by_slip));
+            t.inverse * (right + implicit_step * (moved_rate + t.rate_by_accel * accel_ + t.rate_by_path * path_ + by_slip));
         for (std::size_t i = 0; i < wheels; ++i) {
-            const Motion::Wheel &w = known.wheel[i];
-            m.wheel[i].traction_N[k] = w.traction_N[k] + change.traction_change(i, k) + w.traction_by_speed[k].dot(next) +
-                                       w.traction_by_accel[k] * accel + w.traction_by_path[k] * path;
-            if (!change.step().lags(i)) continue;
-            m.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip[i] + w.traction_by_side[k] * side[i];
-            slip[i] = change.slip_change(i, k) + w.slip_by_speed[k].dot(next) + w.slip_by_slip[k] * slip[i];
-            side[i] = change.side_change(i, k) + w.side_by_speed[k].dot(next) + w.side_by_side[k] * side[i];
+            const Motion::Wheel &w = known_.wheel[i];
+            m_.wheel[i].traction_N[k] = w.traction_N[k] + change_.traction_change(i, k) + w.traction_by_speed[k].dot(next) +
+                                        w.traction_by_accel[k] * accel_ + w.traction_by_path[k] * path_;
+            if (!change_.step().lags(i)) continue;
+            m_.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip_[i] + w.traction_by_side[k] * side_[i];
+            slip_[i] = change_.slip_change(i, k) + w.slip_by_speed[k].dot(next) + w.slip_by_slip[k] * slip_[i];
+            side_[i] = change_.side_change(i, k) + w.side_by_speed[k].dot(next) + w.side_by_side[k] * side_[i];
         }
-        before = q;
-        q = next;
-        accel = (q[0] - right[0]) / implicit_step;
-        const Vector3d now = at + q;
-        path += data.step_s * (freedom.omni ? std::hypot(now[0], now[1]) - std::hypot(at[0], at[1]) : q[0]);
-        m.v_m_s[k] = now[0];
-        m.vy_m_s[k] = now[1];
-        m.yaw_rate_rad_s[k] = now[2];
-        m.path_m[k] = known.path_m[k] + path;
-        m.accel_m_s2[k] = known.rate[k][0] + accel - change.grade_accel(k) - (freedom.vy ? now[2] * now[1] : 0);
+        before_ = q_;
+        q_ = next;
+        accel_ = (q_[0] - right[0]) / implicit_step;
+        const Vector3d now = at + q_;
+        path_ += data_.step_s * (freedom_.omni ? std::hypot(now[0], now[1]) - std::hypot(at[0], at[1]) : q_[0]);
+        m_.v_m_s[k] = now[0];
+        m_.vy_m_s[k] = now[1];
+        m_.yaw_rate_rad_s[k] = now[2];
+        m_.path_m[k] = known_.path_m[k] + path_;
+        m_.accel_m_s2[k] = known_.rate[k][0] + accel_ - change_.grade_accel(k) - (freedom_.vy ? now[2] * now[1] : 0);
     }
-}
+
+    const Dataset &data_;
+    const Physics &moved_;
+    const Motion &known_;
+    Moved change_;
+    detail::Freedom freedom_;
+    Motion &m_;
+    Vector3d q_ = Vector3d::Zero(), before_ = q_; // of the change, as are the next
+    double accel_ = 0, path_ = 0;
+    std::array<double, most_wheels> slip_{}, side_{};
+};
+
+constexpr std::size_t steps_at_once = 64; // of the known motion: some 40 kB, which stay near while every follower goes through them
 
 } // namespace
 
-bool has_neighbours(const Dataset &data, const Physics &base, const Physics &moved) {
+bool has_neighbours(const Physics &base, const Physics &moved) {
     if (moved.motion != BodyMotion::longitudinal && moved.motion != BodyMotion::planar) return false;
     if (moved.wheel.size() > most_wheels) return false;
-    const WheelStep a(data, base), b(data, moved);
+    const auto lags = [](const Physics &p, std::size_t i) {
+        return sim::law::relaxation_length_m(p.wheel[i].relaxation, p.body.relaxation_m) > 0;
+    };
     for (std::size_t i = 0; i < moved.wheel.size(); ++i)
-        if (a.lags(i) != b.lags(i)) return false;
-    return !a.has_play() && !b.has_play();
+        if (lags(base, i) != lags(moved, i) || base.wheel[i].play_rad > 0 || moved.wheel[i].play_rad > 0) return false;
+    return true;
+}
+
+void neighbours(const Dataset &data, const Motion &known, const std::vector<Beside> &list) {
+    std::vector<std::unique_ptr<Follower>> followers;
+    for (const Beside &one : list) {
+        const std::size_t first = one.wheel < 0 ? 0 : static_cast<std::size_t>(one.wheel),
+                          last = one.wheel < 0 ? one.moved->wheel.size() : first + 1;
+        followers.push_back(std::make_unique<Follower>(data, *one.moved, known, first, last, *one.motion));
+    }
+    for (std::size_t k = 0; k < data.count; k += steps_at_once)
+        for (const auto &follower : followers) follower->steps(k, std::min(data.count, k + steps_at_once));
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].whole) followers[i]->rest();
 }
 
 void neighbour(const Dataset &data, const Physics &moved, const Motion &known, int wheel, bool whole, Motion &m) {
-    const std::size_t wheels = moved.wheel.size(), first = wheel < 0 ? 0 : static_cast<std::size_t>(wheel),
-                      last = wheel < 0 ? wheels : first + 1;
-    detail::resize(m, data.count, wheels, false, false);
-    Moved change(data, moved, known, first, last);
-    follow(data, moved, known, change, m);
-    if (!whole) return;
-    const WheelStep &step = change.step();
-    for (std::size_t i = 0; i < wheels; ++i) {
-        for (std::size_t k = 0; k < data.count; ++k) {
-            const auto &s = step.state(i);
-            const double along = (m.v_m_s[k] - s.y * m.yaw_rate_rad_s[k]) * s.c + (m.vy_m_s[k] + s.x * m.yaw_rate_rad_s[k]) * s.s;
-            m.wheel[i].ground_speed_m_s[k] = along;
-            m.wheel[i].side_slip[k] = known.wheel[i].side_slip[k];
-            m.wheel[i].slip[k] = step.lags(i) ? known.wheel[i].slip[k] : slip_of(s.radius * s.gain * data.wheel[i].speed_rad_s[k], along);
-            m.wheel[i].load_N[k] = known.wheel[i].load_N[k];
-        }
-    }
+    neighbours(data, known, {{&moved, wheel, whole, &m}});
 }
 
 UnitResponse unit_response(const Dataset &data, const Physics &base, const Motion &known, TermTarget target) {

@@ -16,22 +16,26 @@ class Windows {
   public:
     Windows(const Dataset &data, const Balance &balance) : data_(&data), balance_(&balance) {}
 
-    // out = (or, adding, +=) the mean over each row's window, all windows `delay_s` earlier. The weights of the last delay are kept.
+    // out = (or, adding, +=) the mean over each row's window, all windows `delay_s` earlier. The weights of the last two delays are kept:
+    // that of a fit's base, and the one that is tried beside it.
     void mean(const std::vector<double> &series, double delay_s, bool adding, Eigen::Ref<Eigen::VectorXd> out);
 
   private:
     struct Row {
         std::size_t first = 0, weight = 0, count = 0; // samples from `first`, weights from `weight`
     };
-    void build(double delay_s);
-    void add_row(double x0, double x1);
+    struct Weights {
+        std::vector<Row> row;
+        std::vector<double> weight;
+        double delay_s = 0;
+        bool built = false;
+    };
+    void build(double delay_s, Weights &to) const;
+    void add_row(double x0, double x1, Weights &to) const;
 
     const Dataset *data_;
     const Balance *balance_;
-    std::vector<Row> row_;
-    std::vector<double> weight_;
-    double delay_s_ = 0;
-    bool built_ = false;
+    Weights now_, before_; // the one asked for last, and the other
 };
 
 } // namespace traction::lab

@@ -316,6 +316,7 @@ double Dataset::acceleration_loss(double omega) const {
 std::vector<double> Dataset::voltage_integral(const WheelInput &input, double lag_s) const {
     if (input.duty.empty() || (lag_s == 0 && !input.voltage_integral_Vs.empty())) return input.voltage_integral_Vs;
     std::vector<double> sum(1, 0);
+    sum.reserve(input.voltage_t_s.size());
     std::size_t i = 0;
     for (std::size_t j = 0; j + 1 < input.voltage_t_s.size(); ++j) {
         const double step = input.voltage_t_s[j + 1] - input.voltage_t_s[j], middle = input.voltage_t_s[j] + 0.5 * step + lag_s;

@@ -251,9 +251,9 @@ std::string worst_regime_words(const Comparison &comparison) {
     return text;
 }
 
-void show_after(Comparison &comparison, const Model &better, const Dataset &data) {
+void show_after(Comparison &comparison, const Model &better, const Dataset &data, const Problem *known) {
     if (comparison.balances.empty()) return;
-    Problem problem = fitted_problem(better, data);
+    Problem problem = known != nullptr ? *known : fitted_problem(better, data);
     for (std::size_t b = 0; b < comparison.balances.size(); ++b) {
         BalanceComparison &out = comparison.balances[b];
         double squares = 0;
@@ -269,7 +269,7 @@ void show_after(Comparison &comparison, const Model &better, const Dataset &data
     comparison.left_after = remainder_of(problem);
 }
 
-Comparison compare(const Model &model, const Dataset &data, bool as_is) {
+Comparison compare(const Model &model, const Dataset &data, bool as_is, const Problem *known) {
     Comparison out;
     out.messages = data.messages;
     if (data.balance.empty() || data.count < 3) {
@@ -283,7 +283,7 @@ Comparison compare(const Model &model, const Dataset &data, bool as_is) {
     else
         problem.cost();
     out.error = overall_error(problem);
-    Problem adjusted = fitted_problem(model, data);
+    Problem adjusted = known != nullptr ? *known : fitted_problem(model, data);
     for (const Limit &limit : limits_of(adjusted)) out.limits.push_back(limit);
     out.adjusted = overall_error(adjusted);
     Problem &shown = as_is ? problem : adjusted;

@@ -64,11 +64,12 @@ struct Comparison {
 };
 
 // `error` and `adjusted` always; balances and regimes show the model as it stands (as_is), else after its parameters moved within their
-// priors.
-Comparison compare(const Model &model, const Dataset &data, bool as_is);
+// priors. known: fitted_problem() of this model and these data, where it is at hand; else it is made.
+Comparison compare(const Model &model, const Dataset &data, bool as_is, const Problem *known = nullptr);
 
 // Puts a better model's prediction of the same rows beside what is shown: `after`, its errors, `left_after`. The rows are those of `data`.
-void show_after(Comparison &comparison, const Model &better, const Dataset &data);
+// known: as above, of the better model.
+void show_after(Comparison &comparison, const Model &better, const Dataset &data, const Problem *known = nullptr);
 
 // Stretches without rows, from `start_s` to `end_s`: where two rows are more than one and a half usual spacings apart and do not touch.
 std::vector<Gap> gaps_of(const Balance &balance, double start_s, double end_s);
