@@ -45,7 +45,12 @@ void sum_up(const json &result, json &entry) {
     if (member(result, "schema") == "traction.check/1")
         entry["headline"] = member(result, "passed") == true ? "fit to learn from" : "not fit to learn from until its errors are mended";
     json before = member(score, "error"), after = member(score, "adjusted");
-    const json ladder = member(result, "ladder");
+    const bool game = member(result, "schema") == "traction.game/1";
+    const json ladder = game ? json() : member(result, "ladder"), guesses = member(result, "guesses");
+    if (game && guesses.is_array())
+        for (const json &guess : guesses)
+            if (member(guess, "effect") == member(entry, "effect") && member(guess, "wheel") == entry.value("wheel", -1))
+                before = member(guess, "before"), after = member(guess, "after");
     if (ladder.is_array())
         for (const json &step : ladder)
             if (member(step, "heldout").is_number() && member(step, "label") != "noise floor") {
@@ -59,8 +64,7 @@ void sum_up(const json &result, json &entry) {
         for (const json &one : result["accepted"])
             entry["named"].push_back({{"effect", member(one, "effect")}, {"wheel", member(one, "wheel")}});
     }
-    if (member(result, "schema") == "traction.game/1" && member(result, "points").is_number())
-        entry["headline"] = std::to_string(result["points"].get<int>()) + " of 100 points";
+    if (game && member(result, "points").is_number()) entry["headline"] = std::to_string(result["points"].get<int>()) + " of 100 points";
     const json hidden = member(result, "hidden");
     if (hidden.is_string()) entry["hidden"] = hidden;
 }

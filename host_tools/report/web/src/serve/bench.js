@@ -22,7 +22,13 @@ function choice(id, title, about, rowsOf, pick) {
   }];
 }
 
-const mark = (list, value) => list.querySelectorAll('input').forEach((i) => { i.checked = i.value === value; });
+function mark(list, value) {
+  const inputs = [...list.querySelectorAll('input')], chosenOne = inputs.find((i) => i.value === value);
+  inputs.forEach((i) => { i.checked = i === chosenOne; });
+  if (list.dataset.seen === value || !chosenOne) return;
+  list.dataset.seen = value;
+  list.scrollTop = Math.max(0, chosenOne.closest('label').offsetTop - list.offsetTop - 60);
+}
 
 function logs() {
   const all = of('log', 'foreign').sort((a, b) => b.changed_ms - a.changed_ms);

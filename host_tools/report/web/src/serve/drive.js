@@ -22,7 +22,7 @@ export function drive() {
     realtime: real.checked, ...(effect.value === '?' ? { hidden: true } : effect.value && { effect: effect.value }) })) }, 'Start the drive');
   const stop = h('button', { type: 'button', onclick: () => tried(() => post('/api/cancel', { id: busy('drive')?.id })) }, 'Stop');
   const status = h('p', { role: 'status', id: 'driving' }), place = h('div', { id: 'live' });
-  const box = h('details', { id: 'drive', class: 'tool', 'data-short': 'Simulated rover', open: true }, h('summary', {}, 'A simulated rover'),
+  const box = h('details', { id: 'drive', class: 'tool', 'data-short': 'Simulated rover' }, h('summary', {}, 'A simulated rover'),
     h('p', { class: 'quiet' }, 'Drives a scenario with the rover’s own firmware. The log appears above when the drive ends.'),
     h('div', { class: 'controls form' }, h('p', {}, h('label', { for: 'scenario' }, 'Scenario '), scenario), h('p', {}, h('label', { for: 'drive-effect' }, 'Effect '), effect),
       h('p', {}, h('label', { for: 'seed' }, 'Seed '), seed), h('p', {}, h('label', { for: 'seconds' }, 'Seconds '), seconds), h('p', {}, h('label', {}, real, ' at the pace of the clock')),
@@ -58,6 +58,10 @@ export function drive() {
     }
     fill(effect, [['', 'none: as the model says'], ['?', 'one that is hidden from you (sealed)'], ...effectOptions()]);
     const running = busy('drive');
+    if (!box.dataset.begun && now.connected && now.files.length) { // open where there is nothing to learn from yet, or something moves
+      box.dataset.begun = 'yes';
+      box.open = !!running || !of('log', 'foreign').length;
+    }
     start.disabled = !now.connected || !!running || !scenario.value;
     stop.disabled = !now.connected || !running;
     const entry = now.history.find((e) => e.id === id), t = columns[0].at(-1);

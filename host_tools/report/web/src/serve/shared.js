@@ -26,7 +26,7 @@ export const onWheel = (e) => (isNumber(e.wheel) && e.wheel >= 0 ? ` on wheel ${
 
 // Options are made anew only where they are other ones, so that an open list stays open and the choice stays chosen.
 export function fill(select, options, value) {
-  const text = JSON.stringify(options);
+  const text = JSON.stringify(options), before = select.value;
   if (select.dataset.options !== text) {
     select.dataset.options = text;
     const groups = new Map();
@@ -35,6 +35,7 @@ export function fill(select, options, value) {
       groups.get(group ?? '').push(h('option', { value: key }, words));
     }
     select.replaceChildren(...[...groups].flatMap(([name, all]) => (name ? [h('optgroup', { label: name }, all)] : all)));
+    if (options.some(([key]) => key === before)) select.value = before;
   }
   if (value !== undefined && value !== null) select.value = value;
 }
