@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <stdexcept>
 #include <unistd.h>
 
 #include <array>
@@ -66,7 +67,7 @@ void serve_folder(const ServeOptions &options, Outcome &outcome) {
     server.listen();
     watcher.request_stop();
     watcher.join();
-    outcome.json = {{"schema", "traction.serve/1"}, {"runs", workshop.state()["history"]}};
+    outcome.json = {{"schema", "traction.serve/1"}, {"runs", workshop.history()}};
     if (StopSignal::asked() == 0) throw std::runtime_error("the port was lost: the server cannot go on");
 }
 

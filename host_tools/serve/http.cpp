@@ -6,6 +6,7 @@
 #include "host_tools/lab/result/effects_json.h"
 #include "sim/physics/effects/catalogue.h"
 
+#include <cstdint>
 #include <httplib.h>
 
 #include <arpa/inet.h>

@@ -1,6 +1,7 @@
 // token.h - the secret that the printed address carries: who has it may use the page, nobody else may.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 

@@ -2,7 +2,9 @@
 
 #include "child.h"
 
+#include <algorithm>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -256,9 +258,15 @@ json Workshop::game() const {
 json Workshop::state_now() const {
     return {{"folder", folder_.root().string()},
             {"files", folder_.json()},
-            {"history", history_},
+            {"history", json(std::vector<json>(history_.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(100, history_.size())),
+                                               history_.end()))},
             {"game", game()},
             {"trouble", trouble_.empty() ? folder_.trouble() : trouble_}};
+}
+
+json Workshop::history() const {
+    const std::lock_guard lock(mutex_);
+    return history_;
 }
 
 json Workshop::state() const {
@@ -355,8 +363,11 @@ void Workshop::work(Place place) {
         json entry = done(order, slot, id, place);
         lock.lock();
         folder_.look();
-        for (json &old : history_)
+        const bool spoke = entry.contains("text"); // the game's words: the last ones are enough
+        for (json &old : history_) {
+            if (spoke) old.erase("text");
             if (old["id"] == id) old = std::move(entry);
+        }
         keep_history();
         slot.id = 0;
         slot.work = nullptr;

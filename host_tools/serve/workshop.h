@@ -10,6 +10,7 @@
 #include "host_tools/log/write_file.h"
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include <array>
 #include <atomic>
@@ -42,7 +43,8 @@ class Workshop {
     void cancel(int id);                    // throws Busy where it does not run
     void open_seal(int id);                 // what a simulated drive hid goes into its entry. Throws BadRequest.
     std::optional<std::string> result(int id) const;
-    nlohmann::json state() const;
+    nlohmann::json state() const;   // of the history the last 100 runs
+    nlohmann::json history() const; // all of it
 
     // What a browser has seen already; a fresh one has seen nothing.
     struct Seen {

@@ -5,6 +5,7 @@
 #include "host_tools/serve/token.h"
 #include "host_tools/serve/workshop.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
