@@ -29,8 +29,8 @@ export function game() {
       state.replaceChildren(...(g ? [
         g.opened ? h('p', { class: 'verdict', id: 'opened' }, `The seal is open: ${g.hidden}. ${g.points} of 100 points.`) : h('p', {}, `A game is on, on ${g.soil}: the seal is closed.`),
         table('Ladder: held-out error as a multiple of the sensor noise', [{ head: 'model' }, { head: 'error', number: true }], list(g.ladder).map((s) => [s.label, even(s.heldout, 2)])),
-        list(g.guesses).length ? table('Guesses', [{ head: 'effect' }, { head: 'before', number: true }, { head: 'after', number: true }, { head: '' }],
-          list(g.guesses).map((s) => [s.label, even(s.before, 2), even(s.after, 2), s.added ? 'kept' : 'tried'])) : ''] : []));
+        list(g.guesses).length ? table('Guesses', [{ head: 'effect' }, { head: 'before', number: true }, { head: 'after', number: true }, { head: 'in the model' }],
+          list(g.guesses).map((s) => [s.label, even(s.before, 2), even(s.after, 2), s.added ? 'kept' : 'only tried'])) : ''] : []));
     }
     const last = now.history.filter((e) => e.verb.startsWith('game') && e.text && e.verb !== 'game_look').at(-1);
     said.hidden = !last || !g;
