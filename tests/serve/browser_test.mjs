@@ -100,7 +100,9 @@ claim('check, compare, diagnose, add: the error falls, in both browsers', async 
   assert.match(await page.textContent('#hint'), /The diagnosis names slip_sinkage/);
   await page.screenshot({ path: `${shots}/diagnosed.png`, fullPage: true });
   await page.$$eval('details.tool', (all) => all.forEach((e) => { e.open = false; })); // the picture of docs/serve.md
+  const where = await page.$eval('#folder', (e) => { const text = e.textContent; e.textContent = 'drives'; return text; });
   await page.screenshot({ path: `${shots}/serve.png`, fullPage: true, clip: { x: 90, y: 0, width: 1220, height: 1560 } });
+  await page.$eval('#folder', (e, text) => { e.textContent = text; }, where);
   await page.$eval('#drive', (e) => { e.open = true; });
   await click(page, '#hint', 'Add slip_sinkage');
   await title(page, 'add');

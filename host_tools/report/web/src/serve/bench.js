@@ -44,6 +44,7 @@ function models() {
 
 // What was chosen may be gone; what was never chosen is the newest log and, as long as there is none of one's own, the rover on sand.
 function settle() {
+  if (!now.files.length) return; // the folder was not heard of yet: what a reload kept stays
   const log = of('log', 'foreign').some((f) => f.name === chosen.log) ? chosen.log : logs()[0]?.key ?? null;
   const good = of('model').filter((f) => !f.about?.trouble), has = (name) => good.some((f) => f.name === name);
   const model = has(chosen.model) ? chosen.model : ['shipped/rover_sand.toml', good[0]?.name].find(has) ?? null;
