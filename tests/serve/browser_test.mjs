@@ -186,7 +186,7 @@ claim('a sealed game: look, try, keep, open', async () => {
   await page.selectOption('#guess', hidden.name);
   if (hidden.wheel !== undefined) await page.selectOption('#guess-wheel', String(hidden.wheel));
   await click(page, '#game', 'Keep it');
-  await until(page, () => /\bkept\b/.test(document.querySelector('#game-state').textContent));
+  await until(page, () => /kept/.test(document.querySelector('#game-state').textContent));
   await until(page, () => !document.querySelector('#game button:disabled'));
   await click(page, '#game', 'Open the seal');
   await page.waitForSelector('#opened', { timeout: 240000 });
