@@ -1,4 +1,7 @@
 // progress.h - shows how far long work is: one line redrawn on a terminal, nothing in a pipe.
+//
+// A program that runs a verb and wants to know opens a descriptor for it and names its number in TRACTION_PROGRESS_FD: it gets a line
+// "DONE TOTAL WORDS" at the beginning and ten times a second at most (host_tools/serve).
 #pragma once
 
 #include <chrono>
@@ -27,10 +30,12 @@ class Progress {
 
   private:
     void draw();
+    void tell();
     std::string what_;
     long total_;
     long done_ = 0;
     bool terminal_;
+    int reader_; // -1: none
     std::mutex mutex_;
     std::chrono::steady_clock::time_point start_;
     std::chrono::steady_clock::time_point drawn_;

@@ -7,6 +7,7 @@
 
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
+#include "host_tools/log/write_file.h"
 #include "host_tools/report/report.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/batch.h"
@@ -16,19 +17,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace traction::cli {
 
 namespace {
 
 struct Arguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes;
+    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes, live;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
+    double seconds = 0; // 0: the scenario's own
     std::vector<std::string> effects;
     bool realtime = false, self_test = false;
 };
@@ -103,6 +107,31 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     for (const std::string &note : notes) std::printf("note: %s\n", note.c_str());
 }
 
+// The firmware's estimate ten times a simulated second, as rows of a log; a slip that means nothing is an empty cell.
+class Live {
+  public:
+    Live() {
+        std::string names = "t_s,estimate.speed_m_s";
+        for (const char *quantity : {".slip", ".current_A"})
+            for (int i = 0; i < WHEEL_COUNT; ++i) names += ",wheel" + std::to_string(i) + quantity;
+        log::write_file(names + '\n', "-");
+    }
+    void row(const trace_t &trace) {
+        if (trace.tick % 10 != 0) return;
+        char cell[32];
+        std::snprintf(cell, sizeof cell, "%.2f", static_cast<double>(trace.tick) / 100);
+        std::string line = cell;
+        const auto put = [&](float value, bool valid) {
+            std::snprintf(cell, sizeof cell, ",%.4g", static_cast<double>(value));
+            line += valid && std::isfinite(value) ? cell : ",";
+        };
+        put(trace.speed_m_s, true);
+        for (const wheel_trace_t &wheel : trace.wheel) put(wheel.slip, wheel.slip_valid);
+        for (const wheel_trace_t &wheel : trace.wheel) put(wheel.current_A, true);
+        log::write_file(line + '\n', "-");
+    }
+};
+
 // A run that ended with a latched fault is told, and is a negative answer: the rover stood still at its end.
 void tell_faults(Outcome &outcome) {
     for (const nlohmann::json &run : outcome.json["runs"]) {
@@ -133,11 +162,16 @@ void run(const Arguments &arguments, Outcome &outcome) {
     options.frames_path = arguments.frames;
     if (!arguments.firmware.empty()) options.firmware = arguments.firmware;
     for (const std::string &text : arguments.effects) options.effects.push_back(sim::parse_effect(text));
+    if (arguments.seconds > 0) scenario.duration_s = std::min(scenario.duration_s, arguments.seconds);
 
     std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
     const bool batch = !arguments.seeds.empty();
     if (batch && !parse_range(arguments.seeds, first, last)) throw UsageError("--seeds: write FIRST..LAST, such as 0..99");
     if (batch && !arguments.frames.empty()) throw UsageError("--frames: takes one run, not a batch");
+    if (batch && !arguments.live.empty()) throw UsageError("--live: takes one run, not a batch");
+    std::optional<Live> live;
+    if (!arguments.live.empty()) live.emplace();
+    if (live) options.after_tick = [&live](const trace_t &trace) { live->row(trace); };
 
     const auto start = std::chrono::steady_clock::now();
     outcome.json = {{"schema", "traction.simulate/1"}, {"scenario", scenario.name}, {"runs", nlohmann::json::array()}};
@@ -234,6 +268,17 @@ Verb verb_simulate() {
                   .into = &arguments->firmware,
                   .help = "firmware configuration instead of the scenario's",
                   .one_of = {"default", "paper"}},
+                 {.name = "--live",
+                  .into = &arguments->live,
+                  .help = "speed, slip and currents as the firmware knows them to standard output, ten rows a simulated second",
+                  .value = "-",
+                  .kind = Kind::output,
+                  .one_of = {"-"}},
+                 {.name = "--for",
+                  .into = &arguments->seconds,
+                  .help = "end the drive after this many seconds, where the scenario's is longer",
+                  .value = "S",
+                  .range = Range{0.01, 1e6}},
                  {.name = "--realtime", .into = &arguments->realtime, .help = "keep pace with the wall clock"},
                  {.name = "--self-test",
                   .into = &arguments->self_test,

@@ -1,5 +1,5 @@
-# cmake -DNPM= -DNODE= -DWEB= -DWORK= [-DPAGE=] [-DAGAINST=] -P build_page.cmake: builds the page in WORK, a copy of WEB; writes it to
-# PAGE, or compares it byte for byte with AGAINST, the committed one.
+# cmake -DNPM= -DNODE= -DWEB= -DWORK= [-DPAGES=] [-DAGAINST=] -P build_page.cmake: builds the pages in WORK, a copy of WEB; writes them to
+# the folder PAGES, or compares them byte for byte with those in AGAINST, the committed ones.
 cmake_minimum_required(VERSION 3.25)
 if(NOT NPM OR NOT NODE)
   if(AGAINST)
@@ -39,17 +39,27 @@ Is the npm registry reachable? Behind a proxy set https_proxy or 'npm config set
               ${NPM} ci --no-audit --no-fund --loglevel=error)
   file(WRITE ${WORK}/node_modules/.traction-lock ${lock})
 endif()
-run_or_stop("Vite could not build the report page (host_tools/report/web). It said:"
-            ${NODE} node_modules/vite/bin/vite.js build --logLevel warn)
+foreach(mode report serve)
+  run_or_stop("Vite could not build the ${mode} page (host_tools/report/web). It said:"
+              ${NODE} node_modules/vite/bin/vite.js build --mode ${mode} --logLevel warn)
+endforeach()
 
-if(PAGE)
-  file(COPY_FILE ${WORK}/dist/index.html ${PAGE})
-endif()
-if(AGAINST)
-  file(SHA256 ${WORK}/dist/index.html built)
-  file(SHA256 ${AGAINST} committed)
-  if(NOT built STREQUAL committed)
-    message(FATAL_ERROR "${AGAINST} is not what host_tools/report/web builds now: run  ninja -C build/host report_page  and commit it")
+foreach(page report serve)
+  set(built ${WORK}/dist/${page}.html)
+  if(page STREQUAL "report")
+    set(built ${WORK}/dist/index.html)
   endif()
-  message(STATUS "the committed page is what its sources build, byte for byte")
+  if(PAGES)
+    file(COPY_FILE ${built} ${PAGES}/${page}.html)
+  endif()
+  if(AGAINST)
+    file(SHA256 ${built} made)
+    file(SHA256 ${AGAINST}/${page}.html committed)
+    if(NOT made STREQUAL committed)
+      message(FATAL_ERROR "${AGAINST}/${page}.html is not what host_tools/report/web builds now: run  ninja -C build/host report_page  and commit it")
+    endif()
+  endif()
+endforeach()
+if(AGAINST)
+  message(STATUS "the committed pages are what their sources build, byte for byte")
 endif()

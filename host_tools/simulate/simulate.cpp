@@ -98,6 +98,7 @@ class Session : public Link {
         }
         if (options_.truth || !options_.truth_path.empty()) truth_.add(world_.truth());
         if (frames_) frames_->add(frame, command);
+        if (options_.after_tick) options_.after_tick(trace);
         if (++ticks_ % 100 == 0 && options_.after_second) options_.after_second();
     }
     // What was recorded goes into the result, or under its path; the headers stand in result already.

@@ -30,7 +30,8 @@ struct SimulateOptions {
     bool self_test = false;                 // before the drive plan; what fails ends the run
     std::string frames_path;                // replay text, one line a tick; empty: none
     std::function<void()> after_second;     // called after every simulated second
-    std::function<bool()> stopped;          // asked before every tick; true ends the run, and its log says so (header `ended`)
+    std::function<void(const trace_t &)> after_tick; // every tick, with what the firmware made of it
+    std::function<bool()> stopped;                   // asked before every tick; true ends the run, and its log says so (header `ended`)
 };
 
 struct SimulationResult {

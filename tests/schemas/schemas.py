@@ -17,6 +17,7 @@ import shutil
 import subprocess
 import sys
 import time
+import urllib.request
 from pathlib import Path
 from typing import Any
 
@@ -224,6 +225,7 @@ class Runs:
                 self.excused["bench " + verb] = f"{program} is not built here"
         self.campaign()
         self.drive()
+        self.serve()
 
     def campaign(self) -> None:
         (self.work / "campaign.toml").write_text(
@@ -236,6 +238,35 @@ class Runs:
             return
         self.run("campaign", "campaign.toml", "--dry-run")
         self.run("campaign", "campaign.toml", "--out", "campaign", "--workers", "0")
+
+    def serve(self) -> None:
+        (self.work / "served").mkdir()
+        if (made := self.call("serve", "nowhere")).returncode == 2 and "not in this build" in made.stderr:
+            self.excused["serve"] = "this build has no cpp-httplib"
+            return
+        document = self.work / "served.json"
+        command = [self.cli, "serve", "served", "--port", "0", "--json", str(document)]
+        server = subprocess.Popen(command, cwd=self.work, stdout=subprocess.PIPE, text=True)
+        try:
+            assert server.stdout is not None
+            found = re.search(r"(http://\S+)/\?token=(\S+)", server.stdout.readline() + server.stdout.readline())
+            if found is None:
+                bad("traction serve does not print its address")
+                return
+            headers = {"X-Traction-Token": found[2], "Content-Type": "application/json"}
+            body = json.dumps({"verb": "simulate", "scenario": "shipped/cruise.toml", "seconds": 2, "hidden": True})
+            request = urllib.request.Request(found[1] + "/api/run", body.encode(), headers)
+            urllib.request.urlopen(request, timeout=20).close()
+            for _ in range(240):
+                history = self.work / "served/traction_serve/history.json"
+                if history.exists() and '"done"' in history.read_text():
+                    break
+                time.sleep(0.25)
+        finally:
+            server.terminate()
+            server.wait(20)
+        self.judge("serve", "serve", json.loads(document.read_text()))
+        self.judge("", "the history of serve", json.loads((self.work / "served/traction_serve/history.json").read_text()))
 
     def drive(self) -> None:
         made = self.call("drive", "--new-key", "probe")

@@ -1,9 +1,10 @@
 import { readFileSync } from 'node:fs';
 import { defineConfig } from 'vite';
 
+// Two pages: index.html (report) and, with --mode serve, serve.html (`traction serve`).
 // Puts the one script and the one style sheet into the page, so that a single file opens from disk, and the notice that uPlot's
 // licence asks for (MIT) before them.
-function oneFile() {
+function oneFile(nonce) {
   return {
     name: 'one-file',
     enforce: 'post',
@@ -14,9 +15,9 @@ function oneFile() {
         if (file.fileName.endsWith('.js')) {
           const code = file.code.replaceAll('</script', '<\\/script');
           html = html.replace(/<script[^>]*\ssrc="[^"]*"[^>]*><\/script>/, '');
-          html = html.replace('</body>', () => `<script type="module">${code}</script>\n</body>`);
+          html = html.replace('</body>', () => `<script type="module"${nonce}>${code}</script>\n</body>`);
         } else if (file.fileName.endsWith('.css')) {
-          html = html.replace(/<link[^>]*rel="stylesheet"[^>]*>/, () => `<style>${file.source}</style>`);
+          html = html.replace(/<link[^>]*rel="stylesheet"[^>]*>/, () => `<style${nonce}>${file.source}</style>`);
         } else continue;
         delete bundle[file.fileName];
       }
@@ -26,8 +27,9 @@ function oneFile() {
   };
 }
 
-export default defineConfig({
+export default defineConfig(({ mode }) => ({
   base: './',
-  build: { target: 'es2020', modulePreload: false, cssCodeSplit: false, assetsInlineLimit: 1e6 },
-  plugins: [oneFile()],
-});
+  build: { target: 'es2020', modulePreload: false, cssCodeSplit: false, assetsInlineLimit: 1e6, emptyOutDir: mode !== 'serve',
+    rollupOptions: { input: mode === 'serve' ? 'serve.html' : 'index.html' } },
+  plugins: [oneFile(mode === 'serve' ? ' nonce="__TRACTION_NONCE__"' : '')],
+}));

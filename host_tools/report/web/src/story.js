@@ -34,10 +34,11 @@ export function seal(result) {
       h('div', {}, h('dt', {}, 'Judgement'), h('dd', {}, h('span', { class: `badge ${d.right ? 'good' : 'odd'}` }, d.right ? '✔ right' : 'not named'), ` ${d.judgement ?? ''}`))));
 }
 
-// What stands on the ladder: the model as it was given (nothing was fitted to it), then each step on what was not fitted.
+// What stands on the ladder: the model as it was given (nothing was fitted to it; `add` compares the one that it made), then each step on
+// what was not fitted.
 function steps(result) {
   const { score } = result, ladder = list(result.ladder).filter((r) => isNumber(r.heldout));
-  const out = score && isNumber(score.error) ? [{ label: 'the model as given', error: score.error }] : [];
+  const out = score && isNumber(score.error) && result.verb !== 'add' ? [{ label: 'the model as given', error: score.error }] : [];
   if (ladder.length) out.push(...ladder.filter((r) => r.label !== 'noise floor').map((r) => ({ label: r.label === 'baseline' ? 'retuned within its tolerances' : r.label, error: r.heldout })));
   else if (score && isNumber(score.adjusted)) out.push({ label: 'retuned within its tolerances', error: score.adjusted });
   return out;

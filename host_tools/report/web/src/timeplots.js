@@ -10,7 +10,7 @@ let plots = []; // { plot, refill }: those on the page now
 let whole = [0, 1];
 let told = () => {}; // called with the shown range
 
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 export function zoom(from, to) {
   const span = whole[1] - whole[0];
@@ -49,7 +49,7 @@ function keys(event) {
   zoom(...moves[event.key]);
 }
 
-const axis = (label, size, space) => ({
+export const axis = (label, size, space) => ({
   label, size, space, labelSize: 22, font: '12px sans-serif', labelFont: '12px sans-serif',
   stroke: () => css('--ink'), grid: { stroke: () => css('--grid'), width: 1 }, ticks: { stroke: () => css('--grid'), width: 1 },
 });
@@ -258,8 +258,19 @@ export function settle(balances) {
   return seconds(...whole);
 }
 
+// Another result comes in its place (`traction serve`).
+export function forget() {
+  plots.forEach(({ plot }) => plot.destroy());
+  plots = [];
+  told = () => {};
+}
+
+let watching = false;
+
 // Redrawn at other widths, in other colours, and for print.
 export function resizing() {
+  if (watching) return;
+  watching = true;
   const fit = (width) => {
     plots.forEach(({ plot }) => plot.setSize({ width: Math.max(260, width ?? plot.root.parentElement.clientWidth), height: plot.height }));
     plots.forEach(({ plot }) => { plot.shown_ = ''; });

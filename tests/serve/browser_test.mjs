@@ -1,0 +1,261 @@
+// browser_test.mjs CHROMIUM TRACTION FOLDER SHOTS_DIR - the whole story of `traction serve`, clicked in a real browser: a simulated rover
+// drives, its log is checked and diagnosed, what was named is added, the error falls; two browsers, a reload, a server that goes and comes
+// back; a sealed game; every width, dark and light, by keyboard alone, with axe-core.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { appendFileSync, copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { chromium } from 'playwright-core';
+
+const [executablePath, traction, folder, shots] = process.argv.slice(2);
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+mkdirSync(shots, { recursive: true });
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+// Starts the server; its address, and how to end it: exit code.
+async function serve(port = 0) {
+  const child = spawn(traction, ['serve', folder, '--port', String(port)], { stdio: ['ignore', 'pipe', 'pipe'] });
+  const ended = new Promise((done) => child.on('exit', (code, signal) => done(signal ?? code)));
+  let said = '';
+  const address = await new Promise((found, fail) => {
+    child.stdout.on('data', (bytes) => { said += bytes; const at = said.match(/http:\/\/\S+/); if (at) found(at[0]); });
+    ended.then((code) => fail(new Error(`traction serve ended with ${code}: ${said}`)));
+  });
+  return { address, port: +new URL(address).port, child, end: (signal = 'SIGINT') => { child.kill(signal); return ended; } };
+}
+
+const browser = await chromium.launch({ executablePath, args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+  '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+let server = await serve();
+const trouble = [];
+async function open(settings = {}) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...settings });
+  const page = await context.newPage();
+  page.on('console', (m) => { if (['error', 'warning'].includes(m.type()) && !/ERR_CONNECTION_REFUSED|ERR_INCOMPLETE_CHUNKED|ERR_EMPTY_RESPONSE|ERR_CONNECTION_RESET/.test(m.text())) trouble.push(`console: ${m.text()}`); });
+  page.on('pageerror', (e) => trouble.push(`error: ${e.message}`));
+  page.on('request', (r) => { if (!/^(data|blob):/.test(r.url()) && new URL(r.url()).host !== new URL(server.address).host) trouble.push(`request: ${r.url()}`); });
+  await page.goto(server.address);
+  await ready(page);
+  return { page, close: () => context.close() };
+}
+const ready = (page) => page.waitForSelector('html[data-ready=yes]', { timeout: 20000 });
+const click = (page, where, words) => page.click(`${where} button:text-is("${words}")`);
+const until = (page, what, argument) => page.waitForFunction(what, argument, { timeout: 240000 });
+const title = (page, begin) => until(page, (words) => document.querySelector('#result h1')?.textContent.startsWith(words), begin);
+const newest = (page) => page.$eval('#history tbody tr', (e) => e.textContent);
+const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+const chosen = (page, list) => page.$eval(`#${list} input:checked`, (e) => e.value);
+
+const claims = [];
+const claim = (name, check) => claims.push([name, check]);
+const { page } = await open();
+const { page: other } = await open();
+
+claim('an empty folder: the page says where to begin, and the rover is open', async () => {
+  assert.match(await page.textContent('#logs'), /none yet/);
+  assert.match(await page.textContent('#history'), /Nothing was run yet/);
+  assert.ok(await page.isVisible('#drive-effect'));
+  assert.ok(await page.isDisabled('#bench button:text-is("Diagnose")'));
+});
+
+claim('a drive at the pace of the clock grows before the eyes of both, and is stopped by the other browser', async () => {
+  await page.fill('#seconds', '60');
+  await page.check('#realtime');
+  await click(page, '#drive', 'Start the drive');
+  for (const p of [page, other]) await until(p, () => +document.querySelector('#live').dataset.rows > 15);
+  const rows = await page.$eval('#live', (e) => +e.dataset.rows);
+  await until(page, (n) => +document.querySelector('#live').dataset.rows > n + 8, rows);
+  assert.equal((await page.$$('#live canvas')).length, 3); // speed, slip, current
+  assert.match(await page.textContent('#driving'), /Driving: [\d.]+ s driven/);
+  await page.screenshot({ path: `${shots}/driving.png` });
+  await click(other, '#drive', 'Stop');
+  await until(page, () => /The drive ended after/.test(document.querySelector('#driving').textContent));
+  assert.match(await newest(page), /simulated drive.*cancelled/);
+  await page.waitForSelector('#logs input[value="identification_1.csv"]');
+});
+
+claim('a drive with an effect: its log is chosen when it ends', async () => {
+  await page.uncheck('#realtime');
+  await page.fill('#seconds', '40');
+  await page.selectOption('#scenario', 'shipped/demo_sand.toml');
+  await page.selectOption('#drive-effect', 'slip_sinkage');
+  await click(page, '#drive', 'Start the drive');
+  for (const p of [page, other]) await until(p, () => document.querySelector('#logs input:checked')?.value === 'demo_sand_1.csv');
+  assert.equal(await chosen(page, 'models'), 'shipped/rover_sand.toml');
+});
+
+claim('check, compare, diagnose, add: the error falls, in both browsers', async () => {
+  await click(page, '#bench', 'Check');
+  await title(page, 'check');
+  assert.match(await newest(page), /fit to learn from/);
+  await click(page, '#bench', 'Compare');
+  await title(page, 'compare');
+  await click(page, '#bench', 'Diagnose');
+  await page.waitForSelector('#running:not([hidden])');
+  await until(other, () => /diagnose: \d+/.test(document.querySelector('#running').textContent)); // the verb's own progress, there too
+  await title(page, 'diagnose');
+  await title(other, 'diagnose');
+  assert.match(await page.textContent('#verdict'), /slip_sinkage explains it/);
+  assert.match(await page.textContent('#hint'), /The diagnosis names slip_sinkage/);
+  await page.screenshot({ path: `${shots}/diagnosed.png`, fullPage: true });
+  await page.$$eval('details.tool', (all) => all.forEach((e) => { e.open = false; })); // the picture of docs/serve.md
+  const where = await page.$eval('#folder', (e) => { const text = e.textContent; e.textContent = 'drives'; return text; });
+  await page.screenshot({ path: `${shots}/serve.png`, fullPage: true, clip: { x: 90, y: 0, width: 1220, height: 1560 } });
+  await page.$eval('#folder', (e, text) => { e.textContent = text; }, where);
+  await page.$eval('#drive', (e) => { e.open = true; });
+  await click(page, '#hint', 'Add slip_sinkage');
+  await title(page, 'add');
+  await title(other, 'add');
+  const [before, after] = (await newest(page)).match(/([\d.]+) → ([\d.]+)/).slice(1).map(Number);
+  assert.ok(after < before / 1.5, `${before} to ${after}`);
+  for (const p of [page, other]) await until(p, () => document.querySelector('#models input:checked')?.value === 'rover_sand_slip_sinkage.toml');
+  assert.ok(await page.isHidden('#hint')); // it is in the model now
+  assert.doesNotMatch(await page.textContent('#ladder'), /as given/); // `add` compares the model that it made
+  assert.equal(await page.textContent('#history tbody'), await other.textContent('#history tbody'));
+  await page.screenshot({ path: `${shots}/added.png`, fullPage: true });
+});
+
+claim('drop: a model without it, compared at once', async () => {
+  await click(page, '#bench', 'Drop');
+  await until(page, () => /drop slip_sinkage.*[\d.]+ → [\d.]+/.test(document.querySelector('#history tbody tr').textContent));
+  assert.ok(readdirSync(folder).includes('rover_sand_slip_sinkage_without_slip_sinkage.toml'));
+  assert.ok(readdirSync(folder).includes('rover_sand_slip_sinkage.toml'));
+});
+
+claim('next drive: a scenario of this folder that the rover can drive', async () => {
+  await page.check('#models input[value="shipped/rover_sand.toml"]');
+  await click(page, '#bench', 'Next drive');
+  await title(page, 'next');
+  if (readdirSync(folder).some((f) => f.startsWith('next_'))) await page.waitForSelector('#scenario option[value="next_demo_sand_1.toml"]', { state: 'attached' });
+  assert.equal(await page.$('#history tbody tr:first-child .wrong'), null);
+});
+
+claim('a reload keeps what was run, what is chosen and what is shown', async () => {
+  assert.equal(await page.$eval('#scenario', (e) => e.value), 'shipped/demo_sand.toml'); // a new scenario in the list changes no choice
+  await page.click('#history tbody tr:has(th:has-text("diagnose")) button:text-is("Show")');
+  await title(page, 'diagnose');
+  await page.check('#logs input[value="identification_1.csv"]');
+  const runs = await page.textContent('#history tbody');
+  await page.reload();
+  await ready(page);
+  await title(page, 'diagnose');
+  assert.equal(await page.textContent('#history tbody'), runs);
+  assert.equal(await chosen(page, 'logs'), 'identification_1.csv');
+  assert.equal(await page.$eval('#live', (e) => +e.dataset.rows > 100), true); // the last drive's rows come again
+});
+
+claim('a new file and a growing one appear without a reload', async () => {
+  copyFileSync(`${folder}/demo_sand_1.csv`, `${folder}/from_afar.csv`);
+  await page.waitForSelector('#logs label:has-text("from_afar.csv")');
+  await page.waitForTimeout(1500);
+  appendFileSync(`${folder}/from_afar.csv`, '1000,\n');
+  await page.waitForSelector('#logs label:has-text("from_afar.csv"):has-text("growing")');
+  writeFileSync(`${folder}/foreign.csv`, 'a,b\n1,2\n');
+  await page.waitForSelector('#logs label:has-text("foreign.csv"):has-text("needs a map")');
+  await page.check('#logs input[value="foreign.csv"]');
+  assert.ok(await page.isVisible('#map'));
+  await click(page, '#bench', 'Compare');
+  await until(page, () => /foreign\.csv/.test(document.querySelector('#history tbody tr .wrong')?.textContent ?? '')); // its own message
+});
+
+claim('the server goes: both are told so; it comes back: both go on by themselves', async () => {
+  assert.equal(await server.end('SIGINT'), 0);
+  for (const p of [page, other]) await until(p, () => /has not answered since/.test(document.querySelector('#link').textContent));
+  assert.ok(await page.isDisabled('#bench button:text-is("Diagnose")'));
+  await page.screenshot({ path: `${shots}/gone.png` });
+  const runs = await page.textContent('#history tbody');
+  server = await serve(server.port);
+  for (const p of [page, other]) await until(p, () => document.querySelector('#link').textContent === 'Connected');
+  assert.equal(await page.textContent('#history tbody'), runs);
+  await page.check('#logs input[value="demo_sand_1.csv"]');
+  await click(page, '#bench', 'Check');
+  await until(page, () => document.querySelector('#history tbody tr').textContent.startsWith('check') && !/runs/.test(document.querySelector('#history tbody tr').textContent));
+});
+
+claim('a sealed game: look, try, keep, open', async () => {
+  await page.click('#game summary');
+  await click(page, '#game', 'New game');
+  await page.waitForSelector('#playing:not([hidden])', { timeout: 240000 });
+  await until(page, () => !document.querySelector('#game button:disabled'));
+  const hidden = JSON.parse(readFileSync(`${folder}/game/sealed.json`, 'utf8')).effects[0];
+  assert.doesNotMatch(await page.evaluate(async () => JSON.stringify(await (await fetch('/api/result/' + document.querySelector('#history tbody tr .quiet').textContent.match(/\d+/)[0] + location.search)).json())), /"hidden"|"parameters"/);
+  await click(page, '#game', 'Look');
+  await title(page, 'compare');
+  await until(page, () => !document.querySelector('#game button:disabled'));
+  await page.selectOption('#guess', hidden.name);
+  if (hidden.wheel !== undefined) await page.selectOption('#guess-wheel', String(hidden.wheel));
+  await click(page, '#game', 'Keep it');
+  await until(page, () => /kept/.test(document.querySelector('#game-state').textContent));
+  await until(page, () => !document.querySelector('#game button:disabled'));
+  await click(page, '#game', 'Open the seal');
+  await page.waitForSelector('#opened', { timeout: 240000 });
+  assert.ok((await page.textContent('#opened')).includes(hidden.name));
+  await page.locator('#game').screenshot({ path: `${shots}/game.png` });
+});
+
+claim('a drive that hides an effect: the seal is opened on the page', async () => {
+  await page.click('#drive summary');
+  if (!(await page.isVisible('#drive-effect'))) await page.click('#drive summary');
+  await page.selectOption('#drive-effect', '?');
+  await page.fill('#seconds', '10');
+  await click(page, '#drive', 'Start the drive');
+  await page.waitForSelector('#history tbody tr:first-child button:text-is("Open the seal")', { timeout: 60000 });
+  assert.doesNotMatch(await newest(page), /Hidden:/);
+  await page.click('#history tbody tr:first-child button:text-is("Open the seal")');
+  await until(page, () => /Hidden: \w+/.test(document.querySelector('#history tbody tr').textContent));
+});
+
+claim('keyboard alone: a log is chosen by arrows and checked', async () => {
+  await page.focus('#logs input:checked');
+  const before = await chosen(page, 'logs');
+  await page.keyboard.press('ArrowDown');
+  await until(page, (old) => document.querySelector('#logs input:checked').value !== old, before);
+  let stops = 0;
+  const on = () => page.evaluate(() => document.activeElement?.textContent);
+  while ((await on()) !== 'Check' && stops < 12) { await page.keyboard.press('Tab'); stops += 1; }
+  assert.equal(await on(), 'Check', `after ${stops} presses of Tab`);
+  const number = (await newest(page)).match(/number (\d+)/)[1];
+  await page.keyboard.press('Enter');
+  await until(page, (n) => document.querySelector('#history tbody tr').textContent.match(/number (\d+)/)[1] !== n, number);
+  await until(page, () => document.querySelector('#running').hidden);
+});
+
+for (const width of [420, 1400, 1920])
+  for (const colorScheme of ['light', 'dark'])
+    claim(`${width} px, ${colorScheme}: axe finds nothing, nothing is cut`, async () => {
+      const { page: p, close } = await open({ viewport: { width, height: 900 }, colorScheme, bypassCSP: true }); // for axe alone
+      await p.waitForSelector('#result[data-run]');
+      await p.$$eval('details', (all) => all.forEach((e) => { e.open = true; }));
+      await p.waitForTimeout(500);
+      await p.addScriptTag({ content: axe });
+      const found = await p.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
+      assert.deepEqual(found.violations.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.target.join(' ')).join('; ')}`), []);
+      assert.ok((await overflow(p)) <= 0, `${await overflow(p)} px too wide`);
+      await p.screenshot({ path: `${shots}/live_${width}_${colorScheme}.png`, fullPage: true });
+      await close();
+    });
+
+claim('nothing went wrong in any page, and none asked anything of anybody else', async () => assert.deepEqual(trouble, []));
+
+claim('Ctrl-C ends it at once, with pages open', async () => {
+  const asked = Date.now();
+  assert.equal(await server.end('SIGINT'), 0);
+  assert.ok(Date.now() - asked < 5000, `${Date.now() - asked} ms`);
+});
+
+let failed = 0;
+for (const [name, check] of claims) {
+  try {
+    await check();
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    failed += 1;
+    console.log(`FAILED  ${name}\n${error.stack}`);
+    await page.screenshot({ path: `${shots}/failed_${failed}.png`, fullPage: true }).catch(() => {});
+  }
+}
+server.child.kill('SIGTERM');
+await browser.close();
+console.log(`${claims.length - failed} of ${claims.length} claims hold`);
+process.exit(failed ? 1 : 0);
