@@ -150,6 +150,7 @@ struct Calls {
         if (d.free < length) return -ENOSPC;
         d.free -= length;
         file.now.append(static_cast<const char *>(bytes), length);
+        if (d.rots && length > 0) file.now.back() = static_cast<char>(file.now.back() ^ 1);
         file.synced = false;
         return 0;
     }

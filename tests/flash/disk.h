@@ -36,6 +36,7 @@ class Disk {
     long fail_at = -1;    // this operation returns `error` and does nothing, the disk goes on
     int error = 0;        // a negative errno
     std::uint64_t free = 1u << 30;
+    bool rots = false; // the last byte of every write comes out wrong
 
   private:
     struct File {

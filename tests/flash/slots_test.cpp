@@ -274,6 +274,19 @@ TEST(slots, a_full_disk_is_told_before_anything_is_written) {
     expect_old_runs(board, "full");
 }
 
+TEST(slots, what_does_not_read_back_is_not_put_on_trial_and_nothing_old_is_left_behind) {
+    Disk disk = board_with(old_version);
+    Board board(disk);
+    disk.rots = true;
+    EXPECT_EQ(board.install(pack({.files = new_version, .number = 4})), SLOTS_BROKEN);
+    EXPECT_NE(std::string(board.message).find("does not read back"), std::string::npos) << board.message;
+    disk.rots = false;
+    expect_old_runs(board, "rots");
+    disk.put(root + "/b/left_behind", std::string(5000, 'x'));
+    ASSERT_EQ(board.install(pack({.files = new_version, .number = 4})), SLOTS_DONE);
+    EXPECT_EQ(disk.files_in(root + "/b").size(), new_version.size() + 2); // manifest and signature
+}
+
 TEST(slots, a_damaged_slot_is_never_started_and_a_lost_state_finds_the_version_that_was_good) {
     for (const char *name : {"tractiond", "start", "empty", "manifest"}) {
         Disk disk = board_with(old_version);
@@ -295,6 +308,16 @@ TEST(slots, a_damaged_slot_is_never_started_and_a_lost_state_finds_the_version_t
         ASSERT_EQ(board.install(pack({.files = new_version, .number = 4})), SLOTS_DONE);
         disk.put(root + "/state", text);
         expect_old_runs(board, text);
+    }
+    Disk disk = board_with(old_version);
+    Board board(disk);
+    const std::string state = disk.files_in(root).at("state");
+    for (std::size_t i = 0; i < state.size(); i++) { // no byte of it is believed that was not written so
+        std::string changed = state;
+        changed[i] = static_cast<char>(changed[i] ^ 1);
+        disk.put(root + "/state", changed);
+        EXPECT_STREQ(board.state().note, "the state was lost; taken from the slots") << i;
+        expect_old_runs(board, changed);
     }
 }
 
@@ -323,6 +346,7 @@ TEST(slots, the_power_may_go_at_every_operation) {
                 const bool is_new = again.runs(new_version);
                 ASSERT_TRUE(is_new || again.runs(old_version)) << cut << ' ' << torn << ' ' << way;
                 (is_new ? new_ones : old_ones)++;
+                ASSERT_STRNE(again.state().note, "the state was lost; taken from the slots") << cut << ' ' << torn << ' ' << way;
                 // and flashed once more, it runs what it was given
                 if (again.on_trial) {
                     ASSERT_EQ(again.confirm(), SLOTS_DONE);
@@ -340,6 +364,34 @@ TEST(slots, the_power_may_go_at_every_operation) {
     EXPECT_GT(old_ones, 1000);
     EXPECT_GT(new_ones, 300);
     std::printf("%ld cuts, %ld starts after them: %ld times the old version, %ld times the new one\n", cuts, starts, old_ones, new_ones);
+}
+
+// What was told as done survives whatever happens to what was not brought to the disk.
+TEST(slots, what_was_reported_done_is_on_the_disk) {
+    std::mt19937 chance(20261126);
+    for (int way = 0; way < 40; way++) {
+        const Kept kept = way == 0 ? Kept::nothing : way == 1 ? Kept::everything : Kept::by_chance;
+        Disk disk = board_with(old_version);
+        Board board(disk);
+        ASSERT_EQ(board.install(pack({.files = new_version, .number = 4})), SLOTS_DONE);
+        Disk installed = disk.after_cut(kept, chance);
+        Board second(installed);
+        ASSERT_EQ(second.start(), SLOTS_DONE);
+        ASSERT_TRUE(second.on_trial && second.runs(new_version)) << way;
+        Disk started = installed.after_cut(kept, chance);
+        Board third(started);
+        ASSERT_EQ(third.state().tries, 1u) << way; // counted before it runs
+        ASSERT_EQ(second.confirm(), SLOTS_DONE);
+        Disk confirmed = installed.after_cut(kept, chance);
+        Board fourth(confirmed);
+        ASSERT_EQ(fourth.start(), SLOTS_DONE);
+        ASSERT_TRUE(!fourth.on_trial && fourth.runs(new_version)) << way;
+        ASSERT_EQ(third.give_up("faults"), SLOTS_DONE);
+        Disk returned = started.after_cut(kept, chance);
+        Board fifth(returned);
+        expect_old_runs(fifth, "returned");
+        ASSERT_STREQ(fifth.state().note, "returned 4: faults");
+    }
 }
 
 // The way back, cut likewise: unhealthy, returned, started.
