@@ -20,6 +20,7 @@ using flash::Kept;
 namespace {
 
 const std::string root = "/board";
+constexpr bool emulated = sizeof(void *) == 4; // the target under qemu-arm, thirty times as slow: the same claims on fewer cases
 
 // A small tree, 32 packages: as good a signature for what is asked here.
 struct Signer {
@@ -232,13 +233,15 @@ TEST(slots, no_byte_of_a_package_can_be_changed_and_none_be_missing) {
     const long before = disk.operations;
     std::mt19937 chance(20261123);
     std::string bad = good;
-    for (std::size_t i = 0; i < bad.size(); i += i < 4608 ? 1 : 7) { // headers, manifest, signature: each byte; contents: each seventh
+    for (std::size_t i = 0; i < bad.size(); i += emulated   ? 61
+                                                 : i < 4608 ? 1
+                                                            : 7) { // headers, manifest, signature: each byte; contents: each seventh
         const char was = bad[i];
         bad[i] = static_cast<char>(was ^ (1 << chance() % 8));
         ASSERT_EQ(board.install(bad, true), SLOTS_REFUSED) << i;
         bad[i] = was;
     }
-    for (std::size_t length = 0; length < good.size(); length += length < 600 ? 1 : 97)
+    for (std::size_t length = 0; length < good.size(); length += emulated ? 331 : length < 600 ? 1 : 97)
         ASSERT_EQ(board.install(good.substr(0, length), true), SLOTS_REFUSED) << length;
     EXPECT_EQ(disk.operations, before);
 }
@@ -328,7 +331,7 @@ TEST(slots, the_power_may_go_at_every_operation) {
     std::mt19937 chance(20261123);
     long cuts = 0, starts = 0, old_ones = 0, new_ones = 0;
     for (long cut = 0; cut >= 0; cut++) {
-        for (const std::size_t torn : {0u, 1u, 100u, 4095u, 4096u}) {
+        for (const std::size_t torn : emulated ? std::vector<std::size_t>{100u} : std::vector<std::size_t>{0u, 1u, 100u, 4095u, 4096u}) {
             Disk disk = before.copy();
             Board board(disk);
             disk.cut_at = cut;
@@ -339,7 +342,7 @@ TEST(slots, the_power_may_go_at_every_operation) {
                 break;
             }
             cuts++;
-            for (int way = 0; way < 12; way++, starts++) {
+            for (int way = 0; way < (emulated ? 3 : 12); way++, starts++) {
                 Disk later = disk.after_cut(way == 0 ? Kept::nothing : way == 1 ? Kept::everything : Kept::by_chance, chance);
                 Board again(later);
                 ASSERT_EQ(again.start(), SLOTS_DONE) << cut << ' ' << torn << ' ' << way << ": " << again.message;
@@ -360,16 +363,16 @@ TEST(slots, the_power_may_go_at_every_operation) {
             }
         }
     }
-    EXPECT_GT(cuts, 150); // 30 operations and more, 5 ways to tear
-    EXPECT_GT(old_ones, 1000);
-    EXPECT_GT(new_ones, 300);
+    EXPECT_GT(cuts, emulated ? 30 : 150); // 30 operations and more, 5 ways to tear
+    EXPECT_GT(old_ones, starts / 3);
+    EXPECT_GT(new_ones, starts / 8);
     std::printf("%ld cuts, %ld starts after them: %ld times the old version, %ld times the new one\n", cuts, starts, old_ones, new_ones);
 }
 
 // What was told as done survives whatever happens to what was not brought to the disk.
 TEST(slots, what_was_reported_done_is_on_the_disk) {
     std::mt19937 chance(20261126);
-    for (int way = 0; way < 40; way++) {
+    for (int way = 0; way < (emulated ? 4 : 40); way++) {
         const Kept kept = way == 0 ? Kept::nothing : way == 1 ? Kept::everything : Kept::by_chance;
         Disk disk = board_with(old_version);
         Board board(disk);
@@ -403,7 +406,7 @@ TEST(slots, the_power_may_go_at_every_operation_of_the_way_back) {
     }
     std::mt19937 chance(20261124);
     for (long cut = 0; cut >= 0; cut++) {
-        for (const std::size_t torn : {0u, 1u, 100u}) {
+        for (const std::size_t torn : emulated ? std::vector<std::size_t>{100u} : std::vector<std::size_t>{0u, 1u, 100u}) {
             Disk disk = before.copy();
             Board board(disk);
             disk.cut_at = cut;
@@ -413,7 +416,7 @@ TEST(slots, the_power_may_go_at_every_operation_of_the_way_back) {
                 cut = -2;
                 break;
             }
-            for (int way = 0; way < 12; way++) {
+            for (int way = 0; way < (emulated ? 3 : 12); way++) {
                 Disk later = disk.after_cut(way == 0 ? Kept::nothing : way == 1 ? Kept::everything : Kept::by_chance, chance);
                 Board again(later);
                 int tries = 0;
@@ -463,7 +466,7 @@ TEST(package, a_manifest_is_read_as_it_is_written_and_as_nothing_else) {
     EXPECT_EQ(package.count, 3u);
     EXPECT_EQ(package.file[0].size, 9001u);
     std::mt19937 chance(20261125);
-    for (int i = 0; i < 20000; i++) { // whatever stands there: refused, or written again as it is
+    for (int i = 0; i < (emulated ? 1000 : 20000); i++) { // whatever stands there: refused, or written again as it is
         std::string text = manifest;
         for (auto n = chance() % 4; n-- > 0;) {
             const std::size_t at = chance() % text.size();
