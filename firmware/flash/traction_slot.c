@@ -182,9 +182,9 @@ static int install(const slots_t *slots, const options_t *options)
     if (bytes == NULL) {
         return EXIT_FILE;
     }
-    (void)board_lock_take(lock, BOARD_STATE, true); // a starter that confirms meanwhile waits, or we do
+    // without BOARD_STATE: a starter writes the state for a trial alone, and then this is refused; its version may be started anew
+    // meanwhile
     const slots_result_t result = slots_install(slots, bytes, length, options->dry_run, message);
-    (void)board_lock_give(lock, BOARD_STATE);
     free(bytes);
     if (result == SLOTS_DONE && !options->dry_run && !options->no_restart) {
         const pid_t starter = board_lock_holder(lock, BOARD_STARTER);

@@ -79,6 +79,11 @@ void pack(const FlashArguments &a, Outcome &outcome) {
     const std::size_t blank = text.find(' '), open = text.find(" (commit "), close = text.find(')');
     contents.version = text.substr(blank + 1, open - blank - 1);
     contents.commit = text.substr(open + 9, close - open - 9);
+    for (const std::string &in : {a.key, contents.program, contents.rover, a.parameters}) {
+        std::error_code none;
+        if (!in.empty() && std::filesystem::equivalent(in, a.pack, none))
+            throw UsageError("--pack " + a.pack + " would replace what goes into it");
+    }
     flash::Signer signer(a.key);
     flash::Summary summary;
     const std::string bytes = flash::pack(contents, signer, summary);

@@ -10,14 +10,13 @@
 #include "sim/scenario/scenario.h"
 
 #include <elf.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cinttypes>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 
@@ -111,10 +110,19 @@ Summary summary_of(const package_t &package, std::size_t bytes) {
 } // namespace
 
 std::string bytes_of(const std::string &path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
-        throw log::FileError(path, 0, 0, std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EISDIR), "give a file");
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    std::string bytes;
+    char part[65536];
+    ssize_t got = file < 0 ? -1 : 1;
+    while (got > 0 && bytes.size() <= PACKAGE_BYTES) {
+        got = ::read(file, part, sizeof part);
+        if (got > 0) bytes.append(part, static_cast<std::size_t>(got));
+    }
+    const int error = errno;
+    if (file >= 0) ::close(file);
+    if (got < 0) throw log::FileError(path, 0, 0, std::string("cannot be read: ") + std::strerror(error), "give a file that is there");
+    if (bytes.size() > PACKAGE_BYTES)
+        throw log::FileError(path, 0, 0, "is larger than any package (24 MB)", "give a package, or a program for a board");
     return bytes;
 }
 

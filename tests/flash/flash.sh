@@ -51,6 +51,12 @@ cp key open_key
 chmod 644 open_key
 run 3 "$traction" flash --pack p.tar --key open_key --program "$tractiond" --rover lhomme_desages
 says 'others may read the key'
+run 2 "$traction" flash --pack key --key key --program "$tractiond" --rover lhomme_desages
+says 'would replace what goes into it'
+run 4 "$traction" flash /dev/zero
+says 'larger than any package'
+run 4 "$traction" flash .
+run 4 "$traction" flash --pack p.tar --key nowhere --program "$tractiond" --rover lhomme_desages
 sed 's/^seed ..../seed 0000/' key >spoilt_key
 sed 's/^next 0/next 1024/' key >empty_key
 chmod 600 spoilt_key empty_key
