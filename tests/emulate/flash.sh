@@ -65,7 +65,7 @@ TRACTIOND_ROVER=/frames
 DEFAULT
 echo 'root:x:0:0:root:/root:/bin/sh' >image/passwd
 echo 'root:x:0:' >image/group
-{
+(
     for folder in dev proc sys run flash bin sbin etc etc/default etc/dropbear root root/.ssh lib lib/arm-linux-gnueabi usr usr/bin usr/sbin usr/lib usr/lib/arm-linux-gnueabi tmp; do
         mode=0755
         case $folder in root | root/.ssh) mode=0700 ;; esac
@@ -81,13 +81,13 @@ echo 'root:x:0:' >image/group
     echo "file /etc/dropbear/host_key $work/host_key 0600 0 0"
     echo "file /root/.ssh/authorized_keys $work/id.pub 0600 0 0"
     echo "file /frames $work/image/frames 0644 0 0"
-    cd "$armel/root"
+    cd "$armel/root" || exit 1
     for file in bin/busybox usr/sbin/dropbear; do echo "file /$file $armel/root/$file 0755 0 0"; done
     find lib usr/lib \( -type f -o -type l \) -name '*.so*' | while read -r file; do
         if [ -L "$file" ]; then echo "slink /$file $(readlink "$file") 0777 0 0"; else echo "file /$file $armel/root/$file 0755 0 0"; fi
     done
     [ -e lib/ld-linux.so.3 ] || echo 'slink /lib/ld-linux.so.3 arm-linux-gnueabi/ld-linux.so.3 0777 0 0'
-} >image/list
+) >image/list
 "$kernel/gen_init_cpio" -t 1704067200 image/list | gzip -9n >initramfs
 
 # --- the board
@@ -101,6 +101,7 @@ power_on() {
     qemu=$!
     waited=0
     until over --status >out 2>err; do
+        grep -q 'Kernel panic' console.txt && fail "the board's kernel gave up"
         kill -0 "$qemu" 2>/dev/null || fail "QEMU ended: $(cat qemu.txt)"
         waited=$((waited + 1))
         [ $waited -lt 300 ] || fail "the board does not come up"
