@@ -4,6 +4,7 @@
 #include "remote.h"
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 namespace traction::flash {

@@ -9,6 +9,8 @@
 #include "host_tools/simulate/simulate.h"
 #include "sim/scenario/scenario.h"
 
+#include <cstdint>
+#include <cstdio>
 #include <elf.h>
 #include <fcntl.h>
 #include <unistd.h>

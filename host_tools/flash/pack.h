@@ -4,6 +4,8 @@
 #include "firmware/flash/package.h"
 #include "signing_key.h"
 
+#include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

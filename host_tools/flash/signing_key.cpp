@@ -3,6 +3,7 @@
 #include "firmware/flash/package.h"
 #include "host_tools/log/write_file.h"
 
+#include <algorithm>
 #include <fcntl.h>
 #include <sys/random.h>
 #include <sys/stat.h>

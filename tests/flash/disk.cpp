@@ -1,5 +1,6 @@
 #include "disk.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 

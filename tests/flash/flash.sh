@@ -31,6 +31,16 @@ pack() { # pack OUT ROVER [OPTION...]
     run 0 "$traction" flash --pack "$out" --key key --program "$tractiond" --rover "$rover" "$@"
 }
 
+until_true() { # until_true WHAT COMMAND...: on a loaded machine too
+    what=$1 tries=0
+    shift
+    until "$@"; do
+        tries=$((tries + 1))
+        [ "$tries" -lt 300 ] || fail "$what"
+        sleep 0.1
+    done
+}
+
 # --- the key and the package
 run 0 "$traction" flash --new-key key
 [ "$(stat -c %a key)" = 600 ] || fail "the key's mode"
@@ -118,7 +128,7 @@ says 'no version yet'
 flash 0 p0.tar # no starter: it waits for one
 says 'installed; no version runs there now'
 start_board() {
-    "$slot" --folder "$work/board" run --trial-seconds 14 >>starter.txt 2>&1 &
+    "$slot" --folder "$work/board" run --trial-seconds 40 >>starter.txt 2>&1 &
     starter=$!
     running="$running $starter"
 }
@@ -128,6 +138,7 @@ says 'the board is busy, and was not changed: another version is on trial'
 run 0 "$slot" --folder board status --wait 30
 says 'confirmed 0'
 daemon() { pgrep -P "$starter" || echo none; }
+daemon_runs() { [ "$(daemon)" != none ]; }
 flash 0 p0.tar
 says 'this very version runs already'
 
@@ -184,7 +195,8 @@ mkfifo hold
 "$slot" --folder board install hold >holder.txt 2>&1 &
 holder=$!
 running="$running $holder"
-sleep 0.5
+held() { "$slot" --folder board install /dev/null 2>&1 | grep -q 'another installer'; }
+until_true 'no installer holds the lock' held
 flash 4 p2.tar
 says 'another installer is at work'
 : >hold
@@ -204,10 +216,10 @@ says 'ended with exit code 3'
 { cat "$source/rovers/lhomme_desages.toml"; echo '# is deaf'; } >deaf_rover.toml
 pack deaf.tar deaf_rover.toml
 flash 1 deaf.tar
-says 'not healthy within 14 s: faults 00000020' # FAULT_RADAR_LOST
+says 'not healthy within 40 s: faults 00000020' # FAULT_RADAR_LOST
 run 0 "$slot" --folder board status
 says 'number 1, version'
-[ "$(daemon)" != none ] || fail "the old version was not started again"
+until_true 'the old version was not started again' daemon_runs
 
 # killed while on trial, start after start, as by a power cut: the third is the last
 pack p3.tar lhomme_desages
@@ -216,18 +228,17 @@ wait "$starter" || true
 flash 0 p3.tar
 for try in 1 2 3; do
     start_board
-    sleep 0.7
-    grep -q "^trial [ab] $try" board/state || fail "start $try is not counted"
+    until_true "start $try is not counted" grep -q "^trial [ab] $try" board/state
+    until_true "nothing was started" daemon_runs
     child=$(daemon)
     kill -KILL "$starter" "$child"
     wait "$starter" 2>/dev/null || true
 done
 start_board
-sleep 0.7
+until_true 'the trial was not given up' grep -q '^note returned' board/state
 run 0 "$slot" --folder board status
-says 'returned'
 says 'never healthy'
-[ "$(daemon)" != none ] || fail "the old version does not run"
+until_true 'the old version does not run' daemon_runs
 
 # the installer killed at many moments of its writing: the version that runs does not mind, and the next flash succeeds
 pack p4.tar lhomme_desages
@@ -268,7 +279,7 @@ dropbearkey -t ed25519 -f host_key >/dev/null 2>&1
 port=$((20000 + $$ % 20000))
 unshare -m sh -c "mount --bind '$work/home' '$home' && exec dropbear -F -E -s -r host_key -P dropbear.pid -p 127.0.0.1:$port" 2>dropbear.txt &
 running="$running $!"
-sleep 0.5
+until_true 'no ssh server' sh -c "ssh-keyscan -p $port 127.0.0.1 2>/dev/null | grep -q ."
 : >known
 over() { # over EXPECTED_CODE ARGUMENT...
     expected=$1

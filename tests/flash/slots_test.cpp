@@ -3,7 +3,9 @@
 
 #include "firmware/flash/slots.h"
 
+#include <cstdio>
 #include <gtest/gtest.h>
+#include <tuple>
 
 #include <algorithm>
 #include <array>
