@@ -85,7 +85,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         state->doppler_m_s = doppler.speed_m_s;
     }
     const ground_speed_input_t input = {
-        .accel_x_m_s2 = sense->accel_x_m_s2,
+        .accel_x_m_s2 = sense->level_m_s2,
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
         .wheel_m_s = rim_hint_m_s(config, sense),
@@ -100,6 +100,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_misfit = doppler.misfit,
         .doppler_relieved = doppler.relieved,
         .elapsed_ticks = sense->elapsed_ticks,
+        .lean_q8 = sense->lean_q8,
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
     trace->radar_speed_m_s = state->doppler_m_s;
@@ -108,37 +109,47 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     trace->speed_std_m_s = speed.std_m_s;
     trace->accel_bias_m_s2 = speed.bias_m_s2;
     trace->standstill = speed.standstill;
+    state->sense.standing = speed.standstill;
     return speed;
 }
 
-// Ground speed of a wheel's centre along its heading: the body's, and what the yaw rate adds at half a track to the side.
-static float wheel_ground_m_s(const control_config_t *config, int wheel, float speed_m_s, float yaw_rate_rad_s)
+typedef struct {
+    float left_m_s, right_m_s;
+} ground_t;
+
+// Ground speed of the wheels' centres along their heading: the body's, and what the yaw rate adds at half a track to the side.
+static ground_t wheels_ground(const control_config_t *config, float speed_m_s, float yaw_rate_rad_s)
 {
-    const bool left = wheel == WHEEL_REAR_LEFT || wheel == WHEEL_FRONT_LEFT;
     const float offset = config->geometry.half_track_m * yaw_rate_rad_s;
-    return left ? speed_m_s - offset : speed_m_s + offset;
+    const ground_t out = {speed_m_s - offset, speed_m_s + offset};
+    return out;
+}
+
+static float of_wheel(const ground_t *ground, int wheel)
+{
+    return wheel == WHEEL_REAR_LEFT || wheel == WHEEL_FRONT_LEFT ? ground->left_m_s : ground->right_m_s;
 }
 
 // A root and a division: of one wheel, in ticks without a transform or a search.
-static void doubt_slip(const control_config_t *config, control_state_t *state, const estimate_t *estimate)
+static void doubt_slip(const control_config_t *config, control_state_t *state, const estimate_t *estimate, const ground_t *ground)
 {
     if (state->heard.busy || state->heard.fresh) {
         return;
     }
     const int32_t i = state->slip_turn & (WHEEL_COUNT - 1);
-    const float ground_m_s = wheel_ground_m_s(config, i, estimate->speed_m_s, estimate->sense->gyro_z_rad_s);
-    state->slip_std[i] = slip_std(&config->slip, estimate->sense->speed_rad_s[i], ground_m_s, estimate->speed_std_m_s);
+    state->slip_std[i] = slip_std(&config->slip, estimate->sense->speed_rad_s[i], of_wheel(ground, i), estimate->speed_std_m_s);
     state->slip_turn = (i + 1) & (WHEEL_COUNT - 1);
 }
 
-static void estimate_wheels(const control_config_t *config, const control_state_t *state, estimate_t *estimate, trace_t *trace)
+static void estimate_wheels(const control_config_t *config, control_state_t *state, estimate_t *estimate, trace_t *trace)
 {
+    const ground_t ground = wheels_ground(config, estimate->speed_m_s, estimate->sense->gyro_z_rad_s);
+    doubt_slip(config, state, estimate, &ground);
     for (int i = 0; i < WHEEL_COUNT; i++) {
         wheel_trace_t *wheel = &trace->wheel[i];
         const sense_output_t *sense = estimate->sense;
         const motor_output_t motor = motor_measure(&config->motor, sense->current_A[i], sense->speed_rad_s[i], sense->accel_rad_s2[i]);
-        estimate->slip[i] =
-            slip_measure(&config->slip, sense->speed_rad_s[i], wheel_ground_m_s(config, i, estimate->speed_m_s, sense->gyro_z_rad_s));
+        estimate->slip[i] = slip_measure(&config->slip, sense->speed_rad_s[i], of_wheel(&ground, i));
         wheel->speed_rad_s = sense->speed_rad_s[i];
         wheel->accel_rad_s2 = sense->accel_rad_s2[i];
         wheel->current_A = sense->current_A[i];
@@ -355,7 +366,6 @@ trace_t control_step(const control_config_t *config, control_state_t *state, con
     const ground_speed_output_t speed = estimate_speed(config, state, &sense, frame, &trace);
     estimate.speed_m_s = speed.speed_m_s;
     estimate.speed_std_m_s = speed.std_m_s;
-    doubt_slip(config, state, &estimate);
     estimate_wheels(config, state, &estimate, &trace);
 
     const safety_output_t safety = judge(config, state, &estimate, frame);

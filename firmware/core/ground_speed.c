@@ -173,6 +173,7 @@ static float reported(ground_speed_state_t *state, bool busy)
 ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
+    state->lean_q8 = input->lean_q8;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->unheard_ticks = fresh ? 0 : state->unheard_ticks + (state->unheard_ticks < 1000 ? 1 : 0);

@@ -32,6 +32,7 @@
 // Else it is a slope that begins, under wheels that roll on: the best track keeps to the wheels' changes of speed for a window's length,
 // its bias free to jump, and the one that believes the accelerometer is followed beside it, as the other sign is, until the radar's values
 // tell.
+// tell. A slope that the gyros have just told of (lean.h) is no reason: then it is slip.
 // (14): reported is v - c X (1 - X^2/(16 var X))^2 within four sigma of X: the accelerometer's white noise since the window's middle is in
 // v, and no radar value has seen it; X holds the same noise and the wheels do not. c = cov/var X: 2 (1 - exp(-tau/0.25 s)) where that noise
 // is all of X (derived here), and less by as much as the mean of X^2 is more. It is no more than 1.14 c sigma wrong where X is slip.
@@ -99,6 +100,8 @@ typedef struct {
     float misfit_share;            // c of (8)
     float misfit_max;              // limit of (8)
     int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
+    float lean_m_s2_per_q8;        // unit of the input's lean
+    int32_t lean_told_q8;          // of (13): a change of the lean that tells of the slope
     float quiet_noise_m2_s2;       // R of that speed, taken as 0
     float still_m_s;               // rim speed below which the wheels are at rest
     int32_t still_needed;          // ticks of rest before the rover can be standing
@@ -168,6 +171,7 @@ typedef struct {
     float wheel_m_s;        // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
+    int32_t lean_q8, lean_mean_q8;           // of the last input, and over a third of a second
     float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second
     float value_beside_m_s, beside_mean_m_s; // the last value less the wheels' mean, and the mean of those before
     float wheel_mean_m_s;                    // over a quarter of a second
@@ -202,7 +206,7 @@ typedef struct {
 } ground_speed_state_t;
 
 typedef struct {
-    float accel_x_m_s2;
+    float accel_x_m_s2;   // less the lean
     float doppler_m_s;    // magnitude
     float doppler_late_s; // age of the window's end; negative for a shorter window
     float wheel_m_s;      // rim speed of the wheels as a hint for the sign
@@ -217,6 +221,7 @@ typedef struct {
     float doppler_misfit;   // share of it that may be wrong for all values alike [1]
     bool doppler_relieved;  // the values before this one told of an interfering line
     uint32_t elapsed_ticks; // since the call before; 0 counts as 1
+    int32_t lean_q8;        // what the accelerometer is less by, lean.h [lean_m_s2_per_q8]: (12) and (13) want the force as it was felt
 } ground_speed_input_t;
 
 typedef struct {

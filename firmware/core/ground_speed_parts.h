@@ -23,6 +23,12 @@ static inline float ground_speed_ln_rough(float x)
     return (float)((int32_t)(fixed_bits(x) & 0x7fffffffu) - 0x3f800000) * (0.693147f / 8388608.0f);
 }
 
+// What a mean of the accelerometer less the lean was when it was felt.
+static inline float ground_speed_felt_force(const ground_speed_config_t *config, const ground_speed_state_t *state, float level_m_s2)
+{
+    return state->lean_q8 == 0 ? level_m_s2 : level_m_s2 + (float)state->lean_q8 * config->lean_m_s2_per_q8;
+}
+
 static inline ground_speed_track_t ground_speed_best_of(const ground_speed_state_t *state)
 {
     const ground_speed_track_t track = {state->speed_m_s, state->bias_m_s2, state->p_vv, state->p_vb, state->p_bb};

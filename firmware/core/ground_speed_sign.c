@@ -47,7 +47,7 @@ float ground_speed_force_odds(const ground_speed_config_t *config, const ground_
 {
     const float measured = state->value_m_s;
     const float wheel_m_s = state->value_wheel_m_s;
-    const float force_m_s2 = state->value_accel_m_s2;
+    const float force_m_s2 = ground_speed_felt_force(config, state, state->value_accel_m_s2);
     const float rim = fabsf(wheel_m_s);
     const float told = ground_speed_square(force_m_s2 * config->force_per_s2_m);
     const float most = fixed_greater(told, config->force_most) ? config->force_most : told;

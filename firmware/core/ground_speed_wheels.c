@@ -19,7 +19,7 @@ static const float beside_share = 0.25f;       // [1] of a value that enters its
 
 static const float felt_sigmas = 4.0f; // of X, beyond which it is no noise
 
-enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100 };
+enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
 
 // f of (13), over the last ticks.
 static float force_now(const ground_speed_config_t *config, const ground_speed_state_t *state)
@@ -126,6 +126,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     state->wheel_mean_m_s += share * (wheel - state->wheel_mean_m_s);
     state->wheel_q20 = now;
     state->wheel_ticks = 0;
+    state->lean_mean_q8 += (state->lean_q8 - state->lean_mean_q8) >> LEAN_MEAN_BITS;
     if (config->method == GROUND_SPEED_PAPER) {
         return;
     }
@@ -141,8 +142,11 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
         const float departs = force - state->bias_m_s2;
         const bool back = state->apart_m_s < 0.0f;
         const bool felt = fixed_greater(back ? -departs : departs, config->slip_force_m_s2); // else it is the wheels that depart: they spin
-        const bool pushed = fixed_greater(back ? force : -force, config->slip_force_m_s2);   // along the slip that X would be
-        if (felt && !pushed && !radar_departs(config, state, 0.0f)) {
+        const float felt_m_s2 = ground_speed_felt_force(config, state, force);
+        const bool pushed = fixed_greater(back ? felt_m_s2 : -felt_m_s2, config->slip_force_m_s2); // along the slip that X would be
+        const int32_t leant_q8 = state->lean_q8 - state->lean_mean_q8;
+        const bool told = leant_q8 > config->lean_told_q8 || leant_q8 < -config->lean_told_q8; // the gyro has seen the slope: it is slip
+        if (felt && !pushed && !told && !radar_departs(config, state, 0.0f)) {
             begin_rolling(config, state);
         }
     }

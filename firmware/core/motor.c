@@ -5,10 +5,17 @@
 // Below this a supply is not a supply but a broken wire. [V], assumed
 static const float supply_min_V = 1.0f;
 
+// most times w*per, within -most..most. Where a wheel drives, that is most itself: a multiplication less.
+static float dry(float most, float w, float per)
+{
+    const float share = w * per;
+    return fixed_greater(share, 1.0f) ? most : fixed_greater(-1.0f, share) ? -most : most * share;
+}
+
 float motor_loss_Nm(const motor_config_t *config, float speed_rad_s)
 {
     const float w = fixed_finite(speed_rad_s);
-    return config->viscous_Nms * w + config->dry_Nm * fixed_clamp(w * config->per_dry_speed_s, -1.0f, 1.0f); // (18)
+    return config->viscous_Nms * w + dry(config->dry_Nm, w, config->per_dry_speed_s); // (18)
 }
 
 motor_output_t motor_measure(const motor_config_t *config, float current_A, float speed_rad_s, float accel_rad_s2)
@@ -25,8 +32,7 @@ float motor_per_supply(float supply_V) { return supply_V > supply_min_V && fixed
 float motor_duty_for_speed(const motor_config_t *config, float speed_rad_s, float per_supply_1_V)
 {
     const float w = fixed_finite(speed_rad_s);
-    const float voltage_V =
-        config->volt_per_speed_Vs * w + config->volt_dry_V * fixed_clamp(w * config->per_dry_speed_s, -1.0f, 1.0f); // (a), (18)
+    const float voltage_V = config->volt_per_speed_Vs * w + dry(config->volt_dry_V, w, config->per_dry_speed_s); // (a), (18)
     return fixed_clamp(fixed_finite(voltage_V * fixed_finite(per_supply_1_V)), -1.0f, 1.0f);
 }
 

@@ -42,6 +42,14 @@ static void build_sense(const float *v, sense_config_t *sense)
     sense->battery_V_per_count = v[ROVER_battery_V_per_count];
     sense->accel_m_s2_per_count = v[ROVER_accel_m_s2_per_count];
     sense->gyro_rad_s_per_count = v[ROVER_gyro_rad_s_per_count];
+    sense->level_m_s2_per_q8 = v[ROVER_accel_m_s2_per_count] / 256.0f;
+    const float gravity_q8 = 256.0f * 9.81f / v[ROVER_accel_m_s2_per_count];
+    const float turn_q52 = v[ROVER_gyro_rad_s_per_count] * tick_s * 1.759218604e13f; // 2^52/256
+    const bool fine = gravity_q8 < 16777216.0f && turn_q52 < 2147483520.0f;          // as it is for any gyro that could tell
+    sense->lean.gravity_q8 = fine ? (int32_t)(gravity_q8 + 0.5f) : 0;
+    sense->lean.turn_q52 = fine ? (int32_t)turn_q52 : 0;
+    sense->lean.sudden_q8 = fine ? (int32_t)(256.0f * 0.05f / v[ROVER_gyro_rad_s_per_count] + 0.5f) : 0; // 3 deg/s, assumed
+    sense->lean.steep_q8 = fine ? (int32_t)(0.05f * gravity_q8 + 0.5f) : 0;                              // 3 deg, assumed
     for (int32_t i = 0; i < WHEEL_COUNT; i++) {
         sense->encoder_sign[i] = v[ROVER_encoder_sign_0 + i] < 0.0f ? -1 : 1;
         sense->current_offset_count[i] = whole(v[ROVER_current_offset_count_0 + i]);
@@ -157,6 +165,8 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
         .quiet_needed = 3,
+        .lean_m_s2_per_q8 = v[ROVER_accel_m_s2_per_count] / 256.0f,
+        .lean_told_q8 = (int32_t)(256.0f * 0.2f / v[ROVER_accel_m_s2_per_count] + 0.5f), // [m/s^2] 0.2: 1 deg, assumed
         .quiet_noise_m2_s2 = 9e-4f * (deaf * deaf), // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
@@ -470,7 +480,8 @@ void control_config_make_paper(control_config_t *config)
     config->ground_speed.doppler_noise_m2_s2 = 4e-4f; // (0.02 m/s)^2: 10 % at 0.2 m/s, (12)
     config->ground_speed.speed_noise_m2_s2 = 5e-7f;
     config->ground_speed.speed_noise_max_m2_s2 = 5e-7f;
-    config->ground_speed.bias_noise_m2_s4 = 0.0f; // (13) has no bias
+    config->sense.lean.gravity_q8 = 0;            // (13) takes the accelerometer as it is
+    config->ground_speed.bias_noise_m2_s4 = 0.0f; // and has no bias
     config->ground_speed.bias_start_m_s2 = 0.0f;
     config->wheel_pid.slew_T_rad_s = 1e6f;
     config->wheel_pid.kd_s2 = 0.005f * config->wheel_pid.kp_s; // the paper names a PID, no gains: 5 ms of derivative time, assumed

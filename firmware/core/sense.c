@@ -140,6 +140,26 @@ static void measure_current(const sense_config_t *config, sense_state_t *state, 
     out->current_A[wheel] = state->current_A[wheel];
 }
 
+static bool railed(int16_t count) { return count == INT16_MAX || count == INT16_MIN; }
+
+static void measure_lean(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, uint32_t elapsed_ticks)
+{
+    const uint32_t rates = FRAME_GYRO | FRAME_GYRO_XY;
+    const uint32_t forces = FRAME_ACCEL | FRAME_ACCEL_YZ;
+    if (config->lean.gravity_q8 == 0 || (frame->present & rates) != rates || railed(frame->gyro_x_count) || railed(frame->gyro_y_count) ||
+        railed(frame->gyro_z_count)) {
+        return;
+    }
+    const lean_input_t input = {
+        .gyro_count = {frame->gyro_x_count, frame->gyro_y_count, frame->gyro_z_count},
+        .accel_count = {frame->accel_x_count - config->accel_offset_count, frame->accel_y_count},
+        .accel = (frame->present & forces) == forces,
+        .standing = state->standing,
+        .elapsed_ticks = elapsed_ticks,
+    };
+    lean_step(&config->lean, &state->lean, &input);
+}
+
 static void measure_body(const sense_config_t *config, sense_state_t *state, const sensor_frame_t *frame, sense_output_t *out)
 {
     if ((frame->present & FRAME_BATTERY) != 0u) {
@@ -150,11 +170,14 @@ static void measure_body(const sense_config_t *config, sense_state_t *state, con
             out->usable |= FRAME_BATTERY;
         }
     }
+    measure_lean(config, state, frame, out->elapsed_ticks);
     if ((frame->present & FRAME_ACCEL) != 0u) {
         if (frame->accel_x_count == INT16_MAX || frame->accel_x_count == INT16_MIN) {
             out->absurd |= FRAME_ACCEL;
         } else {
-            state->accel_x_m_s2 = (float)(frame->accel_x_count - config->accel_offset_count) * config->accel_m_s2_per_count;
+            const int32_t count = frame->accel_x_count - config->accel_offset_count;
+            state->accel_x_m_s2 = (float)count * config->accel_m_s2_per_count;
+            state->level_m_s2 = (float)(count * 256 - state->lean.lean_q8) * config->level_m_s2_per_q8;
             out->usable |= FRAME_ACCEL;
         }
     }
@@ -168,6 +191,8 @@ static void measure_body(const sense_config_t *config, sense_state_t *state, con
     }
     out->battery_V = state->battery_V;
     out->accel_x_m_s2 = state->accel_x_m_s2;
+    out->level_m_s2 = state->level_m_s2;
+    out->lean_q8 = state->lean.lean_q8;
     out->gyro_z_rad_s = state->gyro_z_rad_s;
 }
 

@@ -10,6 +10,7 @@
 #ifndef TRACTION_FIRMWARE_CORE_SENSE_H
 #define TRACTION_FIRMWARE_CORE_SENSE_H
 
+#include "lean.h"
 #include "signals.h"
 
 #ifdef __cplusplus
@@ -26,6 +27,8 @@ typedef struct {
     float battery_V_per_count;
     float accel_m_s2_per_count;
     float gyro_rad_s_per_count;
+    float level_m_s2_per_q8; // of the accelerometer less the lean
+    lean_config_t lean;
     int32_t encoder_sign[WHEEL_COUNT];         // 1, or -1 where the count falls as the wheel drives forward
     int32_t current_offset_count[WHEEL_COUNT]; // 0 A
     int32_t battery_offset_count;              // 0 V
@@ -50,7 +53,10 @@ typedef struct {
     float current_A[WHEEL_COUNT];
     float battery_V;
     float accel_x_m_s2;
+    float level_m_s2;
     float gyro_z_rad_s;
+    lean_state_t lean;
+    bool standing;         // told by the estimator after the tick before
     uint32_t encoder_seen; // bit i: wheel i has had a first count
     uint32_t stepped;      // bit i: and a speed since, so that a jump of it can be told
     uint32_t last_tick;
@@ -64,7 +70,9 @@ typedef struct {
     float current_A[WHEEL_COUNT];
     float battery_V;
     float accel_x_m_s2;
+    float level_m_s2; // the same less what the gyro says of slopes since the start
     float gyro_z_rad_s;
+    int32_t lean_q8;        // that, in units of level_m_s2_per_q8
     uint32_t elapsed_ticks; // since the frame before: 1, and what was missed; at most 1000
     uint32_t jumped;        // bit i: the speed of wheel i changed by more than encoder_jump_max: believe it only for another reason
     uint32_t usable;        // FRAME_* bits that are present and sane

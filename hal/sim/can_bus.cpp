@@ -92,7 +92,8 @@ std::unique_ptr<Bus> make_can_bus(BusConfig config) { return std::make_unique<Ca
 } // namespace traction::hal
 #else
 namespace traction::hal {
-std::unique_ptr<Bus> make_can_bus(BusConfig) {
+std::unique_ptr<Bus> make_can_bus(BusConfig config) {
+    static_cast<void>(std::move(config));
     throw std::runtime_error(
         "bus = \"can\": this build has no CAN, because cantools was not there; ./traction build brings it (python3-venv and "
         "the package index), or leave bus out");

@@ -41,6 +41,7 @@ SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::Active
     const std::vector<sim::ActiveEffect> wheels = sim::wheel_differences(scenario.rover);
     world.plant.effects.insert(world.plant.effects.end(), wheels.begin(), wheels.end());
     world.plant.ground.seed = scenario.ground_seed.value_or(sim::mix64(seed));
+    world.sensors.on_terrain = !scenario.plant.ground.terrain.flat();
     sim::apply_sensor_effects(effects, world.sensors);
     for (const sim::WheelBlockSpan &block : scenario.wheel_blocks) world.wheel_blocks.push_back({block.wheel, block.from_s, block.to_s});
     for (const sim::WheelBlockSpan &open : scenario.open_motors) world.open_motors.push_back({open.wheel, open.from_s, open.to_s});

@@ -180,7 +180,7 @@ void Recorder::add_camera(std::span<const sim::Pose> poses) {
     }
 }
 
-TruthRecorder::TruthRecorder(const std::string &path) : spool_(path) {
+TruthRecorder::TruthRecorder(const std::string &path, bool on_terrain) : spool_(path), on_terrain_(on_terrain) {
     for (const char *name : {"truth.x_m", "truth.y_m", "truth.yaw_rad", "truth.pitch_rad", "truth.speed_m_s", "truth.path_m",
                              "truth.accel_x_m_s2", "truth.battery_voltage_V"})
         spool_.add(name);
@@ -188,6 +188,8 @@ TruthRecorder::TruthRecorder(const std::string &path) : spool_(path) {
         for (const char *name : {"speed_rad_s", "current_A", "duty", "slip", "traction_N", "rolling_N", "lateral_N", "normal_N",
                                  "sinkage_m", "ground_speed_m_s", "temperature_degC"})
             spool_.add("truth.wheel" + std::to_string(i) + '.' + name);
+    if (on_terrain_)
+        for (const char *name : {"truth.z_m", "truth.roll_rad", "truth.joint_rad"}) spool_.add(name);
 }
 
 void TruthRecorder::add(const sim::Truth &truth) {
@@ -209,6 +211,8 @@ void TruthRecorder::add(const sim::Truth &truth) {
         for (const double value : {wheel.speed_rad_s, wheel.current_A, wheel.duty, wheel.slip, wheel.traction_N, wheel.rolling_N,
                                    wheel.lateral_N, wheel.normal_N, wheel.sinkage_m, wheel.ground_speed_m_s, wheel.winding_temperature_C})
             put(value);
+    if (on_terrain_)
+        for (const double value : {truth.position_m[2], truth.roll_rad, truth.joint_rad}) put(value);
 }
 
 } // namespace traction

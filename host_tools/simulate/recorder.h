@@ -58,13 +58,15 @@ class Recorder {
 // The truth of one run, in columns of its own, one row per tick. Only ever written to a separate file.
 class TruthRecorder {
   public:
-    explicit TruthRecorder(const std::string &path = ""); // as Recorder's
+    explicit TruthRecorder(const std::string &path = "",
+                           bool on_terrain = false); // path as Recorder's; on terrain height, roll and joint too
     void add(const sim::Truth &truth);
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 
   private:
     log::Spool spool_;
+    bool on_terrain_;
 };
 
 } // namespace traction

@@ -82,7 +82,8 @@ class Session : public Link {
     Session(const sim::Scenario &scenario, const SimulateOptions &options, const hal::SimHal &world, std::uint64_t seed,
             std::uint64_t expected_ticks)
         : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
-          recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path), truth_(options.truth_path) {
+          recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path),
+          truth_(options.truth_path, !scenario.plant.ground.terrain.flat()) {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
     }

@@ -1,10 +1,11 @@
-// ground.h - which soil lies where, how it slopes, how its grip varies; and the aggregated traction laws.
+// ground.h - which soil lies where, its shape, how it slopes, how its grip varies; and the aggregated traction laws.
 //
 //   Janosi, aggregated:  Ft(s)/Fm = 1 - sc/s * (1 - exp(-s/sc))     (20) Lhomme-Desages, odd in s
 //   Burckhardt:          Ft(s)/Fm = 1 - exp(-s/sc)                  (21) Lhomme-Desages, odd in s
 #pragma once
 
 #include "soil.h"
+#include "terrain.h"
 
 #include <cstdint>
 #include <vector>
@@ -40,9 +41,10 @@ struct Ground {
     double slope_direction_rad = 0;              // ... towards this world heading
     std::vector<SlopeStep> slope_steps;          // along the path: the rise from each place on, instead of slope_rad
     double slope_blend_m = 0.1;                  // over which one rise goes over into the next
+    Terrain terrain;                             // what stands up from the plane that slopes; flat: nothing
     double grip_noise = 0;                       // relative rms of the grip over the ground [1]; 0.06 on soil, 0.02 on concrete (assumed)
     double grip_length_m = 0.2;                  // its correlation length: lattice step of the noise
-    std::uint64_t seed = 1;                      // of the grip noise
+    std::uint64_t seed = 1;                      // of the grip noise, and with it of the terrain's roughness
 
     double gradient_1_m = 0; // grip times (1 + gradient * distance along its direction)
     double gradient_direction_rad = 0;

@@ -3,6 +3,7 @@
 #include "sim/physics/math.h"
 #include "sim/physics/terramechanics.h"
 
+#include <array>
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -53,7 +54,9 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.ef
         prepare(config.ground.soil);
         for (const SoilPatch &patch : config.ground.patches) prepare(patch.soil);
     }
+    if (!config.ground.terrain.flat()) relief.emplace(config.ground.terrain, config.ground.seed);
     build_bodies();
+    if (relief) place_on_terrain();
     for (int i = 0; i < wheel_count; ++i) {
         const auto n = static_cast<std::size_t>(i);
         const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[n].radius_change);
@@ -100,10 +103,56 @@ void Plant::World::build_bodies() {
                     law::mass_offset_m(is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m, effects.body.offset_x_m),
                     law::mass_offset_m(side * r.half_track_m - aside, effects.body.offset_y_m), -height};
     }
-    const dJointID joint = dJointCreateHinge(world, nullptr);
+    joint = dJointCreateHinge(world, nullptr);
     dJointAttach(joint, half[0], half[1]);
     dJointSetHingeAnchor(joint, config.x_m, config.y_m, height - sunk);
     dJointSetHingeAxis(joint, -sin_yaw, cos_yaw, 0);
+}
+
+// Each wheel's lowest point at the height that carries it there: the halves pitch, both roll. The joint's anchor follows them.
+void Plant::World::place_on_terrain() {
+    const RoverParameters &r = config.rover;
+    const double c = math::cos(config.yaw_rad), s = math::sin(config.yaw_rad);
+    std::array<double, wheel_count> height{};
+    for (int i = 0; i < wheel_count; ++i) {
+        const double forward = is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m,
+                     aside = is_left(i) ? r.half_track_m : -r.half_track_m;
+        height[static_cast<std::size_t>(i)] =
+            relief
+                ->rest(config.x_m + c * forward - s * aside, config.y_m + s * forward + c * aside, c, s, r.wheel_radius_m, r.wheel_width_m)
+                .height_m;
+    }
+    const double left = 0.5 * (height[0] + height[2]), right = 0.5 * (height[1] + height[3]), middle = 0.5 * (left + right);
+    const double roll = math::atan2(left - right, 2 * r.half_track_m); // right side down
+    dJointAttach(joint, nullptr, nullptr);
+    Vec3 across{};
+    for (int h = 0; h < 2; ++h) {
+        const auto n = static_cast<std::size_t>(h);
+        const double pitch = math::atan2(height[n] - height[n + 2], 2 * r.half_wheelbase_m); // nose down
+        const double cp = math::cos(pitch), sp = math::sin(pitch), cr = math::cos(roll), sr = math::sin(roll);
+        const dMatrix3 turn = {c * cp - s * sr * sp,
+                               -s * cr,
+                               c * sp + s * sr * cp,
+                               0,
+                               s * cp + c * sr * sp,
+                               c * cr,
+                               s * sp - c * sr * cp,
+                               0,
+                               -cr * sp,
+                               sr,
+                               cr * cp,
+                               0}; // yaw, roll, pitch
+        across = {-s * cr, c * cr, sr};
+        const dReal *was = dBodyGetPosition(half[n]);
+        const double aside = (h == 0 ? 1 : -1) * half_offset_share * r.width_m;
+        const double x = config.x_m + across[0] * aside, y = config.y_m + across[1] * aside, z = was[2] + middle + across[2] * aside;
+        dBodySetPosition(half[n], x, y, z);
+        dBodySetRotation(half[n], turn);
+    }
+    const dReal *a = dBodyGetPosition(half[0]), *b = dBodyGetPosition(half[1]);
+    dJointAttach(joint, half[0], half[1]);
+    dJointSetHingeAnchor(joint, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]));
+    dJointSetHingeAxis(joint, across[0], across[1], across[2]);
 }
 
 Vec3 Plant::World::axis(int column) const {
@@ -123,9 +172,12 @@ Vec3 Plant::World::mean_velocity() const {
 }
 
 void Plant::World::contact_velocity(int i, Vec3 &out) const {
-    const Vec3 &at = contact_at[static_cast<std::size_t>(i)];
+    const Vec3 &at = contact_at[static_cast<std::size_t>(i)], &point = applied[static_cast<std::size_t>(i)].stand.point;
     dVector3 velocity;
-    dBodyGetRelPointVel(half_of(i), at[0], at[1], at[2], velocity);
+    if (relief)
+        dBodyGetPointVel(half_of(i), point[0], point[1], point[2], velocity);
+    else
+        dBodyGetRelPointVel(half_of(i), at[0], at[1], at[2], velocity);
     out = {velocity[0], velocity[1], velocity[2]};
 }
 
@@ -197,10 +249,10 @@ void Plant::World::step() {
         Applied &a = applied[static_cast<std::size_t>(i)];
         Vec3 after{};
         contact_velocity(i, after);
-        for (std::size_t k = 0; k < 3; ++k) after[k] = 0.5 * (after[k] + a.velocity[k]);
-        const double along = dot(after, a.heading);
+        for (std::size_t k = 0; k < 3; ++k) after[k] = 0.5 * (after[k] + a.stand.velocity[k]);
+        const double along = dot(after, a.stand.ahead);
         const double to_body = dot(a.force, after);
-        const double vertical = a.force[2] * after[2];
+        const double vertical = a.load_N * dot(a.stand.up, after);
         const double rolling = a.resist_N * along, edge = a.edge_N * along;
         energy.rolling += rolling * dt;
         energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling - edge)) * dt;
@@ -220,10 +272,18 @@ void Plant::World::observe(const Vec3 &velocity_before) {
     truth.position_m = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
     const dReal *q = dBodyGetQuaternion(half[0]);
     truth.orientation = {q[0], q[1], q[2], q[3]};
+    const dReal *rate = dBodyGetAngularVel(half[0]);
+    Vec3 rate_world{rate[0], rate[1], rate[2]};
+    if (relief) { // the halves move apart: the body's way is their mean
+        const dReal *other = dBodyGetQuaternion(half[1]), *other_rate = dBodyGetAngularVel(half[1]);
+        double size = 0;
+        for (std::size_t k = 0; k < 4; ++k) truth.orientation[k] += other[k], size += truth.orientation[k] * truth.orientation[k];
+        for (double &part : truth.orientation) part /= std::sqrt(size);
+        for (std::size_t k = 0; k < 3; ++k) rate_world[k] = 0.5 * (rate_world[k] + other_rate[k]);
+        truth.joint_rad = math::asin(dBodyGetRotation(half[0])[8]) - math::asin(dBodyGetRotation(half[1])[8]);
+    }
     const Vec3 ex = axis(0), ey = axis(1), ez = axis(2), v = mean_velocity();
     truth.v_body_m_s = {dot(v, ex), dot(v, ey), dot(v, ez)};
-    const dReal *rate = dBodyGetAngularVel(half[0]);
-    const Vec3 rate_world{rate[0], rate[1], rate[2]};
     truth.rate_body_rad_s = {dot(rate_world, ex), dot(rate_world, ey), dot(rate_world, ez)};
     Vec3 felt{};
     if (steps > 0)
@@ -235,6 +295,7 @@ void Plant::World::observe(const Vec3 &velocity_before) {
     truth.yaw_rad += math::atan2(cross, along);
     heading_before = ex;
     truth.pitch_rad = -math::asin(ex[2]);
+    truth.roll_rad = math::asin(ey[2]);
     truth.path_m += truth.v_body_m_s[0] * (steps > 0 ? dt : 0);
     if (std::fabs(truth.v_body_m_s[0]) > 1e-3) direction = truth.v_body_m_s[0] > 0 ? 1 : -1;
     for (std::size_t i = 0; i < wheel_count; ++i) {

@@ -36,6 +36,8 @@ struct Truth {
     std::array<double, 3> specific_force_m_s2{};   // body frame: acceleration minus gravity, what an ideal accelerometer feels
     double yaw_rad = 0;                            // continuous, not wrapped
     double pitch_rad = 0;                          // nose down positive (rotation about +y)
+    double roll_rad = 0;                           // right side down positive (rotation about +x)
+    double joint_rad = 0;                          // right half against the left one, nose down positive
     double rise_rate_rad_s = 0;                    // how fast the ground's own rise changes under the rover: nose up positive
     double path_m = 0;                             // arc length travelled by the body, signed along x
     double battery_voltage_V = 0;                  // at the terminals, under load

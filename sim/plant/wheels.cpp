@@ -100,7 +100,7 @@ void mix(Given &a, const Given &b, double share) {
 
 // The soils before and behind the axle, and how much of the wheel's footprint the one in front has: at a patch's edge a wheel stands on
 // both.
-Plant::World::Footing Plant::World::footing(const double *point, const Vec3 &heading, double half_m) const {
+Plant::World::Footing Plant::World::footing(const Vec3 &point, const Vec3 &heading, double half_m) const {
     const auto soil_at = [&](double ahead_m) {
         return &config.ground.at(point[0] + ahead_m * heading[0], point[1] + ahead_m * heading[1]);
     };
@@ -124,13 +124,12 @@ template <class Normal> double work_to_sink_J(double sinkage_m, const Normal &no
     return sum * sinkage_m;
 }
 
-Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Footing &foot, double factor, const double *point,
-                                              double sink_m_s) {
+Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Footing &foot, double factor, const Stand &at) {
     const auto n = static_cast<std::size_t>(i);
     const RoverParameters &r = config.rover;
     Meeting out;
-    out.sinkage_m = std::max(0.0, -point[2]);
-    const double rut = trace[n].follow(ruts, point[0], point[1], out.sinkage_m);
+    out.sinkage_m = std::max(0.0, at.depth_m / at.steep);
+    const double rut = trace[n].follow(ruts, at.point[0], at.point[1], out.sinkage_m);
     const SlipChange change = slip_step(in, contact[n], config.dt_s);
     const double total = total_slip(contact[n]);
     const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, law::shear_stiffness(1, effects.body.shear_change)};
@@ -151,7 +150,8 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Foot
         out.edge_N = (work_J(*foot.behind) - work_J(*foot.front)) / foot.length_m;
     }
     const double belly = std::max(0.0, out.sinkage_m - 0.9 * r.wheel_radius_m) * r.contact_stiffness_N_m; // the body sits down
-    out.load_N = std::max(0.0, given.soil.normal_N + belly - (given.soil.normal_N > 0 ? r.contact_damping_Ns_m * sink_m_s : 0));
+    out.load_N =
+        std::max(0.0, given.soil.normal_N + belly - (given.soil.normal_N > 0 ? r.contact_damping_Ns_m * -(at.sink_m_s / at.steep) : 0));
     if (out.load_N <= 0) return out;
     in.grip_N = given.soil.largest_N;
     in.shear_slip = given.soil.shear_slip;
@@ -166,31 +166,70 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Foot
     return out;
 }
 
+// The body's lowest point under the axle, on the plane z = 0.
+Plant::World::Stand Plant::World::stand_on_plane(int i) const {
+    const Vec3 &bottom = contact_at[static_cast<std::size_t>(i)];
+    const dBodyID body = half_of(i);
+    Stand at;
+    dVector3 point;
+    dBodyGetRelPointPos(body, bottom[0], bottom[1], bottom[2], point);
+    at.point = {point[0], point[1], point[2]};
+    contact_velocity(i, at.velocity);
+    const dReal *rotation = dBodyGetRotation(body);
+    const double flat = std::sqrt(rotation[0] * rotation[0] + rotation[4] * rotation[4]);
+    at.heading = at.ahead = {rotation[0] / flat, rotation[4] / flat, 0};
+    at.left = {-at.heading[1], at.heading[0], 0};
+    at.up = {0, 0, 1};
+    at.depth_m = -point[2];
+    at.sink_m_s = -at.velocity[2];
+    return at;
+}
+
+// On terrain the wheel is a disc: it touches where (4) of terrain.h says. The force along `up` is steep times that of the depth, so that
+// an elastic ground has the potential k depth^2/2 and gives no energy, however steep.
+Plant::World::Stand Plant::World::stand(int i) {
+    Stand at = stand_on_plane(i);
+    if (!relief) return at;
+    const RoverParameters &r = config.rover;
+    const Vec3 &bottom = contact_at[static_cast<std::size_t>(i)];
+    const dBodyID body = half_of(i);
+    const Vec3 &h = at.heading, l = at.left;
+    dVector3 axle, velocity;
+    dBodyGetRelPointPos(body, bottom[0], bottom[1], bottom[2] + r.wheel_radius_m, axle);
+    const Rest rest = relief->rest(axle[0], axle[1], h[0], h[1], r.wheel_radius_m, r.wheel_width_m);
+    at.steep = std::sqrt(1 + rest.rise_ahead * rest.rise_ahead + rest.rise_left * rest.rise_left);
+    const double run = std::sqrt(1 + rest.rise_ahead * rest.rise_ahead);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double z = k == 2 ? 1 : 0;
+        at.up[k] = (z - rest.rise_ahead * h[k] - rest.rise_left * l[k]) / at.steep;
+        at.ahead[k] = (h[k] + z * rest.rise_ahead) / run;
+    }
+    at.left = {at.up[1] * at.ahead[2] - at.up[2] * at.ahead[1], at.up[2] * at.ahead[0] - at.up[0] * at.ahead[2],
+               at.up[0] * at.ahead[1] - at.up[1] * at.ahead[0]};
+    for (std::size_t k = 0; k < 3; ++k) at.point[k] = axle[k] - r.wheel_radius_m * at.up[k];
+    dBodyGetPointVel(body, at.point[0], at.point[1], at.point[2], velocity);
+    at.velocity = {velocity[0], velocity[1], velocity[2]};
+    at.depth_m = rest.height_m - (axle[2] - r.wheel_radius_m);
+    at.sink_m_s = -at.steep * dot(at.velocity, at.up);
+    return at;
+}
+
 void Plant::World::step_wheel(int i, double supply_V) {
     const auto n = static_cast<std::size_t>(i);
     const RoverParameters &r = config.rover;
     const WheelEffects &mine = effects.wheel[n];
     const BodyEffects &b = effects.body;
     Applied &out = applied[n];
-    const Vec3 &at = contact_at[n];
-    const dBodyID body = half_of(i);
-
-    dVector3 point;
-    dBodyGetRelPointPos(body, at[0], at[1], at[2], point);
-    contact_velocity(i, out.velocity);
-    const dReal *rotation = dBodyGetRotation(body);
-    const double flat = std::sqrt(rotation[0] * rotation[0] + rotation[4] * rotation[4]);
-    out.heading = {rotation[0] / flat, rotation[4] / flat, 0};
-    const Vec3 left{-out.heading[1], out.heading[0], 0};
-    const double along = dot(out.velocity, out.heading), across = dot(out.velocity, left);
+    const Stand at = out.stand = stand(i);
+    const double along = dot(at.velocity, at.ahead), across = dot(at.velocity, at.left);
 
     const double radius = law::wheel_radius_m(r.wheel_radius_m, mine.radius_change);
     const double rim = radius * drive[n].wheel_speed_rad_s;
     const bool soft = config.ground.contact != ContactLaw::aggregated;
-    const Footing foot = footing(point, out.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
+    const Footing foot = footing(at.point, at.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
     const Soil &soil = *foot.front;
-    const double factor = strength_slipping(grip_factor(i, point[0], point[1], rim - along), b, std::clamp(contact[n].slip, -1.0, 1.0),
-                                            law::shear_stiffness(soil.shear_slip, b.shear_change));
+    const double factor = strength_slipping(grip_factor(i, at.point[0], at.point[1], rim - along), b,
+                                            std::clamp(contact[n].slip, -1.0, 1.0), law::shear_stiffness(soil.shear_slip, b.shear_change));
     const ContactInput input{.law = soil.law,
                              .shear_slip = soil.shear_slip,
                              .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, b.relaxation_m),
@@ -200,9 +239,9 @@ void Plant::World::step_wheel(int i, double supply_V) {
                              .load_kg = r.mass_kg / 4};
     const Meeting met =
         soft && (foot.front->bekker || foot.behind->bekker)
-            ? meet_soft(i, input, foot, factor, point, out.velocity[2])
+            ? meet_soft(i, input, foot, factor, at)
             : meet_aggregated(i, input, soil, factor,
-                              std::max(0.0, -r.contact_stiffness_N_m * point[2] - r.contact_damping_Ns_m * out.velocity[2]));
+                              at.steep * std::max(0.0, r.contact_stiffness_N_m * at.depth_m + r.contact_damping_Ns_m * at.sink_m_s));
     const double load = met.load_N;
     const double slip_size = std::min(1.0, std::fabs(contact[n].slip));
     double rolling = met.rolling_N;
@@ -213,11 +252,16 @@ void Plant::World::step_wheel(int i, double supply_V) {
     const double turned = rolling_step(contact[n], along, rolling - met.free_N, r.mass_kg / 4, config.dt_s);
     const double pull = met.force.along_N + met.free_N * turned;
     const double ahead = pull - rolling * turned + met.edge_N;
-    for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * out.heading[k] + sideways * left[k];
-    out.force[2] = load;
+    for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * at.ahead[k] + sideways * at.left[k] + load * at.up[k];
+    out.load_N = load;
     out.resist_N = rolling * turned;
     out.edge_N = met.edge_N;
-    dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], at[0], at[1], at[2]);
+    const dBodyID body = half_of(i);
+    const Vec3 &bottom = contact_at[n];
+    if (relief)
+        dBodyAddForceAtPos(body, out.force[0], out.force[1], out.force[2], at.point[0], at.point[1], at.point[2]);
+    else
+        dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], bottom[0], bottom[1], bottom[2]);
 
     DriveState &d = drive[n];
     const double speed_before = d.wheel_speed_rad_s;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace traction::sim {
@@ -37,6 +38,16 @@ struct Plant::World {
     void build_bodies();
     void step();
     void step_wheel(int i, double supply_V);
+    struct Stand {                        // where a wheel meets the ground: the plane it touches and how far it is pressed in
+        Vec3 point{}, velocity{};         // contact point of the body, world
+        Vec3 heading{};                   // of the wheel, horizontal
+        Vec3 ahead{}, left{}, up{};       // of the plane
+        double depth_m = 0, sink_m_s = 0; // vertical; sink: how fast it grows
+        double steep = 1;                 // depth_m over that along `up`
+    };
+    Stand stand(int i);
+    Stand stand_on_plane(int i) const;
+    void place_on_terrain();
     double place_on_path(int i) const;
     double current_of_others(int i);
     double grip_factor(int i, double x_m, double y_m, double sliding_m_s) const; // of Fm: place, track, sliding
@@ -52,15 +63,15 @@ struct Plant::World {
         double share_front = 1;
         double length_m = 0;
     };
-    Footing footing(const double *point, const Vec3 &heading, double half_m) const;
+    Footing footing(const Vec3 &point, const Vec3 &heading, double half_m) const;
     Meeting meet_aggregated(int i, ContactInput in, const Soil &soil, double factor, double load_N);
-    Meeting meet_soft(int i, ContactInput in, const Footing &foot, double factor, const double *point, double sink_m_s);
+    Meeting meet_soft(int i, ContactInput in, const Footing &foot, double factor, const Stand &at);
     const SoilConstants &constants_of(const Soil &soil) const;
     void push_body();
     void observe(const Vec3 &velocity_before);
     Vec3 mean_velocity() const;
-    Vec3 axis(int column) const; // mean of the halves, unit, world
-    void contact_velocity(int i, Vec3 &out) const;
+    Vec3 axis(int column) const;                   // mean of the halves, unit, world
+    void contact_velocity(int i, Vec3 &out) const; // of the contact point, as far as the last step knew it
     double kinetic() const;
     double potential() const;
     bool trails(int wheel) const { return is_front(wheel) != (direction > 0); }
@@ -69,7 +80,9 @@ struct Plant::World {
     PlantConfig config;
     RoverEffects effects;
     Vec3 gravity{};
+    std::optional<Relief> relief; // none: a plane
     dWorldID world = nullptr;
+    dJointID joint = nullptr;
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
     std::array<dBodyID, 2> half{};
     std::array<Vec3, wheel_count> contact_at{}; // contact point in its half's frame
@@ -83,9 +96,9 @@ struct Plant::World {
     RutMemory ruts;
     std::array<RutTrace, wheel_count> trace;
     struct Applied {
-        Vec3 force{}, velocity{};                                            // at the contact point, world
-        double resist_N = 0, edge_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
-        Vec3 heading{};
+        Vec3 force{};                                                                    // at the contact point, world
+        double load_N = 0, resist_N = 0, edge_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
+        Stand stand;
     };
     std::array<Applied, wheel_count> applied{};
     Vec3 push{}, push_velocity{}; // drag and tether, whole rover

@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 
 namespace traction::sim {
@@ -39,6 +42,46 @@ SoilPatch read_patch(const toml::table &table, const std::string &file, const st
     return patch;
 }
 
+// [ground.terrain]: what is not flat.
+void read_terrain(const toml::table &table, const std::string &file, Terrain &terrain) {
+    Keys keys(table, file, "ground.terrain");
+    if (const toml::array *list = keys.array("profile"))
+        for (const toml::node &node : *list) {
+            const toml::array *pair = node.as_array();
+            if (pair == nullptr || pair->size() != 2)
+                keys.fail_at(node, "profile", "is not a list of pairs",
+                             "write [[distance_m, height_m], ...], as [[1.0, 0.0], [1.0, 0.02]] for a step");
+            const ProfilePoint point{keys.number_of((*pair)[0], "profile", {-1000, 1000}),
+                                     keys.number_of((*pair)[1], "profile", {-100, 100})};
+            if (!terrain.profile.empty() && point.distance_m < terrain.profile.back().distance_m)
+                keys.fail_at(node, "profile", "it lies before the point above", "order the points by their distance");
+            terrain.profile.push_back(point);
+        }
+    terrain.profile_direction_rad = keys.number("profile_direction_rad", 0, {-10, 10});
+    if (keys.has("roughness")) {
+        const std::string name = keys.text("roughness", "");
+        terrain.roughness_m3 = name.size() == 1 ? iso_8608_m3(name[0]) : 0;
+        if (terrain.roughness_m3 == 0) keys.fail("roughness", "not a class of ISO 8608", "use one of: A, B, C, D, E, F, G, H");
+        terrain.roughness_m3 *= keys.number("roughness_scale", 1, {0.001, 10});
+        terrain.longest_m = keys.number("longest_m", terrain.longest_m, {0.1, 100});
+        terrain.shortest_m = keys.number("shortest_m", terrain.shortest_m, {0.01, 0.5 * terrain.longest_m});
+    }
+    if (keys.has("map")) {
+        const std::filesystem::path map = std::filesystem::path(file).parent_path() / keys.text("map", "");
+        const double cell_m = keys.number("map_cell_m", 0.02, {0.001, 10});
+        const double height = keys.number("map_height", 1, {-1000, 1000});
+        const double x_m = keys.number("map_x_m", 0, {-1000, 1000}), y_m = keys.number("map_y_m", 0, {-1000, 1000});
+        try {
+            HeightMap read = read_height_map(map.string(), cell_m, height);
+            read.x_m = x_m, read.y_m = y_m;
+            terrain.map = std::make_shared<const HeightMap>(std::move(read));
+        } catch (const std::runtime_error &error) {
+            keys.fail("map", error.what(), "the file's place is counted from the scenario's folder");
+        }
+    }
+    keys.finish();
+}
+
 } // namespace
 
 void read_ground(const toml::table &table, const std::string &file, Scenario &scenario) {
@@ -67,6 +110,7 @@ void read_ground(const toml::table &table, const std::string &file, Scenario &sc
     ground.slope_blend_m = keys.number("slope_blend_m", ground.slope_blend_m, {0.001, 10});
     ground.grip_noise = keys.number("grip_noise", ground.soil.law == TractionLaw::janosi ? 0.06 : 0.02, {0, 0.5});
     ground.grip_length_m = keys.number("grip_length_m", ground.grip_length_m, {0.02, 10});
+    if (const toml::table *terrain = keys.table("terrain")) read_terrain(*terrain, file, ground.terrain);
     if (keys.has("seed")) scenario.ground_seed = static_cast<std::uint64_t>(keys.integer("seed", 1, 0, INT64_MAX));
     if (const toml::array *list = keys.tables("patch"))
         for (std::size_t i = 0; i < list->size(); i++)

@@ -85,7 +85,11 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
     // nose down by p: cos(theta_d + p)/cos(theta_d) = cos p - tan(theta_d) sin p; up a rise the ground itself pitches the nose up
     const BodyEffects &b = config_.effects.body;
     double stretch = law::radar_scale(1, b.radar_scale) * law::radar_pitch(b.radar_pitch_s2_m, accel_m_s2);
-    if (config_.radar_mount_pitch != 0) {
+    double lifted_m = 0;
+    if (config_
+            .on_terrain) { // along the line of sight (cos theta_d, 0, -sin theta_d) over cos theta_d; a level drive gives the same as below
+        lifted_m = config_.radar_mount_pitch * 0.5 * (truth.v_body_m_s[2] + last_.v_body_m_s[2]) * (truth.t_s - last_.t_s);
+    } else if (config_.radar_mount_pitch != 0) {
         double ground_rad = 0;
         if (config_.ground_slope_rad != 0) ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
         const double pitch = config_.radar_mount_pitch * (truth.pitch_rad - ground_rad);
@@ -93,7 +97,7 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
     }
     stretch *= 1 - tan_depression_ * shake.pitch_rad;
     // a hop lengthens the beam by sin(theta_d) of it, which looks like a path of tan(theta_d) of it, backwards
-    const double hop_m = -tan_depression_ * (shake.heave_m - heave_m_);
+    const double hop_m = -tan_depression_ * (shake.heave_m - heave_m_ + lifted_m);
     heave_m_ = shake.heave_m;
     double step_m = (truth.path_m - last_.path_m) * stretch + hop_m;
     const double step_s = truth.t_s - last_.t_s;

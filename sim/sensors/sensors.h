@@ -37,6 +37,7 @@ struct SensorConfig {
     double radar_mount_pitch = 1; // how much of the body's pitch turns the beam (1: rigid mount)
     double ground_slope_rad = 0;  // pitch is counted from the ground: rise along ground_direction_rad
     double ground_direction_rad = 0;
+    bool on_terrain = false; // the body moves up and down in its own frame: the beam feels it (radar_mount_pitch of it)
 };
 
 // The sensors as built, with the stated noise of each.

@@ -38,6 +38,9 @@ static sensor_frame_t frame_at(uint32_t tick) {
         frame.current_count[i] = (uint16_t)(2148 + draw(30));
     }
     frame.accel_x_count = (int16_t)(draw(100) - 40);
+    frame.accel_y_count = (int16_t)(300 + draw(100)); // on a side slope: the gyros' turn of gravity is looked at whole
+    frame.gyro_x_count = (int16_t)(draw(40) - 20);
+    frame.gyro_y_count = (int16_t)(draw(40) - 20);
     frame.gyro_z_count = (int16_t)(draw(40) - 20);
     for (int n = 0; n < 6; n++) {
         static int phase;

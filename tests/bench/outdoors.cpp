@@ -93,6 +93,14 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
     control_reset(&config, &state);
     Rover rover;
     Run run;
+    Random gyro_noise{seed * 313 + 7};
+    const double gyro_offset[] = {0.02 * gyro_noise.normal(), 0.02 * gyro_noise.normal(), 0.02 * gyro_noise.normal()}; // 1 deg/s, assumed
+    const auto slope_at = [&now](double at_s) { // the body's: the mean over the time in which its wheels come onto it
+        if (!now.gyros) return now.slope(at_s);
+        double sum = 0;
+        for (int j = 0; j < 10; ++j) sum += 0.1 * now.slope(at_s - 0.01 * j);
+        return sum;
+    };
     double path = 0.4 * static_cast<double>(seed), angle = 0, duty = 0, t = 0, last_speed = now.closed ? 0 : now.speed(0);
     std::uint32_t sequence = 0;
     std::vector<std::uint16_t> waiting;
@@ -108,7 +116,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
             const double dt = tick_s / substeps;
             t += dt;
             if (now.closed) {
-                rover.step(now, duty, now.slope(t), dt);
+                rover.step(now, duty, slope_at(t), dt);
                 speed = rover.speed, wheel = radius_m * rover.wheel_rad_s;
             } else {
                 speed = now.speed(t), wheel = now.wheel ? now.wheel(t) : 1.1 * speed;
@@ -131,7 +139,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
             }
         }
         heave_accel = -now.heave_m * std::pow(2 * pi * now.heave_Hz, 2) * std::sin(2 * pi * now.heave_Hz * t);
-        const double accel = (speed - before) / tick_s + gravity * std::sin(now.slope(t)) + now.accel_bias +
+        const double accel = (speed - before) / tick_s + gravity * std::sin(slope_at(t)) + now.accel_bias +
                              now.accel_noise * accel_noise.normal() +
                              0.3 * now.pitch_rad * std::pow(2 * pi * 5, 2) * -std::sin(2 * pi * 5 * t);
         last_speed = speed;
@@ -156,6 +164,14 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         frame.battery_count = 1800;
         frame.accel_x_count = static_cast<std::int16_t>(std::floor(accel / 0.004 + 0.5));
         (void)heave_accel;
+        if (now.gyros) {
+            frame.present |= FRAME_GYRO_XY | FRAME_ACCEL_YZ;
+            frame.accel_z_count = static_cast<std::int16_t>(std::lround(gravity * std::cos(slope_at(t)) / 0.004));
+            const double rate[] = {0, -(slope_at(t) - slope_at(t - tick_s)) / tick_s, 0};
+            std::int16_t *const count[] = {&frame.gyro_x_count, &frame.gyro_y_count, &frame.gyro_z_count};
+            for (std::size_t i = 0; i < 3; ++i) // 0.2 deg/s of noise, assumed
+                *count[i] = static_cast<std::int16_t>(std::lround((rate[i] + gyro_offset[i] + 0.0035 * gyro_noise.normal()) / 0.0005));
+        }
         if (radar_lost) {
             waiting.clear(), number.clear();
         }
@@ -186,16 +202,17 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         char note[256] = "";
         if (std::getenv("OUTDOORS_TRACE") != nullptr) {
             const ground_speed_state_t &g = state.ground_speed;
-            std::snprintf(note, sizeof note,
-                          " b %.2f+-%.2f z %.3f%s refused %d misfit %.2f other %d %.2f odds %.1f quiet %d agile %.2f %.2f L %.1f tone %d "
-                          "%.2f Hz %.0f",
-                          static_cast<double>(g.bias_m_s2), std::sqrt(static_cast<double>(g.p_bb)),
-                          static_cast<double>(trace.radar_speed_m_s), trace.radar_fresh ? "!" : "", g.refused,
-                          static_cast<double>(g.misfit), g.other_alive, static_cast<double>(g.other.at.speed_m_s),
-                          static_cast<double>(g.odds), g.quiet, static_cast<double>(g.agile.at.speed_m_s),
-                          static_cast<double>(g.agile.at.bias_m_s2), static_cast<double>(g.agile_sum), state.doppler.tone.found,
-                          static_cast<double>(state.doppler.tone.turn) / 4294967296.0 * radar_Hz,
-                          std::hypot(state.doppler.tone.a_re, state.doppler.tone.a_im) / 32);
+            std::snprintf(
+                note, sizeof note,
+                " lean %.3f b %.2f+-%.2f z %.3f%s refused %d misfit %.2f other %d %.2f odds %.1f quiet %d agile %.2f %.2f L %.1f tone %d "
+                "%.2f Hz %.0f",
+                static_cast<double>(state.sense.lean.lean_q8) * static_cast<double>(config.sense.level_m_s2_per_q8),
+                static_cast<double>(g.bias_m_s2), std::sqrt(static_cast<double>(g.p_bb)), static_cast<double>(trace.radar_speed_m_s),
+                trace.radar_fresh ? "!" : "", g.refused, static_cast<double>(g.misfit), g.other_alive,
+                static_cast<double>(g.other.at.speed_m_s), static_cast<double>(g.odds), g.quiet, static_cast<double>(g.agile.at.speed_m_s),
+                static_cast<double>(g.agile.at.bias_m_s2), static_cast<double>(g.agile_sum), state.doppler.tone.found,
+                static_cast<double>(state.doppler.tone.turn) / 4294967296.0 * radar_Hz,
+                std::hypot(state.doppler.tone.a_re, state.doppler.tone.a_im) / 32);
         }
         run.steps.push_back(
             {t, speed, static_cast<double>(trace.speed_m_s), static_cast<double>(trace.speed_std_m_s), wheel, trace.faults, note});

@@ -134,7 +134,8 @@ void run(const Profile &profile, const Samples &samples, int seed, const Variant
                                             .doppler_trust = 1,
                                             .doppler_misfit = 0,
                                             .doppler_relieved = false,
-                                            .elapsed_ticks = 1};
+                                            .elapsed_ticks = 1,
+                                            .lean_q8 = 0};
         const double estimate = static_cast<double>(ground_speed_step(&config.ground_speed, &filter, &input).speed_m_s);
         const double error = estimate - v;
         ok_run = std::fabs(error) <= 0.1 * std::fabs(v) ? ok_run + 1 : 0;

@@ -63,7 +63,8 @@ double worst_error(const doppler_window_t &window, double rate_Hz, double a) {
                                             .doppler_trust = 1,
                                             .doppler_misfit = 0,
                                             .doppler_relieved = false,
-                                            .elapsed_ticks = 1};
+                                            .elapsed_ticks = 1,
+                                            .lean_q8 = 0};
         const double estimate = static_cast<double>(ground_speed_step(&config, &state, &input).speed_m_s);
         if (t > 2.1 && t < 4) error = std::fmax(error, std::fabs(estimate - speed_at(t)));
     }

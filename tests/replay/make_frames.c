@@ -50,8 +50,10 @@ int main(int argc, char **argv) {
         const int battery = 1800 - (int)draw(20);
         const int accel = (int)draw(100) - 40;
         const int gyro = (int)draw(40) - 20;
-        fprintf(out, " %d %d 0 2452 0 0 %d %d 0 0 0 0 %" PRIu32 " %u", battery, accel, gyro, tick >= 2900 && tick < 2910, sequence,
-                samples);
+        const int roll = (int)draw(40) - 20;
+        const int pitch = (int)draw(40) - 20 - (tick >= 1200 && tick < 1250 ? 700 : 0); // a slope of 10 deg begins
+        fprintf(out, " %d %d 300 2452 %d %d %d %d 0 0 0 0 %" PRIu32 " %u", battery, accel, roll, pitch, gyro, tick >= 2900 && tick < 2910,
+                sequence, samples);
         sequence += samples;
         for (uint32_t n = 0; n < samples; n++) {
             phase += drive * 1150; // about 9 Hz of Doppler per 0.15 m/s

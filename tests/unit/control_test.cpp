@@ -337,7 +337,8 @@ TEST_F(Rolling, a_radar_value_reaches_the_filter_with_its_age) {
                                             .doppler_trust = value.trust,
                                             .doppler_misfit = value.misfit,
                                             .doppler_relieved = value.relieved,
-                                            .elapsed_ticks = 1};
+                                            .elapsed_ticks = 1,
+                                            .lean_q8 = 0};
         const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &filter, &input);
         fresh += value.fresh ? 1 : 0;
         last = value.fresh ? value.speed_m_s : last;

@@ -36,7 +36,8 @@ TEST(GroundSpeed, is_bounded_for_any_input) {
                                                         .doppler_trust = 1,
                                                         .doppler_misfit = 0,
                                                         .doppler_relieved = false,
-                                                        .elapsed_ticks = 1};
+                                                        .elapsed_ticks = 1,
+                                                        .lean_q8 = repeat == 1 ? 1 << 25 : 0};
                     const ground_speed_output_t out = ground_speed_step(&config.ground_speed, &state, &input);
                     ASSERT_LE(std::fabs(out.speed_m_s), 20.0f);
                     ASSERT_TRUE(std::isfinite(out.std_m_s));

@@ -73,7 +73,8 @@ Drive drive(
                                             .doppler_trust = 1,
                                             .doppler_misfit = 0,
                                             .doppler_relieved = false,
-                                            .elapsed_ticks = 1};
+                                            .elapsed_ticks = 1,
+                                            .lean_q8 = 0};
         const ground_speed_output_t estimate = ground_speed_step(&config.ground_speed, &state, &input);
         out.truth.push_back(v);
         out.estimate.push_back(static_cast<double>(estimate.speed_m_s));
@@ -189,7 +190,8 @@ TEST(GroundSpeed, a_steady_acceleration_is_followed_without_lag) {
                                                 .doppler_trust = 1,
                                                 .doppler_misfit = 0,
                                                 .doppler_relieved = false,
-                                                .elapsed_ticks = 1};
+                                                .elapsed_ticks = 1,
+                                                .lean_q8 = 0};
             const double estimate = static_cast<double>(ground_speed_step(&config.ground_speed, &state, &input).speed_m_s);
             if (t > 2.1 && t < 4) error = std::fmax(error, std::fabs(estimate - speed));
         }
@@ -216,7 +218,8 @@ ground_speed_input_t only_accel(double accel, double wheel_m_s = 0.3) {
             .doppler_trust = 1,
             .doppler_misfit = 0,
             .doppler_relieved = false,
-            .elapsed_ticks = 1};
+            .elapsed_ticks = 1,
+            .lean_q8 = 0};
 }
 
 ground_speed_input_t with_radar(double accel, double doppler_m_s, bool quiet = false, double wheel_m_s = 0.3) {

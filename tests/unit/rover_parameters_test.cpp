@@ -36,6 +36,11 @@ static sense_config_t sense_default() {
         .battery_V_per_count = 0.004f,   // [V] assumed: 12 bit over 16.4 V
         .accel_m_s2_per_count = 0.004f,  // [m/s^2] assumed, about 0.4 mg
         .gyro_rad_s_per_count = 0.0005f, // [rad/s] assumed
+        .level_m_s2_per_q8 = 0.004f / 256.0f,
+        .lean = {.turn_q52 = 87960936, // 0.0005 rad/s 0.01 s 2^52/256 is 87,960,930; a float of that size counts by eights
+                 .gravity_q8 = 627840,
+                 .sudden_q8 = 25600, // 256 9.81/0.004
+                 .steep_q8 = 31392}, // a twentieth
         .encoder_sign = {1, 1, 1, 1},
         .current_offset_count = {2048, 2048, 2048, 2048},
         .battery_offset_count = 0,
@@ -110,6 +115,8 @@ static ground_speed_config_t ground_speed_default() {
         .misfit_share = 0.02f,
         .misfit_max = 30.0f,
         .quiet_needed = 3,
+        .lean_m_s2_per_q8 = 0.004f / 256.0f,
+        .lean_told_q8 = 12800,      // 0.2 m/s^2
         .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = 0.006f,        // one encoder pulse a tick
         .still_needed = 25,         // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil

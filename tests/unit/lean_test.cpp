@@ -1,0 +1,139 @@
+// Gravity that the gyros turn into the accelerometer's axis, against closed forms.
+#include "firmware/core/rover_config.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace {
+
+constexpr double g = 9.81, accel_m_s2 = 0.004, gyro_rad_s = 0.0005; // the reference rover's units
+
+struct Body {
+    lean_config_t config = rover_config_default().sense.lean;
+    lean_state_t state = {};
+    double offset_rad_s[3] = {0, 0, 0};
+
+    // Seconds at constant rates, seen as whole counts.
+    void turn(double seconds, double x, double y, double z, bool standing = false, double accel_x = 0, double accel_y = 0,
+              unsigned elapsed = 1) {
+        const double rate[3] = {x, y, z}, felt[2] = {accel_x, accel_y};
+        lean_input_t input = {};
+        for (int i = 0; i < 3; i++) {
+            input.gyro_count[i] = static_cast<int32_t>(std::lround((rate[i] + offset_rad_s[i]) / gyro_rad_s));
+        }
+        for (int i = 0; i < 2; i++) {
+            input.accel_count[i] = static_cast<int32_t>(std::lround(felt[i] / accel_m_s2));
+        }
+        input.accel = true;
+        input.standing = standing;
+        input.elapsed_ticks = elapsed;
+        for (int k = 0; k < static_cast<int>(std::lround(100 * seconds / elapsed)); k++) {
+            lean_step(&config, &state, &input);
+        }
+    }
+    double lean_m_s2() const { return state.lean_q8 * accel_m_s2 / 256; }
+};
+
+TEST(Lean, a_slope_that_begins_comes_into_the_axis_as_gravity_does) {
+    Body body;
+    body.turn(2, 0, 0, 0, true);
+    body.turn(0.5, 0, -0.35, 0);                                          // nose up, 10 deg
+    EXPECT_NEAR(body.lean_m_s2(), g * std::sin(0.175), 0.01 * g * 0.175); // (1) takes the cosine as 1: 0.5 % at 10 deg
+    body.turn(20, 0, 0, 0);
+    EXPECT_NEAR(body.lean_m_s2(), g * std::sin(0.175), 0.01 * g * 0.175) << "it does not fade on a long slope";
+    body.turn(0.5, 0, 0.35, 0);
+    EXPECT_NEAR(body.lean_m_s2(), 0, 1e-3);
+}
+
+TEST(Lean, an_offset_of_the_gyros_is_learned_while_it_stands) {
+    Body body;
+    for (const double offset : {0.01, -0.35}) { // 0.6 and 20 deg/s, the worst of a cheap part
+        body = Body{};
+        for (double &o : body.offset_rad_s) {
+            o = offset;
+        }
+        body.turn(3, 0, 0, 0, true);
+        const double before = body.lean_m_s2();
+        body.turn(60, 0, 0, 0);
+        // a count's 512th at most is left of w_0: g * 60 s * 0.0005/512
+        EXPECT_NEAR(body.lean_m_s2(), before, g * 60 * gyro_rad_s / 512 + 1e-3) << offset;
+    }
+}
+
+TEST(Lean, what_turns_from_the_first_tick_on_is_no_slope_before_it_has_stood) {
+    Body body;
+    body.turn(30, 0, 0.05, 0); // an offset, for all that can be known: 30 s of it would be 86 deg
+    EXPECT_LT(std::fabs(body.lean_m_s2()), 1e-6);
+}
+
+TEST(Lean, a_turn_on_a_side_slope_turns_gravity_into_the_axis) {
+    for (const double side : {0.175, -0.175}) {
+        Body body;
+        body.turn(5, 0, 0, 0, true, 0, g * std::sin(side)); // left side up: the ground's reaction has a part to the left
+        body.turn(2, 0, 0, M_PI / 4);                       // a quarter turn to the left: what was left is ahead
+        EXPECT_NEAR(body.lean_m_s2(), g * std::sin(side), 0.02 * g * 0.175);
+        body.turn(4, 0, 0, M_PI / 4);
+        EXPECT_NEAR(body.lean_m_s2(), -g * std::sin(side), 0.04 * g * 0.175); // the steps of 10 ms are explicit: 1 + w^2 T t/2
+    }
+}
+
+TEST(Lean, an_accelerometers_own_offset_is_not_turned) {
+    Body body;
+    body.turn(5, 0, 0, 0, true, 0.2, -0.2); // 0.02 g on both axes: less than a slope of 3 deg
+    body.turn(4, 0, 0, M_PI / 4);
+    EXPECT_EQ(body.state.lean_q8, 0);
+}
+
+TEST(Lean, missed_ticks_turn_as_far_as_others) {
+    Body body;
+    body.turn(2, 0, 0, 0, true);
+    body.turn(0.5, 0, -0.35, 0, false, 0, 0, 5);
+    EXPECT_NEAR(body.lean_m_s2(), g * std::sin(0.175), 0.01 * g * 0.175);
+}
+
+TEST(Lean, any_counts_keep_it_within_its_bounds) {
+    Body body;
+    uint64_t random = 1;
+    for (int k = 0; k < 100000; k++) {
+        random = random * 6364136223846793005u + 1442695040888963407u;
+        lean_input_t input = {};
+        for (int i = 0; i < 3; i++) {
+            input.gyro_count[i] = static_cast<int16_t>(random >> (16 + 11 * i));
+        }
+        input.accel_count[0] = static_cast<int16_t>(random >> 7) + 65535;
+        input.accel_count[1] = static_cast<int16_t>(random >> 23);
+        input.accel = true;
+        input.standing = (random >> 60) == 0;
+        input.elapsed_ticks = 1u + static_cast<uint32_t>(random >> 54);
+        lean_step(&body.config, &body.state, &input);
+        ASSERT_LE(std::abs(body.state.lean_q8), (1 << 26) - (1 << 17));
+    }
+}
+
+// A rover without gyros about x and y, or with a converter at its rail, feels what it felt.
+TEST(Lean, without_the_gyros_the_accelerometer_is_taken_as_it_is) {
+    const sense_config_t config = rover_config_default().sense;
+    sense_state_t state = {};
+    sensor_frame_t frame = {};
+    for (int k = 0; k < 400; k++) {
+        frame.tick = static_cast<uint32_t>(k);
+        frame.present = FRAME_ALL & ~static_cast<uint32_t>(k < 200 ? FRAME_GYRO_XY : 0);
+        frame.accel_x_count = static_cast<int16_t>(k - 200);
+        frame.gyro_y_count = k < 200 ? 300 : INT16_MAX;
+        const sense_output_t out = sense_measure(&config, &state, &frame);
+        ASSERT_EQ(out.level_m_s2, out.accel_x_m_s2) << k; // to the bit
+    }
+    frame.tick++;
+    frame.gyro_y_count = 300;
+    sense_measure(&config, &state, &frame); // its first count is taken for its offset
+    frame.tick++;
+    frame.gyro_y_count = -1700;
+    const sense_output_t out = sense_measure(&config, &state, &frame);
+    EXPECT_GT(out.accel_x_m_s2 - out.level_m_s2, 0.01f); // nose up at 1 rad/s for a tick: 0.098, of which half is learned as offset
+}
+
+TEST(Lean, the_papers_filter_has_none) { EXPECT_EQ(rover_config_paper().sense.lean.gravity_q8, 0); }
+
+} // namespace
