@@ -151,8 +151,8 @@ int exit_code_of(flash::Outcome outcome) {
     return exit_io;
 }
 
-const char *words_of(flash::Outcome outcome) {
-    switch (outcome) {
+const char *words_of(const flash::Result &result) {
+    switch (result.outcome) {
     case flash::Outcome::confirmed:
         return "the new version runs";
     case flash::Outcome::same:
@@ -162,7 +162,8 @@ const char *words_of(flash::Outcome outcome) {
     case flash::Outcome::installed:
         return "installed; no version runs there now";
     case flash::Outcome::returned:
-        return "the old version runs; the new one did not come up";
+        return result.old_version ? "the old version runs; the new one did not come up"
+                                  : "the new version did not come up, and the board has no other";
     case flash::Outcome::unknown:
         return "installed, and not yet confirmed";
     case flash::Outcome::refused:
@@ -196,7 +197,7 @@ void onto_board(const FlashArguments &a, Outcome &outcome) {
         outcome.json["package"] = package_json(summary);
         const flash::Result result = flash::flash(options, bytes);
         std::fflush(stdout);
-        const std::string text = a.host + ": " + words_of(result.outcome) + (result.reason.empty() ? "" : ": " + result.reason);
+        const std::string text = a.host + ": " + words_of(result) + (result.reason.empty() ? "" : ": " + result.reason);
         outcome.exit_code = exit_code_of(result.outcome);
         std::fprintf(outcome.exit_code == exit_done ? stdout : stderr, "%s%s\n",
                      outcome.exit_code == exit_done ? "" : "traction: ", text.c_str());

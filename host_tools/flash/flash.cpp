@@ -1,5 +1,6 @@
 #include "flash.h"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
@@ -21,6 +22,12 @@ std::string reason_of(const Answer &answer) {
     return text;
 }
 
+// One of the slots that `status` lists is the good one.
+bool has_good(const Answer &status) {
+    return std::any_of(status.lines.begin(), status.lines.end(),
+                       [](const std::string &line) { return line.rfind("slot ", 0) == 0 && line.find(", good") != std::string::npos; });
+}
+
 void need_installer(const FlashOptions &options, const Answer &answer) {
     if (answer.status == code_none)
         throw std::runtime_error(options.board.host + ": " + options.program +
@@ -40,7 +47,7 @@ Result after_install(const FlashOptions &options, const std::vector<std::string>
             const Answer answer = run_on(options.board, ask, "");
             const std::string note = answer.lines.empty() ? "" : answer.lines.back();
             if (answer.status == code_done) return {Outcome::confirmed, note};
-            if (answer.status == code_no) return {Outcome::returned, note};
+            if (answer.status == code_no) return {Outcome::returned, note, has_good(answer)};
             why = answer.status == code_busy ? "it is still on trial" : reason_of(answer);
         } catch (const NoConnection &no) { // the board may be busy with its start
             why = no.what();
@@ -102,7 +109,7 @@ Result flash(const FlashOptions &options, const std::string &package) {
     case code_done:
         break;
     case code_no:
-        return {Outcome::returned, reason_of(answer)};
+        return {Outcome::returned, reason_of(answer), has_good(before)};
     case code_refused:
         return {Outcome::refused, reason_of(answer)};
     case code_busy:

@@ -32,7 +32,8 @@ enum class Outcome {
 
 struct Result {
     Outcome outcome = Outcome::failed;
-    std::string reason; // in words; empty where there is nothing to say
+    std::string reason;      // in words; empty where there is nothing to say
+    bool old_version = true; // the board has a good one, to which it returned
 };
 
 // Throws NoConnection (before anything was installed), std::runtime_error (no installer on the board).

@@ -207,7 +207,11 @@ unchanged 'two installers at once'
 run 0 "$traction" flash --pack false.tar --key key --program /bin/false --rover lhomme_desages
 flash 1 false.tar
 says 'fails its self-test on this board'
+says 'the old version runs'
 still 'a version that failed its self-test'
+run 0 "$slot" --folder fresh init --key key.pub --rover Lhomme-Desages
+run 1 "$traction" flash --host board --ssh "$work/ssh" --installer "$slot" --folder "$work/fresh" false.tar
+says 'the new version did not come up, and the board has no other'
 { cat "$source/rovers/lhomme_desages.toml"; echo '# ends'; } >ends.toml
 pack ends.tar ends.toml
 flash 1 ends.tar
