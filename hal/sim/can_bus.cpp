@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 // 1: cantools was there when this was configured.
 #ifndef HAL_WITH_CAN
@@ -18,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <utility>
 
 namespace traction::hal {
 

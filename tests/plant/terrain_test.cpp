@@ -164,6 +164,33 @@ TEST(Terrain, a_slope_takes_its_share_of_the_weight) {
     EXPECT_GT(plant.truth().position_m[2], config.x_m * slope + 0.1); // it climbs
 }
 
+TEST(Terrain, across_a_slope_the_wheels_hold_it_sideways) {
+    const double slope = std::tan(6 * pi / 180);
+    PlantConfig config = on(profile({{-100, -100 * slope}, {100, 100 * slope}}, pi / 2), "concrete"); // the left side is up
+    Plant plant(config);
+    for (int k = 0; k < 3000; ++k) plant.step();
+    double sideways = 0, load = 0;
+    for (const WheelTruth &w : plant.truth().wheel) sideways += w.lateral_N, load += w.normal_N;
+    const double weight = config.rover.mass_kg * config.rover.gravity_m_s2;
+    EXPECT_NEAR(sideways, weight * std::sin(6 * pi / 180), 0.01 * weight);
+    EXPECT_NEAR(load, weight * std::cos(6 * pi / 180), 0.01 * weight);
+    EXPECT_NEAR(plant.truth().roll_rad, 6 * pi / 180, 0.01);
+}
+
+// What the normal forces have taken must be in the tyres, and is back when the rover stands again: without damping nothing else takes it.
+TEST(Terrain, an_edge_takes_no_energy_that_it_does_not_give_back) {
+    for (const double direction : {0.0, 0.5, -1.0}) {
+        PlantConfig config = on(profile({{0.4, 0}, {0.4, 0.019}, {0.8, 0.019}, {0.8, 0}}, direction));
+        config.rover.contact_damping_Ns_m = 0;
+        Plant plant(config);
+        drive(plant, 0.4, 7);
+        drive(plant, 0, 3);
+        const double along = plant.truth().position_m[0] * std::cos(direction) + plant.truth().position_m[1] * std::sin(direction);
+        EXPECT_GT(along, 1.0) << direction;                     // it has crossed both edges
+        EXPECT_NEAR(plant.energy().body, 0, 0.02) << direction; // 4 k (1.2 mm)^2/2 = 0.017 J is all that the tyres hold at rest
+    }
+}
+
 TEST(Terrain, parked_on_a_ramp_or_on_rough_ground_it_stays) {
     Terrain rough;
     rough.roughness_m3 = iso_8608_m3('C');

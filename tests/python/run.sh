@@ -26,7 +26,7 @@ case $what in
         fi
         # what the build needs is there, pinned: nothing else is fetched
         "$python" -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall "$root/python" \
-            -C cmake.define.TRACTION_BUILD="$build" -C build-dir="$build/python-build"
+            --config-settings cmake.define.TRACTION_BUILD="$build" --config-settings build-dir="$build/python-build"
         cd /
         "$python" -c 'import traction; print("installed:", traction.__file__)' ;;
     style)
