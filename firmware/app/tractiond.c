@@ -23,10 +23,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { EXIT_DONE = 0, EXIT_DEVICE_LOST = 1, EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_FILE = 4 };
 
 enum { LINK_LOG_TICKS = 100 }; // once a second
+enum { HEALTHY_TICKS = 1000 }; // 10 s
 
 static volatile sig_atomic_t asked_to_stop;
 
@@ -38,7 +40,7 @@ static void ask_to_stop(int signal)
 
 typedef struct {
     const char *hal, *parameters, *firmware, *trace, *store, *log, *link, *link_key;
-    unsigned long log_budget_MB, link_system;
+    unsigned long log_budget_MB, link_system, health_fd;
     bool hash, realtime, self_test, help;
 } options_t;
 
@@ -61,6 +63,8 @@ static void print_help(void)
         "  --link-system N     the rover's MAVLink number, 1 to 250 (1)\n"
         "  --store FILE        what must survive a restart (how warm the motors are); read first, kept while driving\n"
         "  --self-test         radar, accelerometer, battery at rest, a small pulse of every wheel, before anything drives\n"
+        "  --health-fd N       tell on this open descriptor: \"healthy\" after 10 s of ticks without a fault but a pressed stop, or the "
+        "fault\n"
         "  --realtime          a tick of 10 ms takes 10 ms\n"
         "  --help              this\n"
         "\nHALs:");
@@ -102,6 +106,7 @@ static bool parse(int argc, char **argv, options_t *options)
         {"link", required_argument, NULL, 'L'},
         {"link-key", required_argument, NULL, 'K'},
         {"link-system", required_argument, NULL, 'N'},
+        {"health-fd", required_argument, NULL, 'F'},
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
@@ -118,6 +123,9 @@ static bool parse(int argc, char **argv, options_t *options)
             return false;
         }
         if (letter == 'N' && !parse_number("--link-system", optarg, 250u, "not a number of a system; give one", &options->link_system)) {
+            return false;
+        }
+        if (letter == 'F' && !parse_number("--health-fd", optarg, 1023u, "not a descriptor; give one", &options->health_fd)) {
             return false;
         }
         options->self_test = options->self_test || letter == 'e';
@@ -162,6 +170,8 @@ typedef struct {
     log_ring_t ring;
     trace_queue_t queue; // what writes the trace and the store beside the ticks
     udp_link_t *link;    // null: none
+    int health;          // descriptor; 0: none, or all was said
+    uint32_t healthy_ticks, faults_told;
     uint64_t hash;
     bool hashed;
     volatile float rise_K[WHEEL_COUNT];
@@ -189,6 +199,25 @@ static void tell_link(drive_t *drive, const command_t *command, const trace_t *t
     }
 }
 
+// Whether this version of the program may stay (docs/flash.md): said once, or the faults that keep it from being said.
+static void tell_health(drive_t *drive, const trace_t *trace)
+{
+    const uint32_t faults = trace->faults & ~(uint32_t)(FAULT_EMERGENCY_STOP | FAULT_COMMAND_TIMEOUT);
+    char line[80];
+    drive->healthy_ticks = faults == 0u ? drive->healthy_ticks + 1u : 0u;
+    const bool healthy = drive->healthy_ticks >= HEALTHY_TICKS;
+    if (!healthy && faults == drive->faults_told) {
+        return;
+    }
+    const int length = healthy ? snprintf(line, sizeof line, "healthy\n") : snprintf(line, sizeof line, "faults %08" PRIx32 "\n", faults);
+    drive->faults_told = faults;
+    (void)!write(drive->health, line, (size_t)length); // nobody may listen any more
+    if (healthy) {
+        (void)close(drive->health);
+        drive->health = 0;
+    }
+}
+
 static void log_tick(void *context, const sensor_frame_t *frame, const command_t *command, const trace_t *trace)
 {
     drive_t *drive = context;
@@ -197,6 +226,9 @@ static void log_tick(void *context, const sensor_frame_t *frame, const command_t
     }
     if (drive->link != NULL) {
         tell_link(drive, command, trace);
+    }
+    if (drive->health != 0) {
+        tell_health(drive, trace);
     }
     if (drive->queue.file == NULL && !drive->hashed) {
         return;
@@ -230,7 +262,7 @@ static daemon_result_t run(const options_t *options, const control_config_t *con
     stoppable_t stoppable = {.inner = options->realtime ? pace_hal(&pace, &world->hal) : world->hal};
     hal_t hal = hal_forward(&stoppable);
     hal.wait_tick = wait_unless_stopped;
-    const bool logged = drive->queue.file != NULL || drive->hashed || drive->ring.started || drive->link != NULL;
+    const bool logged = drive->queue.file != NULL || drive->hashed || drive->ring.started || drive->link != NULL || drive->health != 0;
     const daemon_link_t link = {.context = drive, .command = ask_world, .log = logged ? log_tick : NULL};
     store_t kept;
     char message[STORE_MESSAGE];
@@ -316,6 +348,7 @@ static int drive_world(const options_t *options, const control_config_t *config,
     drive.world = world;
     drive.hash = TRACE_HASH_BEGIN;
     drive.hashed = options->hash;
+    drive.health = (int)options->health_fd;
     drive.store = options->store;
     drive.queue.patient = !options->realtime && !world->devices; // the world waits: every line is kept
     drive.queue.spare = keep_store;

@@ -17,6 +17,7 @@ foreach(folder scenarios models rovers schemas)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${share}/traction)
   endif()
 endforeach()
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/firmware/flash/start DESTINATION ${share}/traction/flash) # of every package
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)

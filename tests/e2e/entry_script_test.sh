@@ -139,4 +139,18 @@ refuse "$calls" '^apt-get'
 rm "$work/source-9.tar"
 run emulate cruise
 expect "$calls" '^apt-get install .* traction-source'
-echo 'entry script: 8 claims hold'
+
+# 9. a package: the board's program is built for it, unless it is named; nothing else of flash builds for the board
+printf 'cross  traction-cross  command:traction-cross  the compiler\n' >"$tree/cmake/apt-packages.txt"
+printf '#!/bin/sh\necho "cli: $*"\n' >"$tree/build/host/host_tools/cli/traction"
+run flash --pack p.tar --key k --rover r
+expect "$calls" '^apt-get install .* traction-cross'
+printf 'cross  traction-cross  command:sh  the compiler\n' >"$tree/cmake/apt-packages.txt"
+run flash --pack p.tar --key k --rover r
+expect "$calls" '^ninja -C .*/build/korebot tractiond traction_slot'
+expect "$work/said" 'cli: flash --pack p.tar --key k --rover r'
+run flash --pack p.tar --key k --rover r --program mine
+refuse "$calls" 'korebot'
+run flash p.tar --host board
+refuse "$calls" 'korebot'
+echo 'entry script: 9 claims hold'

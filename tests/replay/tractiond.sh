@@ -92,4 +92,13 @@ for signal in INT TERM; do
     ticks=$(sed -n 's/.* \([0-9]*\) ticks.*/\1/p' err)
     [ "$lines" -eq "$ticks" ] || { echo "SIG$signal: $lines lines, $ticks ticks"; exit 1; }
 done
+# health for who started it (docs/flash.md): 1000 ticks in a row without a fault, and not before
+run 2 --hal replay --health-fd 0 frames.txt
+says '--health-fd 0: not a descriptor; give one from 1 to 1023'
+run 0 --hal replay --health-fd 9 frames.txt 9>health
+[ "$(cat health)" = healthy ] || { echo "on the health descriptor:"; cat health; exit 1; }
+head -n 999 frames.txt >short.txt
+run 0 --hal replay --health-fd 9 short.txt 9>health
+[ ! -s health ] || { echo "healthy before its time:"; cat health; exit 1; }
+run 0 --hal replay --health-fd 9 frames.txt # which nobody opened
 echo "tractiond: messages, exit codes, traces and signals as stated"

@@ -7,6 +7,7 @@ set(rules
   "firmware/core|${same_folder}|firmware/core/.+|stdint.h|stdbool.h|stddef.h|math.h"
   "firmware/template|${same_folder}|firmware/core/.+|*"  # a template from a radar's numbers: the build machine, the host
   "firmware/link|${same_folder}|firmware/core/.+|*"  # protocol alone: its files and sockets are firmware/app's
+  "firmware/flash|${same_folder}|*"  # libc alone: the installer knows nothing of what it installs
   "firmware/app|${same_folder}|firmware/(core|app|link)/.+|hal/(hal|open|forward|pace/pace_hal|replay/frames).h|*"
   "hal|${same_folder}|firmware/core/signals.h|hal/.+|*"
   "hal/sim|${same_folder}|firmware/core/signals.h|hal/.+|sim/.+|*"
