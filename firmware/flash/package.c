@@ -43,16 +43,14 @@ bool package_header(const char *name, uint32_t mode, uint32_t size, uint8_t bloc
     }
     char *text = (char *)block;
     memset(block, 0, PACKAGE_BLOCK);
-    memcpy(text, name, length);
+    memcpy(text, name, length); // NOLINT(bugprone-not-null-terminated-result): the block is zero
     (void)snprintf(text + 100, 8, "%07" PRIo32, mode & 07777u);
     (void)snprintf(text + 108, 8, "%07o", 0u);
     (void)snprintf(text + 116, 8, "%07o", 0u);
     (void)snprintf(text + 124, 12, "%011" PRIo32, size);
     (void)snprintf(text + 136, 12, "%011o", 0u);
-    memcpy(text + 257,
-           "ustar\0"
-           "00",
-           8);
+    static const char magic[8] = {'u', 's', 't', 'a', 'r', '\0', '0', '0'};
+    memcpy(text + 257, magic, sizeof magic);
     memset(text + 148, ' ', 8);
     text[156] = '0';
     uint32_t sum = 0;
@@ -192,6 +190,7 @@ static bool take_file(const char **at, package_file_t *file)
     int used = 0;
     memset(file, 0, sizeof *file);
     return take_line(at, "file", text, sizeof text) &&
+           // NOLINTNEXTLINE(cert-err34-c): four and ten digits; the whole manifest is printed again and compared
            sscanf(text, "%4" SCNo32 " %10" SCNu32 " %64[0-9a-f] %39s%n", &file->mode, &file->size, hex, file->name, &used) == 4 &&
            text[used] == '\0' && strlen(hex) == sizeof hex - 1 && package_unhex(hex, SHA256_BYTES, file->sha);
 }

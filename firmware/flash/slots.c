@@ -109,6 +109,7 @@ static bool read_state(const slots_t *slots, slots_state_t *state)
     }
     text[got] = '\0';
     memset(state, 0, sizeof *state);
+    // NOLINTNEXTLINE(cert-err34-c): printed again below, and compared
     if (sscanf(text, "traction-slots 1\ngood %c %" SCNu32 " %32[0-9a-f]\ntrial %c %" SCNu32 "\nnote %159[^\n]", &good, &state->number, hex,
                &trial, &state->tries, state->note) != 6 ||
         strlen(hex) != sizeof hex - 1 || !package_unhex(hex, LMS_ID, state->key)) {
