@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Do two programs give the same answers, byte by byte, and how long does each take?
 
-    python3 tests/bench/lab/same_answers.py --old OLD --new build/host/host_tools/cli/traction \\
+    python3 tests/bench/same_answers.py --old OLD --new build/host/host_tools/cli/traction \\
         --generate build/host/tests/lab/generator/lab_generate --folder out/same [--seeds 3] [--seconds 120] [--first 710000]
 
 Sealed logs of the independent generator (wheels drawn apart; fleet), every category with as many seeds, are diagnosed by both programs,
