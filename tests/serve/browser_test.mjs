@@ -142,7 +142,8 @@ claim('a reload keeps what was run, what is chosen and what is shown', async () 
   await title(page, 'diagnose');
   assert.equal(await page.textContent('#history tbody'), runs);
   assert.equal(await chosen(page, 'logs'), 'identification_1.csv');
-  assert.equal(await page.$eval('#live', (e) => +e.dataset.rows > 100), true); // the last drive's rows come again
+  await page.$eval('#drive', (e) => { e.open = true; }); // it is closed where there are logs
+  await until(page, () => +document.querySelector('#live').dataset.rows > 100); // the last drive's rows come again
 });
 
 claim('a new file and a growing one appear without a reload', async () => {
