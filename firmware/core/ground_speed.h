@@ -31,7 +31,6 @@
 // (13): where (10) passes its limit, slip is the reason only if the force pushes along the slip that it would be, -X: f sign(-X) > least.
 // Else it is a slope that begins, under wheels that roll on: the best track keeps to the wheels' changes of speed for a window's length,
 // its bias free to jump, and the one that believes the accelerometer is followed beside it, as the other sign is, until the radar's values
-// tell.
 // tell. A slope that the gyros have just told of (lean.h) is no reason: then it is slip.
 // (14): reported is v - c X (1 - X^2/(16 var X))^2 within four sigma of X: the accelerometer's white noise since the window's middle is in
 // v, and no radar value has seen it; X holds the same noise and the wheels do not. c = cov/var X: 2 (1 - exp(-tau/0.25 s)) where that noise

@@ -1,11 +1,11 @@
 #include "lean.h"
 
 enum {
-    STANDING_TICKS = 256,    // memory of (3) and (4) while it stands: 2.6 s, assumed
-    LOG2_STANDING_TICKS = 8, //
-    MOVING_TICKS = 16384,    // and of (3) before it ever stood: minutes, in which bumps and slopes cancel, assumed
-    OPEN_TICKS = 128,        // in which a mean takes all that comes: 1.3 s, assumed
-    STOOD_TICKS = 100,       // 1 s of standing is enough, assumed
+    STANDING_TICKS = 256, // memory of (3) and (4) while it stands: 2.6 s, assumed
+    LOG2_STANDING_TICKS = 8,
+    MOVING_TICKS = 16384, // and of (3) before it ever stood: minutes, in which bumps and slopes cancel, assumed
+    OPEN_TICKS = 128,     // in which a mean takes all that comes: 1.3 s, assumed
+    STOOD_TICKS = 100,    // 1 s of standing is enough, assumed
     LEAN_MAX = (1 << 26) - (1 << 17)
 };
 
