@@ -37,7 +37,7 @@ enum { BEYOND_VALUES = 3 }; // in a row: a quarter of a second
 static float rim_hint_m_s(const control_config_t *config, const sense_output_t *sense)
 {
     const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
-    return 0.25f * sum * config->slip.wheel_radius_m;
+    return config->geometry.wheel_share * sum * config->slip.wheel_radius_m; // a wheel that is not there has speed 0
 }
 
 // [rad/s] assumed: half a rim speed of 0.11 m/s of the reference. A wheel that is blocked or spins alone, or a turn on the spot.
@@ -50,11 +50,19 @@ typedef struct {
 
 static wheels_t compare_wheels(const control_config_t *config, const sense_output_t *sense)
 {
-    float low = sense->speed_rad_s[0];
-    float high = low;
-    for (int i = 1; i < WHEEL_COUNT; i++) {
+    float low = 0.0f;
+    float high = 0.0f;
+    bool first = true;
+    for (int i = 0; i < WHEEL_COUNT; i++) {
         const float speed = sense->speed_rad_s[i];
-        if (fixed_greater(low, speed)) {
+        if (!rover_has_wheel(&config->geometry, i)) {
+            continue;
+        }
+        if (first) {
+            low = speed;
+            high = speed;
+            first = false;
+        } else if (fixed_greater(low, speed)) {
             low = speed;
         } else if (fixed_greater(speed, high)) {
             high = speed;
@@ -110,6 +118,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     trace->accel_bias_m_s2 = speed.bias_m_s2;
     trace->standstill = speed.standstill;
     state->sense.standing = speed.standstill;
+    state->sense.gyro_q8 = speed.gyro_q8;
     return speed;
 }
 
@@ -146,6 +155,9 @@ static void estimate_wheels(const control_config_t *config, control_state_t *sta
     const ground_t ground = wheels_ground(config, estimate->speed_m_s, estimate->sense->gyro_z_rad_s);
     doubt_slip(config, state, estimate, &ground);
     for (int i = 0; i < WHEEL_COUNT; i++) {
+        if (!rover_has_wheel(&config->geometry, i)) {
+            continue;
+        }
         wheel_trace_t *wheel = &trace->wheel[i];
         const sense_output_t *sense = estimate->sense;
         const motor_output_t motor = motor_measure(&config->motor, sense->current_A[i], sense->speed_rad_s[i], sense->accel_rad_s2[i]);
@@ -249,6 +261,9 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
         front_rad_s = soil_sweep_step(&config->soil_sweep, &state->soil_sweep, v_ref).front_rad_s;
     }
     for (int i = 0; i < WHEEL_COUNT; i++) {
+        if (!rover_has_wheel(&config->geometry, i)) {
+            continue; // its duty stays 0
+        }
         wheel_trace_t *wheel = &trace->wheel[i];
         const uint8_t bit = (uint8_t)(1u << (uint32_t)i);
         const bool left = i == WHEEL_REAR_LEFT || i == WHEEL_FRONT_LEFT;
@@ -286,6 +301,7 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
     float high_rad_s = 0.0f;
     float low_rad_s = 0.0f;
     float least_rad_s = 0.0f;
+    bool first = true;
     safety_input_t input = {
         .frame = frame,
         .contradict = estimate->circuit.contradict,
@@ -306,7 +322,10 @@ static safety_output_t judge(const control_config_t *config, control_state_t *st
         input.current_A[i] = estimate->sense->current_A[i];
         high_rad_s = fixed_greater(speed_rad_s, high_rad_s) ? speed_rad_s : high_rad_s;
         low_rad_s = fixed_greater(low_rad_s, speed_rad_s) ? speed_rad_s : low_rad_s;
-        least_rad_s = i == 0 || fixed_greater(least_rad_s, turn) ? turn : least_rad_s;
+        if (rover_has_wheel(&config->geometry, i)) {
+            least_rad_s = first || fixed_greater(least_rad_s, turn) ? turn : least_rad_s;
+            first = false;
+        }
     }
     input.high_rad_s = high_rad_s;
     input.low_rad_s = low_rad_s;

@@ -29,7 +29,14 @@ typedef struct {
     float half_wheelbase_m;
     float half_track_m;
     float mass_kg;
+    uint32_t wheels;   // bit i: the rover has wheel i; of the others nothing is asked, measured or driven
+    float wheel_share; // 1 over their number
 } rover_geometry_t;
+
+static inline bool rover_has_wheel(const rover_geometry_t *geometry, int wheel)
+{
+    return (geometry->wheels & (1u << (uint32_t)wheel)) != 0u;
+}
 
 typedef struct {
     rover_geometry_t geometry;

@@ -55,6 +55,12 @@ typedef struct {
 } outside_t;
 
 // A mean over 32 bins of noise spreads by a quarter, so four times another one, three times in a row, is no chance.
+static bool is_beyond(const outside_t *outside)
+{
+    const bool fast = outside->beside > 4u * outside->spare && 5u * (outside->beside - outside->spare) > outside->in;
+    return outside->beside > LOUD && (fast || outside->beside > 3u * outside->in || outside->spare > 3u * outside->in);
+}
+
 static outside_t look_outside(const doppler_template_t *beam, const uint64_t *power)
 {
     const int32_t end = beam->first_bin + beam->bins;
@@ -65,8 +71,7 @@ static outside_t look_outside(const doppler_template_t *beam, const uint64_t *po
         out.beside = mean_power(power, end, SPARE_FROM);
         out.spare = mean_power(power, SPARE_FROM, FFT_BINS);
         out.noise = (out.beside + out.spare) / 2u;
-        const bool fast = out.beside > 4u * out.spare && 5u * (out.beside - out.spare) > out.in;
-        out.beyond = out.beside > LOUD && (fast || out.beside > 3u * out.in || out.spare > 3u * out.in);
+        out.beyond = is_beyond(&out);
     }
     return out;
 }
@@ -182,6 +187,8 @@ static int32_t log2_q8(uint64_t power)
 static bool is_line(const doppler_state_t *state, int32_t k) { return (state->line[(uint32_t)k / 32u] >> ((uint32_t)k % 32u) & 1u) != 0u; }
 
 enum { REST = 5, LOOK_LEAST_S = 3 }; // ticks that the filter has after a value; a scatterer is in the beam for less time than that
+enum { LINE_REST_BITS = 3 };         // a line's rest: 9 dB below it, as its first fit may leave (outdoors_test)
+enum { TONE_ASIDE = 2 };             // bins by which a line may lie beside the one that is looked at, doppler_line.h
 enum { RELIEF_VALUES = 6 };          // a window that is rid of the line wholly has come by then
 
 static bool any_line(const doppler_state_t *state) { return (state->line[0] | state->line[1] | state->line[2] | state->line[3]) != 0u; }
@@ -227,7 +234,8 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         }
     }
     state->weigh_lines = !known && any_line(state);
-    if (!beam->from_peak && loudest >= TONE_FROM) { // else an echo at constant speed is as narrow as a line
+    // Of a narrow beam an echo at constant speed is as narrow as a line; at the band's edge the line may be one that lies beyond.
+    if (!beam->from_peak && loudest >= TONE_FROM && loudest < end - TONE_ASIDE) {
         const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
         doppler_line_suggest(&state->tone, long_enough ? (uint32_t)loudest : 0u);
     }
@@ -292,7 +300,106 @@ static uint64_t line_power(const doppler_line_t *line)
     return square * (12288u * 64u / (2u * DOPPLER_GAIN * DOPPLER_GAIN));
 }
 
-static void measure(const doppler_config_t *config, const doppler_state_t *state, doppler_output_t *out)
+// Whether half of what is heard is no more than a line may leave that was taken off, at its place; or a line that is not known well
+// enough yet to be taken off. An echo there is hidden as well.
+static bool is_rest(const doppler_state_t *state, uint64_t energy)
+{
+    const bool left = state->tone.found && line_power(&state->tone) >> LINE_REST_BITS >= energy;
+    const bool young = !state->tone.found && state->young_bin > 0;
+    if (!left && !young) {
+        return false;
+    }
+    const int32_t middle = left ? (int32_t)((state->tone.turn + (1u << 23)) >> 24) : state->young_bin;
+    uint64_t near = 0;
+    for (int32_t k = middle - LINE_SIDE; k <= middle + LINE_SIDE; k++) {
+        near += k >= 0 && k < FFT_BINS ? state->power[k] >> 22 : 0u;
+    }
+    return 2u * near > energy;
+}
+
+enum { OUTSIDE_LINES = 3, LINE_NEAR = 2, LINE_RING = 8, LINE_FAR_TIMES = 8, LINE_RING_SHARE = 16, RING_SPREAD = 13 };
+
+// An echo of YOUNG_FROM bins and more is as wide as a line's ring; the search inside the echo has its blocks by YOUNG_SAMPLES.
+enum { YOUNG_FROM = 16, YOUNG_SAMPLES = (DOPPLER_LINE_BLOCKS + 4) * DOPPLER_LINE_BLOCK };
+
+// The line at `peak` taken out of the powers [from, FFT_BINS), if it is one: its ring, the bins beside its five, is no louder than the
+// others but for a sixteenth of the line and three standard deviations of noise; a fast echo is as wide as it is fast. `sum` and `bins` are
+// of what is left.
+static bool take_line(uint32_t *left, int32_t from, int32_t peak, uint32_t *sum, int32_t *bins)
+{
+    uint32_t near = 0;
+    uint32_t ring = 0;
+    int32_t in_near = 0;
+    int32_t in_ring = 0;
+    for (int32_t k = peak - LINE_RING < from ? from : peak - LINE_RING; k <= peak + LINE_RING && k < FFT_BINS; k++) {
+        const bool inside = k >= peak - LINE_NEAR && k <= peak + LINE_NEAR;
+        near += inside ? left[k] : 0u;
+        ring += inside ? 0u : left[k];
+        in_near += inside ? 1 : 0;
+        in_ring += inside ? 0 : 1;
+    }
+    const float far = (float)(*sum - near - ring) / (float)(*bins - in_near - in_ring);
+    const bool loud = (float)left[peak] > (float)LINE_FAR_TIMES * far;
+    if (!loud || (float)LINE_RING_SHARE * ((float)ring - (float)(in_ring + RING_SPREAD) * far) > (float)near) {
+        return false;
+    }
+    for (int32_t k = peak - LINE_NEAR < from ? from : peak - LINE_NEAR; k <= peak + LINE_NEAR && k < FFT_BINS; k++) {
+        left[k] = 0;
+    }
+    *sum -= near;
+    *bins -= in_near;
+    return true;
+}
+
+// Whether it is lines, three at most (a lamp's 100 Hz and its harmonics), that are loud beyond the band, and what noise they leave there.
+static void watch_outside(const doppler_template_t *beam, doppler_state_t *state)
+{
+    uint32_t left[FFT_BINS];
+    const int32_t end = beam->first_bin + beam->bins;
+    const int32_t from = end - LINE_RING; // a line at the band's edge is heard on both sides
+    uint32_t sum = 0;                     // a full-scale line is 2^31 of it
+    for (int32_t k = from; k < FFT_BINS; k++) {
+        left[k] = (uint32_t)(state->power[k] >> 28);
+        sum += left[k];
+    }
+    int32_t bins = FFT_BINS - from;
+    int32_t lines = 0;
+    bool taken = true;
+    while (taken && lines < OUTSIDE_LINES) {
+        int32_t peak = from;
+        for (int32_t k = from; k < FFT_BINS; k++) {
+            peak = left[k] > left[peak] ? k : peak;
+        }
+        taken = take_line(left, from, peak, &sum, &bins);
+        lines += taken ? 1 : 0;
+    }
+    outside_t outside = {.in = mean_power(state->power, beam->first_bin, end)};
+    for (int32_t k = end; k < FFT_BINS; k++) {
+        outside.beside += k < SPARE_FROM ? left[k] : 0u;
+        outside.spare += k < SPARE_FROM ? 0u : left[k];
+    }
+    outside.beside = (uint32_t)((float)outside.beside / (float)(SPARE_FROM - end));
+    outside.spare = (uint32_t)((float)outside.spare / (float)(FFT_BINS - SPARE_FROM));
+    state->outside_lines = lines > 0 && !is_beyond(&outside);
+    state->outside_noise = (uint32_t)((float)sum / (float)bins);
+}
+
+// A line inside the echo is found within four seconds. Until then a line is what is as narrow as one at a place where no echo is.
+static void watch_young(doppler_state_t *state)
+{
+    uint32_t left[FFT_BINS];
+    uint32_t sum = 0;
+    int32_t peak = LINE_FROM;
+    for (int32_t k = LINE_FROM; k < FFT_BINS; k++) {
+        left[k] = (uint32_t)(state->power[k] >> 28);
+        sum += left[k];
+        peak = left[k] > left[peak] ? k : peak;
+    }
+    int32_t bins = FFT_BINS - LINE_FROM;
+    state->young_bin = peak >= YOUNG_FROM && take_line(left, LINE_FROM, peak, &sum, &bins) ? peak : 0;
+}
+
+static void measure(const doppler_config_t *config, doppler_state_t *state, doppler_output_t *out)
 {
     int16_t reduced[DOPPLER_BINS_MAX] __attribute__((aligned(8)));
     uint64_t energy = 0;
@@ -310,7 +417,13 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     const outside_t none = {0};
     uint64_t copy[FFT_BINS];
     const uint64_t *const power = without_lines(config->beam, state, copy);
-    const outside_t outside = state->halved ? none : look_outside(config->beam, power); // twice each sample: images up there
+    outside_t outside = state->halved ? none : look_outside(config->beam, power); // twice each sample: images up there
+    const bool lines = state->outside_lines;
+    state->weigh_outside = outside.beyond;
+    if (lines) {
+        outside.noise = state->outside_noise;
+        outside.beyond = false;
+    }
     const int32_t total = reduce(config->beam, power, (uint64_t)(outside.beyond ? 0u : outside.noise) << 28, reduced, &energy);
     const float speed_m_s = likelihood_speed(config->beam, reduced, total, &white, &top, &fit);
     out->misfit = misfit_share * fixed_clamp(fit - misfit_calm, 0.0f, 10.0f);
@@ -318,8 +431,15 @@ static void measure(const doppler_config_t *config, const doppler_state_t *state
     const bool noise = outside.known && outside.in < 2u * outside.noise;
     out->speed_m_s = config->scale * speed_m_s;
     out->quiet = !outside.beyond && (white || noise || energy < (uint64_t)config->quiet_power_count2 * (12288u * 64u));
+    out->rest = !out->quiet && is_rest(state, energy);
+    state->weigh_young = !state->halved && state->tone.next < YOUNG_SAMPLES;
+    state->young_bin = state->weigh_young ? state->young_bin : 0;
     out->relieved = state->relief > 0 && (state->relief_masked || line_power(&state->tone) > energy / 2u);
-    out->beyond = outside.beyond || (top && !out->quiet && outside.in > 3u * outside.noise);
+    const bool edge = top && !out->quiet && !out->rest && outside.in > 3u * outside.noise;
+    out->beyond = outside.beyond || (edge && !lines);
+    out->rest = out->rest || (edge && lines);
+    state->weigh_outside = state->weigh_outside || edge;
+    state->outside_lines = lines && state->weigh_outside;
     if (outside.known && !out->quiet && outside.in > outside.noise) {
         const float share = (float)outside.noise / (float)(outside.in - outside.noise);
         out->trust = 1.0f + noise_trust * share;
@@ -544,7 +664,7 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
         state->relief -= state->relief > 0 ? 1 : 0;
         state->relief_masked = state->relief_masked && state->relief > 0;
-        out.spoilt = out.strange || made > MADE_MAX || railed > RAILED_MAX || off_rate;
+        out.spoilt = out.strange || out.rest || made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.relieved = out.relieved && !out.spoilt && !out.quiet;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;
@@ -562,7 +682,13 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
     out.busy = state->pending;
     state->rest = out.fresh ? REST : state->rest > 0 ? state->rest - 1 : 0;
     const bool idle = !busy && !out.busy && state->rest == 0;
-    if (idle && state->weigh_lines) {
+    if (idle && state->weigh_outside) {
+        state->weigh_outside = false;
+        watch_outside(config->beam, state);
+    } else if (idle && state->weigh_young) {
+        state->weigh_young = false;
+        watch_young(state);
+    } else if (idle && state->weigh_lines) {
         state->weigh_lines = false;
         state->relief_masked = lines_prevail(config->beam, state);
         state->relief = state->relief_masked ? RELIEF_VALUES : state->relief;

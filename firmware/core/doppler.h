@@ -91,13 +91,18 @@ typedef struct {
     int32_t late_samples;                   // samples since that window's end
     int16_t level_q8[DOPPLER_BINS_MAX + 1]; // of (3), by bin
     int16_t sway_q8[DOPPLER_BINS_MAX + 1];
-    uint32_t line[4];                                     // bit k % 32 of word k / 32: bin k is a line
-    int32_t due;                                          // calls until the lines are looked at
-    bool leveled;                                         // (3) has begun
-    doppler_line_t tone;                                  // the line inside the echo
-    int32_t clean;                                        // samples of the window that are rid of it
-    bool weigh_lines;                                     // (3) has found the first one
-    bool relief_masked;                                   // it was left out by (3)
+    uint32_t line[4];    // bit k % 32 of word k / 32: bin k is a line
+    int32_t due;         // calls until the lines are looked at
+    bool leveled;        // (3) has begun
+    doppler_line_t tone; // the line inside the echo
+    int32_t clean;       // samples of the window that are rid of it
+    bool weigh_lines;    // (3) has found the first one
+    bool relief_masked;  // it was left out by (3)
+    bool weigh_young;    // may a line be what is heard, while the search for one inside the echo is young?
+    int32_t young_bin;   // it is, and where; 0: it is not
+    bool weigh_outside;  // beyond the band something is loud; is it lines?
+    bool outside_lines;  // it is, and the mean power of the other bins there, over 2^28
+    uint32_t outside_noise;
     int32_t rest;                                         // calls that are the filter's
     int32_t relief;                                       // values that may still be the first without it
     int32_t sum;                                          // of the samples in the window
@@ -121,9 +126,10 @@ typedef struct {
     bool quiet;           // no echo above the noise: the speed means nothing
     bool dead;            // for a quarter of a second or more no noise at all: the front end is dead (in every call, fresh or not)
     bool beyond;          // an echo of more speed than the template's band holds: the speed is a lower bound
+    bool rest;            // no more is heard than a line that was taken off may leave
     bool strange;         // no speed's spectrum fits: interference, or no ground
     bool relieved;        // what came before told of an interfering line as strong as the echo, which is taken off from here on
-    bool spoilt;          // strange, or too many samples were lost, or stood at a rail: the speed means nothing
+    bool spoilt;          // strange, a rest, or too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
     float misfit;         // share of the speed that may be wrong because no spectrum fits [1]
     float trust;          // by how much its variance exceeds that of a calm echo without noise [1], 1 or more

@@ -74,7 +74,8 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, config->speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
-    const float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
+    float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
+    variance += fixed_bits(state->gyro_doubt_m2_s2) == 0u ? 0.0f : state->gyro_doubt_m2_s2;
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }
 
@@ -86,6 +87,8 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
     state->chore = (state->chore + 1u) % (2u * CHORES);
     if (state->chore == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
         ground_speed_watch_noise(config, state);
+    } else if (state->chore % CHORES == 1u) {
+        ground_speed_watch_gyro(config, state);
     } else if (state->chore % CHORES == 3u) {
         ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
     } else if (state->chore % CHORES == 5u) {
@@ -215,6 +218,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
         .std_m_s = state->std_m_s,
         .bias_m_s2 = state->bias_m_s2,
         .standstill = state->standstill,
+        .gyro_q8 = (int32_t)state->gyro_q8,
     };
     return out;
 }

@@ -40,6 +40,12 @@
 // Where their magnitude falls and rises again, that line is laid for every place of the turn. If the best of them fits, and better by 16
 // than the line without a turn, it is followed as the other sign from here on. Both signs are reported by their odds. What a line of
 // interference had told is forgotten when it is taken off (doppler_relieved): speed, slope and sign begin anew.
+//   r += T/(g t1 t2) (b - m) s^2/(s^2 + var X),  m += T/t1 (b - m)                    (16)
+// r: what the gyro about y reads too much since its offset was learned. A lean that its offset turns is no slope, so b runs against it at
+// g r; of a slope that the gyro tells rightly b sees nothing. What sways tells less of it. Var v grows by (|b - m| beyond its noise)^2 s^2.
+// Where (13) has an accuser in the lean itself, but value after value the radar stays with the wheels, the wheels' word is tried as well:
+// if it stands, the gyro lies, and what it turned last is its offset. So it is where b nears its limit against the lean. While no value
+// comes, nothing tells of a lean that runs off: the bias is known the less the longer that lasts.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -101,6 +107,12 @@ typedef struct {
     int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
     float lean_m_s2_per_q8;        // unit of the input's lean
     int32_t lean_told_q8;          // of (13): a change of the lean that tells of the slope
+    float gyro_slow;               // of (16): T/t1
+    float gyro_learns_q8_s2_m;     // of (16): T/(g t1 t2) [2^-8 count of the gyro per m/s^2]
+    float gyro_turns;              // its offset in 2^-8 counts over the lean less its mean in lean_m_s2_per_q8
+    float gyro_runs_m2_s6;         // how fast a lean runs off that no radar value sees, squared
+    float gyro_sure_m_s2;          // of (16): |b - m| that noise makes
+    float gyro_steady_m2_s2;       // of (16): s^2
     float quiet_noise_m2_s2;       // R of that speed, taken as 0
     float still_m_s;               // rim speed below which the wheels are at rest
     int32_t still_needed;          // ticks of rest before the rover can be standing
@@ -170,7 +182,14 @@ typedef struct {
     float wheel_m_s;        // when X was looked at last, and V then, and the ticks since
     int32_t wheel_q20;
     int32_t wheel_ticks;
-    int32_t lean_q8, lean_mean_q8;           // of the last input, and over a third of a second
+    int32_t lean_q8, lean_mean_q8; // of the last input, and over a third of a second
+    int32_t gyro_q8;               // r [2^-8 count] and m of (16)
+    float bias_mean_m_s2;
+    float gyro_doubt_m2_s2;                  // and what it adds to the variance
+    uint32_t gyro_asked;                     // when (16) was looked at last, in slide.ticks
+    int32_t gyro_denied;                     // values in a row for which the radar was with the wheels, against the lean
+    int32_t gyro_alone_ticks;                // since a value was taken
+    bool gyro_tried;                         // (13) is under way against the lean
     float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second
     float value_beside_m_s, beside_mean_m_s; // the last value less the wheels' mean, and the mean of those before
     float wheel_mean_m_s;                    // over a quarter of a second
@@ -228,6 +247,7 @@ typedef struct {
     float std_m_s;
     float bias_m_s2;
     bool standstill;
+    int32_t gyro_q8; // r of (16), for lean.h [2^-8 count]
 } ground_speed_output_t;
 
 void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_t *state);

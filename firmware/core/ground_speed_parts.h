@@ -6,6 +6,7 @@
 //   ground_speed_sign.c   the other sign, (9)
 //   ground_speed_slide.c  a turn through zero that the last values tell of, (15)
 //   ground_speed_jump.c   the track whose bias may jump, (7)
+//   ground_speed_gyro.c   a gyro whose offset has moved, (16)
 //   ground_speed_wheels.c where accelerometer and wheels part: (10), and whether it is slip or a slope, (13); what of it is noise, (14)
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_PARTS_H
@@ -107,6 +108,14 @@ int32_t ground_speed_middle_q20(const ground_speed_state_t *state, uint32_t ago)
 
 void ground_speed_forget_agile(ground_speed_state_t *state);
 void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed_state_t *state);
+
+// --- ground_speed_gyro.c
+
+void ground_speed_watch_gyro(const ground_speed_config_t *config, ground_speed_state_t *state);
+// Whether the lean has just told of a slope.
+bool ground_speed_gyro_tells(const ground_speed_config_t *config, const ground_speed_state_t *state);
+// What it has just told is its offset; the share of it that is taken off at once.
+void ground_speed_gyro_lied(const ground_speed_config_t *config, ground_speed_state_t *state, float share);
 
 // --- ground_speed_wheels.c
 

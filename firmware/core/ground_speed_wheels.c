@@ -19,7 +19,7 @@ static const float beside_share = 0.25f;       // [1] of a value that enters its
 
 static const float felt_sigmas = 4.0f; // of X, beyond which it is no noise
 
-enum { FORCE_TICKS = 8, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
+enum { FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
 
 // f of (13), over the last ticks.
 static float force_now(const ground_speed_config_t *config, const ground_speed_state_t *state)
@@ -48,6 +48,10 @@ void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_
             state->odds -= refuted;
         }
     } else {
+        const bool denied = ground_speed_gyro_tells(config, state) &&
+                            fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f) &&
+                            !radar_departs(config, state, 0.0f);
+        state->gyro_denied = !denied ? 0 : state->gyro_denied + (state->gyro_denied < DENIED_VALUES ? 1 : 0);
         state->beside_mean_m_s =
             state->accepted ? state->beside_mean_m_s + beside_share * (before - state->beside_mean_m_s) : state->value_beside_m_s;
     }
@@ -135,6 +139,10 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     if (state->rolls_ticks > 0) {
         state->rolls_ticks -= state->rolls_ticks > passed ? passed : state->rolls_ticks;
         roll(config, state, ticks);
+        if (state->rolls_ticks == 0 && state->gyro_tried) {
+            ground_speed_gyro_lied(config, state, 1.0f);
+            state->gyro_tried = false;
+        }
     } else if (!input->doppler_fresh && fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb) && state->rolls_wait == 0 &&
                !state->other_alive && input->accel_valid && !input->wheels_part &&
                fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), sway_times * sway_m2_s2(state))) {
@@ -144,9 +152,9 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
         const bool felt = fixed_greater(back ? -departs : departs, config->slip_force_m_s2); // else it is the wheels that depart: they spin
         const float felt_m_s2 = ground_speed_felt_force(config, state, force);
         const bool pushed = fixed_greater(back ? felt_m_s2 : -felt_m_s2, config->slip_force_m_s2); // along the slip that X would be
-        const int32_t leant_q8 = state->lean_q8 - state->lean_mean_q8;
-        const bool told = leant_q8 > config->lean_told_q8 || leant_q8 < -config->lean_told_q8; // the gyro has seen the slope: it is slip
-        if (felt && !pushed && !told && !radar_departs(config, state, 0.0f)) {
+        const bool told = ground_speed_gyro_tells(config, state); // the gyro has seen the slope: it is slip, unless the gyro lies
+        if (felt && !pushed && (!told || state->gyro_denied >= DENIED_VALUES) && !radar_departs(config, state, 0.0f)) {
+            state->gyro_tried = told;
             begin_rolling(config, state);
         }
     }
@@ -164,6 +172,7 @@ void ground_speed_no_rolling(ground_speed_state_t *state)
     if (state->rolls_ticks > 0) {
         state->rolls_ticks = 0;
         state->rolls_wait = ROLL_AGAIN_TICKS;
+        state->gyro_tried = false;
         state->other_alive = false;
         state->apart_m_s = 0.0f;
         ground_speed_forget_agile(state);

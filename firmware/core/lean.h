@@ -1,13 +1,15 @@
 // lean.h - how much of gravity the gyros have turned into the accelerometer's axis: slopes and bumps, as they begin.
 //
-//   f' = (w_z f_y - w_y g,  w_x g - w_z f_x)    (1)  f: the part of gravity's reaction along x and y; a vector that rests in the world,
-//   seen
-//                                                    from a body that turns (x forward, y left, z up); cosines of slopes taken as 1
-//   lean = sum of the changes of f_x            (2)  0 at the start: what the slope is there is the bias of ground_speed.h
-//   w less its mean while the rover stands; until it has stood for a second, less its mean of all that came, and only where that is
-//   more than 3 deg/s: a slope that begins, no offset and no mean that a slope has moved                            (3)
-//   f is what the accelerometer reads while it stands; below a slope of 3 deg it is left out of (1): it may be the device's own offset (4)
-// Whole numbers only. Derived here.
+//   f' = (w_z f_y - w_y g,  w_x g - w_z f_x)    (1)
+//   lean = sum of the changes of f_x            (2)
+//
+// (1) f: the part of gravity's reaction along x and y, a vector that rests in the world, seen from a body that turns (x forward, y left,
+// z up); cosines of slopes taken as 1. (2) 0 at the start: what the slope is there is the bias of ground_speed.h.
+// (3) w is less its mean while the rover stands, and about y less what the estimator has told since, (16) of ground_speed.h. Until it has
+// stood for a second, less its mean of all that came, and only where that is more than 3 deg/s: a slope that begins, no offset and no mean
+// that a slope has moved.
+// (4) f follows the accelerometer within 2.6 s: a rover's own accelerations have no mean, what a gyro about x or y reads too much has.
+// Below a slope of 3 deg it is left out of (1): it may be the device's own offset. Whole numbers only. Derived here.
 #ifndef TRACTION_FIRMWARE_CORE_LEAN_H
 #define TRACTION_FIRMWARE_CORE_LEAN_H
 
@@ -30,6 +32,7 @@ typedef struct {
     int32_t accel_count[2]; // x, y, less their offsets
     bool accel;             // the last two are there
     bool standing;
+    int32_t moved_q8;       // of the gyro about y: its offset, since the rover stood, |.| <= 2^22 [2^-8 count]
     uint32_t elapsed_ticks; // since the call before, 1..1000
 } lean_input_t;
 

@@ -121,6 +121,10 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
     const float longer = 2.0f / beam->window.per_s; // than half a second
     const float middle = 4.0f * beam->window.tau_s; // its age over the 0.25 s of (10)
     const float deaf = beam->deaf;
+    const float gyro_mean_s = 1.5f;  // t1 of (16): the bias follows a ramp within about 1 s
+    const float gyro_learn_s = 3.0f; // t2: twice that, for a damping of 0.7
+    const float gyro_lag_s = 0.36f;  // by which a mean of the lean is behind: 32 ticks, and those that are busy
+    const float gyro_q8_s_m = 256.0f / (9.81f * v[ROVER_gyro_rad_s_per_count]);
     const ground_speed_config_t method = {
         .method = GROUND_SPEED_BIAS,
         .window = &beam->window,
@@ -166,6 +170,12 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .misfit_max = 30.0f,
         .quiet_needed = 3,
         .lean_m_s2_per_q8 = v[ROVER_accel_m_s2_per_count] / 256.0f,
+        .gyro_slow = tick_s / gyro_mean_s,
+        .gyro_learns_q8_s2_m = gyro_q8_s_m * tick_s / (gyro_mean_s * gyro_learn_s),
+        .gyro_turns = -v[ROVER_accel_m_s2_per_count] / 256.0f * gyro_q8_s_m / gyro_lag_s,
+        .gyro_runs_m2_s6 = 0.0025f, // (0.05 m/s^3)^2: 0.3 deg/s of offset, assumed
+        .gyro_sure_m_s2 = 0.05f,    // its bias moves so far by noise (outdoors_bench, calm rows), assumed
+        .gyro_steady_m2_s2 = 4e-4f, // (2 cm/s)^2: twice what wheels on a calm floor make of X, assumed
         .lean_told_q8 = (int32_t)(256.0f * 0.2f / v[ROVER_accel_m_s2_per_count] + 0.5f), // [m/s^2] 0.2: 1 deg, assumed
         .quiet_noise_m2_s2 = 9e-4f * (deaf * deaf), // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
@@ -238,12 +248,21 @@ static void build_control(const float *v, control_config_t *config)
     config->feed_forward = true;
 }
 
+static uint32_t wheel_mask(const float *v) { return (uint32_t)whole(fixed_clamp(v[ROVER_wheel_mask], 0.0f, 15.0f)); }
+
+// FRAME_* bits of wheels that are not there: nobody waits for them.
+static uint32_t absent_bits(const float *v)
+{
+    const uint32_t absent = ~wheel_mask(v) & 0xfu;
+    return absent * FRAME_ENCODER_0 | absent * FRAME_CURRENT_0 | absent * FRAME_BRIDGE_0;
+}
+
 static void build_safety(const float *v, safety_config_t *safety)
 {
     const float continuous_A = v[ROVER_current_continuous_A];
     const safety_config_t built = {
         .tick_s = tick_s,
-        .required = 0xfffu | FRAME_EMERGENCY_STOP,
+        .required = (0xfffu | FRAME_EMERGENCY_STOP) & ~absent_bits(v),
         .patience_ticks = 7,         // off in the 8th bad tick: 80 ms, inside the 100 ms asked for
         .command_patience_ticks = 8, // 80 ms
         .missed_ticks_max = 5,       // 50 ms
@@ -278,6 +297,7 @@ static void build_self_test(const float *v, const safety_config_t *safety, self_
     const float pulses = v[ROVER_encoder_counts_per_turn] / 6.28318531f; // of a radian
     const self_test_config_t built = {
         .required = safety->required,
+        .wheels = wheel_mask(v),
         .rest_ticks = 100,
         .pulse_ticks = 20,
         .settle_ticks = 15,
@@ -302,6 +322,15 @@ static void build_self_test(const float *v, const safety_config_t *safety, self_
     *self_test = built;
 }
 
+static float share_of(uint32_t wheels)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < WHEEL_COUNT; i++) {
+        count += (wheels >> i) & 1u;
+    }
+    return 1.0f / (float)(count > 0u ? count : 1u);
+}
+
 void control_config_build(const rover_parameters_t *parameters, control_config_t *config)
 {
     const float *v = parameters->value;
@@ -309,6 +338,8 @@ void control_config_build(const rover_parameters_t *parameters, control_config_t
     config->geometry.half_wheelbase_m = v[ROVER_half_wheelbase_m];
     config->geometry.half_track_m = v[ROVER_half_track_m];
     config->geometry.mass_kg = v[ROVER_mass_kg];
+    config->geometry.wheels = wheel_mask(v);
+    config->geometry.wheel_share = share_of(config->geometry.wheels);
     build_sense(v, &config->sense);
     build_circuit(v, &config->circuit, &config->sense);
     build_doppler(parameters, &config->doppler);
@@ -345,6 +376,10 @@ static control_refusal_t check_ranges(const rover_parameters_t *parameters)
         if (sign > -1.0f && sign < 1.0f) {
             return refuse(rover_parameter_name(ROVER_encoder_sign_0 + i), "a sign is 1 or -1; give one of them");
         }
+    }
+    const float mask = parameters->value[ROVER_wheel_mask];
+    if (mask > (float)whole(mask) || mask < (float)whole(mask)) {
+        return refuse(rover_parameter_name(ROVER_wheel_mask), "not a sum of 1, 2, 4, 8 for the wheels 0 to 3; give 15 for all four");
     }
     return refuse(0, 0);
 }

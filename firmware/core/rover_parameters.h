@@ -95,7 +95,8 @@ extern "C" {
     X(speed_ki_rad_m_s, SCALED, 35.0f, 0.0f, 1e4f)                                                                                         \
     X(speed_integral_max_rad_s, SCALED, 6.0f, 0.0f, 500.0f)                                                                                \
     X(sweep_zero_s, OWN, 10.0f, 1.0f, 600.0f)                                                                                              \
-    X(sweep_duration_s, OWN, 20.0f, 1.0f, 3600.0f)
+    X(sweep_duration_s, OWN, 20.0f, 1.0f, 3600.0f)                                                                                         \
+    X(wheel_mask, OWN, 15.0f, 1.0f, 15.0f) /* bit i: the rover has wheel i */
 
 typedef enum {
 #define ROVER_PARAMETER_INDEX(key, kind, value, low, high) ROVER_##key,

@@ -51,8 +51,22 @@ void self_test_begin(self_test_state_t *state, self_test_result_t *result)
     *result = none;
 }
 
-static int32_t moved(const self_test_state_t *state, const sensor_frame_t *frame, int wheel)
+static bool has_wheel(const self_test_config_t *config, int32_t wheel) { return (config->wheels & (1u << (uint32_t)wheel)) != 0u; }
+
+// The first wheel from `wheel` on that the rover has; WHEEL_COUNT: none.
+static int32_t wheel_from(const self_test_config_t *config, int32_t wheel)
 {
+    while (wheel < WHEEL_COUNT && !has_wheel(config, wheel)) {
+        wheel++;
+    }
+    return wheel;
+}
+
+static int32_t moved(const self_test_config_t *config, const self_test_state_t *state, const sensor_frame_t *frame, int wheel)
+{
+    if (!has_wheel(config, wheel)) {
+        return 0; // its field has no meaning
+    }
     return fixed_wrap_difference(frame->encoder_count[wheel], state->begin_count[wheel]);
 }
 
@@ -133,7 +147,7 @@ static void judge_rest(const self_test_config_t *config, self_test_state_t *stat
     result->failures |= fixed_greater(config->battery_V, result->battery_V) ? (uint32_t)SELF_TEST_BATTERY : 0u;
     result->failures |= state->silent != 0u ? (uint32_t)SELF_TEST_SILENT : 0u;
     for (int i = 0; i < WHEEL_COUNT; i++) {
-        const int32_t turned = moved(state, frame, i);
+        const int32_t turned = moved(config, state, frame, i);
         const uint32_t lost =
             state->silent & (((uint32_t)FRAME_ENCODER_0 | (uint32_t)FRAME_CURRENT_0 | (uint32_t)FRAME_BRIDGE_0) << (uint32_t)i);
         uint32_t mine = turned > config->still_count || turned < -config->still_count ? (uint32_t)SELF_TEST_MOVING : 0u;
@@ -155,13 +169,13 @@ static void judge_pulse(const self_test_config_t *config, self_test_state_t *sta
     const float expected_A = state->pulse_V / n * config->winding_1_ohm;
     const float least_A = config->current_least * expected_A;
     const float mine_A = state->pulse_A[wheel] / n;
-    const int32_t mine = moved(state, frame, wheel) * sense->encoder_sign[wheel];
+    const int32_t mine = moved(config, state, frame, wheel) * sense->encoder_sign[wheel];
     uint32_t failures = 0;
     for (int i = 0; i < WHEEL_COUNT; i++) { // one other's answer, four times all the rest: where the rover rolls, all turn
-        const int32_t other = size_of(moved(state, frame, i));
+        const int32_t other = size_of(moved(config, state, frame, i));
         bool turns = i != wheel && other > config->least_count;
         for (int k = 0; k < WHEEL_COUNT; k++) {
-            turns = turns && (k == i || 4 * size_of(moved(state, frame, k)) < other);
+            turns = turns && (k == i || 4 * size_of(moved(config, state, frame, k)) < other);
         }
         const bool draws = i != wheel && fixed_greater(fabsf(state->pulse_A[i] / n), least_A) && fixed_greater(least_A, fabsf(mine_A));
         state->turned |= other > config->least_count ? 1u << (uint32_t)i : 0u;
@@ -208,7 +222,7 @@ static bool pulse(const self_test_config_t *config, self_test_state_t *state, co
     state->pulse_n++;
     bool turned = false;
     for (int i = 0; i < WHEEL_COUNT; i++) {
-        turned = turned || size_of(moved(state, frame, i)) >= config->enough_count;
+        turned = turned || size_of(moved(config, state, frame, i)) >= config->enough_count;
     }
     state->duty = config->duty_max * (float)(state->tick + 1) / (float)config->pulse_ticks;
     return turned || state->tick >= config->pulse_ticks;
@@ -230,8 +244,9 @@ command_t self_test_step(const self_test_config_t *config, const sense_config_t 
         listen(config, state, frame, trace);
         if (++state->tick >= config->rest_ticks) {
             judge_rest(config, state, frame, result);
-            result->done = result->failures != 0u; // a rover that fails at rest drives no motor
-            begin_phase(state, frame, 0);
+            const int32_t first = wheel_from(config, 0);
+            result->done = result->failures != 0u || first == WHEEL_COUNT; // a rover that fails at rest drives no motor
+            begin_phase(state, frame, first);
         }
         return command;
     }
@@ -253,8 +268,9 @@ command_t self_test_step(const self_test_config_t *config, const sense_config_t 
         state->tick++;
         return command;
     }
-    if (state->wheel + 1 < WHEEL_COUNT) {
-        begin_phase(state, frame, state->wheel + 1);
+    const int32_t next = wheel_from(config, state->wheel + 1);
+    if (next < WHEEL_COUNT) {
+        begin_phase(state, frame, next);
         return command;
     }
     judge_order(state, result);

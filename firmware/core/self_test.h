@@ -39,6 +39,7 @@ typedef enum {
 
 typedef struct {
     uint32_t required;                                               // FRAME_* bits that must answer
+    uint32_t wheels;                                                 // bit i: the rover has wheel i
     int32_t rest_ticks;                                              // of (1)
     int32_t pulse_ticks;                                             // of (2), at most, each wheel
     int32_t settle_ticks;                                            // between pulses

@@ -155,6 +155,7 @@ static void measure_lean(const sense_config_t *config, sense_state_t *state, con
         .accel_count = {frame->accel_x_count - config->accel_offset_count, frame->accel_y_count},
         .accel = (frame->present & forces) == forces,
         .standing = state->standing,
+        .moved_q8 = state->gyro_q8,
         .elapsed_ticks = elapsed_ticks,
     };
     lean_step(&config->lean, &state->lean, &input);

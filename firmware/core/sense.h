@@ -56,7 +56,8 @@ typedef struct {
     float level_m_s2;
     float gyro_z_rad_s;
     lean_state_t lean;
-    bool standing;         // told by the estimator after the tick before
+    bool standing;         // told by the estimator after the tick before,
+    int32_t gyro_q8;       // and what the gyro about y reads too much [2^-8 count]
     uint32_t encoder_seen; // bit i: wheel i has had a first count
     uint32_t stepped;      // bit i: and a speed since, so that a jump of it can be told
     uint32_t last_tick;

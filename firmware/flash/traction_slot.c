@@ -218,7 +218,10 @@ static int status(const slots_t *slots, const options_t *options)
     }
     const int lock = board_lock_open(slots->folder, message);
     const bool runs = lock >= 0 && board_lock_holder(lock, BOARD_STARTER) > 0;
-    (void)printf("%s\n%s\n", runs ? "a version runs" : "no version runs: traction-slot run is not started", state.note);
+    const char *now = !runs                               ? "no version runs: traction-slot run is not started"
+                      : state.good < 0 && state.trial < 0 ? "traction-slot run waits for the first version"
+                                                          : "a version runs";
+    (void)printf("%s\n%s\n", now, state.note);
     if (options->wait_s > 0 && state.trial >= 0) {
         return EXIT_BUSY;
     }

@@ -110,7 +110,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
     const int substeps = 50;
     double heave_accel = 0;
     for (int k = 0; k < static_cast<int>(now.duration_s / tick_s); ++k, ++tick) {
-        const double before = now.closed ? rover.speed : last_speed;
+        const double before = now.closed ? rover.speed : last_speed, shakes = t < now.still_s ? 0 : 1;
         double speed = before, wheel = 0;
         for (int j = 0; j < substeps; ++j) {
             const double dt = tick_s / substeps;
@@ -124,7 +124,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
             path += speed * dt, angle += wheel / radius_m * dt;
             if (t * radar_Hz >= samples + 1) {
                 ++samples;
-                const double z = now.heave_m * std::sin(2 * pi * now.heave_Hz * t), pitch = now.pitch_rad * std::sin(2 * pi * 5 * t);
+                const double z = shakes * now.heave_m * std::sin(2 * pi * now.heave_Hz * t),
+                             pitch = shakes * now.pitch_rad * std::sin(2 * pi * 5 * t);
                 const bool dead = now.radar_dead && now.radar_dead(t);
                 const double filtered = low.step(high.step(now.echo_count * echo.at(path + 0.3 * pitch, z)));
                 const double count =
@@ -141,7 +142,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         heave_accel = -now.heave_m * std::pow(2 * pi * now.heave_Hz, 2) * std::sin(2 * pi * now.heave_Hz * t);
         const double accel = (speed - before) / tick_s + gravity * std::sin(slope_at(t)) + now.accel_bias +
                              now.accel_noise * accel_noise.normal() +
-                             0.3 * now.pitch_rad * std::pow(2 * pi * 5, 2) * -std::sin(2 * pi * 5 * t);
+                             shakes * 0.3 * now.pitch_rad * std::pow(2 * pi * 5, 2) * -std::sin(2 * pi * 5 * t) -
+                             (now.gyros ? shakes * gravity * now.pitch_rad * std::sin(2 * pi * 5 * t) : 0);
         last_speed = speed;
         ++since;
         if (now.missed_share > 0 && luck.uniform() < now.missed_share) {
@@ -167,7 +169,9 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         if (now.gyros) {
             frame.present |= FRAME_GYRO_XY | FRAME_ACCEL_YZ;
             frame.accel_z_count = static_cast<std::int16_t>(std::lround(gravity * std::cos(slope_at(t)) / 0.004));
-            const double rate[] = {0, -(slope_at(t) - slope_at(t - tick_s)) / tick_s, 0};
+            const auto more = [t](const std::function<double(double)> &of) { return of ? of(t) : 0.0; };
+            const double sways = shakes * now.pitch_rad * 2 * pi * 5 * std::cos(2 * pi * 5 * t); // nose down, as the radar goes ahead
+            const double rate[] = {more(now.gyro_x_more), more(now.gyro_y_more) + sways - (slope_at(t) - slope_at(t - tick_s)) / tick_s, 0};
             std::int16_t *const count[] = {&frame.gyro_x_count, &frame.gyro_y_count, &frame.gyro_z_count};
             for (std::size_t i = 0; i < 3; ++i) // 0.2 deg/s of noise, assumed
                 *count[i] = static_cast<std::int16_t>(std::lround((rate[i] + gyro_offset[i] + 0.0035 * gyro_noise.normal()) / 0.0005));
@@ -214,8 +218,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 static_cast<double>(state.doppler.tone.turn) / 4294967296.0 * radar_Hz,
                 std::hypot(state.doppler.tone.a_re, state.doppler.tone.a_im) / 32);
         }
-        run.steps.push_back(
-            {t, speed, static_cast<double>(trace.speed_m_s), static_cast<double>(trace.speed_std_m_s), wheel, trace.faults, note});
+        run.steps.push_back({t, speed, static_cast<double>(trace.speed_m_s), static_cast<double>(trace.speed_std_m_s), wheel, trace.faults,
+                             state.ground_speed.gyro_q8 * 0.0005 / 256, note});
     }
     return run;
 }

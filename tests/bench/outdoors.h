@@ -52,12 +52,14 @@ struct Case {
     double accel_bias = 0.05, accel_noise = 0.2;                      // [m/s^2]
     double echo_count = 75, snr_dB = 25, offset_count = 0; // rms; of white noise over the whole band; of the converter, beyond 512
     double tone_Hz = 0, tone_count = 0;                    // amplitude
-    double heave_m = 0, heave_Hz = 8, pitch_rad = 0;       // amplitudes
+    double heave_m = 0, heave_Hz = 8, pitch_rad = 0;       // amplitudes,
+    double still_s = 0;                                    // from when on: what stands does not shake
     double lost_share = 0, lost_ticks_share = 0;           // radar samples lost at random; radar ticks lost whole
     std::function<bool(double)> radar_dead, radar_silent;  // noise of 0.3 counts alone; no samples at all
     double missed_share = 0;                               // ticks missed at random
     bool sequence = true;                                  // the frame numbers its samples
     bool gyros = false; // all three, with offset and noise; a slope then comes within 0.1 s, as far as a body can pitch
+    std::function<double(double)> gyro_y_more, gyro_x_more; // what they read too much [rad/s]
     // closed loop
     bool closed = false;
     bool coasts = false; // in mode stop
@@ -68,7 +70,8 @@ struct Case {
 struct Step {
     double t, speed, estimate, std, wheel;
     std::uint32_t faults;
-    std::string note; // what the filter thinks, for the eye
+    double gyro_y_rad_s; // what the gyro about y is said to read too much since it stood
+    std::string note;    // what the filter thinks, for the eye
 };
 
 struct Run {

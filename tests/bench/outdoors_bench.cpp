@@ -1,6 +1,7 @@
 // outdoors_bench - the whole control_step on echoes and frames of outdoors.h: one row per thing that the first hour outdoors brings.
 //
-// usage: outdoors_bench [--gyros] [--seeds N] [--first N] [--only WORD]. --gyros: the frames have all three. Exit 1 when a row misses its
+// usage: outdoors_bench [--gyros] [--stood S] [--seeds N] [--first N] [--only WORD]. --gyros: the frames have all three; --stood: every row
+// begins after S seconds of standing, so that the gyros' offsets are known, and half a second of setting off. Exit 1 when a row misses its
 // goal: error <= 4 cm/s, or NEES <= 2, or a fault within 0.5 s; never a wrong sign for more than 0.5 s; closed loops within 0.1 m/s of
 // their command from 1.5 s on, without a fault.
 #include "tests/bench/outdoors.h"
@@ -154,6 +155,16 @@ std::vector<Row> rows() {
             add("noise", "the same, a tenth of its power", now);
         }
     }
+    for (const double tone : {50.1, 60.2, 83.4, 100.0, 119.9, 150.0}) { // a rover that stands beside a lamp, and sets off
+        for (const double share : {1.41, 0.1}) {
+            Case now;
+            now.tone_Hz = tone, now.tone_count = now.echo_count * share, now.settle_s = 10;
+            now.speed = [](double t) { return ramp(t, 8, 8.5, 0, 0.3); };
+            char name[64];
+            std::snprintf(name, sizeof name, "stands beside %.1f Hz, %.2f of the echo", tone, share);
+            add("lamp", name, now);
+        }
+    }
     for (const double a : {0.5, 1.0, 2.0}) {
         for (const Case &calm_case : calm()) {
             if (calm_case.name == "constant 0.5" || calm_case.name == "sine" || calm_case.name == "stop and go") {
@@ -195,6 +206,45 @@ std::vector<Row> rows() {
         missed.missed_share = 0.02;
         add("lost", "2 % of the ticks missed", missed, 20);
     }
+    for (const double deg_s : {0.3, 1.0, -3.0, 10.0}) { // a gyro that lies once it is trusted: it has stood, and its offset was learned
+        Case now;
+        now.gyros = true, now.duration_s = 40;
+        now.speed = [](double t) { return ramp(t, 3, 3.5, 0, 0.3); };
+        char name[64];
+        const double w = deg_s * deg;
+        now.gyro_y_more = [w](double t) { return t < 8 ? 0 : w; };
+        std::snprintf(name, sizeof name, "offset %+.1f deg/s from 8 s on", deg_s);
+        add("gyro", name, now);
+        now.gyro_y_more = [w](double t) { return t < 8 ? 0 : w * (t - 8) / 32; };
+        std::snprintf(name, sizeof name, "drifts to %+.1f deg/s in 32 s", deg_s);
+        add("gyro", name, now);
+        now.speed = [](double t) { return ramp(t, 3, 3.5, 0, 0.3) + (t > 6 ? 0.15 * std::sin(t) : 0); };
+        std::snprintf(name, sizeof name, "drifts to %+.1f deg/s, sine", deg_s);
+        add("gyro", name, now);
+        Case closed;
+        closed.gyros = closed.closed = true, closed.duration_s = 30, closed.settle_s = 8;
+        closed.gyro_y_more = [w](double t) { return t < 8 ? 0 : w; };
+        std::snprintf(name, sizeof name, "offset %+.1f deg/s, closed loop", deg_s);
+        add("gyro", name, closed);
+    }
+    {
+        Case now;
+        now.gyros = true, now.duration_s = 600;
+        now.speed = [](double t) { return ramp(t, 3, 3.5, 0, 0.3); };
+        now.gyro_y_more = [deg](double t) { return deg * t / 600; };
+        add("gyro", "warms up: 1 deg/s in 10 min without a stop", now);
+        now.duration_s = 120, now.gyro_y_more = [deg](double t) { return deg * t / 120; };
+        now.snr_dB = 5;
+        add("gyro", "1 deg/s in 2 min, SNR 5 dB", now);
+        now.snr_dB = 25, now.accel_noise = 1;
+        add("gyro", "1 deg/s in 2 min, accelerometer 1.0", now);
+        now.accel_noise = 0.2, now.pitch_rad = 0.01;
+        add("gyro", "1 deg/s in 2 min, pitch 0.01 rad at 5 Hz", now);
+        now.pitch_rad = 0;
+        now.gyro_y_more = nullptr, now.duration_s = 40;
+        now.gyro_y_more = [](double t) { return t < 8 ? 0 : 0.3 * (std::fmod(std::floor(100 * t) * 0.754877666, 1.0) - 0.5) * 3.46; };
+        add("gyro", "noise of 0.3 rad/s", now);
+    }
     const struct {
         const char *name;
         double most, slip;
@@ -215,6 +265,21 @@ std::vector<Row> rows() {
     return all;
 }
 
+// The same drive, begun `stood` + `off` later.
+void stand_first(Row &row, double stood) {
+    const double off = 0.5, late = stood + off;
+    Case &now = row.what;
+    const auto later = [late](auto &of) {
+        if (of) of = [late, inner = of](double t) { return inner(t > late ? t - late : 0.0); };
+    };
+    now.duration_s += late, now.settle_s += late, now.still_s = stood;
+    row.fault_by_s += row.fault_by_s >= 0 ? late : 0;
+    later(now.slope), later(now.radar_dead), later(now.radar_silent);
+    for (auto *of : {&now.speed, &now.wheel}) {
+        if (*of) *of = [=, inner = *of](double t) { return t > late ? inner(t - late) : ramp(t, stood, late, 0, inner(0)); };
+    }
+}
+
 std::string names_of(std::uint32_t faults) {
     char text[32];
     std::snprintf(text, sizeof text, faults == 0 ? "" : "0x%x", faults);
@@ -226,8 +291,13 @@ std::string names_of(std::uint32_t faults) {
 int main(int argc, char **argv) {
     int seeds = 4, first = 1;
     std::string only;
-    const bool gyros = argc > 1 && std::strcmp(argv[1], "--gyros") == 0;
-    for (int i = gyros ? 2 : 1; i + 1 < argc; i += 2) {
+    bool gyros = false;
+    double stood = 0;
+    for (int i = 1; i < argc; ++i) {
+        gyros = gyros || std::strcmp(argv[i], "--gyros") == 0;
+    }
+    for (int i = 1; i + 1 < argc; ++i) {
+        if (std::strcmp(argv[i], "--stood") == 0) stood = std::atof(argv[i + 1]);
         if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
         if (std::strcmp(argv[i], "--first") == 0) first = std::atoi(argv[i + 1]);
         if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
@@ -239,7 +309,8 @@ int main(int argc, char **argv) {
     int calm_rows = 0, nees_rows = 0;
     std::vector<Row> every = rows();
     for (Row &row : every) {
-        row.what.gyros = gyros;
+        row.what.gyros = gyros || row.group == "gyro";
+        if (stood > 0 && row.group != "gyro" && row.group != "closed") stand_first(row, stood);
         if (!only.empty() && row.group.find(only) == std::string::npos && row.what.name.find(only) == std::string::npos) {
             continue;
         }

@@ -2,7 +2,8 @@
 // path and as steps, tilted directions, modes, speeds, starts, stops, turns, restarts with warm motors, motors and sensors unlike their
 // description within what the catalogue calls usual. usage: false_alarms_run [HOURS [FIRST_SEED [wide]]], or scenario SEED [wide] for the
 // file of one drive; a short run of it is a test. `wide` varies what the others hold fixed: five soils, sand to 10 degrees, turns on the
-// spot, payload and where it lies, offset and vibration of the accelerometer, the radar's mounting, ground and fading.
+// spot, payload and where it lies, offset and vibration of the accelerometer, gyros that warm up, the radar's mounting, ground and fading,
+// lamps.
 //
 // Every drive is drawn from its own seed, printed when it fails. A drive that asks for what the rover cannot do (a wheel held by a slope it
 // cannot climb) would be a fault by right: demands stay within grip and power.
@@ -42,14 +43,22 @@ std::string draw(std::uint64_t seed, double duration_s, bool wide) {
             text += "[" + number(path_m) + ", " + number(random.uniform(-steepest, steepest)) + "], ";
         text += "]\n";
     }
-    if (wide)
+    if (wide) {
         text += "[rover]\nmass_kg = " + number(random.uniform(2.4, 4.0)) + "\n[sensors]\nheave_m = " + number(random.uniform(0, 0.002)) +
                 "\nheave_Hz = " + number(random.uniform(3, 15)) + "\npitch_vibration_rad = " + number(random.uniform(0, 0.01)) +
                 "\npitch_vibration_Hz = " + number(random.uniform(2, 12)) +
                 "\n[sensors.accel]\noffset_m_s2 = " + number(random.uniform(-0.2, 0.2)) +
                 "\n[radar]\nmounting_error_deg = " + number(random.uniform(-3, 3)) + "\nground_exponent = " + number(random.uniform(0, 2)) +
                 "\n";
-    else if (random.below(3) == 0)
+        sim::Random more(seed, "lamps and gyros"); // of its own: what was drawn before stays
+        static constexpr double lamp_Hz[] = {50, 60, 100, 120, 150};
+        if (more.below(3) == 0)
+            text += "[[radar.interference]]\nfrequency_Hz = " + number(lamp_Hz[more.below(5)] + more.uniform(-0.3, 0.3)) +
+                    "\nrms_count = " + number(more.uniform(0.5, 20)) + "\n";
+        for (const char *axis : {"x", "y", "z"}) // warms up, by up to 1 deg/s in ten minutes
+            text += std::string("[[fault]]\nwhat = \"sensor\"\nsensor = \"gyro\"\nhow = \"drift\"\naxis = \"") + axis +
+                    "\"\ndrift_s = " + number(more.uniform(-degree, degree) / 600) + "\nfrom_s = 0.0\n";
+    } else if (random.below(3) == 0)
         text += "[sensors]\npitch_vibration_rad = " + number(random.uniform(0, 0.01)) + "\nheave_m = " + number(random.uniform(0, 0.001)) +
                 "\n";
     for (double t_s = 0; t_s < duration_s;) {

@@ -14,6 +14,7 @@ struct Body {
     lean_config_t config = rover_config_default().sense.lean;
     lean_state_t state = {};
     double offset_rad_s[3] = {0, 0, 0};
+    int32_t moved_q8 = 0;
 
     // Seconds at constant rates, seen as whole counts.
     void turn(double seconds, double x, double y, double z, bool standing = false, double accel_x = 0, double accel_y = 0,
@@ -29,6 +30,7 @@ struct Body {
         input.accel = true;
         input.standing = standing;
         input.elapsed_ticks = elapsed;
+        input.moved_q8 = moved_q8;
         for (int k = 0; k < static_cast<int>(std::lround(100 * seconds / elapsed)); k++) {
             lean_step(&config, &state, &input);
         }
@@ -72,11 +74,42 @@ TEST(Lean, a_turn_on_a_side_slope_turns_gravity_into_the_axis) {
     for (const double side : {0.175, -0.175}) {
         Body body;
         body.turn(5, 0, 0, 0, true, 0, g * std::sin(side)); // left side up: the ground's reaction has a part to the left
-        body.turn(2, 0, 0, M_PI / 4);                       // a quarter turn to the left: what was left is ahead
+        const auto turn_left = [&](double from_rad, int ticks) {
+            for (int k = 0; k < ticks; k++) {
+                const double at = from_rad + k * M_PI / 400;
+                body.turn(0.01, 0, 0, M_PI / 4, false, g * std::sin(side) * std::sin(at), g * std::sin(side) * std::cos(at));
+            }
+        };
+        turn_left(0, 200); // a quarter turn to the left: what was left is ahead
         EXPECT_NEAR(body.lean_m_s2(), g * std::sin(side), 0.02 * g * 0.175);
-        body.turn(4, 0, 0, M_PI / 4);
+        turn_left(M_PI / 2, 400);
         EXPECT_NEAR(body.lean_m_s2(), -g * std::sin(side), 0.04 * g * 0.175); // the steps of 10 ms are explicit: 1 + w^2 T t/2
     }
+}
+
+// About x an offset turns gravity's part across, which a turn then brings into the axis. The accelerometer tells what is across.
+TEST(Lean, a_gyro_about_x_that_lies_turns_nothing_into_the_axis) {
+    for (const double offset : {0.02, -0.1}) { // 1 and 6 deg/s
+        Body body;
+        body.turn(5, 0, 0, 0, true);
+        body.offset_rad_s[0] = offset;
+        body.turn(60, 0, 0, 0);
+        body.turn(2, 0, 0, M_PI / 4);
+        // across is at most w_x g t, t the memory of 256 ticks, and a quarter turn brings at most pi/2 of it ahead
+        EXPECT_LE(std::fabs(body.lean_m_s2()), M_PI / 2 * 2.56 * g * std::fabs(offset)) << offset;
+    }
+}
+
+// What the estimator has learned while it drove is taken off the gyro about y, and of no other.
+TEST(Lean, an_offset_that_moved_is_taken_off) {
+    Body body;
+    body.turn(5, 0, 0, 0, true);
+    body.offset_rad_s[1] = 0.02;
+    body.moved_q8 = static_cast<int32_t>(256 * 0.02 / gyro_rad_s);
+    body.turn(60, 0, 0, 0);
+    EXPECT_NEAR(body.lean_m_s2(), 0, g * 60 * gyro_rad_s / 512 + 1e-3); // as in an_offset_of_the_gyros_is_learned_while_it_stands
+    body.turn(1, 0, -0.1, 0);
+    EXPECT_NEAR(body.lean_m_s2(), g * 0.1, 0.02 * g * 0.1);
 }
 
 TEST(Lean, an_accelerometers_own_offset_is_not_turned) {
@@ -107,6 +140,7 @@ TEST(Lean, any_counts_keep_it_within_its_bounds) {
         input.accel = true;
         input.standing = (random >> 60) == 0;
         input.elapsed_ticks = 1u + static_cast<uint32_t>(random >> 54);
+        input.moved_q8 = static_cast<int32_t>(random >> 41) - (1 << 22);
         lean_step(&body.config, &body.state, &input);
         ASSERT_LE(std::abs(body.state.lean_q8), (1 << 26) - (1 << 17));
     }

@@ -116,7 +116,13 @@ static ground_speed_config_t ground_speed_default() {
         .misfit_max = 30.0f,
         .quiet_needed = 3,
         .lean_m_s2_per_q8 = 0.004f / 256.0f,
-        .lean_told_q8 = 12800,      // 0.2 m/s^2
+        .lean_told_q8 = 12800, // 0.2 m/s^2
+        .gyro_slow = 0.01f / 1.5f,
+        .gyro_learns_q8_s2_m = 256.0f / (9.81f * 0.0005f) * 0.01f / (1.5f * 3.0f),
+        .gyro_turns = -0.004f / 256.0f * (256.0f / (9.81f * 0.0005f)) / 0.36f,
+        .gyro_runs_m2_s6 = 0.0025f,
+        .gyro_sure_m_s2 = 0.05f,
+        .gyro_steady_m2_s2 = 4e-4f,
         .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = 0.006f,        // one encoder pulse a tick
         .still_needed = 25,         // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
@@ -177,7 +183,9 @@ control_config_t written_out() {
         .geometry = {.wheel_radius_m = wheel_radius_m,
                      .half_wheelbase_m = half_wheelbase_m,
                      .half_track_m = half_track_m,
-                     .mass_kg = mass_kg},
+                     .mass_kg = mass_kg,
+                     .wheels = 0xf,
+                     .wheel_share = 0.25f},
         .sense = sense_default(),
         .circuit = {.resistance_ohm = resistance_ohm,
                     .back_emf_Vs = torque_constant_Nm_A,
@@ -408,12 +416,62 @@ TEST(ControlConfigCheck, refuses_what_cannot_work_and_names_the_key) {
     EXPECT_EQ(refused({{ROVER_winding_J_K, 0.01f}, {ROVER_winding_K_W, 1}}), "winding_J_K");
     EXPECT_EQ(refused({{ROVER_battery_min_V, 7.5f}}), "battery_min_V");
     EXPECT_EQ(refused({{ROVER_battery_V_per_count, 0.001f}}), "battery_V_per_count");
+    EXPECT_EQ(refused({{ROVER_wheel_mask, 2.5f}}), "wheel_mask");
     EXPECT_EQ(refused({{ROVER_wheel_kp_s, 0.7f}}), "wheel_kp_s"); // 118 * 0.7 * 0.02 = 1.65 rad
 }
 
 TEST(ControlConfigCheck, a_reason_tells_the_mend) {
     const std::string reason = make({{ROVER_stall_current_A, 2.3f}}).refusal.reason;
     EXPECT_NE(reason.find("lower it"), std::string::npos) << reason;
+}
+
+// A rover of two wheels: nothing is asked of the others, whatever stands in their fields.
+TEST(ControlConfig, wheels_that_are_not_there_are_neither_waited_for_nor_driven) {
+    const Made made = make({{ROVER_wheel_mask, 3}});
+    EXPECT_EQ(made.refusal.key, nullptr);
+    const uint32_t absent = 0xcu * FRAME_ENCODER_0 | 0xcu * FRAME_CURRENT_0 | 0xcu * FRAME_BRIDGE_0;
+    control_state_t state;
+    control_reset(&made.config, &state);
+    command_t command{};
+    command.mode = MODE_PLATFORM_SPEED;
+    command.platform_speed_m_s = 0.3f;
+    trace_t trace{};
+    for (uint32_t tick = 0; tick < 300; ++tick) {
+        sensor_frame_t frame{};
+        frame.tick = tick, frame.elapsed_ticks = 1, frame.present = FRAME_ALL & ~(absent | FRAME_TIME);
+        for (int i = 0; i < WHEEL_COUNT; ++i) // 50 pulses a tick: 5.2 rad/s; of what is not there, noise
+            frame.encoder_count[i] = i < 2 ? static_cast<int32_t>(50 * tick) : static_cast<int32_t>(tick * 2654435761u),
+            frame.current_count[i] = i < 2 ? 2148 : static_cast<uint16_t>(tick * 977);
+        frame.battery_count = 1800;
+        frame.radar_samples = 5, frame.radar_sequence = 5 * tick;
+        for (uint32_t k = 0; k < 5; ++k) frame.radar_count[k] = static_cast<uint16_t>(tick * 7919u % 200u + 412u);
+        trace = control_step(&made.config, &state, &command, &frame);
+        EXPECT_EQ(trace.faults & ~static_cast<uint32_t>(FAULT_SPEED_DISAGREE | FAULT_ENCODER_CIRCUIT | FAULT_SPEED_BEYOND), 0u) << tick;
+        for (int i = 2; i < WHEEL_COUNT; ++i) {
+            EXPECT_EQ(trace.wheel[i].duty, 0.0f);
+            EXPECT_EQ(trace.wheel[i].speed_rad_s, 0.0f);
+            EXPECT_FALSE(trace.wheel[i].slip_valid);
+        }
+    }
+    EXPECT_NEAR(trace.wheel[0].speed_rad_s, 50 * 6.2831853f / 6000 * 100, 0.01f);
+}
+
+// A mask of no wheel at all (which the check refuses) ends a self-test, it drives no fifth motor.
+TEST(ControlConfig, a_self_test_of_no_wheels_ends) {
+    control_config_t config = rover_config_default();
+    config.self_test.wheels = 0;
+    config.self_test.required = 0;
+    self_test_state_t state;
+    self_test_result_t result;
+    self_test_begin(&state, &result);
+    trace_t trace{};
+    trace.battery_voltage_V = 7.2f;
+    sensor_frame_t frame{};
+    for (uint32_t tick = 0; tick < 200 && !result.done; ++tick) {
+        const command_t command = self_test_step(&config.self_test, &config.sense, &state, &frame, &trace, &result);
+        for (const float duty : command.duty) EXPECT_EQ(duty, 0.0f);
+    }
+    EXPECT_TRUE(result.done);
 }
 
 // Signs and offsets of the converters, each wheel its own.
