@@ -21,6 +21,8 @@ CountScale count_scale(const sim::RoverDescription &rover) {
     scale.radar_rate_Hz = rover.at("radar", "rate_Hz");
     scale.current_max = whole(rover.at("current", "max_count"));
     scale.battery_max = whole(rover.at("battery", "max_count"));
+    const unsigned absent = ~sim::firmware_wheels(rover.layout().kind) & 0xfu;
+    scale.present &= ~(absent * FRAME_ENCODER_0 | absent * FRAME_CURRENT_0 | absent * FRAME_BRIDGE_0);
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
         scale.current_offset[i] = whole(rover.current_offset_count(i));
         scale.encoder_sign[i] = rover.wheel[i].encoder_sign < 0 ? -1 : 1;
@@ -58,7 +60,7 @@ void to_counts(const CountScale &scale, const sim::Measurements &measured, senso
     std::fill(frame->radar_count + samples, frame->radar_count + RADAR_SAMPLES_PER_TICK_MAX, std::uint16_t{0});
     frame->radar_samples = static_cast<std::uint8_t>(samples);
     frame->radar_sequence = measured.radar_first + static_cast<std::uint32_t>(taken - samples);
-    frame->present = FRAME_ALL;
+    frame->present = scale.present;
 }
 
 } // namespace traction::hal

@@ -22,13 +22,14 @@ struct CountScale {
     int battery_offset = 0, accel_offset = 0, gyro_offset = 0;
     int current_max = 4095, battery_max = 4095;            // 12 bit
     std::array<int, WHEEL_COUNT> encoder_sign{1, 1, 1, 1}; // -1: the count falls as the wheel drives forward
+    std::uint32_t present = FRAME_ALL;                     // less what belongs to wheels that the rover does not have
 };
 
 // The converters of a rover.
 CountScale count_scale(const sim::RoverDescription &rover);
 
-// Fills every field of the frame but its times and the emergency stop; all of it present. Radar samples beyond the frame's 64 are
-// lost, the oldest first (512 Hz makes 5 or 6 a tick).
+// Fills every field of the frame but its times and the emergency stop; all that the rover has present. Radar samples beyond the frame's 64
+// are lost, the oldest first (512 Hz makes 5 or 6 a tick).
 void to_counts(const CountScale &scale, const sim::Measurements &measured, sensor_frame_t *frame);
 
 // Nearest count, held in low..high.

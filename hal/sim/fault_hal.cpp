@@ -79,8 +79,8 @@ FaultHal::FaultHal(const hal_t &inner, FaultScript script, const CountScale &sca
     : inner_(inner), script_(std::move(script)), scale_(scale), random_(seed, "faults"), holding_(script_.sensors.size()),
       held_(script_.sensors.size()), missed_(script_.missed_ticks.size()), slipped_(script_.sensors.size()) {}
 
-// `amount`, in the sensor's unit, added to the counts of `bit`.
-void FaultHal::add(std::uint32_t bit, double amount, sensor_frame_t *frame) {
+// `amount`, in the sensor's unit, added to the counts of `bit`; of a body's sensor to those of `axis` alone.
+void FaultHal::add(std::uint32_t bit, int axis, double amount, sensor_frame_t *frame) {
     for (unsigned i = 0; i < WHEEL_COUNT; i++) {
         if (bit == encoder_bit(i)) // wraps as the encoder does
             frame->encoder_count[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(frame->encoder_count[i]) +
@@ -95,8 +95,10 @@ void FaultHal::add(std::uint32_t bit, double amount, sensor_frame_t *frame) {
     const auto body = [&](std::int16_t &count, double unit) {
         count = static_cast<std::int16_t>(round_count(count + amount / unit, INT16_MIN, INT16_MAX));
     };
-    if (bit == FRAME_ACCEL) body(frame->accel_x_count, scale_.accel_m_s2);
-    if (bit == FRAME_GYRO) body(frame->gyro_z_count, scale_.gyro_rad_s);
+    if (bit == FRAME_ACCEL && axis == 0) body(frame->accel_x_count, scale_.accel_m_s2);
+    if (bit == FRAME_ACCEL_YZ && axis != 0) body(axis == 1 ? frame->accel_y_count : frame->accel_z_count, scale_.accel_m_s2);
+    if (bit == FRAME_GYRO_XY && axis != 2) body(axis == 0 ? frame->gyro_x_count : frame->gyro_y_count, scale_.gyro_rad_s);
+    if (bit == FRAME_GYRO && axis == 2) body(frame->gyro_z_count, scale_.gyro_rad_s);
 }
 
 // What is left of a frame's samples is one run, as the frame has one number: the longer of what follows the last loss and what precedes
@@ -192,13 +194,13 @@ void FaultHal::apply(std::size_t index, const sim::SensorFault &fault, sensor_fr
         if (silent(fault.kind)) frame->present &= ~bit;
         if (fault.kind == sim::FaultKind::stuck) copy_field(bit, held_[index], frame);
         if (fault.kind == sim::FaultKind::noisy) add_noise(bit, fault.amount, frame);
-        if (const double more = amount_now(fault, t_s_); more != 0) add(bit, more, frame);
+        if (const double more = amount_now(fault, t_s_); more != 0) add(bit, fault.axis, more, frame);
         for (unsigned i = 0; fault.kind == sim::FaultKind::slipping && i < WHEEL_COUNT && past_.size() > 1; i++) {
             if (bit != encoder_bit(i)) continue;
             const auto turned = static_cast<std::int32_t>(static_cast<std::uint32_t>(past_.back().encoder_count[i]) -
                                                           static_cast<std::uint32_t>(past_[past_.size() - 2].encoder_count[i]));
             slipped_[index][i] += fault.amount * turned;
-            add(bit, -slipped_[index][i], frame);
+            add(bit, fault.axis, -slipped_[index][i], frame);
         }
         if (fault.kind == sim::FaultKind::delayed) copy_field(bit, past_[past_.size() > late ? past_.size() - 1 - late : 0], frame);
     }

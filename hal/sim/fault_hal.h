@@ -38,7 +38,7 @@ class FaultHal {
     void apply(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame);
     void apply_radar(std::size_t index, const sim::SensorFault &fault, sensor_frame_t *frame);
     void add_noise(std::uint32_t bit, double amount, sensor_frame_t *frame);
-    void add(std::uint32_t bit, double amount, sensor_frame_t *frame);
+    void add(std::uint32_t bit, int axis, double amount, sensor_frame_t *frame);
     void lose_samples(double share, sensor_frame_t *frame);
     hal_result_t wait_tick();
 

@@ -21,6 +21,11 @@ void SimHal::obey(const Order &order) {
     heard_ms_ = now_ms_;
     for (int wheel = 0; wheel < sim::wheel_count; wheel++)
         plant_.set_duty(wheel, order.drive == DRIVE_ON ? order.duty[static_cast<std::size_t>(wheel)] : 0);
+    if (config_.plant.rover.layout.kind == sim::Layout::six) // the firmware knows four wheels: a middle one follows its side
+        for (int side = 0; side < 2; side++) {
+            const auto rear = static_cast<std::size_t>(side), front = rear + 2;
+            plant_.set_duty(4 + side, order.drive == DRIVE_ON ? 0.5 * (order.duty[rear] + order.duty[front]) : 0);
+        }
     plant_.set_enabled(order.drive == DRIVE_ON || order.drive == DRIVE_BRAKE);
 }
 

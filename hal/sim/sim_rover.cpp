@@ -26,6 +26,7 @@ std::int64_t actuation_delay_ms(std::span<const sim::ActiveEffect> effects) {
 
 // Whole ticks of an order's delay are DelayHal's; what is left of a tick passes on the simulated bus.
 SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed) {
+    sim::check_wheels(scenario, effects);
     SimHalConfig world{.plant = scenario.plant,
                        .sensors = scenario.sensors,
                        .scale = count_scale(scenario.rover),
@@ -37,6 +38,7 @@ SimHalConfig world_of(const sim::Scenario &scenario, std::span<const sim::Active
                        .seed = seed,
                        .can_bus = scenario.can_bus,
                        .can_faults = scenario.can_faults};
+    world.plant.audit = false; // nobody asks a HAL for it
     world.plant.effects.assign(effects.begin(), effects.end());
     const std::vector<sim::ActiveEffect> wheels = sim::wheel_differences(scenario.rover);
     world.plant.effects.insert(world.plant.effects.end(), wheels.begin(), wheels.end());

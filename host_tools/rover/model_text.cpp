@@ -71,6 +71,9 @@ std::string model_text(const sim::RoverDescription &rover, const std::string &so
         for (const sim::Soil &known : sim::soil_library()) names += (names.empty() ? "" : ", ") + known.name;
         throw std::invalid_argument("--soil = " + soil_name + ": no such soil; use one of: " + names);
     }
+    if (rover.layout().kind != sim::Layout::four)
+        throw std::invalid_argument("--model: the lab's models have four wheels on two axles, " + rover.name +
+                                    " has not; leave --model out");
     const double mass = rover.at("body", "mass_kg"), length = rover.at("body", "length_m"), width = rover.at("body", "width_m");
     std::string text = "# Made by traction rover from " + rover.name +
                        ".\nformat = \"traction.model/1\"\nname = " + quoted(rover.name + " on " + soil_name) +

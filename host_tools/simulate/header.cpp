@@ -47,6 +47,7 @@ void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &l
         log.header["noise." + wheel + "speed_rad_s"] = number(rad_per_count / 0.01 * 0.40824829046386302);
         log.header["quantum." + wheel + "speed_rad_s"] = number(rad_per_count / 0.01);
     }
+    if (rover.layout().kind != sim::Layout::four) log.header["rover.wheels"] = number(rover.at("layout", "wheels"));
     log.header["encoder.rad_per_count"] = number(rad_per_count);
     log.header["noise.battery.voltage_V"] = number(sensors.battery.noise);
     log.header["quantum.battery.voltage_V"] = number(scale.battery_V);

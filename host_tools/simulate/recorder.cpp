@@ -15,9 +15,10 @@ std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
     return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
 }
 
-Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path)
-    : expected_(expected_ticks), spool_(path), radar_rate_Hz_(radar_rate_Hz) {
+Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path, unsigned wheels)
+    : expected_(expected_ticks), spool_(path), radar_rate_Hz_(radar_rate_Hz), wheels_(wheels) {
     for (int i = 0; i < WHEEL_COUNT; i++) {
+        if (!has_wheel(i)) continue;
         const std::string name = "wheel" + std::to_string(i) + '.';
         wheel_[i] = {.speed = column(name + "speed_rad_s"),
                      .encoder = column(name + "encoder_count"),
@@ -166,7 +167,8 @@ void Recorder::add_estimates(double t_s, const trace_t &trace) {
 
 void Recorder::add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) {
     const double t_s = (frame.tick + 1.0) / 100; // a tick ends its 10 ms
-    for (int wheel = 0; wheel < WHEEL_COUNT; wheel++) add_wheel(wheel, t_s, frame, command, trace.wheel[wheel]);
+    for (int wheel = 0; wheel < WHEEL_COUNT; wheel++)
+        if (has_wheel(wheel)) add_wheel(wheel, t_s, frame, command, trace.wheel[wheel]);
     add_frame(t_s, frame);
     add_command(t_s, command);
     add_estimates(t_s, trace);
@@ -180,11 +182,12 @@ void Recorder::add_camera(std::span<const sim::Pose> poses) {
     }
 }
 
-TruthRecorder::TruthRecorder(const std::string &path, bool on_terrain) : spool_(path), on_terrain_(on_terrain) {
+TruthRecorder::TruthRecorder(const std::string &path, bool on_terrain, sim::Layout layout)
+    : spool_(path), on_terrain_(on_terrain), layout_(layout) {
     for (const char *name : {"truth.x_m", "truth.y_m", "truth.yaw_rad", "truth.pitch_rad", "truth.speed_m_s", "truth.path_m",
                              "truth.accel_x_m_s2", "truth.battery_voltage_V"})
         spool_.add(name);
-    for (int i = 0; i < sim::wheel_count; i++)
+    for (const int i : sim::wheels_of(layout_))
         for (const char *name : {"speed_rad_s", "current_A", "duty", "slip", "traction_N", "rolling_N", "lateral_N", "normal_N",
                                  "sinkage_m", "ground_speed_m_s", "temperature_degC"})
             spool_.add("truth.wheel" + std::to_string(i) + '.' + name);
@@ -207,10 +210,12 @@ void TruthRecorder::add(const sim::Truth &truth) {
     put(truth.path_m);
     put(truth.specific_force_m_s2[0]);
     put(truth.battery_voltage_V);
-    for (const sim::WheelTruth &wheel : truth.wheel)
+    for (const int i : sim::wheels_of(layout_)) {
+        const sim::WheelTruth &wheel = truth.slot(i);
         for (const double value : {wheel.speed_rad_s, wheel.current_A, wheel.duty, wheel.slip, wheel.traction_N, wheel.rolling_N,
                                    wheel.lateral_N, wheel.normal_N, wheel.sinkage_m, wheel.ground_speed_m_s, wheel.winding_temperature_C})
             put(value);
+    }
     if (on_terrain_)
         for (const double value : {truth.position_m[2], truth.roll_rad, truth.joint_rad}) put(value);
 }

@@ -19,7 +19,8 @@ namespace traction {
 class Recorder {
   public:
     // path: of the log, for write; empty: it stays in memory, for take.
-    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path = "");
+    // wheels: bit i: the rover has wheel i; of the others nothing is written.
+    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path = "", unsigned wheels = 0xf);
 
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
     void add_camera(std::span<const sim::Pose> poses);
@@ -35,10 +36,12 @@ class Recorder {
     void add_command(double t_s, const command_t &command);
     void add_estimates(double t_s, const trace_t &trace);
     double exact(float value);
+    bool has_wheel(int wheel) const { return (wheels_ >> static_cast<unsigned>(wheel) & 1u) != 0u; }
 
     std::uint64_t expected_;
     log::Spool spool_;
     double radar_rate_Hz_;
+    unsigned wheels_;
     std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick
     float last_float_ = 0;
     double last_exact_ = 0;
@@ -58,8 +61,8 @@ class Recorder {
 // The truth of one run, in columns of its own, one row per tick. Only ever written to a separate file.
 class TruthRecorder {
   public:
-    explicit TruthRecorder(const std::string &path = "",
-                           bool on_terrain = false); // path as Recorder's; on terrain height, roll and joint too
+    // path as Recorder's; on terrain height, roll and joint too; the wheels of `layout` (sim/plant/layout.h)
+    explicit TruthRecorder(const std::string &path = "", bool on_terrain = false, sim::Layout layout = sim::Layout::four);
     void add(const sim::Truth &truth);
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
@@ -67,6 +70,7 @@ class TruthRecorder {
   private:
     log::Spool spool_;
     bool on_terrain_;
+    sim::Layout layout_;
 };
 
 } // namespace traction

@@ -82,8 +82,9 @@ class Session : public Link {
     Session(const sim::Scenario &scenario, const SimulateOptions &options, const hal::SimHal &world, std::uint64_t seed,
             std::uint64_t expected_ticks)
         : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
-          recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path),
-          truth_(options.truth_path, !scenario.plant.ground.terrain.flat()) {
+          recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path,
+                    sim::firmware_wheels(believed(scenario).layout().kind)),
+          truth_(options.truth_path, !scenario.plant.ground.terrain.flat(), scenario.plant.rover.layout.kind) {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
     }
@@ -140,6 +141,8 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     std::vector<sim::ActiveEffect> effects = scenario.effects;
     effects.insert(effects.end(), options.effects.begin(), options.effects.end());
     if (const auto &hide = options.hide ? options.hide : scenario.hidden) {
+        if (scenario.rover.layout().kind != sim::Layout::four)
+            throw sim::ScenarioError(scenario.file, 0, "--hide", "", "effects are hidden in rovers of four wheels alone", "leave it out");
         result.hidden = sim::draw_effects(*hide);
         result.hide_seed = hide->seed;
         effects.insert(effects.end(), result.hidden.begin(), result.hidden.end());

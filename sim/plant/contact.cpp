@@ -6,6 +6,7 @@
 namespace traction::sim {
 
 namespace {
+constexpr double stretch_m = 2e-4, rolling_damping = 0.3; // assumed: below any sensor's resolution; as in contact_force
 double faster(const ContactInput &in) { return std::max(std::fabs(in.rim_m_s), std::fabs(in.along_m_s)); }
 } // namespace
 
@@ -57,13 +58,26 @@ ContactForce contact_force(const ContactInput &in, const ContactState &state, co
 }
 
 double rolling_step(ContactState &state, double along_m_s, double resistance_N, double load_kg, double dt_s) {
-    constexpr double stretch_m = 2e-4, damping_ratio = 0.3; // assumed: below any sensor's resolution; as in contact_force
     const double before = state.rolling, share = dt_s / stretch_m;
     state.rolling = std::clamp((before + share * along_m_s) / (1 + share * std::fabs(along_m_s)), -1.0, 1.0);
     if (resistance_N <= 0) return state.rolling;
-    const double damping = 2 * damping_ratio * std::sqrt(resistance_N / stretch_m * load_kg);
+    const double damping = 2 * rolling_damping * std::sqrt(resistance_N / stretch_m * load_kg);
     const double rate_m_s = (state.rolling - before) * stretch_m / dt_s;
     return std::clamp(state.rolling + damping * rate_m_s / resistance_N, -1.0, 1.0);
+}
+
+RollingShare drag_step(ContactState &state, double along_m_s, double across_m_s, double resistance_N, double load_kg, double dt_s) {
+    const RollingShare before{state.rolling, state.rolling_aside};
+    const double share = dt_s / stretch_m, keep = 1 / (1 + share * std::sqrt(along_m_s * along_m_s + across_m_s * across_m_s));
+    state.rolling = (before.along + share * along_m_s) * keep, state.rolling_aside = (before.across + share * across_m_s) * keep;
+    RollingShare out{state.rolling, state.rolling_aside};
+    if (resistance_N > 0) {
+        const double damping = 2 * rolling_damping * std::sqrt(resistance_N / stretch_m * load_kg) * stretch_m / dt_s / resistance_N;
+        out.along += damping * (state.rolling - before.along), out.across += damping * (state.rolling_aside - before.across);
+    }
+    const double size = std::sqrt(out.along * out.along + out.across * out.across);
+    if (size > 1) out.along /= size, out.across /= size;
+    return out;
 }
 
 ContactForce contact_step(const ContactInput &in, ContactState &state, double dt_s) {

@@ -31,8 +31,9 @@ struct ContactInput {
 
 struct ContactState {
     double slip = 0, side_slip = 0;
-    double speed_m_s = 0; // U of the last step
-    double rolling = 0;   // -1..1: share of the resistance to rolling, rolling_step
+    double speed_m_s = 0;     // U of the last step
+    double rolling = 0;       // -1..1: share of the resistance to rolling, rolling_step
+    double rolling_aside = 0; // of a caster's, to the left: drag_step
 };
 
 struct SlipChange { // over one step
@@ -55,6 +56,13 @@ ContactForce contact_force(const ContactInput &input, const ContactState &state,
 // Resistance to rolling as a spring of 0.2 mm that gives way (Dahl 1968): dx/dt = (v - |v| x)/0.2 mm, implicit in x. At rest it holds,
 // rolling it is full; no speed below which it fades. Returns x with the damping of a rover that stands on it, within -1..1.
 double rolling_step(ContactState &state, double along_m_s, double resistance_N, double load_kg, double dt_s);
+
+// The same for a ball that rolls any way: x is a vector within the unit circle, dx/dt = (v - |v| x)/0.2 mm. Returns the shares of the
+// resistance that act ahead and to the left.
+struct RollingShare {
+    double along = 0, across = 0;
+};
+RollingShare drag_step(ContactState &state, double along_m_s, double across_m_s, double resistance_N, double load_kg, double dt_s);
 
 // Both, with the traction of (20) or (21).
 ContactForce contact_step(const ContactInput &input, ContactState &state, double dt_s);

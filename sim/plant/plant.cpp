@@ -38,8 +38,10 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g, 
 
 } // namespace
 
-Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
+Plant::World::World(const PlantConfig &c)
+    : config(c), wheels(wheels_of(c.rover.layout.kind)), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
     start_ode();
+    for (const int i : wheels) place_ahead_m[static_cast<std::size_t>(i)] = place(i).ahead_m;
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, 0);
     rise_rad = config.ground.slope_here_rad(0);
     world = dWorldCreate();
@@ -57,7 +59,8 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.ef
     if (!config.ground.terrain.flat()) relief.emplace(config.ground.terrain, config.ground.seed);
     build_bodies();
     if (relief) place_on_terrain();
-    for (int i = 0; i < wheel_count; ++i) {
+    for (const int i : wheels) {
+        if (is_caster(config.rover.layout.kind, i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
         const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[n].radius_change);
         drive[n].wheel_speed_rad_s = drive[n].motor_speed_rad_s = config.speed_m_s / radius;
@@ -74,85 +77,6 @@ Plant::World::World(const PlantConfig &c) : config(c), effects(act_together(c.ef
 Plant::World::~World() {
     if (world != nullptr) dWorldDestroy(world);
     if (threading != nullptr) dThreadingFreeImplementation(threading);
-}
-
-void Plant::World::build_bodies() {
-    const RoverParameters &r = config.rover;
-    const double height = law::load_transfer_m(r.centre_height_m, effects.body.raised_m);
-    const double load = r.mass_kg * std::fabs(gravity[2]) / 4;
-    double sunk = load / r.contact_stiffness_N_m;
-    if (config.ground.contact != ContactLaw::aggregated && config.ground.soil.bekker)
-        sunk = sinkage_under(config.ground.contact == ContactLaw::arc ? arc_force : bekker_force, *config.ground.soil.bekker,
-                             {r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis}, load, 0);
-    const double cos_yaw = math::cos(config.yaw_rad), sin_yaw = math::sin(config.yaw_rad);
-    dMatrix3 turn;
-    dRSetIdentity(turn);
-    turn[0] = cos_yaw, turn[1] = -sin_yaw, turn[4] = sin_yaw, turn[5] = cos_yaw;
-    for (int h = 0; h < 2; ++h) {
-        const double side = h == 0 ? 1 : -1, aside = side * half_offset_share * r.width_m;
-        const dBodyID body = half[static_cast<std::size_t>(h)] = dBodyCreate(world);
-        dMass mass;
-        dMassSetBoxTotal(&mass, r.mass_kg / 2, r.length_m, r.width_m / 2, r.height_m);
-        dBodySetMass(body, &mass);
-        dBodySetRotation(body, turn);
-        dBodySetPosition(body, config.x_m - sin_yaw * aside, config.y_m + cos_yaw * aside, height - sunk);
-        dBodySetLinearVel(body, config.speed_m_s * cos_yaw, config.speed_m_s * sin_yaw, 0);
-        for (int i = 0; i < wheel_count; ++i)
-            if (is_left(i) == (h == 0))
-                contact_at[static_cast<std::size_t>(i)] = {
-                    law::mass_offset_m(is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m, effects.body.offset_x_m),
-                    law::mass_offset_m(side * r.half_track_m - aside, effects.body.offset_y_m), -height};
-    }
-    joint = dJointCreateHinge(world, nullptr);
-    dJointAttach(joint, half[0], half[1]);
-    dJointSetHingeAnchor(joint, config.x_m, config.y_m, height - sunk);
-    dJointSetHingeAxis(joint, -sin_yaw, cos_yaw, 0);
-}
-
-// Each wheel's lowest point at the height that carries it there: the halves pitch, both roll. The joint's anchor follows them.
-void Plant::World::place_on_terrain() {
-    const RoverParameters &r = config.rover;
-    const double c = math::cos(config.yaw_rad), s = math::sin(config.yaw_rad);
-    std::array<double, wheel_count> height{};
-    for (int i = 0; i < wheel_count; ++i) {
-        const double forward = is_front(i) ? r.half_wheelbase_m : -r.half_wheelbase_m,
-                     aside = is_left(i) ? r.half_track_m : -r.half_track_m;
-        height[static_cast<std::size_t>(i)] =
-            relief
-                ->rest(config.x_m + c * forward - s * aside, config.y_m + s * forward + c * aside, c, s, r.wheel_radius_m, r.wheel_width_m)
-                .height_m;
-    }
-    const double left = 0.5 * (height[0] + height[2]), right = 0.5 * (height[1] + height[3]), middle = 0.5 * (left + right);
-    const double roll = math::atan2(left - right, 2 * r.half_track_m); // right side down
-    dJointAttach(joint, nullptr, nullptr);
-    Vec3 across{};
-    for (int h = 0; h < 2; ++h) {
-        const auto n = static_cast<std::size_t>(h);
-        const double pitch = math::atan2(height[n] - height[n + 2], 2 * r.half_wheelbase_m); // nose down
-        const double cp = math::cos(pitch), sp = math::sin(pitch), cr = math::cos(roll), sr = math::sin(roll);
-        const dMatrix3 turn = {c * cp - s * sr * sp,
-                               -s * cr,
-                               c * sp + s * sr * cp,
-                               0,
-                               s * cp + c * sr * sp,
-                               c * cr,
-                               s * sp - c * sr * cp,
-                               0,
-                               -cr * sp,
-                               sr,
-                               cr * cp,
-                               0}; // yaw, roll, pitch
-        across = {-s * cr, c * cr, sr};
-        const dReal *was = dBodyGetPosition(half[n]);
-        const double aside = (h == 0 ? 1 : -1) * half_offset_share * r.width_m;
-        const double x = config.x_m + across[0] * aside, y = config.y_m + across[1] * aside, z = was[2] + middle + across[2] * aside;
-        dBodySetPosition(half[n], x, y, z);
-        dBodySetRotation(half[n], turn);
-    }
-    const dReal *a = dBodyGetPosition(half[0]), *b = dBodyGetPosition(half[1]);
-    dJointAttach(joint, half[0], half[1]);
-    dJointSetHingeAnchor(joint, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]));
-    dJointSetHingeAxis(joint, across[0], across[1], across[2]);
 }
 
 Vec3 Plant::World::axis(int column) const {
@@ -192,7 +116,8 @@ double Plant::World::kinetic() const {
         sum += 0.5 * mass.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
         sum += 0.5 * (mass.I[0] * w[0] * w[0] + mass.I[5] * w[1] * w[1] + mass.I[10] * w[2] * w[2]);
     }
-    for (std::size_t i = 0; i < wheel_count; ++i) {
+    for (const int slot : wheels) {
+        const auto i = static_cast<std::size_t>(slot);
         const DriveParameters &p = config.rover.drive;
         const bool two_masses = effects.wheel[i].play_rad > 0;
         const double wheel = two_masses ? p.wheel_inertia_kg_m2 : p.inertia_kg_m2;
@@ -213,20 +138,25 @@ double Plant::World::potential() const {
 
 void Plant::World::push_body() {
     const BodyEffects &b = effects.body;
-    const Vec3 ahead = axis(0);
+    const Vec3 &ahead = heading_before; // as the last step left it
     push_velocity = mean_velocity();
     push = {};
     const double along = dot(push_velocity, ahead), drag = dragged_N(b, along, soft_sign(along, 0.005));
     for (std::size_t k = 0; k < 2; ++k) push[k] = drag * ahead[k];
     push[0] += law::tether_drag_N(b.tether_N_m, truth.position_m[0] - config.x_m);
     push[1] += law::tether_drag_N(b.tether_N_m, truth.position_m[1] - config.y_m);
+    if (config.rover.layout.drawbar_N != 0)
+        for (std::size_t k = 0; k < 2; ++k) push[k] -= config.rover.layout.drawbar_N * ahead[k];
     for (const dBodyID body : half) dBodyAddForce(body, 0.5 * push[0], 0.5 * push[1], 0);
 }
 
 void Plant::World::step() {
     const double dt = config.dt_s;
     double supply_A = 0;
-    for (std::size_t i = 0; i < wheel_count; ++i) supply_A += duty[i] * drive[i].current_A;
+    for (const int slot : wheels) {
+        const auto i = static_cast<std::size_t>(slot);
+        supply_A += duty[i] * drive[i].current_A;
+    }
     used_C += supply_A * dt;
     const double supply_V =
         config.rover.battery_voltage_V - sag_V - config.rover.battery_fade_V_C * used_C - config.rover.battery_resistance_ohm * supply_A;
@@ -240,12 +170,23 @@ void Plant::World::step() {
         dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     }
     const Vec3 before = mean_velocity();
-    for (int i = 0; i < wheel_count; ++i) step_wheel(i, supply_V);
+    for (const int i : wheels)
+        if (is_caster(config.rover.layout.kind, i))
+            step_caster(i);
+        else
+            step_wheel(i, supply_V);
     push_body();
     dWorldStep(world, dt);
     ++steps;
 
-    for (int i = 0; i < wheel_count; ++i) {
+    if (config.audit) keep_energy();
+    observe(before);
+}
+
+// What the step that was just taken did, by forces at its beginning and speeds at its middle.
+void Plant::World::keep_energy() {
+    const double dt = config.dt_s;
+    for (const int i : wheels) {
         Applied &a = applied[static_cast<std::size_t>(i)];
         Vec3 after{};
         contact_velocity(i, after);
@@ -253,7 +194,8 @@ void Plant::World::step() {
         const double along = dot(after, a.stand.ahead);
         const double to_body = dot(a.force, after);
         const double vertical = a.load_N * dot(a.stand.up, after);
-        const double rolling = a.resist_N * along, edge = a.edge_N * along;
+        const double edge = a.edge_N * along; // a caster only rolls
+        const double rolling = is_caster(config.rover.layout.kind, i) ? vertical + edge - to_body : a.resist_N * along;
         energy.rolling += rolling * dt;
         energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling - edge)) * dt;
         energy.body -= (vertical + edge) * dt;
@@ -262,7 +204,6 @@ void Plant::World::step() {
     energy.body -= 0.5 * (dot(push, velocity) + dot(push, push_velocity)) * dt;
     energy.kinetic = kinetic();
     energy.potential = potential() - potential_0;
-    observe(before);
 }
 
 void Plant::World::observe(const Vec3 &velocity_before) {
@@ -298,8 +239,9 @@ void Plant::World::observe(const Vec3 &velocity_before) {
     truth.roll_rad = math::asin(ey[2]);
     truth.path_m += truth.v_body_m_s[0] * (steps > 0 ? dt : 0);
     if (std::fabs(truth.v_body_m_s[0]) > 1e-3) direction = truth.v_body_m_s[0] > 0 ? 1 : -1;
-    for (std::size_t i = 0; i < wheel_count; ++i) {
-        WheelTruth &w = truth.wheel[i];
+    for (const int slot : wheels) {
+        const auto i = static_cast<std::size_t>(slot);
+        WheelTruth &w = truth.slot(slot);
         w.angle_rad = drive[i].wheel_angle_rad;
         w.speed_rad_s = drive[i].wheel_speed_rad_s;
         w.motor_angle_rad = drive[i].motor_angle_rad;
@@ -342,14 +284,19 @@ std::uint64_t Plant::state_hash() const {
             mix(dBodyGetQuaternion(body)[k]);
             if (k < 3) mix(dBodyGetPosition(body)[k]), mix(dBodyGetLinearVel(body)[k]), mix(dBodyGetAngularVel(body)[k]);
         }
-    for (std::size_t i = 0; i < wheel_count; ++i) {
+    for (const int slot : world_->wheels) {
+        const auto i = static_cast<std::size_t>(slot);
         const DriveState &d = world_->drive[i];
         for (const double value :
              {d.motor_angle_rad, d.motor_speed_rad_s, d.wheel_angle_rad, d.wheel_speed_rad_s, d.current_A, d.heat_K,
               world_->contact[i].slip, world_->contact[i].side_slip, world_->contact[i].rolling, world_->contact[i].speed_m_s})
             mix(value);
     }
-    for (const RutTrace &trace : world_->trace) mix(trace.found_m()), mix(trace.deepest_m());
+    if (world_->config.rover.layout.kind == Layout::caster) mix(world_->contact[4].rolling_aside);
+    for (const int slot : world_->wheels) {
+        const RutTrace &trace = world_->trace[static_cast<std::size_t>(slot)];
+        mix(trace.found_m()), mix(trace.deepest_m());
+    }
     mix(world_->truth.path_m), mix(world_->truth.yaw_rad), mix(world_->used_C);
     return hash ^ world_->ruts.hash();
 }

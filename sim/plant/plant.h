@@ -1,4 +1,4 @@
-// plant.h - the simulated rover: two ODE chassis halves on a revolute joint, four driven wheels on soil, stepped by 1 ms.
+// plant.h - the simulated rover: two ODE chassis halves on a revolute joint, its wheels on soil (layout.h), stepped by 1 ms.
 //
 // Semi-implicit Euler of first order: drive trains and slip states first, then forces on the halves, then dWorldStep. Wheel
 // spin is integrated outside ODE (the reflected inertia would otherwise add false gyroscopic loads). Deterministic: the same
@@ -6,6 +6,7 @@
 #pragma once
 
 #include "drive.h"
+#include "layout.h"
 #include "truth.h"
 
 #include "sim/physics/effects/catalogue.h"
@@ -36,6 +37,7 @@ struct RoverParameters {
     double wheel_width_m = 0.042;         // table I; soft contact only
     double tyre_hysteresis = 0.005;       // Rh/Fn of (3), soft contact only, assumed: a nearly rigid tyre
     double gravity_m_s2 = 9.81;
+    LayoutParameters layout;
 };
 
 struct PlantConfig {
@@ -45,9 +47,10 @@ struct PlantConfig {
     double x_m = 0, y_m = 0, yaw_rad = 0;
     double speed_m_s = 0; // initial, along the heading, wheels rolling without slip
     double dt_s = 0.001;
+    bool audit = true; // keep Energy; without it a step is quicker, and no other number differs
 };
 
-// Energy since the start [J]; the balance is supplied = kinetic + potential + the losses. For audits.
+// Energy since the start [J], with PlantConfig::audit; the balance is supplied = kinetic + potential + the losses. For audits.
 struct Energy {
     double motor = 0;     // KG*I*w into the drive trains
     double friction = 0;  // lost in gears and bearings
@@ -65,7 +68,7 @@ class Plant {
     Plant(const Plant &) = delete;
     Plant &operator=(const Plant &) = delete;
 
-    void set_duty(int wheel, double duty); // clamped to -1..1; NaN counts as 0
+    void set_duty(int wheel, double duty); // of a slot of layout.h; clamped to -1..1; NaN counts as 0
     void set_enabled(bool enabled);        // false releases all bridges: no current
     void block_wheel(int wheel, bool blocked);
     void open_motor(int wheel, bool open); // a broken wire, or a bridge that let go: no current in this winding

@@ -3,11 +3,14 @@
 // World frame: x, y horizontal, z up, right-handed. Body frame: x forward, y left, z up, origin at the centre of mass.
 #pragma once
 
+#include "layout.h"
+
 #include <array>
+#include <cstddef>
 
 namespace traction::sim {
 
-inline constexpr int wheel_count = 4;
+inline constexpr int wheel_count = 4; // that the firmware knows
 
 struct WheelTruth {
     double angle_rad = 0;         // wheel side of the gear, cumulative
@@ -29,19 +32,29 @@ struct WheelTruth {
 
 struct Truth {
     double t_s = 0;
-    std::array<double, 3> position_m{};            // world
-    std::array<double, 4> orientation{1, 0, 0, 0}; // body to world, unit quaternion w x y z
-    std::array<double, 3> v_body_m_s{};            // body frame
-    std::array<double, 3> rate_body_rad_s{};       // body frame
-    std::array<double, 3> specific_force_m_s2{};   // body frame: acceleration minus gravity, what an ideal accelerometer feels
-    double yaw_rad = 0;                            // continuous, not wrapped
-    double pitch_rad = 0;                          // nose down positive (rotation about +y)
-    double roll_rad = 0;                           // right side down positive (rotation about +x)
-    double joint_rad = 0;                          // right half against the left one, nose down positive
-    double rise_rate_rad_s = 0;                    // how fast the ground's own rise changes under the rover: nose up positive
-    double path_m = 0;                             // arc length travelled by the body, signed along x
-    double battery_voltage_V = 0;                  // at the terminals, under load
-    std::array<WheelTruth, wheel_count> wheel;
+    std::array<double, 3> position_m{};                      // world
+    std::array<double, 4> orientation{1, 0, 0, 0};           // body to world, unit quaternion w x y z
+    std::array<double, 3> v_body_m_s{};                      // body frame
+    std::array<double, 3> rate_body_rad_s{};                 // body frame
+    std::array<double, 3> specific_force_m_s2{};             // body frame: acceleration minus gravity, what an ideal accelerometer feels
+    double yaw_rad = 0;                                      // continuous, not wrapped
+    double pitch_rad = 0;                                    // nose down positive (rotation about +y)
+    double roll_rad = 0;                                     // right side down positive (rotation about +x)
+    double joint_rad = 0;                                    // right half against the left one, nose down positive
+    double rise_rate_rad_s = 0;                              // how fast the ground's own rise changes under the rover: nose up positive
+    double path_m = 0;                                       // arc length travelled by the body, signed along x
+    double battery_voltage_V = 0;                            // at the terminals, under load
+    std::array<WheelTruth, wheel_count> wheel;               // the firmware's; one that a rover does not have stays 0
+    std::array<WheelTruth, wheel_most - wheel_count> beyond; // a middle axle's, or a caster: layout.h
+
+    WheelTruth &slot(int i) {
+        const auto n = static_cast<std::size_t>(i);
+        return n < wheel.size() ? wheel[n] : beyond[n - wheel.size()];
+    }
+    const WheelTruth &slot(int i) const {
+        const auto n = static_cast<std::size_t>(i);
+        return n < wheel.size() ? wheel[n] : beyond[n - wheel.size()];
+    }
 };
 
 } // namespace traction::sim

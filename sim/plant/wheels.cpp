@@ -5,9 +5,7 @@
 
 namespace traction::sim {
 
-double Plant::World::place_on_path(int i) const {
-    return truth.path_m + (is_front(i) ? config.rover.half_wheelbase_m : -config.rover.half_wheelbase_m);
-}
+double Plant::World::place_on_path(int i) const { return truth.path_m + place_ahead_m[static_cast<std::size_t>(i)]; }
 
 // Of the other motors on a shared lead, a step before: where the lead is long beside the windings that would ring, so they follow slowly.
 double Plant::World::current_of_others(int i) {
@@ -15,8 +13,9 @@ double Plant::World::current_of_others(int i) {
     const double with = effects.wheel[n].shared_with;
     if (effects.wheel[n].shared_ohm == 0) return 0;
     double sum = 0;
-    for (int j = 0; j < wheel_count; ++j)
-        if (j != i && law::shares_lead(with, is_front(j) == is_front(i), is_left(j) == is_left(i)))
+    for (const int j : wheels)
+        if (j != i && !is_caster(config.rover.layout.kind, j) &&
+            law::shares_lead(with, is_front(j) == is_front(i), is_left(j) == is_left(i)))
             sum += drive[static_cast<std::size_t>(j)].current_A;
     constexpr double share = 0.3; // of the difference, per step: assumed, 3 ms
     others_A[n] += share * (sum - others_A[n]);
@@ -132,7 +131,7 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Foot
     const double rut = trace[n].follow(ruts, at.point[0], at.point[1], out.sinkage_m);
     const SlipChange change = slip_step(in, contact[n], config.dt_s);
     const double total = total_slip(contact[n]);
-    const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, factor, law::shear_stiffness(1, effects.body.shear_change)};
+    const SoilWheel wheel{radius_m(i), r.wheel_width_m, r.tyre_hysteresis, factor, law::shear_stiffness(1, effects.body.shear_change)};
     // the law counts slip along the motion: a wheel that rolls backwards sees the mirrored one; near rest, the mean of both
     const double slip = std::copysign(std::min(total, 1.0), in.along_m_s < 0 ? -contact[n].slip : contact[n].slip);
     const double still = 0.5 * (1 - std::fabs(in.along_m_s) / reversal_m_s);
@@ -149,7 +148,7 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Foot
         };
         out.edge_N = (work_J(*foot.behind) - work_J(*foot.front)) / foot.length_m;
     }
-    const double belly = std::max(0.0, out.sinkage_m - 0.9 * r.wheel_radius_m) * r.contact_stiffness_N_m; // the body sits down
+    const double belly = std::max(0.0, out.sinkage_m - 0.9 * wheel.radius_m) * r.contact_stiffness_N_m; // the body sits down
     out.load_N =
         std::max(0.0, given.soil.normal_N + belly - (given.soil.normal_N > 0 ? r.contact_damping_Ns_m * -(at.sink_m_s / at.steep) : 0));
     if (out.load_N <= 0) return out;
@@ -195,8 +194,9 @@ Plant::World::Stand Plant::World::stand(int i) {
     const dBodyID body = half_of(i);
     const Vec3 &h = at.heading, l = at.left;
     dVector3 axle, velocity;
-    dBodyGetRelPointPos(body, bottom[0], bottom[1], bottom[2] + r.wheel_radius_m, axle);
-    const Rest rest = relief->rest(axle[0], axle[1], h[0], h[1], r.wheel_radius_m, r.wheel_width_m);
+    const double radius = radius_m(i);
+    dBodyGetRelPointPos(body, bottom[0], bottom[1], bottom[2] + radius, axle);
+    const Rest rest = relief->rest(axle[0], axle[1], h[0], h[1], radius, r.wheel_width_m);
     at.steep = std::sqrt(1 + rest.rise_ahead * rest.rise_ahead + rest.rise_left * rest.rise_left);
     const double run = std::sqrt(1 + rest.rise_ahead * rest.rise_ahead);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -206,10 +206,10 @@ Plant::World::Stand Plant::World::stand(int i) {
     }
     at.left = {at.up[1] * at.ahead[2] - at.up[2] * at.ahead[1], at.up[2] * at.ahead[0] - at.up[0] * at.ahead[2],
                at.up[0] * at.ahead[1] - at.up[1] * at.ahead[0]};
-    for (std::size_t k = 0; k < 3; ++k) at.point[k] = axle[k] - r.wheel_radius_m * at.up[k];
+    for (std::size_t k = 0; k < 3; ++k) at.point[k] = axle[k] - radius * at.up[k];
     dBodyGetPointVel(body, at.point[0], at.point[1], at.point[2], velocity);
     at.velocity = {velocity[0], velocity[1], velocity[2]};
-    at.depth_m = rest.height_m - (axle[2] - r.wheel_radius_m);
+    at.depth_m = rest.height_m - (axle[2] - radius);
     at.sink_m_s = -at.steep * dot(at.velocity, at.up);
     return at;
 }
@@ -236,7 +236,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
                              .rim_m_s = rim,
                              .along_m_s = along,
                              .across_m_s = across,
-                             .load_kg = r.mass_kg / 4};
+                             .load_kg = load_kg()};
     const Meeting met =
         soft && (foot.front->bekker || foot.behind->bekker)
             ? meet_soft(i, input, foot, factor, at)
@@ -249,7 +249,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     if (b.heavy_resistance != 0) rolling += resistance_here(b, place_on_path(i)) * load;
     const double sideways = met.force.across_N - law::lateral_scrub_N(b.scrub, load) * soft_sign(across, 0.02);
     // what rolling alone pulls (arc law) is part of what it takes: both turn with the direction of rolling
-    const double turned = rolling_step(contact[n], along, rolling - met.free_N, r.mass_kg / 4, config.dt_s);
+    const double turned = rolling_step(contact[n], along, rolling - met.free_N, load_kg(), config.dt_s);
     const double pull = met.force.along_N + met.free_N * turned;
     const double ahead = pull - rolling * turned + met.edge_N;
     for (std::size_t k = 0; k < 3; ++k) out.force[k] = ahead * at.ahead[k] + sideways * at.left[k] + load * at.up[k];
@@ -278,13 +278,53 @@ void Plant::World::step_wheel(int i, double supply_V) {
     const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
     if (law::load_transfer_m(r.centre_height_m, b.raised_m) > 0) dBodyAddRelTorque(body, 0, -spin, 0);
 
-    WheelTruth &w = truth.wheel[n];
+    WheelTruth &w = truth.slot(i);
     w.traction_N = pull;
     w.rolling_N = rolling;
     w.rolling_share = turned;
     w.lateral_N = sideways;
     w.normal_N = load;
     w.slip = std::clamp(contact[n].slip, -1.0, 1.0); // beyond: wheels that turn against the motion, full sliding all the same
+    w.sinkage_m = met.sinkage_m;
+    w.ground_speed_m_s = along;
+}
+
+// A ball that rolls any way: the ground's resistance and its bearing's, against its velocity. No motor turns it, so where rolling takes a
+// torque (arc law) the ground gives it by a drag of that torque over the radius (energy: derived here).
+void Plant::World::step_caster(int i) {
+    const auto n = static_cast<std::size_t>(i);
+    const RoverParameters &r = config.rover;
+    Applied &out = applied[n];
+    const Stand at = out.stand = stand(i);
+    const double along = dot(at.velocity, at.ahead), across = dot(at.velocity, at.left), radius = radius_m(i);
+    const bool soft = config.ground.contact != ContactLaw::aggregated;
+    const Footing foot = footing(at.point, at.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
+    const Soil &soil = *foot.front;
+    const ContactInput input{.law = soil.law,
+                             .shear_slip = soil.shear_slip,
+                             .relaxation_m = law::relaxation_length_m(r.relaxation_length_m, effects.body.relaxation_m),
+                             .rim_m_s = along, // no slip, hence no traction
+                             .along_m_s = along,
+                             .load_kg = load_kg()};
+    const Meeting met =
+        soft && (foot.front->bekker || foot.behind->bekker)
+            ? meet_soft(i, input, foot, 1, at)
+            : meet_aggregated(i, input, soil, 1,
+                              at.steep * std::max(0.0, r.contact_stiffness_N_m * at.depth_m + r.contact_damping_Ns_m * at.sink_m_s));
+    const double speed = std::sqrt(along * along + across * across);
+    double rolling = met.rolling_N - met.free_N + met.free_Nm / radius + r.layout.caster_rolling * met.load_N;
+    each_resistance(effects.wheel[n], effects.body, 0.0, speed, [&](double per_load) { rolling += per_load * met.load_N; });
+    rolling = std::max(rolling, 0.0);
+    const RollingShare turned = drag_step(contact[n], along, across, rolling, load_kg(), config.dt_s);
+    for (std::size_t k = 0; k < 3; ++k)
+        out.force[k] = (met.edge_N - rolling * turned.along) * at.ahead[k] - rolling * turned.across * at.left[k] + met.load_N * at.up[k];
+    out.load_N = met.load_N, out.edge_N = met.edge_N;
+    dBodyAddForceAtPos(half_of(i), out.force[0], out.force[1], out.force[2], at.point[0], at.point[1], at.point[2]);
+    WheelTruth &w = truth.slot(i);
+    w.rolling_N = rolling;
+    w.rolling_share = turned.along;
+    w.lateral_N = -rolling * turned.across;
+    w.normal_N = met.load_N;
     w.sinkage_m = met.sinkage_m;
     w.ground_speed_m_s = along;
 }

@@ -1,7 +1,9 @@
-// world.h - the state behind Plant: bodies, wheels, drives, and the steps between them. Included by plant.cpp and wheels.cpp only.
+// world.h - the state behind Plant: bodies, wheels, drives, and the steps between them. Included by plant.cpp, build.cpp and wheels.cpp
+// only.
 #pragma once
 
 #include "contact.h"
+#include "layout.h"
 #include "plant.h"
 #include "rut.h"
 
@@ -14,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace traction::sim {
@@ -29,15 +32,22 @@ inline constexpr double reversal_m_s =
 inline double soft_sign(double speed, double width) { return std::clamp(speed / width, -1.0, 1.0); }
 
 inline constexpr double half_offset_share = 0.25; // a half's centre lies a quarter of the width beside the middle
-constexpr bool is_left(int wheel) { return wheel == 0 || wheel == 2; }
-constexpr bool is_front(int wheel) { return wheel >= 2; }
+constexpr bool is_left(int slot) { return slot % 2 == 0; }
+constexpr bool is_front(int slot) { return slot == 2 || slot == 3; }
+constexpr bool is_middle(int slot) { return slot >= 4; }
 
 struct Plant::World {
     explicit World(const PlantConfig &c);
     ~World();
     void build_bodies();
+    void build_joints(const Vec3 &anchor);
+    Stance stance() const;
+    void pose(const Vec3 &middle, double roll_rad, double pitch_rad);
+    void stand_up(double height_m);
+    void place_whole_on_terrain();
     void step();
     void step_wheel(int i, double supply_V);
+    void step_caster(int i);
     struct Stand {                        // where a wheel meets the ground: the plane it touches and how far it is pressed in
         Vec3 point{}, velocity{};         // contact point of the body, world
         Vec3 heading{};                   // of the wheel, horizontal
@@ -68,39 +78,53 @@ struct Plant::World {
     Meeting meet_soft(int i, ContactInput in, const Footing &foot, double factor, const Stand &at);
     const SoilConstants &constants_of(const Soil &soil) const;
     void push_body();
+    void keep_energy();
     void observe(const Vec3 &velocity_before);
     Vec3 mean_velocity() const;
     Vec3 axis(int column) const;                   // mean of the halves, unit, world
     void contact_velocity(int i, Vec3 &out) const; // of the contact point, as far as the last step knew it
     double kinetic() const;
     double potential() const;
-    bool trails(int wheel) const { return is_front(wheel) != (direction > 0); }
+    bool trails(int slot) const {
+        const bool rows = config.rover.layout.kind == Layout::four || config.rover.layout.kind == Layout::six;
+        return rows && (is_middle(slot) || is_front(slot) != (direction > 0));
+    }
+    WheelPlace place(int slot) const {
+        return wheel_place(config.rover.layout, config.rover.half_wheelbase_m, config.rover.half_track_m, slot);
+    }
+    double radius_m(int slot) const { // as the ground feels it
+        return is_caster(config.rover.layout.kind, slot) ? config.rover.layout.caster_radius_m : config.rover.wheel_radius_m;
+    }
+    double load_kg() const { return config.rover.mass_kg / static_cast<double>(wheels.size()); } // of a wheel, on the mean
     dBodyID half_of(int wheel) const { return half[is_left(wheel) ? 0 : 1]; }
 
     PlantConfig config;
+    std::span<const int> wheels;                    // slots, in order
+    std::array<double, wheel_most> place_ahead_m{}; // of the centre of mass
     RoverEffects effects;
     Vec3 gravity{};
     std::optional<Relief> relief; // none: a plane
     dWorldID world = nullptr;
     dJointID joint = nullptr;
+    std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
     std::array<dBodyID, 2> half{};
-    std::array<Vec3, wheel_count> contact_at{}; // contact point in its half's frame
-    std::array<DriveState, wheel_count> drive{};
-    std::array<ContactState, wheel_count> contact{};
-    std::array<double, wheel_count> duty{}, others_A{}; // others_A: of the motors that share a lead
-    std::array<bool, wheel_count> blocked{}, open{};
+    std::array<Vec3, wheel_most> contact_at{}; // contact point in its half's frame
+    std::array<DriveState, wheel_most> drive{};
+    std::array<ContactState, wheel_most> contact{};
+    std::array<double, wheel_most> duty{}, others_A{}; // others_A: of the motors that share a lead
+    std::array<bool, wheel_most> blocked{}, open{};
     double sag_V = 0;
     double rise_rad = 0;                  // of the ground where the rover is
     std::vector<SoilConstants> constants; // of the base soil and of each patch, soft contact only
     RutMemory ruts;
-    std::array<RutTrace, wheel_count> trace;
+    std::array<RutTrace, wheel_most> trace;
     struct Applied {
         Vec3 force{};                                                                    // at the contact point, world
         double load_N = 0, resist_N = 0, edge_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
         Stand stand;
     };
-    std::array<Applied, wheel_count> applied{};
+    std::array<Applied, wheel_most> applied{};
     Vec3 push{}, push_velocity{}; // drag and tether, whole rover
     bool enabled = true;
     double direction = 1;

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -145,6 +146,7 @@ RoverDescription parse_rover(const std::string &text, const std::string &file) {
     read_sections(top, rover, true);
     if (const toml::table *hardware = top.table("hardware")) rover.hardware_line = hardware->source().begin.line;
     top.finish();
+    check_layout(rover);
     return rover;
 }
 
@@ -198,6 +200,7 @@ void read_rover(const toml::node &node, const std::string &file, Scenario &scena
                 renamed.name = flat.flat;
                 read_value(keys, renamed, *value, scenario.rover.values[static_cast<std::size_t>(key - all.begin())]);
             }
+        check_layout(scenario.rover);
         put_in_plant(scenario.rover, scenario.plant.rover);
         // of this run, not of the rover: what is left in the battery, and where it starts
         scenario.plant.rover.battery_voltage_V = keys.number("battery_voltage_V", scenario.plant.rover.battery_voltage_V, {1, 60});
@@ -216,6 +219,30 @@ void set_rover(Scenario &scenario, RoverDescription rover) {
     scenario.rover = std::move(rover);
     put_in_plant(scenario.rover, scenario.plant.rover);
     scenario.sensors = sensors_of(scenario.rover);
+    check_wheels(scenario);
+}
+
+void check_wheels(const Scenario &scenario, std::span<const ActiveEffect> effects) {
+    const Layout layout = scenario.rover.layout().kind;
+    if (layout == Layout::four) return;
+    const auto need = [&](const char *key, int wheel) {
+        if (wheel >= 0 && !has_wheel(layout, wheel))
+            throw ScenarioError(scenario.file, 0, key, std::to_string(wheel), "the rover has no such wheel",
+                                layout == Layout::carriage ? "a bench carriage has wheel 0"
+                                                           : "a rover of two wheels has 0 (left) and 1 (right)");
+    };
+    if (scenario.can_bus)
+        throw ScenarioError(scenario.file, 0, "bus", "can", "only a rover of four wheels has its wheels on a bus", "leave bus out");
+    if (scenario.hidden)
+        throw ScenarioError(scenario.file, 0, "hidden", "", "effects are hidden in rovers of four wheels alone", "leave [hidden] out");
+    for (const SensorFault &fault : scenario.sensor_faults) need("fault.wheel", fault.wheel);
+    for (const WheelBlockSpan &span : scenario.wheel_blocks) need("fault.wheel", span.wheel);
+    for (const WheelBlockSpan &span : scenario.open_motors) need("fault.wheel", span.wheel);
+    for (const ActiveEffect &effect : scenario.effects) need("effect.wheel", effect.wheel);
+    for (const ActiveEffect &effect : effects) need("effect.wheel", effect.wheel);
+    for (const DriveSegment &segment : scenario.drive)
+        for (int wheel = 0; wheel < wheel_count; wheel++)
+            if (segment.slip_wheel[static_cast<std::size_t>(wheel)]) need("drive.slip_wheels", wheel);
 }
 
 } // namespace traction::sim

@@ -96,6 +96,11 @@ SensorFault read_sensor_fault(Keys &keys) {
     fault.kind = static_cast<FaultKind>(keys.word("how", "", kind_names));
     if (fault.sensor == FaultySensor::encoder || fault.sensor == FaultySensor::current || fault.sensor == FaultySensor::bridge)
         fault.wheel = static_cast<int>(keys.integer("wheel", -1, 0, wheel_count - 1));
+    const bool rising = fault.kind == FaultKind::offset || fault.kind == FaultKind::drift || fault.kind == FaultKind::spike;
+    if (rising && (fault.sensor == FaultySensor::accel || fault.sensor == FaultySensor::gyro)) {
+        constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+        fault.axis = static_cast<int>(keys.word("axis", fault.sensor == FaultySensor::gyro ? "z" : "x", axes));
+    }
     if (fault.kind == FaultKind::noisy) fault.amount = keys.need_number("noise", {0, 10000});
     if (fault.kind == FaultKind::delayed) fault.amount = keys.need_number("delay_s", {0, 2});
     if (fault.kind == FaultKind::offset) fault.amount = keys.need_number("offset", {-10000, 10000});
@@ -111,7 +116,6 @@ SensorFault read_sensor_fault(Keys &keys) {
     const bool line = fault.sensor == FaultySensor::bridge || fault.sensor == FaultySensor::emergency_stop;
     if (line && fault.kind != FaultKind::dropped && fault.kind != FaultKind::timeout)
         keys.fail("how", "is not a way in which a line of one bit fails", "write \"dropped\" or \"timeout\"");
-    const bool rising = fault.kind == FaultKind::offset || fault.kind == FaultKind::drift || fault.kind == FaultKind::spike;
     if (fault.sensor == FaultySensor::camera && (rising || radar_kind))
         keys.fail("how", "is for the rover's own devices; the camera is none of them",
                   "write \"stuck\", \"noisy\", \"dropped\" or \"delayed\"");

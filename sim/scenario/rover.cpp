@@ -1,7 +1,11 @@
 #include "rover.h"
 
+#include "scenario_error.h"
+
 #include "sim/physics/effects/catalogue.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace traction::sim {
@@ -101,6 +105,14 @@ constexpr RoverKey keys[] = {
     {"gains", "speed_integral_max_rad_s", "rad/s", 6, 0, 500, choice, "speed_integral_max_rad_s"},
     {"gains", "sweep_zero_s", "s", 10, 1, 600, choice, "sweep_zero_s"},
     {"gains", "sweep_duration_s", "s", 20, 1, 3600, choice, "sweep_duration_s"},
+    {"layout", "wheels", "1", 4, 1, 6, choice, ""}, // these eight: which wheels there are
+    {"layout", "rigid", "1", 0, 0, 1, choice, ""},
+    {"layout", "middle_m", "m", 0, -2, 2, choice, ""},
+    {"layout", "axle_m", "m", 0, -2, 2, choice, ""},
+    {"layout", "caster_m", "m", 0, -2, 2, choice, ""},
+    {"layout", "caster_radius_m", "m", 0.02, 0.005, 0.5, choice, ""},
+    {"layout", "caster_rolling", "1", 0, 0, 1, choice, ""},
+    {"layout", "drawbar_N", "N", 0, -1000, 1000, choice, ""},
 };
 
 std::size_t index_of(std::string_view section, std::string_view name) {
@@ -127,9 +139,10 @@ double RoverDescription::radius_m(std::size_t i) const { return wheel[i].radius_
 
 double RoverDescription::mean_radius_m() const {
     const double shared = at("wheels", "radius_m");
-    double more = 0; // over the shared one, so that equal wheels keep its bits
-    for (std::size_t i = 0; i < wheel_count; i++) more += radius_m(i) - shared;
-    return shared + more / wheel_count;
+    double more = 0, wheels = 0; // over the shared one, so that equal wheels keep its bits
+    for (const int slot : wheels_of(layout().kind))
+        if (slot < wheel_count) more += radius_m(static_cast<std::size_t>(slot)) - shared, wheels++;
+    return shared + more / wheels;
 }
 
 double RoverDescription::current_offset_count(std::size_t i) const {
@@ -137,6 +150,66 @@ double RoverDescription::current_offset_count(std::size_t i) const {
 }
 
 double RoverDescription::encoder_counts_per_turn() const { return at("encoder", "counts_per_motor_turn") * at("gear", "ratio"); }
+
+LayoutParameters RoverDescription::layout() const {
+    const double wheels = at("layout", "wheels");
+    LayoutParameters out;
+    out.kind = wheels < 2 ? Layout::carriage : wheels < 4 ? Layout::caster : wheels < 6 ? Layout::four : Layout::six;
+    out.rigid = out.kind == Layout::carriage || out.kind == Layout::caster || at("layout", "rigid") > 0.5;
+    out.middle_m = at("layout", "middle_m");
+    out.axle_m = at("layout", "axle_m"), out.caster_m = at("layout", "caster_m");
+    out.caster_radius_m = at("layout", "caster_radius_m"), out.caster_rolling = at("layout", "caster_rolling");
+    out.drawbar_N = at("layout", "drawbar_N");
+    return out;
+}
+
+double RoverDescription::heaviest_kg() const {
+    const LayoutParameters l = layout();
+    const double mass = at("body", "mass_kg"), stiffness = at("wheels", "contact_stiffness_N_m");
+    if (l.kind == Layout::four) return mass / 4;
+    std::vector<double> ahead_m;
+    for (const int slot : wheels_of(l.kind))
+        ahead_m.push_back(wheel_place(l, at("body", "half_wheelbase_m"), at("body", "half_track_m"), slot).ahead_m);
+    const auto load = [stiffness](std::size_t, double depth_m) { return std::max(0.0, stiffness * depth_m); };
+    const Stance stance = stand_on(ahead_m, load, mass, mass / stiffness / static_cast<double>(ahead_m.size()));
+    double most = 0;
+    for (std::size_t k = 0; k < ahead_m.size(); k++)
+        if (!is_caster(l.kind, wheels_of(l.kind)[k])) most = std::max(most, load(k, stance.depth_m + stance.pitch_rad * ahead_m[k]));
+    return most;
+}
+
+void check_layout(const RoverDescription &rover) {
+    const auto fail = [&rover](const char *key, const std::string &what, const std::string &mend) {
+        const RoverValue &value = rover.value("layout", key);
+        std::string text = std::to_string(value.value);
+        text.erase(text.find_last_not_of('0') + 1);
+        throw ScenarioError(rover.file, value.line, std::string("layout.") + key, text + (text.back() == '.' ? "0" : ""), what, mend);
+    };
+    const double wheels = rover.at("layout", "wheels");
+    if (wheels != 1 && wheels != 2 && wheels != 4 && wheels != 6)
+        fail("wheels", "no such rover", "give 1 (a bench carriage), 2 (and a caster), 4, or 6");
+    if (const double rigid = rover.at("layout", "rigid"); rigid != 0 && rigid != 1) fail("rigid", "neither 0 nor 1", "give one of them");
+    struct Owned {
+        const char *key;
+        double wheels;
+    };
+    for (const Owned &owned :
+         {Owned{"middle_m", 6}, {"axle_m", 2}, {"caster_m", 2}, {"caster_radius_m", 2}, {"caster_rolling", 2}, {"drawbar_N", 1}})
+        if (rover.value("layout", owned.key).given && wheels != owned.wheels)
+            fail(owned.key, "means nothing for a rover of " + std::to_string(static_cast<int>(wheels)) + " wheels",
+                 "leave it out, or write wheels = " + std::to_string(static_cast<int>(owned.wheels)));
+    const LayoutParameters l = rover.layout();
+    const double half = rover.at("body", "half_wheelbase_m");
+    if (l.kind == Layout::six && std::fabs(l.middle_m) >= half)
+        fail("middle_m", "not between the outer axles", "give less than body.half_wheelbase_m, ahead or (negative) behind");
+    if (l.kind != Layout::caster) return;
+    for (const char *key : {"axle_m", "caster_m"})
+        if (!rover.value("layout", key).given)
+            fail(key, "missing", "a rover of two wheels states axle_m and caster_m, ahead of its centre of mass");
+    if (l.axle_m * l.caster_m >= 0)
+        fail("caster_m", "the centre of mass does not lie between driven axle and caster: the rover tips over",
+             "give axle_m and caster_m different signs");
+}
 
 void put_in_plant(const RoverDescription &rover, RoverParameters &plant) {
     plant.mass_kg = rover.at("body", "mass_kg");
@@ -161,6 +234,7 @@ void put_in_plant(const RoverDescription &rover, RoverParameters &plant) {
     plant.drive.wheel_inertia_kg_m2 = rover.at("gear", "wheel_inertia_kg_m2");
     plant.drive.gear_stiffness_Nm_rad = rover.at("gear", "stiffness_Nm_rad");
     plant.drive.gear_damping_Nms_rad = rover.at("gear", "damping_Nms_rad");
+    plant.layout = rover.layout();
     plant.battery_voltage_V = rover.at("battery", "voltage_V");
     plant.battery_resistance_ohm = rover.at("battery", "resistance_ohm");
 }
@@ -199,7 +273,7 @@ std::vector<ActiveEffect> wheel_differences(const RoverDescription &rover) {
     const Effect *effect = find_effect("wheel_radius");
     for (int i = 0; i < wheel_count; i++) {
         const double change = rover.radius_m(static_cast<std::size_t>(i)) / rover.at("wheels", "radius_m") - 1;
-        if (change == 0) continue;
+        if (change == 0 || !has_wheel(rover.layout().kind, i)) continue;
         ActiveEffect active{.effect = effect, .wheel = i, .values = {}};
         for (const EffectParameter &parameter : effect->parameters)
             active.values.push_back(parameter.name == "change" ? change : parameter.typical);

@@ -1,5 +1,5 @@
 // rover.h - one rover as its file states it (rovers/*.toml, docs/rover_format.md): geometry, wheels, motors, gear, encoders, converters,
-// radar, IMU, limits, gains; each number with its unit and its source.
+// radar, IMU, limits, gains, and which wheels there are; each number with its unit and its source.
 //
 // From it come the plant (put_in_plant), the sensors (sensors_of), the converters of hal/sim, the firmware's parameters and the lab's model
 // (host_tools/rover). A world and a firmware may be given two of them: a firmware that is wrong about its rover.
@@ -23,7 +23,7 @@ namespace traction::sim {
 struct RoverKey {
     std::string_view section, name, unit;
     double reference, low, high; // reference: lhomme_desages.toml; of a choice that is left out it means nothing
-    bool choice;                 // a gain or limit: left out, the firmware makes it from the rover's own numbers
+    bool choice;                 // may be left out: a gain or limit, which the firmware makes from the rover's own numbers, or [layout]
     std::string_view firmware;   // the firmware's parameter of this value; empty: the world's alone
 };
 std::span<const RoverKey> rover_keys();
@@ -57,6 +57,8 @@ struct RoverDescription {
     double radius_m(std::size_t wheel) const;
     double mean_radius_m() const;
     double encoder_counts_per_turn() const; // of a wheel
+    LayoutParameters layout() const;        // [layout]: sim/plant/layout.h
+    double heaviest_kg() const;             // on one driven wheel, standing on level ground
     double current_offset_count(std::size_t wheel) const;
 };
 
@@ -70,6 +72,9 @@ std::string find_rover_file(const std::string &path, const std::string &from);
 
 void put_in_plant(const RoverDescription &rover, RoverParameters &plant);
 SensorConfig sensors_of(const RoverDescription &rover);
+
+// Throws ScenarioError for a [layout] that cannot stand or drive, with the key and the mend.
+void check_layout(const RoverDescription &rover);
 
 // Wheels whose radius is not wheels.radius_m, as the effect wheel_radius on each.
 std::vector<ActiveEffect> wheel_differences(const RoverDescription &rover);

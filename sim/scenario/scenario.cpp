@@ -60,6 +60,7 @@ void read_all(Keys &top, const std::string &file, Scenario &scenario) {
             scenario.effects.push_back(read_effect(*(*list)[i].as_table(), file, "effect[" + std::to_string(i) + "]"));
     top.finish();
     if (scenario.drive.empty()) top.fail("drive", "missing", "add at least one [[drive]] with for_s and mode");
+    check_wheels(scenario);
 }
 
 } // namespace

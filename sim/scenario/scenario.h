@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,6 +72,9 @@ struct Scenario {
 // Another rover drives: plant and sensors are made of it again. What [rover], [sensors] and [radar] say of the old one is gone; where it
 // starts stays.
 void set_rover(Scenario &scenario, RoverDescription rover);
+
+// What the scenario and these effects ask of wheels must be of wheels that the rover has; throws ScenarioError.
+void check_wheels(const Scenario &scenario, std::span<const ActiveEffect> effects = {});
 
 // Throws ScenarioError; std::filesystem::filesystem_error when the file cannot be read.
 Scenario read_scenario(const std::string &path);

@@ -25,6 +25,7 @@ inline constexpr std::size_t fault_kind_count = static_cast<std::size_t>(FaultKi
 struct SensorFault {
     FaultySensor sensor = FaultySensor::encoder;
     int wheel = -1; // encoder and current: which one; -1 all
+    int axis = 0;   // accelerometer and gyro, of offset, drift and spike: 0 x, 1 y, 2 z
     FaultKind kind = FaultKind::dropped;
     double from_s = 0, to_s = 0;
     double amount = 0;

@@ -526,6 +526,16 @@ TEST(FaultHal, a_sensor_that_drifts_jumps_or_slips_does_so_by_its_amount) {
     const auto spiked = with(accel, sim::FaultKind::spike, 0.4);
     EXPECT_EQ(spiked[9].accel_x_count, 9 + 100); // 4 mm/s^2 a count, in one tick
     EXPECT_EQ(spiked[10].accel_x_count, 10);
+    for (int axis = 0; axis < 3; axis++) { // 0.5 mrad/s a count; one axis alone
+        const auto turned = run(
+            {.sensors = {{.sensor = gyro, .axis = axis, .kind = sim::FaultKind::offset, .from_s = 0.1, .to_s = never_s, .amount = 0.05}},
+             .emergency_stop_s = {}},
+            30);
+        const auto sound = run({.sensors = {}, .emergency_stop_s = {}}, 30);
+        EXPECT_EQ(turned[20].gyro_x_count - sound[20].gyro_x_count, axis == 0 ? 100 : 0);
+        EXPECT_EQ(turned[20].gyro_y_count - sound[20].gyro_y_count, axis == 1 ? 100 : 0);
+        EXPECT_EQ(turned[20].gyro_z_count - sound[20].gyro_z_count, axis == 2 ? 100 : 0);
+    }
     const auto slips = with(encoder, sim::FaultKind::slipping, 0.5);
     EXPECT_EQ(slips[29].encoder_count[1] - slips[19].encoder_count[1], 500); // half of 100 a tick
     EXPECT_EQ(slips[29].encoder_count[0] - slips[19].encoder_count[0], 1000);

@@ -137,6 +137,22 @@ TEST(energy, straight_drive_balances_from_the_truth_alone) {
     EXPECT_NEAR(given - taken, kinetic(plant.truth()) - start, 1e-3 * given);
 }
 
+TEST(energy, the_audit_changes_no_other_number) {
+    for (const ContactLaw contact : {ContactLaw::aggregated, ContactLaw::bekker, ContactLaw::arc}) {
+        PlantConfig config = on("sand");
+        config.ground.contact = contact;
+        Plant kept(config);
+        config.audit = false;
+        Plant bare(config);
+        for (const auto &[left, right] : {std::pair{0.5, 0.5}, {0.6, 0.3}, {-0.4, -0.4}})
+            drive(kept, left, right, 400), drive(bare, left, right, 400);
+        EXPECT_EQ(kept.state_hash(), bare.state_hash());
+        EXPECT_EQ(kept.truth().specific_force_m_s2, bare.truth().specific_force_m_s2);
+        EXPECT_GT(kept.energy().slip, 0);
+        EXPECT_EQ(bare.energy().slip, 0);
+    }
+}
+
 TEST(repeat, two_runs_give_the_same_bits_and_another_input_does_not) {
     const auto hash = [](double duty) {
         PlantConfig config = on("gravel");

@@ -56,7 +56,7 @@ struct BodyEffects {
 void act(const ActiveEffect &active, std::span<WheelEffects> wheels, BodyEffects &body);
 
 struct RoverEffects {
-    std::array<WheelEffects, 4> wheel;
+    std::array<WheelEffects, 6> wheel; // the plant's slots (sim/plant/layout.h); the sensors have the first four
     BodyEffects body;
 };
 RoverEffects act_together(std::span<const ActiveEffect> effects);

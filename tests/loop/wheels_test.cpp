@@ -1,0 +1,190 @@
+// The firmware of four wheels on rovers of one, two and six: scenarios of the repository, in lockstep with the plant, on hard and on soft
+// ground. The bounds on the speed are those that loop_test has for four wheels.
+#include "host_tools/check/check.h"
+#include "host_tools/replay/replay_log.h"
+#include "host_tools/rover/rover.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <cstdint>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+using namespace traction;
+
+namespace {
+
+sim::Scenario scenario_of(const std::string &name, const std::string &soil = "", sim::ContactLaw contact = sim::ContactLaw::aggregated) {
+    sim::Scenario scenario = sim::read_scenario(std::string(TRACTION_ROOT) + "/scenarios/" + name + ".toml");
+    if (!soil.empty()) scenario.plant.ground.soil = *sim::find_soil(soil);
+    scenario.plant.ground.contact = contact;
+    return scenario;
+}
+
+SimulationResult run(const sim::Scenario &scenario, std::uint64_t seed = 1) {
+    SimulateOptions options;
+    options.seed = seed;
+    options.truth = true;
+    return simulate(scenario, options);
+}
+
+double mean(
+    const log::Log &log, const std::string &name, double from_s, double to_s,
+    const std::function<double(double)> &of = [](double x) { return x; }) {
+    const log::Signal &signal = *log.find(name);
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < signal.t_s.size(); i++)
+        if (signal.t_s[i] > from_s && signal.t_s[i] <= to_s) sum += of(signal.value[i]), count++;
+    return sum / count;
+}
+
+std::string message_of(const std::function<void()> &call) {
+    try {
+        call();
+    } catch (const sim::ScenarioError &error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+const char *const names[] = {"six_wheels", "two_wheels", "bench_carriage"};
+
+// A speed of 0.3 m/s ahead from 5 to 10 s in all of them.
+TEST(Wheels, every_rover_holds_its_speed_on_hard_and_soft_ground_without_a_fault) {
+    for (const std::string name : names)
+        for (const std::string soil : {"concrete", "sand"})
+            for (const sim::ContactLaw contact : {sim::ContactLaw::aggregated, sim::ContactLaw::bekker}) {
+                if (soil == "concrete" && contact != sim::ContactLaw::aggregated) continue; // it has no other
+                sim::Scenario scenario = scenario_of(name, soil, contact);
+                if (contact == sim::ContactLaw::bekker) scenario.plant.rover.layout.drawbar_N *= 0.2; // what that sand bears
+                const SimulationResult result = run(scenario);
+                const std::string what = name + ' ' + soil + ' ' + std::to_string(static_cast<int>(contact));
+                EXPECT_EQ(result.faults, 0u) << what;
+                EXPECT_NEAR(mean(result.truth, "truth.speed_m_s", 5, 10), 0.3, 0.3 * 0.045) << what;
+                const auto off = [](double v) { return (v - 0.3) * (v - 0.3); };
+                EXPECT_LT(std::sqrt(mean(result.truth, "truth.speed_m_s", 5, 10, off)), 0.03) << what;
+                EXPECT_LT(std::sqrt(mean(result.log, "estimate.speed_m_s", 5, 10, off)), 0.036) << what;
+                if (name != "bench_carriage") {
+                    EXPECT_NEAR(mean(result.truth, "truth.speed_m_s", 18.5, 20.9), -0.3, 0.3 * 0.06) << what;
+                }
+            }
+}
+
+TEST(Wheels, a_middle_wheel_follows_its_side) {
+    const SimulationResult result = run(scenario_of("six_wheels"));
+    const log::Log &truth = result.truth;
+    for (int side = 0; side < 2; side++) {
+        const auto value = [&](int wheel) { return truth.find("truth.wheel" + std::to_string(wheel) + ".duty")->value; };
+        const auto middle = value(4 + side), rear = value(side), front = value(2 + side);
+        ASSERT_EQ(middle.size(), rear.size());
+        for (std::size_t i = 0; i < middle.size(); i++) EXPECT_NEAR(middle[i], 0.5 * (rear[i] + front[i]), 2e-9); // as written: 1e-9
+        EXPECT_GT(mean(truth, "truth.wheel" + std::to_string(4 + side) + ".current_A", 5, 10), 0.1) << "it pulls";
+    }
+    EXPECT_EQ(result.log.find("wheel4.duty"), nullptr); // the firmware knows four wheels
+    EXPECT_EQ(result.log.header.at("rover.wheels"), "6");
+}
+
+TEST(Wheels, what_a_rover_has_not_is_neither_logged_nor_waited_for_nor_driven) {
+    for (const auto &[name, wheels] : {std::pair{"two_wheels", 2}, {"bench_carriage", 1}}) {
+        const SimulationResult result = run(scenario_of(name));
+        for (int wheel = 0; wheel < 4; wheel++)
+            for (const char *signal : {".speed_rad_s", ".current_A", ".duty", ".slip"})
+                EXPECT_EQ(result.log.find("wheel" + std::to_string(wheel) + signal) != nullptr, wheel < wheels) << name << wheel << signal;
+        const unsigned present = static_cast<unsigned>(result.log.find("frame.present")->value.back());
+        EXPECT_EQ(present & 0xfu, (1u << static_cast<unsigned>(wheels)) - 1) << name; // encoders
+        const check::Report report = check::check(result.log, {});
+        EXPECT_TRUE(report.passed()) << name;
+    }
+}
+
+// The firmware is told which wheels there are; it does not conclude it from silence: a wheel that falls silent is still a fault.
+TEST(Wheels, a_wheel_that_it_has_and_that_falls_silent_is_a_fault) {
+    sim::Scenario scenario = scenario_of("two_wheels");
+    scenario.sensor_faults.push_back(
+        {.sensor = sim::FaultySensor::encoder, .wheel = 1, .kind = sim::FaultKind::dropped, .from_s = 6.0, .to_s = 30.0});
+    EXPECT_NE(run(scenario).faults & FAULT_ENCODER_LOST, 0u);
+    sim::Scenario deaf = scenario_of("two_wheels"); // told while every wheel turns: the two that there are
+    deaf.sensor_faults.push_back({.sensor = sim::FaultySensor::radar, .kind = sim::FaultKind::dead, .from_s = 6.0, .to_s = 30.0});
+    EXPECT_NE(run(deaf).faults & FAULT_RADAR_LOST, 0u);
+    sim::Scenario blind = scenario_of("two_wheels");
+    blind.firmware.believes = sim::RoverDescription(); // it takes itself for a rover of four
+    EXPECT_NE(run(blind).faults & FAULT_ENCODER_LOST, 0u);
+    sim::Scenario stuck = scenario_of("two_wheels");
+    stuck.open_motors.push_back({0, 6.0, 30.0});
+    EXPECT_NE(run(stuck).faults & FAULT_MOTOR_OPEN, 0u);
+}
+
+TEST(Wheels, the_self_test_pulses_the_wheels_that_are_there) {
+    for (const std::string name : names) {
+        sim::Scenario scenario = scenario_of(name, "concrete");
+        scenario.plant.rover.layout.drawbar_N = 0; // the test wants a rover at rest
+        SimulateOptions options;
+        options.self_test = true;
+        const SimulationResult result = simulate(scenario, options);
+        EXPECT_TRUE(result.self_test.done) << name;
+        EXPECT_EQ(result.self_test.failures, 0u) << name;
+    }
+}
+
+TEST(Wheels, a_run_repeats_and_its_log_replays_bit_for_bit) {
+    for (const std::string name : names) {
+        const SimulationResult first = run(scenario_of(name)), again = run(scenario_of(name));
+        EXPECT_EQ(first.trace_hash, again.trace_hash) << name;
+        const replay::Comparison same = replay::replay_log(first.log, replay::logged_ticks(first.log));
+        EXPECT_GT(same.ticks, 1000u) << name;
+        EXPECT_EQ(same.differing, 0u) << name << ' ' << same.first_signal;
+    }
+}
+
+// The firmware takes a quarter of its mass for a wheel's load; a wheel of each of these rovers bears 7.06 N, as the reference's do.
+TEST(Wheels, the_firmware_is_told_the_load_of_a_wheel_and_which_there_are) {
+    const control_config_t reference = rover_config_default();
+    for (const auto &[name, mask, share] : {std::tuple{"six_wheels", 15u, 0.25f}, {"two_wheels", 3u, 0.5f}, {"bench_carriage", 1u, 1.0f}}) {
+        const control_config_t config = firmware_config(scenario_of(name).rover);
+        EXPECT_EQ(config.geometry.wheels, mask) << name;
+        EXPECT_EQ(config.geometry.wheel_share, share) << name;
+        EXPECT_NEAR(config.geometry.mass_kg, 2.88f, 1e-5f) << name;
+        EXPECT_NEAR(config.safety.stall_current_A, reference.safety.stall_current_A, 1e-4f) << name;
+    }
+    sim::RoverDescription uneven = scenario_of("two_wheels").rover;
+    uneven.wheel[0].radius_m = 0.055, uneven.wheel[1].radius_m = 0.061, uneven.wheel[2].radius_m = 0.2; // the third is not there
+    EXPECT_NEAR(firmware_config(uneven).geometry.wheel_radius_m, 0.058f, 1e-7f);
+    EXPECT_EQ(sim::wheel_differences(uneven).size(), 2u);
+}
+
+TEST(Wheels, a_layout_that_cannot_work_is_refused_by_its_key) {
+    const std::string start = "duration_s = 1.0\n[rover]\n[rover.layout]\n", end = "\n[[drive]]\nfor_s = 1.0\nmode = \"stop\"\n";
+    const auto told = [&](const std::string &layout, const std::string &more = "") {
+        return message_of([&] { (void)sim::parse_scenario(start + layout + more + end, "test.toml"); });
+    };
+    EXPECT_NE(told("wheels = 3").find("test.toml:4: layout.wheels = 3.0: no such rover"), std::string::npos) << told("wheels = 3");
+    EXPECT_NE(told("wheels = 2").find("layout.axle_m"), std::string::npos);
+    EXPECT_NE(told("wheels = 2\naxle_m = 0.1\ncaster_m = 0.05").find("tips over"), std::string::npos);
+    EXPECT_NE(told("wheels = 6\nmiddle_m = 0.09").find("layout.middle_m"), std::string::npos); // half a wheelbase is 0.083
+    EXPECT_NE(told("wheels = 6\ndrawbar_N = 1").find("layout.drawbar_N"), std::string::npos);
+    EXPECT_NE(told("middle_m = 0.01").find("means nothing for a rover of 4 wheels"), std::string::npos);
+    EXPECT_NE(told("rigid = 0.5").find("layout.rigid"), std::string::npos);
+    EXPECT_EQ(told("wheels = 6\nmiddle_m = -0.02\nrigid = 1"), "accepted");
+    const std::string fault = "\n[[fault]]\nwhat = \"wheel_blocked\"\nwheel = 2\nfrom_s = 0.1\nto_s = 0.2\n";
+    EXPECT_NE(told("wheels = 1", fault).find("the rover has no such wheel"), std::string::npos) << told("wheels = 1", fault);
+    EXPECT_EQ(told("wheels = 6", fault), "accepted");
+    const std::string can = message_of([&] { (void)sim::parse_scenario("bus = \"can\"\n" + start + "wheels = 6" + end, "test.toml"); });
+    EXPECT_NE(can.find("bus = can"), std::string::npos) << can;
+    // not in the file alone: on the command line, too
+    SimulateOptions more;
+    more.effects = {sim::parse_effect("wheel_radius:change=0.01,wheel=3")};
+    EXPECT_NE(message_of([&] { (void)simulate(scenario_of("two_wheels"), more); }).find("the rover has no such wheel"), std::string::npos);
+    SimulateOptions hide;
+    hide.hide = sim::HiddenDraw{};
+    EXPECT_NE(message_of([&] { (void)simulate(scenario_of("two_wheels"), hide); }).find("four wheels alone"), std::string::npos);
+    EXPECT_THROW((void)model_text(scenario_of("six_wheels").rover, "sand"), std::invalid_argument); // the lab has four
+}
+
+} // namespace
