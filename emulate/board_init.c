@@ -3,12 +3,17 @@
 //
 // Files of the run lie in the folder that QEMU was started in: `files` (names to bring, one a line), `arguments` (tractiond's, one a
 // line). Taken out at the end: trace.txt, tractiond.txt (what it said) and log/*.
+//
+// Where a file `defaults` is among them, the program is not this image's but the version that the slots on the NOR flash hold, started as
+// on a rover: by traction-slot, its `start`, and `defaults` in place of /etc/default/tractiond. Its log lies on the flash then; of it the
+// files of this run are taken out, and the version's own parameters, as parameters.txt.
 #include "board_devices.h"
 #include "semihosting.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
@@ -26,6 +31,10 @@
 enum { CHUNK = 65536, ARGUMENTS = 40, TEXT = 8192, EXIT_BROKEN = 70, IDLE_MS = 10, PRIORITY = 60 };
 
 static char chunk[CHUNK]; // what semihosting reads and writes; locked
+static bool flashed;      // the version in the slots runs, not this image's
+static const char flash_log[] = "/flash/state/log";
+static char version[PATH_MAX];    // folder of the version that runs
+static char newest[NAME_MAX + 1]; // of the logs that were there before
 
 static _Noreturn void give_up(const char *what) {
     (void)printf("board: %s: %s\n", what, strerror(errno));
@@ -74,8 +83,8 @@ static void bring(const char *name) {
     (void)close(to);
 }
 
-static void take_out(const char *name) {
-    const int from = open(name, O_RDONLY | O_CLOEXEC);
+static void take_out_as(const char *path, const char *name) {
+    const int from = open(path, O_RDONLY | O_CLOEXEC);
     if (from < 0) {
         return; // this run makes none
     }
@@ -92,13 +101,34 @@ static void take_out(const char *name) {
     (void)close(from);
 }
 
-static void take_out_log(void) {
-    DIR *folder = opendir("log");
+static void take_out(const char *name) { take_out_as(name, name); }
+
+// The newest of the on-board logs, by their numbers; those of this run are newer.
+static void remember_newest(void) {
+    DIR *folder = opendir(flash_log);
     for (const struct dirent *entry = folder != NULL ? readdir(folder) : NULL; entry != NULL; entry = readdir(folder)) {
-        char name[300];
-        if (entry->d_name[0] != '.' && snprintf(name, sizeof name, "log/%s", entry->d_name) < (int)sizeof name) {
-            take_out(name);
+        if (strstr(entry->d_name, ".ulg") != NULL && strcmp(entry->d_name, newest) > 0) {
+            (void)snprintf(newest, sizeof newest, "%s", entry->d_name);
         }
+    }
+    if (folder != NULL) {
+        (void)closedir(folder);
+    }
+}
+
+static void take_out_log(void) {
+    const char *from = flashed ? flash_log : "log";
+    DIR *folder = opendir(from);
+    for (const struct dirent *entry = folder != NULL ? readdir(folder) : NULL; entry != NULL; entry = readdir(folder)) {
+        char path[300], name[300];
+        const bool ours = !flashed || (strstr(entry->d_name, ".ulg") != NULL && strcmp(entry->d_name, newest) > 0);
+        if (entry->d_name[0] != '.' && ours && snprintf(path, sizeof path, "%s/%s", from, entry->d_name) < (int)sizeof path &&
+            snprintf(name, sizeof name, "log/%s", entry->d_name) < (int)sizeof name) {
+            take_out_as(path, name);
+        }
+    }
+    if (folder != NULL) {
+        (void)closedir(folder);
     }
 }
 
@@ -123,17 +153,20 @@ static int lines_of(const char *name, char text[TEXT], char **line, int room) {
 static pid_t start_firmware(void) {
     static char text[TEXT];
     static char name[] = "tractiond";
+    static char slot[] = "traction-slot", option[] = "--folder", slots[] = "/flash/traction", run[] = "run";
+    static char defaults[] = "TRACTIOND_DEFAULTS=/run/defaults", path[] = "PATH=/bin";
     char *argument[ARGUMENTS] = {name};
     const int count = lines_of("arguments", text, argument + 1, ARGUMENTS - 2);
     argument[count + 1] = NULL;
+    char *const starter[] = {slot, option, slots, run, NULL};
     const pid_t pid = fork();
     if (pid == 0) {
         const int out = open("tractiond.txt", O_WRONLY | O_CREAT | O_TRUNC, 0644), in = open("/dev/null", O_RDONLY);
-        char *const environment[] = {NULL};
+        char *const environment[] = {flashed ? defaults : NULL, path, NULL};
         if (out >= 0 && in >= 0 && dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(out, 2) == 2) {
             (void)close(out);
             (void)close(in);
-            (void)execve("/sbin/tractiond", argument, environment);
+            (void)execve(flashed ? "/usr/sbin/traction-slot" : "/sbin/tractiond", flashed ? starter : argument, environment);
         }
         _exit(127);
     }
@@ -141,6 +174,26 @@ static pid_t start_firmware(void) {
         give_up("fork");
     }
     return pid;
+}
+
+// The daemon itself, once it talks: of a flashed version a child of its starter. Its parameters are put aside.
+static pid_t program_of(pid_t starter) {
+    pid_t found = starter;
+    DIR *processes = flashed ? opendir("/proc") : NULL;
+    for (const struct dirent *entry = processes != NULL ? readdir(processes) : NULL; entry != NULL; entry = readdir(processes)) {
+        char path[300], link[PATH_MAX];
+        (void)snprintf(path, sizeof path, "/proc/%.20s/exe", entry->d_name);
+        const ssize_t length = entry->d_name[0] >= '1' && entry->d_name[0] <= '9' ? readlink(path, link, sizeof link - 1) : -1;
+        link[length > 0 ? length : 0] = '\0';
+        if (strstr(link, "/tractiond") != NULL) {
+            found = (pid_t)strtol(entry->d_name, NULL, 10);
+            (void)snprintf(version, sizeof version, "%.*s", (int)(strrchr(link, '/') - link), link);
+        }
+    }
+    if (processes != NULL) {
+        (void)closedir(processes);
+    }
+    return found;
 }
 
 static uint32_t memory_kB(pid_t pid) {
@@ -203,9 +256,7 @@ static void serve(pid_t firmware) {
     clockid_t cpu;
     lockstep_board_t *head = &lockstep.said.head;
     bool stopped = false;
-    if (clock_getcpuclockid(firmware, &cpu) != 0) {
-        give_up("the firmware's clock");
-    }
+    pid_t program = 0;
     for (*head = (lockstep_board_t){.version = LOCKSTEP_VERSION}; head->over == 0u;) {
         struct pollfd wait_for = {.fd = lockstep.devices.can, .events = POLLIN};
         (void)poll(&wait_for, 1, IDLE_MS);
@@ -213,10 +264,16 @@ static void serve(pid_t firmware) {
         head->frames = board_devices_take(&lockstep.devices, lockstep.said.frame);
         head->time_ns = now_ns(CLOCK_MONOTONIC);
         head->lines = board_devices_lines(&lockstep.devices);
+        if (program == 0 && head->frames > 0) { // it talks
+            program = program_of(firmware);
+            if (clock_getcpuclockid(program, &cpu) != 0) {
+                give_up("the firmware's clock");
+            }
+        }
         if (waitpid(firmware, &status, WNOHANG) == firmware) {
             head->over = 1;
             head->status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        } else if (!stopped) {
+        } else if (!stopped && program != 0) {
             head->cpu_ns = now_ns(cpu);
         }
         say();
@@ -225,7 +282,7 @@ static void serve(pid_t firmware) {
         }
         if (lockstep.world.stop != 0u && !stopped) {
             stopped = true;
-            head->memory_kB = memory_kB(firmware);
+            head->memory_kB = memory_kB(program);
             (void)kill(firmware, SIGTERM);
         }
     }
@@ -248,6 +305,13 @@ int main(void) {
     for (int i = 0, count = lines_of("files", text, file, ARGUMENTS); i < count; i++) {
         bring(file[i]);
     }
+    flashed = access("defaults", R_OK) == 0;
+    if (flashed) {
+        if (mount("mtd0", "/flash", "jffs2", 0, "") != 0) {
+            give_up("/flash");
+        }
+        remember_newest();
+    }
     lockstep.out = semihosting_open("to_world", SEMIHOSTING_WRITE);
     lockstep.in = semihosting_open("to_board", SEMIHOSTING_READ);
     if (lockstep.out < 0 || lockstep.in < 0) {
@@ -257,6 +321,12 @@ int main(void) {
     take_out("trace.txt");
     take_out("tractiond.txt");
     take_out_log();
+    if (flashed) {
+        char path[PATH_MAX + 20];
+        (void)snprintf(path, sizeof path, "%s/parameters", version);
+        take_out_as(path, "parameters.txt");
+        (void)umount("/flash");
+    }
     semihosting_exit(0);
     return EXIT_BROKEN;
 }

@@ -1,5 +1,6 @@
 #include "board_log.h"
 
+#include "host_tools/log/ulog_format.h"
 #include "host_tools/simulate/header.h"
 #include "host_tools/simulate/recorder.h"
 #include "sim/scenario/scenario.h"
@@ -11,59 +12,14 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <optional>
 #include <string_view>
 
 namespace traction::board {
 
 namespace {
 
-constexpr std::string_view magic{"ULog\x01\x12\x35", 7};
-constexpr std::size_t header_bytes = 16;
-
-std::uint64_t little(std::string_view bytes) {
-    std::uint64_t value = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8u | static_cast<std::uint8_t>(bytes[i]);
-    return value;
-}
-
-struct Field {
-    std::size_t at = 0, size = 0, count = 1;
-    std::string type;
-};
-using Topic = std::map<std::string, Field, std::less<>>;
-
-// "uint64_t timestamp;float[4] duty;" as fields; nothing when a type is not basic (nested messages are none of ours).
-std::optional<Topic> topic_of(std::string_view format) {
-    static const std::map<std::string_view, std::size_t> sizes{{"int8_t", 1},   {"uint8_t", 1}, {"int16_t", 2},  {"uint16_t", 2},
-                                                               {"int32_t", 4},  {"float", 4},   {"uint32_t", 4}, {"int64_t", 8},
-                                                               {"uint64_t", 8}, {"double", 8},  {"bool", 1},     {"char", 1}};
-    Topic topic;
-    std::size_t offset = 0;
-    while (!format.empty()) {
-        const std::size_t end = format.find(';'), blank = format.find(' ');
-        if (end == std::string_view::npos || blank == std::string_view::npos || blank > end) return {};
-        std::string_view type = format.substr(0, blank);
-        Field field;
-        if (const std::size_t bracket = type.find('['); bracket != std::string_view::npos) {
-            field.count = 0;
-            for (const char c : type.substr(bracket + 1, type.size() - bracket - 2)) {
-                if (c < '0' || c > '9' || field.count > 6553) return {};
-                field.count = field.count * 10 + static_cast<std::size_t>(c - '0');
-            }
-            type = type.substr(0, bracket);
-        }
-        const auto known = sizes.find(type);
-        if (known == sizes.end()) return {};
-        field.at = offset;
-        field.size = known->second;
-        field.type = known->first;
-        offset += field.size * field.count;
-        topic[std::string(format.substr(blank + 1, end - blank - 1))] = field;
-        format.remove_prefix(end + 1);
-    }
-    return topic;
-}
+using log::little_endian, log::ulog_magic, log::ulog_head_bytes;
+using Topic = std::map<std::string, log::UlogField, std::less<>>;
 
 // One message's payload by its topic. A field that is not there, or is cut, is 0.
 class Row {
@@ -73,9 +29,9 @@ class Row {
     std::uint64_t bits(std::string_view name, std::size_t i = 0) const {
         const auto found = topic_.find(name);
         if (found == topic_.end() || i >= found->second.count) return 0;
-        const Field &field = found->second;
+        const log::UlogField &field = found->second;
         const std::size_t at = field.at + i * field.size;
-        return at + field.size <= payload_.size() ? little(payload_.substr(at, field.size)) : 0;
+        return at + field.size <= payload_.size() ? little_endian(payload_.substr(at, field.size)) : 0;
     }
     template <typename T> void take(T &out, std::string_view name, std::size_t i = 0) const { out = static_cast<T>(bits(name, i)); }
     void take(float &out, std::string_view name, std::size_t i = 0) const {
@@ -175,20 +131,11 @@ class Reader {
   public:
     explicit Reader(const std::string &file) : file_(file) {}
     BoardLog read(std::string_view bytes) {
-        std::size_t at = header_bytes;
-        while (at + 3 <= bytes.size()) {
-            const auto size = static_cast<std::size_t>(little(bytes.substr(at, 2)));
-            const char kind = bytes[at + 2];
-            if (at + 3 + size > bytes.size()) break;
-            if (std::strchr("BFIMPQADLCSRO", kind) == nullptr || kind == '\0') {
-                out_.mended.push_back(file_ + ": from byte " + std::to_string(at) + " on there are no messages; left out");
-                return finish();
-            }
-            take(kind, bytes.substr(at + 3, size));
-            at += 3 + size;
-        }
-        if (at < bytes.size())
-            out_.mended.push_back(file_ + ": cut within a message, at byte " + std::to_string(at) + "; read up to there");
+        const log::UlogStop stop = log::for_each_ulog_message(bytes, [this](char kind, std::string_view payload) { take(kind, payload); });
+        if (stop.how == log::UlogEnd::no_message)
+            out_.mended.push_back(file_ + ": from byte " + std::to_string(stop.at) + " on there are no messages; left out");
+        if (stop.how == log::UlogEnd::within_a_message)
+            out_.mended.push_back(file_ + ": cut within a message, at byte " + std::to_string(stop.at) + "; read up to there");
         return finish();
     }
 
@@ -196,22 +143,25 @@ class Reader {
     void take(char kind, std::string_view payload) {
         if (kind == 'F') {
             const std::size_t colon = payload.find(':');
-            const auto topic = colon != std::string_view::npos ? topic_of(payload.substr(colon + 1)) : std::nullopt;
-            if (topic) formats_[std::string(payload.substr(0, colon))] = *topic;
+            const auto fields = colon != std::string_view::npos ? log::ulog_fields(payload.substr(colon + 1)) : std::nullopt;
+            if (!fields) return; // nested messages are none of ours
+            Topic topic;
+            for (const log::UlogField &field : *fields) topic[field.name] = field;
+            formats_[std::string(payload.substr(0, colon))] = std::move(topic);
         } else if (kind == 'A' && payload.size() > 3) {
-            topics_[little(payload.substr(1, 2))] = std::string(payload.substr(3));
+            topics_[little_endian(payload.substr(1, 2))] = std::string(payload.substr(3));
         } else if (kind == 'I' && payload.size() > 1) {
             const std::size_t key = static_cast<std::uint8_t>(payload[0]);
             if (payload.size() >= 1 + key && payload.substr(1, key).ends_with(" ver_sw")) out_.version = payload.substr(1 + key);
         } else if (kind == 'L' && payload.size() > 9) {
             std::array<char, 32> time{};
-            std::snprintf(time.data(), time.size(), "%.3f s: ", static_cast<double>(little(payload.substr(1, 8))) * 1e-6);
+            std::snprintf(time.data(), time.size(), "%.3f s: ", static_cast<double>(little_endian(payload.substr(1, 8))) * 1e-6);
             out_.text.push_back(time.data() + std::string(payload.substr(9)));
         } else if (kind == 'O' && payload.size() >= 2) {
-            out_.mended.push_back(file_ + ": " + std::to_string(little(payload.substr(0, 2))) +
+            out_.mended.push_back(file_ + ": " + std::to_string(little_endian(payload.substr(0, 2))) +
                                   " ms were lost on the rover, its disk was too slow");
         } else if (kind == 'D' && payload.size() > 2) {
-            data(little(payload.substr(0, 2)), payload.substr(2));
+            data(little_endian(payload.substr(0, 2)), payload.substr(2));
         }
     }
 
@@ -255,22 +205,22 @@ class Reader {
 
 bool is_ulog(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
-    std::array<char, magic.size()> begin{};
+    std::array<char, ulog_magic.size()> begin{};
     file.read(begin.data(), begin.size());
-    return file.gcount() == static_cast<std::streamsize>(magic.size()) && std::string_view(begin.data(), begin.size()) == magic;
+    return file.gcount() == static_cast<std::streamsize>(ulog_magic.size()) && std::string_view(begin.data(), begin.size()) == ulog_magic;
 }
 
 BoardLog read_board_log(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     if (!file.is_open() || file.bad()) throw log::FileError(path, 0, 0, "cannot be read", "give a file that is there");
-    if (!std::string_view(bytes).starts_with(magic) || bytes.size() < header_bytes)
+    if (!std::string_view(bytes).starts_with(ulog_magic) || bytes.size() < ulog_head_bytes)
         throw log::LogError(path, 0, 0, "does not begin as ULog does", "give a log_NNNNNN.ulg of tractiond's --log folder");
     return Reader(path).read(bytes);
 }
 
 log::Log to_log(const BoardLog &board, const sim::RoverDescription &rover) {
-    Recorder recorder(board.ticks.size(), rover.at("radar", "rate_Hz"));
+    Recorder recorder(board.ticks.size(), rover.at("radar", "rate_Hz"), "", sim::firmware_wheels(rover.layout().kind));
     for (const BoardTick &tick : board.ticks) recorder.add(tick.frame, tick.command, tick.trace);
     log::Log log = recorder.take();
     sim::Scenario scenario;

@@ -2,6 +2,7 @@
 #include "series.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace traction::check {
 
@@ -38,10 +39,31 @@ const std::vector<std::string> &error_ids() {
     return ids;
 }
 
+namespace {
+
+// What the log's maker says of its rover (header `rover.wheels`) against the model: wheels that push and were not logged would be missing
+// from every balance.
+void declared_wheels(const log::Log &log, const Machine &machine, std::vector<Finding> &findings) {
+    const auto told = log.header.find("rover.wheels");
+    if (told == log.header.end() || machine.wheel_y_m.empty() || !machine.on_ground) return;
+    const int wheels = std::atoi(told->second.c_str());
+    const std::string model = std::to_string(machine.wheel_y_m.size());
+    if (wheels == static_cast<int>(machine.wheel_y_m.size())) return;
+    findings.push_back({.id = "wheels",
+                        .severity = Severity::error,
+                        .signal = "",
+                        .text = "the log's rover drives " + told->second + " wheels (header rover.wheels), the model has " + model,
+                        .mend = "use a model of that rover; none is made here for other than four wheels",
+                        .value = static_cast<double>(wheels)});
+}
+
+} // namespace
+
 Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const Machine &machine) {
     Report report;
     const Grid grid = make_grid(log, machine);
     check_quality(log, repairs, grid, report.findings, report.rates);
+    declared_wheels(log, machine, report.findings);
     if (grid.count >= 50) { // 2.5 s
         check_magnitudes(grid, report.findings);
         check_drives(grid, machine, report.findings);

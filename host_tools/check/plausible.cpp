@@ -128,30 +128,32 @@ void stray_current(const Grid &grid, const Machine &machine, Findings &findings)
 // One wheel that turns against all the others of a machine that drives straight: its motor is mounted the other way round.
 void odd_wheel(const Grid &grid, const Machine &machine, Findings &findings) {
     // without a model three wheels may be an omni robot's
-    if (!machine.wheels_point_forward || grid.wheel.size() < (machine.wheel_y_m.empty() ? 4U : 3U) || has_error(findings, "wheel")) return;
+    std::vector<const Wheel *> turning; // those whose speed was logged
+    for (const Wheel &wheel : grid.wheel)
+        if (!wheel.speed.empty()) turning.push_back(&wheel);
+    if (!machine.wheels_point_forward || turning.size() < (machine.wheel_y_m.empty() ? 4U : 3U) || has_error(findings, "wheel")) return;
     const double turns = 0.3 * std::fmax(std::fabs(quantile(grid.gyro, 0.98)), std::fabs(quantile(grid.gyro, 0.02)));
     const auto straight = [&](std::vector<double> speed) {
         for (std::size_t k = 0; k < speed.size() && !grid.gyro.empty(); ++k)
             if (std::fabs(grid.gyro[k]) > turns) speed[k] = not_known;
         return speed;
     };
-    for (const Wheel &odd : grid.wheel) {
-        if (odd.speed.empty()) return;
-        const std::vector<double> own = straight(odd.speed);
+    for (const Wheel *odd : turning) {
+        const std::vector<double> own = straight(odd->speed);
         bool against = true, together = true;
-        for (const Wheel &other : grid.wheel) {
-            if (&other == &odd) continue;
-            const Fit line = fit(straight(other.speed), own);
+        for (const Wheel *other : turning) {
+            if (other == odd) continue;
+            const Fit line = fit(straight(other->speed), own);
             against = against && line.good && line.a < 0 && line.rms < 0.7 * line.y_rms;
-            for (const Wheel &third : grid.wheel) {
-                if (&third == &odd || &third == &other) continue;
-                const Fit both = fit(straight(other.speed), straight(third.speed));
+            for (const Wheel *third : turning) {
+                if (third == odd || third == other) continue;
+                const Fit both = fit(straight(other->speed), straight(third->speed));
                 together = together && both.good && both.a > 0 && both.rms < 0.7 * both.y_rms;
             }
         }
         if (!against || !together) continue;
-        add(findings, "sign", odd.speed_column,
-            say("'%s' turns against all other wheels while the machine drives straight", odd.speed_column.c_str()),
+        add(findings, "sign", odd->speed_column,
+            say("'%s' turns against all other wheels while the machine drives straight", odd->speed_column.c_str()),
             "its motor is mounted the other way round: turn the signs of its speed, current and duty round (map: sign = -1)", -1);
         return;
     }

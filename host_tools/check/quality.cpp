@@ -32,7 +32,7 @@ class Quality {
     void rate(const log::Signal &signal);
     void gaps();
     bool frozen_over(const Gap &gap, std::string &evidence) const;
-    void dead_or_stuck(const log::Signal &signal, const log::Quantity &entry);
+    void dead_or_stuck(const log::Signal &signal, const log::Quantity &entry, bool counted = false);
     log::Signal whole_pose(const log::Signal &camera_x) const;
     void outliers(const log::Signal &signal);
     void jumps(const log::Signal &signal);
@@ -230,7 +230,8 @@ bool Quality::electrics_agree(int index, double t0_s, double t1_s, bool &known) 
     return false;
 }
 
-void Quality::dead_or_stuck(const log::Signal &signal, const log::Quantity &entry) {
+// counted: a rate of counts or angles.
+void Quality::dead_or_stuck(const log::Signal &signal, const log::Quantity &entry, bool counted) {
     const std::vector<double> &t = signal.t_s, &v = signal.value;
     struct Run {
         std::size_t first = 0, end = 0;
@@ -244,7 +245,8 @@ void Quality::dead_or_stuck(const log::Signal &signal, const log::Quantity &entr
         active += driven;
         if (10 * driven >= 8 * (end - i)) {
             equal += end - i - 1;
-            if (end - i > longest.end - longest.first) longest = {i, end};
+            // what integrates stops by standing: a rate of counts may keep one number as long as a loop holds it
+            if (end - i > longest.end - longest.first && (!counted || v[i] == 0)) longest = {i, end};
         }
         i = end;
     }
@@ -344,7 +346,7 @@ void Quality::derived_speeds() {
         for (std::size_t k = 0; k < grid_.count; ++k)
             if (std::isfinite(wheel.speed[k]))
                 rate.t_s.push_back(grid_.time(k)), rate.value.push_back(std::fabs(wheel.speed[k]) < creep ? 0 : wheel.speed[k]);
-        if (rate.t_s.size() >= 40) dead_or_stuck(rate, *speed);
+        if (rate.t_s.size() >= 40) dead_or_stuck(rate, *speed, true);
     }
 }
 

@@ -1,11 +1,12 @@
-// traction convert IN --out OUT.csv|mcap [--map MAP.toml] [--rover ROVER]: a foreign CSV, the rover's own ULog, or CAN frames
-// with a DBC become a log of our own format, or MCAP.
+// traction convert IN --out OUT.csv|mcap|ulg [--map MAP.toml] [--rover ROVER]: a foreign CSV, the rover's own ULog, or CAN frames
+// with a DBC become a log of our own format, MCAP or ULog.
 #include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/board/board_log.h"
 #include "host_tools/board/candump.h"
 #include "host_tools/log/log.h"
+#include "host_tools/log/ulog.h"
 #include "host_tools/log/write_mcap.h"
 
 #include <cstdio>
@@ -29,7 +30,7 @@ log::Log from_board(const ConvertOptions &options) {
 }
 
 log::Log read(const ConvertOptions &options) {
-    if (board::is_ulog(options.in)) return from_board(options);
+    if (board::is_ulog(options.in) && !log::is_own_ulog(options.in)) return from_board(options);
     const bool frames = board::is_candump(options.in);
     if (frames && options.dbc.empty())
         throw UsageError(options.in +
@@ -42,6 +43,8 @@ void convert(const ConvertOptions &options, Outcome &outcome) {
     const log::Log log = read(options);
     if (std::filesystem::path(options.out).extension() == ".mcap")
         log::write_mcap(log, options.out);
+    else if (log::names_a_ulog(options.out))
+        log::write_ulog(log, options.out);
     else
         log::write_csv(log, options.out);
     for (const std::string &repair : log.repairs) std::printf("mended: %s\n", repair.c_str());
@@ -66,32 +69,33 @@ void convert(const ConvertOptions &options, Outcome &outcome) {
 
 Verb verb_convert() {
     const auto options = std::make_shared<ConvertOptions>();
-    return {.name = "convert",
-            .summary =
-                "rewrite a foreign CSV, the rover's on-board ULog or recorded CAN frames as a log of traction's own format or as MCAP",
-            .options = {log_row(options->in, "the file to read"),
-                        {.name = "--map",
-                         .into = &options->map,
-                         .help = "which column is which signal (docs/log_format.md); without it, LOG is mended and rewritten",
-                         .value = "FILE",
-                         .kind = Kind::input},
-                        {.name = "--dbc",
-                         .into = &options->dbc,
-                         .help = "of CAN frames as candump -L writes them: which signals lie in them",
-                         .value = "FILE",
-                         .kind = Kind::input},
-                        {.name = "--rover",
-                         .into = &options->rover,
-                         .help = "of an on-board log: the rover that wrote it (rovers/*.toml); without it the reference rover",
-                         .value = "ROVER",
-                         .kind = Kind::rover},
-                        {.name = "--out",
-                         .into = &options->out,
-                         .help = "the log to write; MCAP where it ends in .mcap (docs/log_format.md)",
-                         .value = "FILE",
-                         .kind = Kind::output,
-                         .required = true}},
-            .run = [options](Outcome &outcome) { convert(*options, outcome); }};
+    return {
+        .name = "convert",
+        .summary =
+            "rewrite a foreign CSV, the rover's on-board ULog or recorded CAN frames as a log of traction's own format, as MCAP or as ULog",
+        .options = {log_row(options->in, "the file to read"),
+                    {.name = "--map",
+                     .into = &options->map,
+                     .help = "which column is which signal (docs/log_format.md); without it, LOG is mended and rewritten",
+                     .value = "FILE",
+                     .kind = Kind::input},
+                    {.name = "--dbc",
+                     .into = &options->dbc,
+                     .help = "of CAN frames as candump -L writes them: which signals lie in them",
+                     .value = "FILE",
+                     .kind = Kind::input},
+                    {.name = "--rover",
+                     .into = &options->rover,
+                     .help = "of an on-board log: the rover that wrote it (rovers/*.toml); without it the reference rover",
+                     .value = "ROVER",
+                     .kind = Kind::rover},
+                    {.name = "--out",
+                     .into = &options->out,
+                     .help = "the log to write; MCAP where it ends in .mcap, ULog in .ulg (docs/log_format.md)",
+                     .value = "FILE",
+                     .kind = Kind::output,
+                     .required = true}},
+        .run = [options](Outcome &outcome) { convert(*options, outcome); }};
 }
 
 } // namespace traction::cli

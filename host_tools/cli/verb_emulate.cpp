@@ -28,7 +28,7 @@ namespace traction::cli {
 namespace {
 
 struct Arguments {
-    std::string scenario, out, keep, seal, rover, parameters, sensors = "can", board;
+    std::string scenario, out, keep, seal, rover, parameters, sensors = "can", board, flash;
     std::int64_t seed = -1, hide = -1;
     std::vector<std::string> effects;
 };
@@ -71,6 +71,7 @@ Options options_of(const Arguments &arguments, const sim::Scenario &scenario, co
     options.board = board_folder(arguments);
     options.folder = folder;
     options.parameters = arguments.parameters;
+    options.flash = arguments.flash;
     options.seed = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed;
     options.sensors = arguments.sensors == "iio" ? Sensors::iio : Sensors::can;
     options.effects = scenario.effects;
@@ -221,7 +222,13 @@ Verb verb_emulate() {
                      .into = &arguments->board,
                      .help = "folder of zImage, versatile-pb.dtb and initramfs instead of TRACTION_BOARD, which ./traction sets",
                      .value = "FOLDER",
-                     .kind = Kind::folder}},
+                     .kind = Kind::folder},
+                    {.name = "--flash",
+                     .into = &arguments->flash,
+                     .help = "the board's NOR flash: what `traction flash` put into its slots drives (emulate/flash_board.sh)",
+                     .value = "FILE",
+                     .kind = Kind::input,
+                     .excludes = {"--parameters"}}},
         .run = [arguments](Outcome &outcome) { run(*arguments, outcome); },
         .details =
             "The program is the very file that goes onto the rover: ARMv5TE, SocketCAN, GPIO lines, IIO. QEMU counts its instructions, "

@@ -3,6 +3,7 @@
 #include "machine.h"
 
 #include "firmware/app/parameters.h"
+#include "firmware/app/store.h"
 #include "firmware/app/trace_text.h"
 #include "hal/forward.h"
 #include "hal/replay/frames.h"
@@ -24,6 +25,8 @@
 namespace traction::emulate {
 
 namespace {
+
+constexpr std::int64_t silent_ns = 60000000000; // of the board's clock: whoever has sent nothing by then drives nothing; a boot takes 2 s
 
 std::string text_of(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
@@ -88,6 +91,20 @@ std::string commands_text(const sim::Scenario &scenario) {
     return text;
 }
 
+// For a version that was flashed: what belongs to the board and not to it (firmware/flash/start). The world's motors are cold at the start
+// of a scenario, and the store says so; the log is kept on the flash, for whoever fetches it.
+void lay_out_flashed(const sim::Scenario &scenario, const Options &options) {
+    store_t cold{};
+    char refused[STORE_MESSAGE];
+    if (!store_write((options.folder + "/store").c_str(), &cold, refused)) throw std::runtime_error(refused);
+    log::write_file("STATE=/run\nTRACTIOND_HAL=linux\nTRACTIOND_OPTIONS='--firmware " + scenario.firmware.config +
+                        " --trace /run/trace.txt --log /flash/state/log --log-budget 32'\nTRACTIOND_ARGUMENTS=commands=/run/commands.txt\n"
+                        "mkdir -p /flash/state\n",
+                    options.folder + "/defaults");
+    log::write_file("commands.txt\ndefaults\nstore\n", options.folder + "/files");
+    log::write_file("\n", options.folder + "/arguments");
+}
+
 // The run's folder as the board expects it.
 void lay_out(const sim::Scenario &scenario, const Options &options) {
     std::filesystem::create_directories(options.folder);
@@ -96,9 +113,13 @@ void lay_out(const sim::Scenario &scenario, const Options &options) {
     std::filesystem::create_directories(options.folder + "/log");
     const int rate_Hz = static_cast<int>(scenario.sensors.radar.rate_Hz + 0.5);
     const auto put = [&options](const char *name, const std::string &text) { log::write_file(text, options.folder + '/' + name); };
+    put("commands.txt", commands_text(scenario));
+    if (!options.flash.empty()) {
+        lay_out_flashed(scenario, options);
+        return;
+    }
     put("rover.toml", hardware_text(options.sensors, rate_Hz));
     put("parameters.txt", options.parameters.empty() ? parameters_text(scenario) : text_of(options.parameters));
-    put("commands.txt", commands_text(scenario));
     put("files", "rover.toml\nparameters.txt\ncommands.txt\n");
     put("arguments", "--hal\nlinux\n--parameters\nparameters.txt\n--firmware\n" + scenario.firmware.config +
                          "\n--trace\ntrace.txt\n--log\nlog\nrover.toml\ncommands=commands.txt\n");
@@ -182,7 +203,7 @@ Run run_on_board(const sim::Scenario &scenario, const Options &options) {
     World world(scenario, options.effects, options.seed, options.sensors);
     lay_out(scenario, options);
     Run run;
-    Machine machine(options.board, options.folder);
+    Machine machine(options.board, options.folder, options.flash);
     std::int64_t begin_ns = 0, begin_cpu_ns = 0;
     for (std::uint32_t seconds = 0;;) {
         const BoardSays board = machine.hear();
@@ -197,6 +218,7 @@ Run run_on_board(const sim::Scenario &scenario, const Options &options) {
         run.status = board.head.status;
         if (board.head.over != 0u) break;
         WorldSays said = answer;
+        if (world.counts().ticks == 0 && board.head.time_ns > silent_ns) said.head.stop = 1; // its words are handed out at its end
         run.interrupted = run.interrupted || (options.stopped && options.stopped());
         if (run.interrupted) said.head.stop = 1;
         machine.say(said);

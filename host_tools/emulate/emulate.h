@@ -17,6 +17,7 @@ struct Options {
     std::string board;      // folder of zImage, versatile-pb.dtb, initramfs
     std::string folder;     // of the run; made, and what lies there is replaced
     std::string parameters; // a parameter file instead of the scenario's rover's
+    std::string flash; // the board's NOR flash: the version in its slots drives, with the description and parameters it was packed with
     std::uint64_t seed = 1;
     std::vector<sim::ActiveEffect> effects; // all of them
     Sensors sensors = Sensors::can;

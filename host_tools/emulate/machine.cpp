@@ -25,6 +25,7 @@ namespace traction::emulate {
 
 namespace {
 
+constexpr std::uintmax_t flash_size = 64 << 20; // of -M versatilepb
 constexpr const char *program = "qemu-system-arm";
 
 // What a command says on standard output.
@@ -41,46 +42,62 @@ void need_file(const std::string &path) {
     if (!std::filesystem::exists(path)) throw std::runtime_error(path + ": no such file; `./traction emulate` builds the emulated board");
 }
 
-std::vector<std::string> arguments(const std::string &board) {
+void need_flash(const std::string &path) {
+    need_file(path);
+    if (std::filesystem::file_size(path) != flash_size)
+        throw std::runtime_error(path + ": " + std::to_string(std::filesystem::file_size(path)) + " bytes; the board's NOR flash has " +
+                                 std::to_string(flash_size) + ": emulate/flash_board.sh makes one");
+}
+
+// QEMU's options are separated by commas; a comma of a name is written twice.
+std::string quoted(const std::string &name) {
+    std::string text;
+    for (const char c : name) text += c == ',' ? std::string(",,") : std::string(1, c);
+    return text;
+}
+
+std::vector<std::string> arguments(const std::string &board, const std::string &flash) {
     const std::string machine = output_of("qemu-system-arm -M versatilepb,help 2>&1");
     if (machine.empty() || machine.find("not found") != std::string::npos)
         throw std::runtime_error("no qemu-system-arm here; `./traction emulate` installs it (package qemu-system-arm)");
     const bool names_audio = machine.find("audiodev") != std::string::npos; // from QEMU 9 on the machine has to be told
-    return {program,
-            "-M",
-            names_audio ? "versatilepb,audiodev=none" : "versatilepb",
-            "-audiodev",
-            "none,id=none",
-            "-m",
-            "64",
-            "-nodefaults",
-            "-display",
-            "none",
-            "-serial",
-            "file:console.txt",
-            "-no-reboot",
-            "-accel",
-            "tcg",
-            "-icount",
-            "shift=" + std::to_string(icount_shift) + ",sleep=off",
-            "-rtc",
-            "base=2024-01-01,clock=vm",
-            "-seed",
-            "1",
-            "-semihosting-config",
-            "enable=on,target=native,userspace=on",
-            "-kernel",
-            board + "/zImage",
-            "-dtb",
-            board + "/versatile-pb.dtb",
-            "-initrd",
-            board + "/initramfs",
-            "-append",
-            "console=ttyAMA0 panic=-1 quiet norandmaps rdinit=/init"};
+    std::vector<std::string> words = {program,
+                                      "-M",
+                                      names_audio ? "versatilepb,audiodev=none" : "versatilepb",
+                                      "-audiodev",
+                                      "none,id=none",
+                                      "-m",
+                                      "64",
+                                      "-nodefaults",
+                                      "-display",
+                                      "none",
+                                      "-serial",
+                                      "file:console.txt",
+                                      "-no-reboot",
+                                      "-accel",
+                                      "tcg",
+                                      "-icount",
+                                      "shift=" + std::to_string(icount_shift) + ",sleep=off",
+                                      "-rtc",
+                                      "base=2024-01-01,clock=vm",
+                                      "-seed",
+                                      "1",
+                                      "-semihosting-config",
+                                      "enable=on,target=native,userspace=on",
+                                      "-kernel",
+                                      board + "/zImage",
+                                      "-dtb",
+                                      board + "/versatile-pb.dtb",
+                                      "-initrd",
+                                      board + "/initramfs",
+                                      "-append",
+                                      "console=ttyAMA0 panic=-1 quiet norandmaps rdinit=/init"};
+    if (!flash.empty()) words.insert(words.end(), {"-drive", "if=pflash,format=raw,file=" + quoted(flash)});
+    return words;
 }
 
-pid_t start(const std::string &board, const std::string &folder) {
-    std::vector<std::string> words = arguments(board);
+pid_t start(const std::string &board, const std::string &folder, const std::string &flash) {
+    std::vector<std::string> words = arguments(board, flash);
     std::vector<char *> argv;
     for (std::string &word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -117,14 +134,16 @@ std::string end_of(const std::string &path) {
 
 } // namespace
 
-Machine::Machine(const std::string &board, const std::string &folder) : folder_(folder) {
+Machine::Machine(const std::string &board, const std::string &folder, const std::string &flash) : folder_(folder) {
     const std::string from = std::filesystem::absolute(board).string();
+    const std::string nor = flash.empty() ? flash : std::filesystem::absolute(flash).string();
     for (const char *file : {"zImage", "versatile-pb.dtb", "initramfs"}) need_file(from + '/' + file);
     in_ = make_fifo(folder + "/to_world", O_RDONLY | O_NONBLOCK);
     out_ = make_fifo(folder + "/to_board", O_RDWR); // also ours to read, so that opening and writing never fail for want of a reader
     records_ = ::open((folder + "/records").c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (records_ < 0) throw std::runtime_error(folder + "/records: cannot be written: " + std::strerror(errno));
-    qemu_ = start(from, folder);
+    if (!nor.empty()) need_flash(nor);
+    qemu_ = start(from, folder, nor);
 }
 
 Machine::~Machine() {

@@ -21,8 +21,9 @@ constexpr int icount_shift = 2;
 class Machine {
   public:
     // board: the folder with zImage, versatile-pb.dtb and initramfs; folder: the run's, with the files that the board brings itself
-    // (emulate/board_init.c). Throws std::runtime_error where QEMU or a file is missing.
-    Machine(const std::string &board, const std::string &folder);
+    // (emulate/board_init.c); flash: what its NOR flash holds, a file that is written as the board writes; empty: an erased one that is
+    // forgotten. Throws std::runtime_error where QEMU or a file is missing, or the flash is of another size.
+    Machine(const std::string &board, const std::string &folder, const std::string &flash = {});
     Machine(const Machine &) = delete;
     Machine &operator=(const Machine &) = delete;
     ~Machine(); // QEMU is ended

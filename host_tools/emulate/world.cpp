@@ -35,6 +35,10 @@ bool of_sensor_node(const can_frame_t &frame) { return frame.id >= CAN_ACCEL && 
 
 // What happens inside the rover's computer in the simulator has no wire to come by.
 void check(const sim::Scenario &scenario, Sensors sensors) {
+    if (scenario.rover.layout().kind != sim::Layout::four)
+        throw sim::ScenarioError(scenario.file, 0, "layout.wheels", std::to_string(static_cast<int>(scenario.rover.at("layout", "wheels"))),
+                                 "the emulated board has four wheel nodes on its bus",
+                                 "use `traction simulate`, where the wheels are wired");
     if (!scenario.missed_ticks.empty()) refuse(scenario, "missed_ticks", "the board misses its own ticks; leave it out");
     for (const sim::CanFault &fault : scenario.can_faults)
         if (fault.kind == sim::CanFaultKind::bus_off && (fault.node == sim::CanNode::computer || fault.node == sim::CanNode::all))

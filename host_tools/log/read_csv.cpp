@@ -1,6 +1,7 @@
 #include "map.h"
 #include "read.h"
 #include "table.h"
+#include "ulog.h"
 #include "vocabulary.h"
 
 #include <algorithm>
@@ -106,6 +107,10 @@ Log read_csv(const std::string &path, const std::string &map_path, std::vector<R
     const std::size_t before = repairs.size();
     const FileBytes bytes(path, limits.bytes);
     Log log;
+    if (begins_as_ulog(bytes.view())) {
+        if (!map_path.empty()) throw LogError(path, 0, 0, "is a ULog: a map is for a foreign CSV", "leave --map out");
+        return read_ulog(bytes.view(), path, limits, repairs);
+    }
     if (map_path.empty()) {
         log = read_native(bytes, path, repairs, limits);
     } else {

@@ -1,6 +1,7 @@
 #include "spool.h"
 
 #include "csv_text.h"
+#include "ulog.h"
 #include "write_file.h"
 
 #include <fcntl.h>
@@ -13,6 +14,8 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <optional>
 
 namespace traction::log {
 
@@ -137,7 +140,34 @@ class Spool::Reader {
     std::size_t number_ = 0, at_ = 0, size_ = 0, seen_ = 0;
 };
 
+// One column for the writer of ULog, which reads it twice.
+class Spool::Again : public UlogColumn {
+  public:
+    Again(const Spool &spool, const Column &column) : spool_(spool), column_(column) { reader_.emplace(spool_, column_); }
+    const std::string &name() const override { return column_.signal.name; }
+    void rewind() override { reader_.emplace(spool_, column_); }
+    double t_s() const override { return reader_->t_s(); }
+    double value() const override { return reader_->value(); }
+    void next() override { reader_->next(); }
+
+  private:
+    const Spool &spool_;
+    const Column &column_;
+    std::optional<Reader> reader_;
+};
+
 void Spool::write(const std::map<std::string, std::string> &header) {
+    if (!names_a_ulog(path_)) {
+        write_as_csv(header);
+        return;
+    }
+    std::vector<std::unique_ptr<UlogColumn>> columns;
+    for (const Column &column : columns_)
+        if (!column.left_out()) columns.push_back(std::make_unique<Again>(*this, column));
+    write_ulog(header, columns, path_);
+}
+
+void Spool::write_as_csv(const std::map<std::string, std::string> &header) {
     std::vector<std::string> names;
     std::vector<Reader> readers;
     std::vector<double> next; // time of each reader's next sample

@@ -30,7 +30,8 @@ class Spool {
 
     // The columns that hold something, as a log in memory; the spool is empty after it. Only without a path.
     Log take();
-    // The columns that hold something, as a CSV log under the path (write_csv's bytes). Throws LogError.
+    // The columns that hold something, as a log under the path: CSV (write_csv's bytes), or ULog (write_ulog's) where it ends in .ulg.
+    // Throws LogError.
     void write(const std::map<std::string, std::string> &header);
 
   private:
@@ -41,6 +42,8 @@ class Spool {
         bool left_out() const { return (blocks.empty() && signal.value.empty()) || (absent_is_zero && all_zero); }
     };
     class Reader;
+    class Again;
+    void write_as_csv(const std::map<std::string, std::string> &header);
     void keep_block(Column &column);
     void load(const Column &column, std::size_t number, std::vector<double> &into) const; // times, then values
     [[noreturn]] void fail() const;                                                       // errno

@@ -86,12 +86,4 @@ done
 { echo 'bus = "can"'; head_of 3.0 concrete; drive_of 3.0 0.3; printf '[[fault]]\nwhat = "can"\nhow = "silent"\nnode = "wheel2"\nfrom_s = 1.0\n'; } >silent.toml
 drive silent 1 silent.toml
 
-# 6. The whole product: an effect hidden in the world of the board, its log fetched, checked, diagnosed, the better numbers driven with.
-effect=slip_sinkage:coefficient=0.2
-drive sinks 0 demo_sand --effect $effect --out run.csv
-"$traction" check run.csv >check.txt
-"$traction" diagnose --model "$root/models/rover_sand.toml" --log run.csv --apply --out better.toml >diagnose.txt
-grep -q '^slip_sinkage .* named, coefficient' diagnose.txt || { cat diagnose.txt; fail "slip_sinkage is not named"; }
-"$traction" export --model better.toml --firmware rover.txt >/dev/null
-drive better 0 demo_sand --effect $effect --parameters rover.txt
 echo "emulated board: holds"

@@ -210,6 +210,13 @@ says 'fails its self-test on this board'
 says 'the old version runs'
 still 'a version that failed its self-test'
 run 0 "$slot" --folder fresh init --key key.pub --rover Lhomme-Desages
+"$slot" --folder fresh run >fresh.txt 2>&1 &
+waiting=$!
+running="$running $waiting"
+first_is_awaited() { "$slot" --folder fresh status | grep -qx 'traction-slot run waits for the first version'; }
+until_true 'a starter without a version says that one runs' first_is_awaited
+kill "$waiting"
+wait "$waiting" || true
 run 1 "$traction" flash --host board --ssh "$work/ssh" --installer "$slot" --folder "$work/fresh" false.tar
 says 'the new version did not come up, and the board has no other'
 { cat "$source/rovers/lhomme_desages.toml"; echo '# ends'; } >ends.toml

@@ -41,6 +41,7 @@ for_s = 300.0
 mode = "stop"
 T
 start() { # start OPTION...: the rover; $port is where it listens
+    : >rover.err # else the port of the one before is read before the shell has emptied it
     "$tractiond" --hal sim stand.toml --link 127.0.0.1:0 "$@" 2>rover.err &
     daemon=$!
     tries=0

@@ -105,6 +105,32 @@ TEST(Check, names_a_wrong_sign) {
     }
 }
 
+// A caster, or a motor whose encoder nobody logged: the wheels that turn are judged, the others are no wheels of that rule.
+TEST(Check, judges_the_wheels_whose_speed_was_logged) {
+    for (const std::string unknown : {"wheel3", "wheel0"}) {
+        log::Log log = good();
+        std::erase_if(log.signals,
+                      [&](const log::Signal &s) { return s.name == unknown + ".speed_rad_s" || s.name == unknown + ".encoder_count"; });
+        EXPECT_TRUE(check::check(log, {}).passed()) << unknown;
+        const check::Report report = check::check(log, {}, spec_rover());
+        EXPECT_EQ(report.find("sign", "wheel1.speed_rad_s"), nullptr) << unknown;
+    }
+}
+
+TEST(Check, names_a_rover_of_other_wheels_than_the_model) {
+    log::Log log = good();
+    log.header["rover.wheels"] = "6";
+    check::Machine machine = spec_rover();
+    EXPECT_TRUE(check::check(log, {}, machine).passed()); // nothing is known of the model's wheels
+    machine.wheel_y_m = {0.12, -0.12, 0.12, -0.12};
+    const check::Report report = check::check(log, {}, machine);
+    ASSERT_NE(report.find("wheels"), nullptr);
+    EXPECT_NE(report.find("wheels")->text.find("drives 6 wheels"), std::string::npos);
+    EXPECT_FALSE(report.passed());
+    log.header["rover.wheels"] = "4";
+    EXPECT_EQ(check::check(log, {}, machine).find("wheels"), nullptr);
+}
+
 TEST(Check, names_a_radar_that_is_negative_forwards) {
     log::Log log = good();
     log::Signal &radar = at(log, "radar.speed_m_s");

@@ -2,6 +2,7 @@
 #include "files.h"
 
 #include "host_tools/log/read.h"
+#include "host_tools/log/ulog.h"
 
 #include <cstdint>
 #include <rapidcheck/gtest.h>
@@ -114,10 +115,38 @@ RC_GTEST_PROP(AnyLog, written_and_read_is_the_same, ()) {
     RC_ASSERT(file.text() == first); // bytes too, -0 included
 }
 
+RC_GTEST_PROP(AnyLog, written_as_ulog_and_read_is_the_same, ()) {
+    const Log log = any_log();
+    const File file("property.ulg", "");
+    write_ulog(log, file.path());
+    const Log again = read_csv(file.path());
+    RC_ASSERT(again.header == log.header);
+    RC_ASSERT(again.signals.size() == log.signals.size());
+    for (std::size_t k = 0; k < log.signals.size(); ++k) {
+        RC_ASSERT(again.signals[k].name == log.signals[k].name);
+        RC_ASSERT(again.signals[k].t_s == log.signals[k].t_s);
+        RC_ASSERT(again.signals[k].value == log.signals[k].value);
+    }
+    const std::string first = file.text();
+    write_ulog(again, file.path());
+    RC_ASSERT(file.text() == first);
+}
+
 RC_GTEST_PROP(AnyDamage, to_a_log_ends_in_a_sound_log_or_a_message, ()) {
     const File good("good.csv", "");
     write_csv(any_log(), good.path());
     const File bad("bad.csv", damaged(good.text()));
+    try {
+        expect_sound(read_csv(bad.path()));
+    } catch (const LogError &error) {
+        RC_ASSERT(std::string(error.what()).find("; to mend: ") != std::string::npos);
+    }
+}
+
+RC_GTEST_PROP(AnyDamage, to_a_ulog_ends_in_a_sound_log_or_a_message, ()) {
+    const File good("good.ulg", "");
+    write_ulog(any_log(), good.path());
+    const File bad("bad.ulg", damaged(good.text()));
     try {
         expect_sound(read_csv(bad.path()));
     } catch (const LogError &error) {

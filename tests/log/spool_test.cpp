@@ -1,5 +1,6 @@
 // A log that is written while it grows is the log that is written at once; nothing of it is lost or kept twice.
 #include "host_tools/log/spool.h"
+#include "host_tools/log/ulog.h"
 #include "host_tools/log/write_file.h"
 
 #include "files.h"
@@ -42,6 +43,20 @@ TEST(Spool, writes_the_bytes_that_write_csv_writes) {
         EXPECT_EQ(log.find("wheel1.speed_rad_s"), nullptr) << "it never held anything";
         write_csv(log, at_once.path());
         disk.write(header);
+        EXPECT_EQ(at_once.text(), grown.text()) << samples;
+    }
+}
+
+TEST(Spool, writes_the_ulog_that_write_ulog_writes) {
+    for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, Spool::block, 7 * Spool::block + 11}) {
+        const test::File at_once("spool_at_once.ulg", ""), grown("spool_grown.ulg", "");
+        Spool memory, disk(grown.path());
+        fill(memory, samples);
+        fill(disk, samples);
+        Log log = memory.take();
+        log.header = {{"seed", "7"}, {"title", "a run"}};
+        write_ulog(log, at_once.path());
+        disk.write(log.header);
         EXPECT_EQ(at_once.text(), grown.text()) << samples;
     }
 }
