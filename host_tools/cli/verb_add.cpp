@@ -1,4 +1,5 @@
 // verb_add.cpp - traction add EFFECT: a new model file with that effect, fitted; the old file is untouched.
+#include "drive_view.h"
 #include "rows.h"
 #include "verbs.h"
 
@@ -30,7 +31,7 @@ void add_effect(const AddRequest &request, Outcome &outcome) {
     std::fputs(answer.text.c_str(), stdout);
     std::printf("wrote %s\n", request.out.c_str());
     outcome.json = std::move(answer.json);
-    if (!request.report.empty()) report::write_html(outcome.json, request.report);
+    if (!request.report.empty()) report::write_html(with_replay(outcome.json, session), request.report);
     if (answer.negative) outcome.exit_code = exit_negative;
 }
 

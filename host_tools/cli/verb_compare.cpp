@@ -1,4 +1,5 @@
 // verb_compare.cpp - traction compare: how far a model is from a log, balance by balance.
+#include "drive_view.h"
 #include "rows.h"
 #include "terminal.h"
 #include "verbs.h"
@@ -25,7 +26,7 @@ void compare(const CompareRequest &request, Outcome &outcome) {
     lab::Answer answer = lab::compare_answer(session, request.fitted, request.details);
     print(answer.text);
     outcome.json = std::move(answer.json);
-    if (!request.report.empty()) report::write_html(outcome.json, request.report);
+    if (!request.report.empty()) report::write_html(with_replay(outcome.json, session), request.report);
     if (answer.negative) outcome.exit_code = exit_negative;
 }
 

@@ -2,6 +2,7 @@
 //
 // The lab gets what any user's lab gets: the log file and the baseline model file. The seal is written first and read last, here.
 #include "data_files.h"
+#include "drive_view.h"
 #include "rows.h"
 #include "terminal.h"
 #include "verbs.h"
@@ -25,6 +26,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace traction::cli {
 
@@ -107,8 +109,11 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     SimulateOptions options;
     options.seed = request.seed;
     options.hide = sim::HiddenDraw{.seed = request.seed, .count = 1, .among = {}};
+    options.truth = true; // for the picture of the drive, beside the opened seal
+    nlohmann::json drive;
     {
         const SimulationResult run = simulate(scenario, options);
+        drive = report::replay_of(run.log, &run.truth, shape_of(scenario.rover));
         seal(run.hidden, scenario.name, request.seed, folder / "sealed.json");
         log::write_csv(run.log, log_file);
     }
@@ -159,7 +164,9 @@ void demo(const DemoRequest &request, Outcome &outcome) {
                             {"error_before", first.heldout},
                             {"error_after", last.heldout},
                             {"floor", last.floor}};
-    report::write_html(outcome.json, report_file);
+    nlohmann::json page = outcome.json;
+    page["replay"] = std::move(drive);
+    report::write_html(page, report_file);
     measured_run(root, outcome);
     std::printf("\nOpen the report: %s\n", report_file.c_str());
 }

@@ -1,4 +1,5 @@
 // verb_diagnose.cpp - traction diagnose: which physics the model lacks, how sure that is, and what this log cannot say.
+#include "drive_view.h"
 #include "progress.h"
 #include "rows.h"
 #include "terminal.h"
@@ -30,7 +31,7 @@ void diagnose(const DiagnoseRequest &request, Outcome &outcome) {
         request.apply);
     print(answer.text);
     outcome.json = std::move(answer.json);
-    if (!request.report.empty()) report::write_html(outcome.json, request.report);
+    if (!request.report.empty()) report::write_html(with_replay(outcome.json, session), request.report);
     if (answer.kind == "nothing") outcome.exit_code = exit_negative;
     if (answer.kind == "wrong_model") outcome.exit_code = exit_bad_input;
     if (!request.apply) return;

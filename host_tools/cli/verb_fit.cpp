@@ -1,4 +1,5 @@
 // verb_fit.cpp - traction fit: a model's parameters from a log, with intervals, whiteness and held-out error.
+#include "drive_view.h"
 #include "rows.h"
 #include "terminal.h"
 #include "verbs.h"
@@ -50,7 +51,7 @@ void fit(const FitRequest &request, Outcome &outcome) {
     print(answer.text);
     outcome.json = std::move(answer.json);
     if (!request.figure.empty()) report::write_text(report::to_svg(profile_figure(answer.profiles)), request.figure);
-    if (!request.report.empty()) report::write_html(outcome.json, request.report);
+    if (!request.report.empty()) report::write_html(with_replay(outcome.json, session), request.report);
     if (request.out.empty()) return;
     lab::write_model(*answer.model, request.out);
     std::printf("wrote %s\n", request.out.c_str());

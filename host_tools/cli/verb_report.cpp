@@ -1,9 +1,13 @@
-// traction report RESULT.json ... --out R.html: shows a result of the lab, or a set of figures, as one HTML file; several side by side.
+// traction report RESULT.json|LOG.csv ... --out R.html: shows a result of the lab, a set of figures or the drive of a log as one HTML file;
+// several results side by side.
+#include "drive_view.h"
+#include "rows.h"
 #include "verbs.h"
 
 #include "host_tools/report/report.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -19,8 +23,40 @@ namespace {
 
 struct ReportOptions {
     std::vector<std::string> results;
-    std::string out;
+    std::string out, log, truth, map, rover;
 };
+
+// A result is JSON: it is called so, or begins as an object does. Anything else is a log.
+bool is_log(const std::string &path) {
+    if (std::filesystem::path(path).extension() == ".json") return false;
+    std::ifstream file(path);
+    char first = '{'; // what cannot be read is refused as a result
+    while (file.get(first) && std::isspace(static_cast<unsigned char>(first)) != 0) {
+    }
+    return first != '{';
+}
+
+// The drive of a log, with what really happened where that is known. Throws log::LogError where the log has no pose.
+nlohmann::json drive_of(const ReportOptions &options, const std::string &path) {
+    const log::Log log = log::read_csv(path, options.map);
+    const log::Log truth = options.truth.empty() ? log::Log{} : log::read_csv(options.truth);
+    const sim::RoverDescription rover = options.rover.empty() ? sim::RoverDescription() : sim::read_rover_file(options.rover);
+    nlohmann::json replay = report::replay_of(log, options.truth.empty() ? nullptr : &truth, shape_of(rover));
+    if (replay.is_null())
+        throw log::LogError(path, 0, 0, "this log says nowhere where the rover was",
+                            "a page of a drive needs camera.x_m and camera.y_m, or --truth; `traction plot` draws any log");
+    return replay;
+}
+
+nlohmann::json page_of_log(const ReportOptions &options) {
+    const std::string &path = options.results.front();
+    nlohmann::json replay = drive_of(options, path);
+    const double duration_s = (replay["rows"].get<double>() - 1) * replay["dt_s"].get<double>();
+    return {{"schema", "traction.look/1"},
+            {"title", "drive: " + std::filesystem::path(path).filename().string()},
+            {"log", {{"file", std::filesystem::path(path).filename().string()}, {"duration_s", duration_s}}},
+            {"replay", std::move(replay)}};
+}
 
 nlohmann::json read_result(const std::string &path) {
     errno = 0;
@@ -55,7 +91,13 @@ nlohmann::json side_by_side(const std::vector<std::string> &paths) {
 }
 
 void show(const ReportOptions &options, Outcome &outcome) {
-    const nlohmann::json result = options.results.size() == 1 ? read_result(options.results.front()) : side_by_side(options.results);
+    const bool one = options.results.size() == 1, log = one && is_log(options.results.front());
+    if (log && !options.log.empty()) throw UsageError("--log: adds a drive to a result; here the log itself is shown");
+    if (!one && !options.log.empty()) throw UsageError("--log: takes one result, not several");
+    if (!log && options.log.empty() && !(options.truth + options.map + options.rover).empty())
+        throw UsageError("--truth, --map, --rover: are for the drive of a log; give the log, or --log beside a result");
+    nlohmann::json result = log ? page_of_log(options) : one ? read_result(options.results.front()) : side_by_side(options.results);
+    if (!options.log.empty() && result.is_object()) result["replay"] = drive_of(options, options.log);
     try {
         report::write_html(result, options.out);
     } catch (const report::ReportError &error) {
@@ -71,13 +113,30 @@ Verb verb_report() {
     const auto options = std::make_shared<ReportOptions>();
     return {
         .name = "report",
-        .summary = "show a result written by --json as one HTML page that opens without a network",
+        .summary = "show a result written by --json, or the drive of a log, as one HTML page that opens without a network",
         .options =
             {{.argument = "RESULT",
               .into = &options->results,
-              .help = "JSON result of compare, diagnose, add, fit, check or reproduce; several of the lab's: side by side",
+              .help =
+                  "JSON result of compare, diagnose, add, fit, check or reproduce; several of the lab's: side by side. Or a log: its drive",
               .kind = Kind::input,
               .required = true},
+             {.name = "--log",
+              .into = &options->log,
+              .help = "the log of the result: its drive is shown too",
+              .value = "LOG",
+              .kind = Kind::log},
+             {.name = "--truth",
+              .into = &options->truth,
+              .help = "what really happened (simulate --truth): pose, height, forces",
+              .value = "FILE",
+              .kind = Kind::log},
+             map_row(options->map),
+             {.name = "--rover",
+              .into = &options->rover,
+              .help = "the rover that is drawn (rovers/*.toml); else the reference",
+              .value = "FILE",
+              .kind = Kind::rover},
              {.name = "--out", .into = &options->out, .help = "the page", .value = "FILE.html", .kind = Kind::output, .required = true}},
         .run = [options](Outcome &outcome) { show(*options, outcome); }};
 }

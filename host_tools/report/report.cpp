@@ -4,8 +4,10 @@
 
 #include "host_tools/log/write_file.h"
 
+#include <initializer_list>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace traction::report {
 
@@ -25,12 +27,25 @@ std::string embeddable(const nlohmann::json &result) {
     return out;
 }
 
+// The page with each mark, in their order, replaced once.
+std::string put_in(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string>> marks) {
+    std::string out;
+    for (const auto &[mark, text] : marks) {
+        const std::size_t place = page.find(mark);
+        if (place == std::string_view::npos) throw std::logic_error("the report page has no place for its data");
+        out += page.substr(0, place);
+        out += text;
+        page.remove_prefix(place + mark.size());
+    }
+    return out += page;
+}
+
 } // namespace
 
 std::string to_html(const nlohmann::json &result) {
     const std::string schema = result.is_object() ? result.value("schema", nlohmann::json()).dump() : "no object";
     if (schema != "\"traction.lab/1\"" && schema != "\"traction.figures/1\"" && schema != "\"traction.check/1\"" &&
-        schema != "\"traction.compared/1\"")
+        schema != "\"traction.compared/1\"" && schema != "\"traction.look/1\"")
         throw ReportError("schema: " + schema +
                           ": no page shows it; give what --json of check, compare, diagnose, add, fit or reproduce wrote "
                           "(traction.check/1, traction.lab/1, traction.figures/1)");
@@ -39,13 +54,9 @@ std::string to_html(const nlohmann::json &result) {
             if (!one.is_object() || one.value("schema", nlohmann::json()) != "traction.lab/1")
                 throw ReportError(
                     "results: only results of the lab stand beside one another (traction.lab/1: compare, diagnose, add, fit)");
-    const std::string_view page = page_template(), mark = "__TRACTION_RESULT__";
-    const std::size_t place = page.find(mark);
-    if (place == std::string_view::npos) throw std::logic_error("the report page has no place for its data");
-    std::string out(page.substr(0, place));
-    out += embeddable(result);
-    out += page.substr(place + mark.size());
-    return out;
+    const bool has_drive = result.contains("replay") && result["replay"].is_object();
+    return put_in(page_template(),
+                  {{"__TRACTION_RESULT__", embeddable(result)}, {"__TRACTION_SCENE__", has_drive ? std::string(scene_code()) : ""}});
 }
 
 void write_html(const nlohmann::json &result, const std::string &path) { write_text(to_html(result), path); }

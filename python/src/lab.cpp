@@ -1,6 +1,7 @@
 // The lab's verbs on logs in memory; results as JSON text, which the Python half makes objects of.
 #include "bind.h"
 
+#include "host_tools/cli/drive_view.h"
 #include "host_tools/lab/answer.h"
 #include "host_tools/lab/fit/checkpoint.h"
 #include "host_tools/lab/result/effects_json.h"
@@ -62,11 +63,25 @@ struct Result {
     std::optional<lab::Model> model;
     bool negative = false;
     std::string scenario = {};
+    std::string replay = {}; // the drive for the page, JSON; empty: the log says nowhere where the rover was
 };
 
 Result result_of(lab::Answer &&answer) {
     return {answer.json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), answer.text, answer.kind, std::move(answer.model),
             answer.negative};
+}
+
+// With the drive that the command line's page has, too.
+Result drawn(Result &&result, const lab::Session &session) {
+    const nlohmann::json page = cli::with_replay(nlohmann::json::object(), session);
+    if (page.contains("replay")) result.replay = page.at("replay").dump();
+    return std::move(result);
+}
+
+void write_report(const std::string &json, const std::string &path, const std::string &replay) {
+    nlohmann::json page = nlohmann::json::parse(json);
+    if (!replay.empty()) page["replay"] = nlohmann::json::parse(replay);
+    report::write_html(page, path);
 }
 
 // Runs without the GIL; Ctrl-C is heard before every fit.
@@ -89,27 +104,33 @@ lab::AnswerOptions options_of(const std::optional<std::function<void(int, int)>>
 }
 
 Result compare(const lab::Model &model, const Inputs &inputs, bool fitted) {
-    return computed([&] { return result_of(lab::compare_answer(lab::open_session(request_of(inputs), model), fitted)); });
+    return computed([&] {
+        const lab::Session session = lab::open_session(request_of(inputs), model);
+        return drawn(result_of(lab::compare_answer(session, fitted)), session);
+    });
 }
 
 Result diagnose(const lab::Model &model, const Inputs &inputs, const std::optional<std::function<void(int, int)>> &progress) {
     return computed([&] {
         const lab::Request request = request_of(inputs);
-        return result_of(lab::diagnose_answer(lab::open_session(request, model), request, options_of(progress), true));
+        const lab::Session session = lab::open_session(request, model);
+        return drawn(result_of(lab::diagnose_answer(session, request, options_of(progress), true)), session);
     });
 }
 
 Result add(const lab::Model &model, const Inputs &inputs, const std::string &effect, int wheel, const std::string &effect_file) {
     return computed([&] {
         const lab::Request request = request_of(inputs);
-        return result_of(lab::add_answer(lab::open_session(request, model), request, effect, wheel, effect_file));
+        const lab::Session session = lab::open_session(request, model);
+        return drawn(result_of(lab::add_answer(session, request, effect, wheel, effect_file)), session);
     });
 }
 
 Result fit(const lab::Model &model, const Inputs &inputs, const std::optional<std::vector<std::string>> &profile) {
     return computed([&] {
         const lab::Request request = request_of(inputs);
-        return result_of(lab::fit_answer(lab::open_session(request, model), request, true, profile));
+        const lab::Session session = lab::open_session(request, model);
+        return drawn(result_of(lab::fit_answer(session, request, true, profile)), session);
     });
 }
 
@@ -191,7 +212,8 @@ void bind_lab(nb::module_ &m) {
         .def_ro("kind", &Result::kind)
         .def_ro("model", &Result::model)
         .def_ro("negative", &Result::negative)
-        .def_ro("scenario", &Result::scenario);
+        .def_ro("scenario", &Result::scenario)
+        .def_ro("replay", &Result::replay);
     m.def("compare", &compare, nb::arg("model"), nb::arg("inputs"), nb::arg("fitted"));
     m.def("diagnose", &diagnose, nb::arg("model"), nb::arg("inputs"), nb::arg("progress").none());
     m.def("add", &add, nb::arg("model"), nb::arg("inputs"), nb::arg("effect"), nb::arg("wheel"), nb::arg("effect_file"));
@@ -203,7 +225,7 @@ void bind_lab(nb::module_ &m) {
         return list.dump();
     });
     m.def("report_html", [](const std::string &json) { return report::to_html(nlohmann::json::parse(json)); });
-    m.def("write_report", [](const std::string &json, const std::string &path) { report::write_html(nlohmann::json::parse(json), path); });
+    m.def("write_report", &write_report, nb::arg("json"), nb::arg("path"), nb::arg("replay") = "");
     m.def("residual_svg", &residual_svg, nb::arg("json"), nb::arg("most"));
 }
 

@@ -204,7 +204,7 @@ class Result:
 
     def report(self, file: str | os.PathLike[str]) -> None:
         """Write the page that `--report` writes: one HTML file that needs no network."""
-        _core.write_report(self._core.json, os.fspath(file))
+        _core.write_report(self._core.json, os.fspath(file), self._core.replay)
 
     def __repr__(self) -> str:
         verdict = self.verdict

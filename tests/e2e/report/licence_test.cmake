@@ -1,9 +1,13 @@
-# The MIT licence asks that its notice goes with every copy: uPlot is in the page, so its whole notice is.
+# cmake -DPAGE= [-DOWNER=] -P licence_test.cmake: the MIT licence asks that its notice goes with every copy: uPlot is in the page, three.js in
+# the code of its scene, so their whole notices are.
+if(NOT OWNER)
+  set(OWNER "Copyright (c) 2022 Leon Sorokin")
+endif()
 file(READ ${PAGE} page)
-foreach(words "Copyright (c) 2022 Leon Sorokin" "Permission is hereby granted, free of charge" "permission notice shall be included in"
+foreach(words "${OWNER}" "Permission is hereby granted, free of charge" "permission notice shall be included in"
         "WITHOUT WARRANTY OF ANY KIND")
   string(FIND "${page}" "${words}" at)
   if(at EQUAL -1)
-    message(FATAL_ERROR "${PAGE} lacks a part of uPlot's licence: ${words}")
+    message(FATAL_ERROR "${PAGE} lacks a part of its library's licence: ${words}")
   endif()
 endforeach()

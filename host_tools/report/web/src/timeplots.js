@@ -29,6 +29,20 @@ export function zoom(from, to) {
 export const zoomOut = () => zoom(...whole);
 export const onZoom = (callback) => { told = callback; };
 
+// One cursor with what else shows a time (replay/section.js): `pointed` hears where a pointer stands on a plot; cursorTo puts it there.
+let pointed = () => {}, placing = false, cursorAt = null;
+export const onPoint = (callback) => { pointed = callback; };
+export function cursorTo(t) {
+  cursorAt = t;
+  placing = true;
+  for (const { plot } of plots) {
+    const { min, max } = plot.scales.x, left = t >= min && t <= max ? plot.valToPos(t, 'x') : -10;
+    plot.setCursor({ left, top: left < 0 ? -10 : plot.over.clientHeight / 2 });
+    plot.root.dataset.cursor = t.toFixed(4);
+  }
+  placing = false;
+}
+
 function shown() {
   const x = plots[0]?.plot.scales.x;
   return x && isNumber(x.min) ? [x.min, x.max] : whole;
@@ -75,6 +89,11 @@ function options(host, height, label, series, extra = {}) {
         u.root.dataset.most = u.data[1].reduce((most, v) => (v == null ? most : Math.max(most, v)), -Infinity);
         u.root.dataset.range = `${u.scales.x.min} ${u.scales.x.max}`;
         if (u.ready_) queueMicrotask(() => zoom(u.scales.x.min, u.scales.x.max));
+      }],
+      setCursor: [(u) => {
+        if (placing || !u.ready_ || !(u.cursor.left >= 0)) return;
+        const t = u.posToVal(u.cursor.left, 'x');
+        if (t !== cursorAt) pointed(cursorAt = t);
       }],
       drawAxes: [...(extra.under ?? [])],
       draw: [...(extra.over ?? [])],
@@ -239,6 +258,26 @@ export function overlay(all, unit, fromStart) {
     zoom(...whole);
   };
   return { host, draw, remove: () => { plots = plots.filter(({ plot }) => !host.contains(plot.root) || (plot.destroy(), false)); } };
+}
+
+// Signals of one unit over one clock: [{ label, values }]; NaN is nothing. `last`: with the axis of time.
+export function linesPlot(name, unit, t, all, last) {
+  const host = h('div', { class: 'plots', tabindex: 0, role: 'group', onkeydown: keys,
+    'aria-label': `${name} over time: ${all.map((a) => a.label).join(', ')}. Keys: plus and minus zoom, arrows pan, Home shows all.` });
+  const columns = all.map(({ values }) => Array.from(values, (v) => (Number.isNaN(v) ? null : v)));
+  const draw = () => {
+    const refill = (from, to) => drawn(t, columns, thin(t, columns, from, to, Math.max(300, Math.round(host.clientWidth * devicePixelRatio))), []);
+    const plot = new uPlot(options(host, last ? 190 : 165, `${name} [${unitText(unit || '1')}]`,
+      all.map((a, i) => line(a.label, strokes[i % 8], { dash: dashes[i % 8], points: { show: false } })), { last }), refill(...whole), host);
+    plots.push({ plot, refill });
+    plot.ready_ = true;
+  };
+  return { host, draw };
+}
+
+export function settleTimes(t) {
+  settleOn([t]);
+  resizing();
 }
 
 function settleOn(times) {

@@ -1,0 +1,33 @@
+# Included by the tests that look at pages: CHROMIUM, run_or_fail(words command...), and in WORK the scripts and packages of SOURCE.
+# Sets SKIPPED where there is no browser.
+find_program(CHROMIUM NAMES chromium chromium-browser)
+if(NOT CHROMIUM)
+  message("SKIPPED: the report page was not looked at: no chromium here (Debian: apt-get install chromium)")
+  set(SKIPPED TRUE)
+  return()
+endif()
+execute_process(COMMAND ${CHROMIUM} --version OUTPUT_VARIABLE version ERROR_QUIET RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message("SKIPPED: the report page was not looked at: ${CHROMIUM} does not start (on Ubuntu it is a snap, which needs snapd)")
+  set(SKIPPED TRUE)
+  return()
+endif()
+
+function(run_or_fail what)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${what}")
+  endif()
+endfunction()
+
+file(COPY ${SOURCE}/ DESTINATION ${WORK} FILES_MATCHING PATTERN *.mjs PATTERN *.json PATTERN .npmrc)
+file(SHA256 ${SOURCE}/package-lock.json lock)
+set(installed "")
+if(EXISTS ${WORK}/node_modules/.traction-lock)
+  file(READ ${WORK}/node_modules/.traction-lock installed)
+endif()
+if(NOT installed STREQUAL lock)
+  run_or_fail("npm could not bring playwright-core and axe-core (pinned in tests/e2e/report/package-lock.json); is the npm registry reachable?"
+              ${NPM} ci --no-audit --no-fund --loglevel=error)
+  file(WRITE ${WORK}/node_modules/.traction-lock ${lock})
+endif()
