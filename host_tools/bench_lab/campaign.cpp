@@ -90,8 +90,8 @@ std::string soil_of(const std::string &log_file) {
 
 void make_independent(const CampaignOptions &options, const std::string &seed, SealedLog &one) {
     std::vector<std::string> command = {options.lab_generate, "--seed", seed, "--seal", one.seal, "--out", one.log};
-    if (options.generator == "fleet")
-        command.push_back("--fleet");
+    if (options.generator == "fleet" || options.generator == "strange")
+        command.push_back("--" + options.generator);
     else
         command.insert(command.end(), {"--blind", "--duration", number(options.duration_s)});
     if (options.generator == "apart") command.push_back("--apart");

@@ -19,13 +19,14 @@ struct CampaignOptions {
     int jobs = 2;
     std::uint64_t seed = 1000; // of the first log; the others follow
     double duration_s = 120;
-    std::string generator = "independent"; // wheels alike; "apart": each drawn for itself; "fleet": sizes, sensors, plans; "plant"
-    std::string category;                  // clean, one, two, outside: that alone; empty: as they are drawn
-    std::string folder;                    // logs, seals and answers are kept here
-    std::string lab_generate;              // the generator's program
-    std::string traction;                  // this program, for the plant
-    std::string scenario;                  // the plant's drive
-    std::function<void()> step;            // one log made, or one answered
+    std::string generator =
+        "independent";    // wheels alike; "apart": each drawn for itself; "fleet": sizes, sensors, plans; "strange": and habits; "plant"
+    std::string category; // clean, one, two, outside: that alone; empty: as they are drawn
+    std::string folder;   // logs, seals and answers are kept here
+    std::string lab_generate;   // the generator's program
+    std::string traction;       // this program, for the plant
+    std::string scenario;       // the plant's drive
+    std::function<void()> step; // one log made, or one answered
 };
 
 struct SealedLog {

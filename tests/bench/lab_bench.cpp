@@ -1,6 +1,6 @@
 // lab_bench - a blind campaign of the lab on sealed logs: made, answered, the seals opened, the table. Run by `traction bench lab`.
 //
-// Usage: lab_bench --traction PROGRAM [--logs N] [--jobs N] [--seed N] [--duration S] [--generator independent|apart|fleet|plant]
+// Usage: lab_bench --traction PROGRAM [--logs N] [--jobs N] [--seed N] [--duration S] [--generator independent|apart|fleet|strange|plant]
 //                  [--category clean|one|two|outside] [--keep FOLDER] [--time] [--peers] [--json FILE]. Exit 1 when a log could not be
 //                  answered.
 #include "host_tools/bench_lab/answer.h"
@@ -97,8 +97,8 @@ int run(Request &request) {
         }
     });
     const bench_lab::Score score = bench_lab::judge(judged);
-    char length[32] = "60 to 300"; // the fleet draws its own
-    if (options.generator != "fleet") std::snprintf(length, sizeof length, "%g", options.duration_s);
+    char length[32] = "60 to 300"; // these draw their own
+    if (options.generator != "fleet" && options.generator != "strange") std::snprintf(length, sizeof length, "%g", options.duration_s);
     std::printf("%d sealed logs, generator: %s%s%s, %s s each, seeds %lu to %lu\n\n%s", options.logs, options.generator.c_str(),
                 options.category.empty() ? "" : ", category: ", options.category.c_str(), length, static_cast<unsigned long>(options.seed),
                 static_cast<unsigned long>(options.seed) + static_cast<unsigned long>(options.logs) - 1,

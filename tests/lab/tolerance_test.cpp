@@ -57,6 +57,26 @@ TEST(Tolerance, wheels_share_a_value_and_differ_by_their_own) {
     EXPECT_DOUBLE_EQ(physics.wheel[1].KG, 0.2);
 }
 
+Diagnosis ask(const GeneratorConfig &config) {
+    const Model sheet = parse_model(generator::data_sheet(config), "sheet");
+    return diagnose(sheet, make_dataset(sheet, generator::generate(config)), {});
+}
+
+// To and fro on stiff ground slip is small, and what a count is worth beside it softened the ground to its bound: two current gains named.
+TEST(Clean, a_drive_to_and_fro_on_concrete_names_nothing) {
+    GeneratorConfig config = apart(Soil::concrete, 3);
+    config.drive = "shuttle", config.duration_s = 60;
+    const Diagnosis d = ask(config);
+    EXPECT_TRUE(d.effects.empty()) << d.text;
+}
+
+// The body was taken to drive straight, and the model for wrong.
+TEST(Clean, a_log_that_turns_without_a_yaw_rate_is_no_wrong_model) {
+    GeneratorConfig config = apart(Soil::sand, 1);
+    config.habits.gyro = config.camera = false, config.duration_s = 60;
+    EXPECT_EQ(ask(config).kind, "nothing");
+}
+
 TEST(Tolerance, what_is_written_is_read_again_and_still_shared) {
     Model model = parse_model(four_wheels + "[motor]\ncoulomb_Nm = { value = 0.04, each_wheel = 0.1 }\n"
                                             "resistance_ohm = { value = 3, each_wheel = 0 }\n",

@@ -16,7 +16,7 @@ Freedom freedom_of(const Dataset &data, const Physics &physics) {
     const bool planar = physics.motion == BodyMotion::planar;
     const bool omni =
         planar && std::find(physics.grips_sideways.begin(), physics.grips_sideways.end(), false) != physics.grips_sideways.end();
-    return {planar, planar || data.yaw_free, omni, planar ? data.gyro : data.yaw_free};
+    return {planar, planar || data.yaw_free, omni, planar ? data.gyro : data.yaw_free && !data.yaw_rate_rad_s.empty()};
 }
 
 void resize(Motion &m, std::size_t count, std::size_t wheels, bool keep, bool lags) {

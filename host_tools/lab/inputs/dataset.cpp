@@ -13,7 +13,7 @@ namespace {
 constexpr double bin_s = 0.05; // rows of fast signals: keeps all below 10 Hz, assumed enough for a rover's physics
 
 struct Builder : InputBuilder {
-    Builder(const Model &of, const log::Log &from, double noise) : InputBuilder{of, from, noise, {}} {}
+    Builder(const Model &of, const log::Log &from, double noise, double widen_) : InputBuilder{of, from, noise, widen_, {}} {}
 
     // A released bridge carries no current whatever the duty says (actuator.motor_enable 0).
     bool powered(double t0, double t1) const {
@@ -329,8 +329,8 @@ std::vector<double> Dataset::voltage_integral(const WheelInput &input, double la
     return sum;
 }
 
-Dataset measured_data(const Model &model, const log::Log &log, double slope_noise) {
-    Builder builder(model, log, slope_noise);
+Dataset measured_data(const Model &model, const log::Log &log, double slope_noise, double widen) {
+    Builder builder(model, log, slope_noise, widen);
     builder.build();
     return builder.data;
 }

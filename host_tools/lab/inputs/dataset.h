@@ -66,7 +66,7 @@ struct Dataset {
     std::vector<double> body_speed_m_s;       // imposed speed; empty otherwise
     std::vector<std::vector<double>> load_N;  // measured load per wheel; empty when not logged
     std::vector<double> supply_t_s, supply_V; // battery, or one constant
-    bool yaw_free = false;                    // the log measures yaw, so the yaw rate follows from the model's forces
+    bool yaw_free = false;                    // the yaw rate follows from the model's forces, drawn to the measured one where there is one
     bool gyro = false;                        // the yaw rate is a gyro's
     std::vector<char> gap;                    // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
@@ -87,8 +87,8 @@ struct Dataset {
 
 // Inputs and balances of a log, without what its smoothing may cost where speeds jump (forward/make_dataset.h adds that). Never throws
 // for a poor log: what cannot be used is left out with a message. `slope_noise`: what the smoothing of angles may leave in a wheel's
-// speed, as a share of the speed.
-Dataset measured_data(const Model &model, const log::Log &log, double slope_noise = 0.01);
+// speed, as a share of the speed. `widen`: times the half width that this makes.
+Dataset measured_data(const Model &model, const log::Log &log, double slope_noise = 0.01, double widen = 1);
 
 // Two runs of one drive: where at least 20 rows of a balance lie within 20 ms of the other run's, the standard deviation of their
 // difference over sqrt(2) becomes the balance's noise.

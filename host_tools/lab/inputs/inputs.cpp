@@ -179,7 +179,8 @@ void InputBuilder::wheel_motion(std::size_t i) {
     if (scale != 0) {
         std::vector<double> angle(s->value);
         for (double &a : angle) a *= scale;
-        if (const double wide = half_width_for(s->t_s, angle, sample_period(*s), half, data.standstill_rad_s, slope_noise);
+        if (const double wide = std::min(std::max(half, widest_half_s), widen * half_width_for(s->t_s, angle, sample_period(*s), half,
+                                                                                               data.standstill_rad_s, slope_noise));
             wide > 1.2 * half) {
             half = wide;
             char text[160];
@@ -187,6 +188,7 @@ void InputBuilder::wheel_motion(std::size_t i) {
                           s->name.c_str(), half);
             say(text);
         }
+        if (widen > 1) data.smoothing_half_s = half;
         Smooth smooth = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 2);
         input.angle_rad = std::move(smooth.value);
         input.speed_rad_s = std::move(smooth.slope);
@@ -340,13 +342,12 @@ void InputBuilder::yaw() {
         data.yaw_rate_rad_s = smooth_at(camera->t_s, unwrapped(camera->value), data.start_s, data.step_s, data.count,
                                         std::max(0.35, 2.5 * sample_period(*camera)), 2)
                                   .slope;
-    } else if (model.wheel.size() > 1 && model.motion == BodyMotion::longitudinal) {
-        say("no yaw rate (imu.gyro_z_rad_s or camera.yaw_rad): the body is taken to drive straight");
     }
     double sides = 0; // half the distance between the wheels' tracks
     for (const WheelSpec &w : model.wheel) sides = std::max(sides, std::fabs(parameter(w.geometry, "y_m")));
-    data.yaw_free =
-        model.motion == BodyMotion::longitudinal && (gyro != nullptr || camera != nullptr) && sides > 1e-3 && model.wheel.size() > 1;
+    data.yaw_free = model.motion == BodyMotion::longitudinal && sides > 1e-3 && model.wheel.size() > 1;
+    if (data.yaw_free && data.yaw_rate_rad_s.empty())
+        say("no yaw rate (imu.gyro_z_rad_s or camera.yaw_rad): how the body turns follows from its wheels and the model's ground alone");
     if (camera != nullptr) {
         const std::vector<double> angle = unwrapped(camera->value);
         for (std::size_t k = 0; k < data.count; ++k) data.yaw_rad.push_back(interpolate(camera->t_s, angle, data.time(k)));

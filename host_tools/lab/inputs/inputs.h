@@ -21,6 +21,7 @@ struct InputBuilder {
     const Model &model;
     const log::Log &log;
     double slope_noise; // what the angles' smoothing may leave in a speed, of the speed (half_width_for)
+    double widen;       // times the half width that this makes
     Dataset data;
 
     const log::Signal *signal(const std::string &name) const;

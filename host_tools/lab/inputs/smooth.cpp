@@ -42,8 +42,6 @@ void solve_local(const double (&s)[7], const double (&r)[4], int degree, double 
     slope = 0;
 }
 
-constexpr double widest_half_s = 0.5; // starts and stops of a second still show
-
 // What is white in the samples while the wheel turns, by the covariance -sigma^2 of neighbouring deviations from the straight line
 // through a sample's neighbours; an acceleration makes that covariance positive. `speed`: its median.
 double scatter_of(const std::vector<double> &t, const std::vector<double> &angle, double period, double still, double &speed) {

@@ -28,6 +28,8 @@ double slope_response(double half_width_s, double omega_rad_s);
 
 double median(std::vector<double> values); // 0 when empty
 
+inline constexpr double widest_half_s = 0.5; // starts and stops of a second still show
+
 // Half width of local parabolas over the angles of a turning wheel whose samples scatter (a slow counter, a clock that jitters): at
 // least `half`, and so wide, up to 0.5 s, that the slope's noise is `slope_noise` of the speed. `still_rad_s`: speed below which a wheel
 // stands.

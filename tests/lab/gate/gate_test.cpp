@@ -1,6 +1,7 @@
 // The gate: what learns refuses a spoilt log and says why, goes on only aloud, and lets every sound log pass. The whole corpus and 300
 // sound logs: ninja -C build/host gate_campaign (docs/lab_benchmark.md).
 #include "spoil.h"
+#include "tamper.h"
 
 #include "host_tools/check/check.h"
 #include "host_tools/lab/fit/ladder.h"
@@ -8,6 +9,7 @@
 #include "host_tools/lab/gate.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/lab/validate.h"
+#include "tests/lab/generator/generator.h"
 #include "tests/log/files.h"
 
 #include <cstdint>
@@ -53,6 +55,32 @@ TEST(Gate, no_sound_log_is_refused) {
         for (const bool known : {false, true})
             EXPECT_EQ(errors(check::check(log.log, {}, known ? lab::machine_of(log.model) : check::Machine{})), "") << log.about;
     }
+}
+
+// A loop that holds a slow wheel to one count rate for seconds, as counts and as the speed that a driver makes of them.
+TEST(Gate, a_wheel_held_at_one_number_of_counts_is_no_stuck_sensor) {
+    const generator::BlindCase drawn = generator::draw_fleet_case(240001, "clean"); // 3 counts a tick for 3.4 s; refused before
+    const log::Log counts = generator::generate(drawn.config);
+    const lab::Model model = lab::parse_model(generator::data_sheet(drawn.config), "sheet");
+    log::Log speeds = counts, stuck = counts;
+    for (log::Signal &s : speeds.signals) {
+        if (!ends(s.name, ".encoder_count")) continue;
+        s.name = s.name.substr(0, s.name.find('.')) + ".speed_rad_s";
+        const std::vector<double> count = s.value;
+        for (std::size_t i = 1; i < count.size(); ++i) s.value[i] = (count[i] - count[i - 1]) * 2 * pi / 6000 / 0.01;
+    }
+    log::Log no_voltage = speeds;
+    erase(no_voltage, "wheel", ".duty");
+    for (const log::Log *log : std::vector<const log::Log *>{&counts, &speeds, &no_voltage})
+        for (const bool known : {false, true})
+            EXPECT_EQ(errors(check::check(*log, {}, known ? lab::machine_of(model) : check::Machine{})), "") << "sound";
+    each(stuck, "wheel1", ".encoder_count", [](log::Signal &s) { // three seconds uncounted, then on from there
+        const std::vector<double> count = s.value;
+        for (std::size_t i = 800; i > 0 && i < count.size(); ++i) s.value[i] = count[i] - (count[800] - count[500]);
+        for (std::size_t i = 500; i < 800; ++i) s.value[i] = count[500];
+    });
+    const check::Report report = check::check(stuck, {}, {});
+    EXPECT_NE(report.find("stuck_sensor"), nullptr);
 }
 
 TEST(Gate, a_signed_radar_passes_and_its_magnitude_is_compared) {

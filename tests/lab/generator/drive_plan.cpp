@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 namespace traction::generator {
@@ -9,7 +10,6 @@ namespace traction::generator {
 namespace {
 
 using K = Segment::Kind;
-constexpr double tick_s = 0.01;
 
 Segment go(double duration, double speed, double ramp, double yaw = 0) { return {K::drive, duration, speed, ramp, yaw}; }
 
@@ -85,7 +85,7 @@ void add_mixed(std::vector<Segment> &plan, Random &random) {
 }
 
 void add_drawn(const std::string &name, std::vector<Segment> &plan, Random &random) {
-    if (name == "mixed") return add_mixed(plan, random);
+    if (name == "mixed" || name == "halt") return add_mixed(plan, random);
     const double speed = random.uniform(0.15, 0.5);
     if (name == "stop_and_go")
         plan.insert(plan.end(), {go(random.uniform(2, 5), random.uniform() < 0.3 ? -speed : speed, random.log_uniform(0.5, 6)),
@@ -94,6 +94,11 @@ void add_drawn(const std::string &name, std::vector<Segment> &plan, Random &rand
         plan.push_back(go(random.uniform(3, 8), random.uniform(-0.12, 0.15), random.log_uniform(0.1, 1)));
     else if (name == "curves")
         plan.push_back(go(random.uniform(2, 6), speed, 1, random.uniform(-0.8, 0.8)));
+    else if (name == "spins")
+        plan.push_back(go(random.uniform(2, 6), random.uniform() < 0.3 ? 0.4 * speed : 0, 1, random.sign() * random.uniform(0.2, 0.9)));
+    else if (name == "shuttle")
+        plan.insert(plan.end(), {go(random.uniform(2, 5), speed, random.log_uniform(0.2, 3)),
+                                 go(random.uniform(2, 5), -speed, random.log_uniform(0.2, 3))});
     else // slopes
         plan.insert(plan.end(), {go(random.uniform(4, 9), speed, 2), go(1.5, 0, 3), go(random.uniform(3, 6), -speed, 2), go(1.5, 0, 3),
                                  go(3.5, 0, 1, 0.9)});
@@ -103,10 +108,13 @@ void add_drawn(const std::string &name, std::vector<Segment> &plan, Random &rand
 
 std::vector<Segment> make_plan(const std::string &name, double duration_s, Random &random, double speed) {
     std::vector<Segment> plan;
-    if (name == "mixed" || name == "stop_and_go" || name == "slow" || name == "curves" || name == "slopes") {
+    static const char *const drawn[] = {"mixed", "stop_and_go", "slow", "curves", "slopes", "spins", "shuttle", "halt"};
+    if (std::find(std::begin(drawn), std::end(drawn), name) != std::end(drawn)) {
         plan.push_back(go(1.5, 0, 1));
+        bool halted = name != "halt";
         for (double total = 0; total < duration_s;) {
             const std::size_t before = plan.size();
+            if (!halted && total > 0.4 * duration_s) plan.push_back(go(0.25 * duration_s, 0, 2)), halted = true;
             add_drawn(name, plan, random);
             for (std::size_t i = before; i < plan.size(); ++i) total += plan[i].duration_s, plan[i].speed_m_s *= speed;
         }
@@ -121,8 +129,9 @@ std::vector<Segment> make_plan(const std::string &name, double duration_s, Rando
     else if (name == "sweep")
         plan = {go(2, 0, 1), {K::front_sweep, 20, 0.3, 1}, go(2, 0, 2), {K::rear_sweep, 20, 0.3, 1}, go(2, 0, 2)};
     else
-        throw std::invalid_argument("unknown drive \"" + name +
-                                    "\"; use full, cruise, stairs, sweep, mixed, stop_and_go, slow, curves or slopes");
+        throw std::invalid_argument(
+            "unknown drive \"" + name +
+            "\"; use full, cruise, stairs, sweep, mixed, stop_and_go, slow, curves, slopes, spins, shuttle or halt");
     double total = 0;
     for (Segment &segment : plan) { // nobody drives the same plan twice
         segment.duration_s *= random.uniform(0.9, 1.1);
@@ -135,14 +144,14 @@ std::vector<Segment> make_plan(const std::string &name, double duration_s, Rando
     return plan;
 }
 
-Driver::Driver(std::vector<Segment> plan, double radius_m, double half_track_m, LoopTune tune)
-    : plan_(std::move(plan)), radius_(radius_m), half_track_(half_track_m), tune_(tune) {}
+Driver::Driver(std::vector<Segment> plan, double radius_m, double half_track_m, LoopTune tune, double tick_s)
+    : plan_(std::move(plan)), radius_(radius_m), half_track_(half_track_m), tune_(tune), tick_(tick_s) {}
 
 PerWheel Driver::command(double t_s, const PerWheel &w, double estimate, double battery_V) {
     while (index_ + 1 < plan_.size() && t_s >= segment_start_ + plan_[index_].duration_s) segment_start_ += plan_[index_++].duration_s;
     const Segment &now = plan_[index_];
     const double since = t_s - segment_start_;
-    speed_ += std::clamp(now.speed_m_s - speed_, -now.ramp_m_s2 * tick_s, now.ramp_m_s2 * tick_s);
+    speed_ += std::clamp(now.speed_m_s - speed_, -now.ramp_m_s2 * tick_, now.ramp_m_s2 * tick_);
     const double hold = (speed_ + 0.8 * (speed_ - estimate)) / radius_;           // (22) with Kv R = 0.8
     const double rising = 1.5 * now.speed_m_s / radius_ * since / now.duration_s; // (15): slip zero at two thirds
     PerWheel duty{};
@@ -173,8 +182,8 @@ PerWheel Driver::command(double t_s, const PerWheel &w, double estimate, double 
         const double error = set_[i] - w[i];
         const double raw = tune_.back_emf_Vs_rad / std::max(battery_V, 4.0) * set_[i] + tune_.duty_per_rad_s * error + integral_[i];
         duty[i] = std::clamp(raw, -1.0, 1.0);
-        if (raw == duty[i]) integral_[i] += tune_.duty_per_rad * error * tick_s; // no wind-up
-        duty[i] = std::round(duty[i] * 2000) / 2000;                             // 0.05 % PWM steps
+        if (raw == duty[i]) integral_[i] += tune_.duty_per_rad * error * tick_; // no wind-up
+        duty[i] = std::round(duty[i] * 2000) / 2000;                            // 0.05 % PWM steps
     }
     return duty;
 }

@@ -14,7 +14,7 @@ namespace traction::generator {
 
 namespace {
 
-constexpr double h_s = 1e-3, tick_s = 0.01, g_m_s2 = 9.81;
+constexpr double h_s = 1e-3, g_m_s2 = 9.81;
 constexpr double accel_noise = 0.2, accel_bias_sd = 0.05, gyro_noise = 0.01;
 constexpr double battery_noise_V = 0.01, radar_relative = 0.07, radar_floor_m_s = 0.005, radar_window_s = 0.5, radar_every_s = 0.125;
 constexpr double camera_noise_m = 0.001, camera_noise_rad = 0.004, camera_hz = 7;
@@ -24,8 +24,9 @@ constexpr double counts_per_turn = 6000;
 class Recorder {
   public:
     Recorder(const GeneratorConfig &config, const Machine &machine, const Hidden &hidden, Random noise)
-        : c_(config), m_(machine), h_(hidden), noise_(noise), scale_(config.quiet ? 0 : 1),
-          accel_offset_(scale_ * accel_bias_sd * noise_.normal()), gyro_offset_(scale_ * 0.003 * noise_.normal()) {
+        : c_(config), m_(machine), h_(hidden), noise_(noise), scale_(config.quiet ? 0 : config.habits.noise),
+          accel_offset_((config.quiet ? 0 : 1) * accel_bias_sd * noise_.normal()),
+          gyro_offset_((config.quiet ? 0 : 1) * 0.003 * noise_.normal()) {
         for (int k = 0; k < 5; ++k) radar_parts_.push_back(noise_.normal());
     }
 
@@ -67,10 +68,11 @@ class Recorder {
             current_sum_[i] = 0;
         }
         const double tilt = g_m_s2 * h_.accel_tilt * leaned_;
-        put("imu.accel_x_m_s2", stamp_,
-            accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt + accel_offset_ +
-                scale_ * accel_noise * noise_.normal());
-        put("imu.gyro_z_rad_s", stamp_, yaw_rate_now_ + gyro_offset_ + scale_ * gyro_noise * noise_.normal());
+        const double felt = accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt + accel_offset_ +
+                            scale_ * accel_noise * noise_.normal();
+        if (c_.habits.accel) put("imu.accel_x_m_s2", stamp_, felt);
+        const double turned = yaw_rate_now_ + gyro_offset_ + scale_ * gyro_noise * noise_.normal();
+        if (c_.habits.gyro) put("imu.gyro_z_rad_s", stamp_, turned);
         battery_now_ = battery_sum_ / n * (1 + h_.voltage_gain) + scale_ * battery_noise_V * noise_.normal();
         if (c_.battery) put("battery.voltage_V", stamp_, battery_now_);
         accel_sum_ = battery_sum_ = 0;
@@ -187,8 +189,9 @@ void write_header(const GeneratorConfig &config, const Machine &machine, log::Lo
     header["noise.camera.x_m"] = header["noise.camera.y_m"] = number(camera_noise_m);
     header["noise.camera.yaw_rad"] = number(camera_noise_rad);
     header["window.radar.speed_m_s"] = number(radar_window_s); // a value is the mean of the window that ends at its time
-    if (!config.chain.current_at_end) header["window.wheel.current_A"] = number(tick_s); // likewise: averaged over the control period
-    header["window.imu.accel_x_m_s2"] = number(tick_s);
+    if (!config.chain.current_at_end)
+        header["window.wheel.current_A"] = number(config.habits.tick_s); // likewise: averaged over the control period
+    header["window.imu.accel_x_m_s2"] = number(config.habits.tick_s);
     header["counts_per_turn"] = number(counts_per_turn);
     if (config.chain.angle_only)
         for (int i = 0; i < wheels; ++i)
@@ -230,12 +233,30 @@ Machine machine_of(const GeneratorConfig &config) {
     return machine;
 }
 
+namespace {
+
+// Switched on while the machine drives: its clock begins there, its counters do not.
+void begin_at(double begin_s, log::Log &log) {
+    for (log::Signal &s : log.signals) {
+        const auto from = std::lower_bound(s.t_s.begin(), s.t_s.end(), begin_s) - s.t_s.begin();
+        s.t_s.erase(s.t_s.begin(), s.t_s.begin() + from);
+        s.value.erase(s.value.begin(), s.value.begin() + from);
+        for (double &t : s.t_s) t = std::round((t - begin_s) * 1e6) / 1e6;
+    }
+    std::erase_if(log.signals, [](const log::Signal &s) { return s.t_s.empty(); });
+}
+
+} // namespace
+
 log::Log generate(const GeneratorConfig &config) {
     Hidden hidden;
     for (const Setting &setting : config.hidden) apply(setting, hidden);
     const std::uint64_t place = config.seed + 7000003ULL * static_cast<std::uint64_t>(config.run); // run 0: the seed itself
     Random ground(place, 12), plan_random(place, 13), clock(place, 16);
-    const Machine machine = machine_of(config);
+    const double tick_s = config.habits.tick_s;
+    Machine machine = machine_of(config);
+    machine.battery_ohm *= config.habits.soft;
+    if (config.habits.sag > 0) machine.battery_sag_1_s = config.habits.sag / config.duration_s;
     World world(machine, hidden, ground);
     const Machine believed = nominal(config.soil, config.size); // the operator knows the data sheet
     const Machine first = nominal(config.soil);
@@ -245,7 +266,7 @@ log::Log generate(const GeneratorConfig &config) {
     tune.duty_per_rad_s *= pull(believed) / pull(first);
     tune.duty_per_rad *= pull(believed) / pull(first);
     const double faster = std::sqrt(believed.radius / first.radius);
-    Driver driver(make_plan(config.drive, config.duration_s, plan_random, faster), believed.radius, believed.half_track, tune);
+    Driver driver(make_plan(config.drive, config.duration_s, plan_random, faster), believed.radius, believed.half_track, tune, tick_s);
     Recorder recorder(config, machine, hidden, Random(place + 1000003 * config.noise_seed, 14));
 
     PerWheel duty{}, speed{};
@@ -255,18 +276,19 @@ log::Log generate(const GeneratorConfig &config) {
         duty = driver.command(world.t, speed, estimate, recorder.battery_V());
         recorder.commands(duty, driver.set_speed()); // takes effect from this row's time to the next
         const int late = config.chain.jitter_s > 0 ? static_cast<int>(std::lround(config.chain.jitter_s / h_s * clock.normal())) : 0;
-        const int steps = std::clamp(10 + late, 6, 14);
+        const int ms = static_cast<int>(std::lround(tick_s / h_s)), steps = std::clamp(ms + late, 6 * ms / 10, 14 * ms / 10);
         for (int sub = 0; sub < steps; ++sub) {
             world.step(duty);
             recorder.watch(world);
         }
         speed = recorder.tick(world, late == 0 ? tick_s : steps * h_s);
-        estimate += 0.05 * (world.v() - estimate); // a slow outside estimate of ground speed, 0.2 s
+        estimate += tick_s / 0.2 * (world.v() - estimate); // a slow outside estimate of ground speed, 0.2 s
         if (!std::isfinite(world.v())) throw std::runtime_error("the generator's world diverged");
         if (config.truth) recorder.truth(world);
     }
     log::Log log;
     log.signals = recorder.take();
+    if (config.habits.begin_s > 0) begin_at(config.habits.begin_s, log);
     log.source = "generator";
     write_header(config, machine, log);
     return log;
@@ -352,6 +374,27 @@ BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category) {
         config.hidden.push_back({"grade", -1, {{"slope_rad", random.sign() * random.log_uniform(0.02, 0.12)}, {"direction_rad", 0}}});
     else if (blind.category == "two")
         config.hidden.push_back(draw_setting(false, random, config.hidden.front().name, true, config.size));
+    return blind;
+}
+
+BlindCase draw_strange_case(std::uint64_t seed, const std::string &category) {
+    BlindCase blind = draw_fleet_case(seed, category);
+    Random random(seed, 41);
+    GeneratorConfig &config = blind.config;
+    Habits &habits = config.habits;
+    if (random.uniform() < 0.6) {
+        static const char *const plans[] = {"spins", "halt", "shuttle", "stairs", "sweep", "cruise"};
+        config.drive = plans[random.below(6)];
+    }
+    habits.tick_s = 1e-3 * (5 << random.below(3));
+    const double noise[] = {0.5, 1, 2};
+    habits.noise = noise[random.below(3)];
+    if (random.uniform() < 0.3) habits.begin_s = random.uniform(3, 20);
+    if (random.uniform() < 0.3) habits.sag = random.uniform(0.05, 0.2);
+    if (random.uniform() < 0.3) habits.soft = random.uniform(2, 5);
+    habits.gyro = random.uniform() > 0.15, habits.accel = random.uniform() > 0.15;
+    config.battery = random.uniform() > 0.15;
+    if (random.uniform() < 0.15) config.camera = config.radar = false;
     return blind;
 }
 

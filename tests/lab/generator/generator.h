@@ -23,10 +23,21 @@ struct SensorChain {
     bool foreign = false;        // a CSV of its own: units, names, signs and order of wheels need a map
 };
 
+// What another workshop does otherwise. As they stand: the first blind sets, to the last digit.
+struct Habits {
+    double tick_s = 0.01; // of loop and log, whole milliseconds
+    double noise = 1;     // of the sensors, over what the header states
+    double begin_s = 0;   // the logger is switched on that late, the machine driving
+    double sag = 0;       // share of its voltage that the battery loses over the log, evenly
+    double soft = 1;      // of the battery's internal resistance
+    bool gyro = true, accel = true;
+};
+
 struct GeneratorConfig {
     Soil soil = Soil::sand;
     Size size = Size::small;
     SensorChain chain;
+    Habits habits;
     int run = 0;                // another drive of the same machine: other plan, place and noise
     std::string drive = "full"; // see make_plan
     double duration_s = 120;
@@ -66,6 +77,10 @@ BlindCase draw_case(std::uint64_t seed, double duration_s, const std::string &ca
 // The fleet: wheels apart, three sizes, five soils, sensor chains, plans and lengths (60 to 300 s) of their own, laws on single wheels.
 // category: one of the four, or empty to draw it.
 BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category = "");
+
+// The fleet with habits of its own: other plans (turns alone, a long halt, to and fro), loops of 5 to 20 ms, noise of half to twice what is
+// stated, a log that begins while driving, a battery that sags, sensors that are not there. No rule of the lab was made on these.
+BlindCase draw_strange_case(std::uint64_t seed, const std::string &category = "");
 std::string name_of(Size size);
 Size size_of(const std::string &name); // throws std::invalid_argument
 

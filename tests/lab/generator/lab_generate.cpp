@@ -30,6 +30,9 @@ nlohmann::json seal_of(const BlindCase &blind) {
                      {"foreign", chain.foreign},
                      {"camera", blind.config.camera},
                      {"radar", blind.config.radar}};
+    const Habits &habits = blind.config.habits;
+    seal["habits"] = {{"tick_s", habits.tick_s}, {"noise", habits.noise}, {"begin_s", habits.begin_s}, {"sag", habits.sag},
+                      {"soft", habits.soft},     {"gyro", habits.gyro},   {"accel", habits.accel},     {"battery", blind.config.battery}};
     const Machine m = machine_of(blind.config);
     seal["machine"] = {{"mass_kg", m.mass},
                        {"radius_m", m.radius},
@@ -85,18 +88,27 @@ int run(int argc, char **argv) {
     std::string soil = "sand", out, seal, model, map, size = "small", category;
     int runs = 1;
     std::vector<std::string> effects;
-    bool is_blind = false, is_fleet = false, list = false;
+    bool is_blind = false, is_fleet = false, is_strange = false, list = false;
     app.add_option("--soil", soil, "sand, gravel, concrete, loam or snow");
     app.add_option("--size", size, "small (2.9 kg), medium (12 kg) or large (60 kg)");
     app.add_option("--effect", effects, "NAME:param=value[,param=value][,wheel=i]; may be given again");
     app.add_option("--seed", blind.config.seed, "machine, drive, ground and noise");
     app.add_option("--noise-seed", blind.config.noise_seed, "the same run with other sensor noise");
     app.add_option("--duration", blind.config.duration_s, "seconds")->check(CLI::Range(1.0, 3600.0));
-    app.add_option("--drive", blind.config.drive, "full, cruise, stairs, sweep, mixed, stop_and_go, slow, curves or slopes");
+    app.add_option("--drive", blind.config.drive,
+                   "full, cruise, stairs, sweep, mixed, stop_and_go, slow, curves, slopes, spins, shuttle or halt");
     app.add_option("--run", blind.config.run, "another drive of the same machine: other plan, place and noise")->check(CLI::Range(0, 100));
     app.add_option("--accel-cutoff", blind.config.chain.accel_cutoff_Hz, "low pass in the accelerometer [Hz]");
     app.add_option("--accel-late", blind.config.chain.accel_late_s, "age of its samples [s]");
     app.add_option("--jitter", blind.config.chain.jitter_s, "standard deviation of a tick's length [s]");
+    Habits &habits = blind.config.habits;
+    std::vector<std::string> without;
+    app.add_option("--tick", habits.tick_s, "of loop and log [s]")->check(CLI::Range(0.001, 0.1));
+    app.add_option("--noise", habits.noise, "of the sensors, over what the header states")->check(CLI::Range(0.0, 100.0));
+    app.add_option("--begin", habits.begin_s, "the log begins that late [s]")->check(CLI::Range(0.0, 3600.0));
+    app.add_option("--sag", habits.sag, "share of its voltage that the battery loses")->check(CLI::Range(0.0, 0.5));
+    app.add_option("--without", without, "a sensor that is not there; may be given again")
+        ->check(CLI::IsMember({"camera", "radar", "battery", "gyro", "accel"}));
     app.add_flag("--current-at-end", blind.config.chain.current_at_end, "currents sampled once, at the end of the PWM period");
     app.add_flag("--angle-only", blind.config.chain.angle_only, "wheel angles, no counts");
     app.add_flag("--foreign", blind.config.chain.foreign, "a CSV of its own, which --map reads");
@@ -106,6 +118,7 @@ int run(int argc, char **argv) {
     app.add_flag("--truth", blind.config.truth, "add truth.* columns");
     app.add_flag("--blind", is_blind, "draw soil and what is hidden by the seed");
     app.add_flag("--fleet", is_fleet, "draw size, soil, sensors, plan, length and what is hidden by the seed");
+    app.add_flag("--strange", is_strange, "as --fleet, and habits of another workshop: plans, rates, noise, battery, what is logged");
     app.add_option("--category", category, "with --blind or --fleet: clean, one, two or outside instead of drawing it")
         ->check(CLI::IsMember({"clean", "one", "two", "outside"}));
     app.add_option("--map", map, "write the map of a foreign log here (default: OUT.map.toml)");
@@ -117,9 +130,17 @@ int run(int argc, char **argv) {
     CLI11_PARSE(app, argc, argv);
     if (list) return list_kinds(), 0;
     if (out.empty()) throw std::invalid_argument("--out LOG is missing");
-    if (is_fleet) {
+    for (const std::string &sensor : without) {
+        GeneratorConfig &c = blind.config;
+        (sensor == "camera"    ? c.camera
+         : sensor == "radar"   ? c.radar
+         : sensor == "battery" ? c.battery
+         : sensor == "gyro"    ? c.habits.gyro
+                               : c.habits.accel) = false;
+    }
+    if (is_fleet || is_strange) {
         const GeneratorConfig asked = blind.config;
-        blind = draw_fleet_case(asked.seed, category);
+        blind = is_strange ? draw_strange_case(asked.seed, category) : draw_fleet_case(asked.seed, category);
         blind.config.noise_seed = asked.noise_seed, blind.config.run = asked.run;
     } else if (is_blind) {
         const GeneratorConfig asked = blind.config;

@@ -288,7 +288,7 @@ void World::step(const PerWheel &wanted) {
         ke_[i] = m_.ke * m_.KG_each[i] * constant; // the same magnets
         Ra_[i] = m_.Ra * m_.Ra_each[i] * (1 + copper_1_K * hot);
     }
-    battery = m_.battery_V * (1 - 0.012 * t / 120) - m_.battery_ohm * drawn; // discharges 1.2 % in two minutes (assumed)
+    battery = m_.battery_V * (1 - m_.battery_sag_1_s * t) - m_.battery_ohm * drawn;
     for (std::size_t i = 0; i < wheels; ++i) voltage_[i] = duty[i] * battery;
     set_loads();
     set_grip();

@@ -30,6 +30,7 @@ struct Machine {
     double KG = 0.265, ke = 0.265, Ra = 3.24, J = 5e-3;
     double viscous = 1.6e-3, coulomb = 0.03;
     double battery_V = 7.2, battery_ohm = 0.06;             // internal resistance assumed
+    double battery_sag_1_s = 1e-4;                          // share of the voltage lost a second: 1.2 % in two minutes, assumed
     double motor_share = 0.9;                               // of J on the motor's side of the gear, assumed
     double tooth_stiffness = 80, tooth_damping = 0.05;      // [N m/rad, N m s] behind the play, assumed
     double current_noise_A = 0.015, current_step_A = 0.002; // of the motor's bridge: about 1 % of the stall current
