@@ -21,4 +21,4 @@ foreach(folder firmware hal sim host_tools)
   list(APPEND libraries ${more})
 endforeach()
 export(TARGETS ${libraries} FILE ${PROJECT_BINARY_DIR}/traction-targets.cmake)
-add_custom_target(traction_libraries DEPENDS traction_simulate traction_lab traction_report) # what it links, with all that these link
+add_custom_target(traction_libraries DEPENDS traction_simulate traction_lab traction_drive_view) # what it links, with all that these link

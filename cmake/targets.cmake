@@ -85,5 +85,5 @@ function(traction_test name)
   if(TRACTION_SANITIZE)
     math(EXPR T_TIMEOUT "4 * ${T_TIMEOUT}") # the sanitizers' price
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT})
+  set_tests_properties(${name} PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT} COST ${T_TIMEOUT}) # the long ones first
 endfunction()
