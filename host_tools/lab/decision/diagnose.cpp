@@ -305,7 +305,10 @@ class Search {
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
-        const bool tolerances_pay = rival && spared > options_.least_prior_reduction;
+        // the rows are weighed by what they leave, the stated deviations are not: a model that misses draws its numbers from them by its
+        // misses alone, so they count less by the misses' square (Birge 1932, the ratio of external to internal error)
+        const double birge = std::max(1.0, held.error);
+        const bool tolerances_pay = rival && spared > options_.least_prior_reduction * birge * birge;
         if (!tolerances_pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
