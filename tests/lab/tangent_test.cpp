@@ -57,6 +57,38 @@ TEST(Tangent, agrees_with_whole_integrations_for_every_parameter_and_effect) {
     }
 }
 
+// Where leads are shared, what changes one wheel's current changes the voltage balance of the others.
+TEST(Tangent, one_wheels_parameter_reaches_the_others_through_a_shared_lead) {
+    generator::GeneratorConfig config;
+    config.seed = 7, config.duration_s = 40;
+    const Model model = read_model("models/rover_sand.toml");
+    const Dataset data = make_dataset(model, generator::generate(config));
+    Physics physics = make_physics(model);
+    for (WheelPhysics &w : physics.wheel) w.shared_ohm = 0.8;
+    Forward forward(data);
+    forward.set_base(physics);
+    std::size_t own = 0;
+    for (const FreeParameter &p : free_parameters(model, physics)) {
+        if (p.owner == "sensors") continue; // delays of a voltage that jumps have no slope
+        const int wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : -1;
+        own += wheel >= 0;
+        const double step = 20 * p.step;
+        Physics small = physics, moved = physics, back = physics;
+        p.add(small, 1e-3 * step), p.add(moved, step), p.add(back, -step);
+        const Eigen::VectorXd tangent = (forward.predict_from_base(small, p.touched, wheel) - forward.base()) / (1e-3 * step);
+        const Eigen::VectorXd whole = (forward.predict(moved) - forward.predict(back)) / (2 * step);
+        Eigen::Index row = 0;
+        for (const Balance &b : data.balance) {
+            const auto n = static_cast<Eigen::Index>(b.measured.size());
+            // 3 %: curvature over the larger step; of the largest balance's: what hardly changes need not agree so well
+            EXPECT_LT((tangent - whole).segment(row, n).norm(), 0.03 * whole.segment(row, n).norm() + 1e-4 * whole.norm())
+                << p.owner << "." << p.key << " in " << b.name;
+            row += n;
+        }
+    }
+    EXPECT_GT(own, 4U); // of single wheels, the case in question
+}
+
 struct Sand {
     Model model;
     Dataset data;

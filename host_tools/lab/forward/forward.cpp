@@ -20,6 +20,11 @@ bool has_electric_terms(const Physics &physics) {
                        [](const ExtraTerm &term) { return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0; });
 }
 
+// A wheel's current then drops the voltage of others.
+bool shares_leads(const Physics &physics) {
+    return std::any_of(physics.wheel.begin(), physics.wheel.end(), [](const WheelPhysics &w) { return w.shared_ohm != 0; });
+}
+
 // Of a piecewise constant voltage up to a time; times asked for one after the other are found at once.
 class VoltageIntegral {
   public:
@@ -187,7 +192,7 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
 
 void Forward::share_leads(const Physics &physics, const Motion &motion) const {
     lead_current_.clear();
-    if (std::none_of(physics.wheel.begin(), physics.wheel.end(), [](const WheelPhysics &w) { return w.shared_ohm != 0; })) return;
+    if (!shares_leads(physics)) return;
     std::vector<std::vector<double>> current(physics.wheel.size());
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) electric_series(physics, motion, i, current[i], electric_);
     lead_current_ = std::move(current);
@@ -387,13 +392,13 @@ Eigen::VectorXd Forward::predict(const Physics &physics, unsigned touched) {
 
 void Forward::observe_beside(const Physics &physics, const Motion &motion, unsigned touched, int wheel, Eigen::VectorXd &out) const {
     const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0,
-               terms = has_electric_terms(physics);
+               terms = has_electric_terms(physics), shared = shares_leads(physics);
     const unsigned stages = moves ? stage_torque | stage_voltage : touched;
-    if (electric) share_leads(physics, motion);
+    share_leads(physics, motion);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         const WheelPhysics &p = physics.wheel[i];
-        const bool whole = electric && (wheel < 0 || static_cast<std::size_t>(wheel) == i);
-        if (whole || (moves && (terms || sim::needs_any(p, sim::needs_heat))))
+        const bool whole = electric && (wheel < 0 || shared || static_cast<std::size_t>(wheel) == i);
+        if (whole || (moves && (terms || shared || sim::needs_any(p, sim::needs_heat))))
             electrical(physics, motion, i, stages, current_, out);
         else if (moves)
             torque_of_traction(physics, motion, i, out);
