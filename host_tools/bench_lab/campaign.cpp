@@ -83,6 +83,7 @@ std::string number(double value) {
 std::string soil_of(const std::string &log_file) {
     std::ifstream file(log_file);
     std::string line;
+    std::getline(file, line); // the names
     while (std::getline(file, line) && !line.empty() && line[0] == '#')
         if (line.rfind("# soil: ", 0) == 0) return line.substr(8);
     return "sand";

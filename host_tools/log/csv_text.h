@@ -10,7 +10,7 @@ namespace traction::log {
 // The shortest text that reads back to the same double.
 void append_number(std::string &text, double value);
 
-// The lines above the rows: format, header, names. Throws LogError with `path` where a key, a value or a name cannot be written.
+// The lines above the rows: names, format, header. Throws LogError with `path` where a key, a value or a name cannot be written.
 std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path);
 
 // A sample in a row of its signal: throws LogError unless both are finite and t_s comes after previous_s.

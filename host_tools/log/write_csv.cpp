@@ -108,14 +108,7 @@ void append_number(std::string &text, double value) {
 }
 
 std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path) {
-    std::string text = "# format: traction-log 1\n";
-    for (const auto &[key, value] : header) {
-        require(!key.empty() && key != "format" && one_clean_line(key) && key.find(':') == std::string::npos && one_clean_line(value), path,
-                "header line '" + key + ": " + value + "' cannot be written",
-                "keep keys and values to one line without blanks at the ends, keys without ':', not 'format'");
-        text.append("# ").append(key).append(": ").append(value).append(1, '\n');
-    }
-    text += "t_s";
+    std::string text = "t_s"; // the names first: what reads CSV looks for them in the first line
     std::set<std::string> seen{"t_s"};
     for (const std::string &name : names) {
         double number = 0;
@@ -126,7 +119,13 @@ std::string csv_head(const std::map<std::string, std::string> &header, const std
         require(seen.insert(name).second, path, "signal '" + name + "' stands twice", "give every signal its own name");
         text.append(1, ',').append(name_cell(name));
     }
-    text += '\n';
+    text += "\n# format: traction-log 1\n";
+    for (const auto &[key, value] : header) {
+        require(!key.empty() && key != "format" && one_clean_line(key) && key.find(':') == std::string::npos && one_clean_line(value), path,
+                "header line '" + key + ": " + value + "' cannot be written",
+                "keep keys and values to one line without blanks at the ends, keys without ':', not 'format'");
+        text.append("# ").append(key).append(": ").append(value).append(1, '\n');
+    }
     return text;
 }
 

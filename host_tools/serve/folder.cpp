@@ -1,6 +1,7 @@
 #include "folder.h"
 
 #include "host_tools/lab/model/model.h"
+#include "host_tools/log/ulog.h"
 #include "host_tools/log/write_file.h"
 
 #include <sys/stat.h>
@@ -28,16 +29,32 @@ std::string lower(std::string text) {
     return text;
 }
 
+constexpr std::string_view log_format = "# format: traction-log";
+
+// The second line of a file whose first is longer than what was read of it.
+bool second_line_is_format(std::ifstream &file) {
+    constexpr std::streamsize longest_line = 1 << 20;
+    std::array<char, log_format.size()> bytes{};
+    file.clear();
+    file.seekg(0);
+    file.ignore(longest_line, '\n').read(bytes.data(), bytes.size());
+    return std::string_view(bytes.data(), static_cast<std::size_t>(file.gcount())) == log_format;
+}
+
 // By what the file begins with; nothing where it is of no kind that is shown.
 std::optional<Kind> kind_of(const fs::path &path) {
     const std::string extension = lower(path.extension().string());
-    if (extension != ".csv" && extension != ".toml") return std::nullopt;
+    if (extension != ".csv" && extension != ".ulg" && extension != ".toml") return std::nullopt;
     std::array<char, 8192> bytes{};
     std::ifstream file(path, std::ios::binary);
     file.read(bytes.data(), bytes.size());
     const std::string_view text(bytes.data(), static_cast<std::size_t>(file.gcount()));
     const auto holds = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
-    if (extension == ".csv") return holds("# format: traction-log") ? Kind::log : Kind::foreign;
+    if (extension == ".ulg") return log::is_own_ulog(path.string()) ? std::optional(Kind::log) : std::nullopt;
+    if (extension == ".csv") {
+        const bool names_alone = text.find('\n') == std::string_view::npos;
+        return holds(log_format) || (names_alone && second_line_is_format(file)) ? Kind::log : Kind::foreign;
+    }
     if (holds("traction.model/")) return Kind::model;
     if (holds("traction-map")) return Kind::map;
     if (holds("[[drive]]")) return Kind::scenario;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
@@ -268,6 +269,21 @@ TEST(Read, a_log_of_120_s_with_sixty_columns_reads_back_the_same) {
     }
 }
 
+// Other readers of CSV take the first line for the names, and a line of another number of fields for none of theirs.
+TEST(Write, the_names_are_the_first_line_and_the_header_follows) {
+    Log log;
+    log.header["seed"] = "7";
+    log.signals = {{"wheel0.speed_rad_s", {0, 0.01}, {1, 2}}, {"camera.x_m", {0.01}, {0.5}}};
+    const File file("names_first.csv", "");
+    write_csv(log, file.path());
+    std::ifstream in(file.path());
+    std::string text(std::istreambuf_iterator<char>(in), {});
+    EXPECT_EQ(text, "t_s,wheel0.speed_rad_s,camera.x_m\n# format: traction-log 1\n# seed: 7\n0,1,\n0.01,2,0.5\n");
+    const Log again = read_csv(file.path());
+    EXPECT_EQ(again.header.at("seed"), "7");
+    EXPECT_TRUE(again.repairs.empty());
+}
+
 TEST(Write, refuses_what_could_not_be_read_back_and_leaves_no_file) {
     const std::string path = ::testing::TempDir() + "traction_never.csv";
     const auto refusal_of = [&](const Log &log) {
@@ -344,7 +360,7 @@ TEST(Write, every_number_stands_in_its_shortest_digits) {
     write_csv(log, file.path());
     std::ifstream in(file.path());
     std::string line;
-    while (std::getline(in, line) && !line.starts_with("t_s")) {
+    while (std::getline(in, line) && !line.starts_with("# format")) {
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
         ASSERT_TRUE(std::getline(in, line));

@@ -1,5 +1,7 @@
 // The HTTP surface of `traction serve`, by raw sockets: who may ask, for what, and what is never reached. The program under test is the
 // built one; its answers are compared with the command line's own.
+#include "host_tools/log/log.h"
+#include "host_tools/log/ulog.h"
 #include "host_tools/serve/child.h"
 #include "host_tools/serve/http.h"
 #include "host_tools/serve/token.h"
@@ -223,6 +225,26 @@ TEST_F(Served, no_name_leads_out_of_the_folder) {
     for (const char *target : {"/api/result/../history", "/api/result/token", "/api/result/-1", "/api/result/0", "/api/result/99",
                                "/api/result/1%2e%2e", "/traction_serve/token", "/../secret.csv", "/%2e%2e/secret.csv", "/own.csv"})
         EXPECT_EQ(status_of(get(target)), 404) << target;
+}
+
+// A log's kind is told by its content: the format's line below the names, however long they are, or above them, or a ULog of ours.
+TEST_F(Served, logs_of_either_format_are_listed_and_others_are_not) {
+    log::Log log;
+    log.header["title"] = "wide";
+    for (int i = 0; i < 900; ++i) // 16 kB of names
+        log.signals.push_back({"arm.joint_" + std::to_string(i) + "_rad", {0, 0.5, 1}, {0, 1, 2}});
+    log::write_csv(log, (folder() / "wide.csv").string());
+    log::write_ulog(log, (folder() / "wide.ulg").string());
+    std::ofstream(folder() / "above.csv") << "# format: traction-log 1\nt_s,x_m\n0,1\n";
+    std::ofstream(folder() / "foreign.csv") << "time;x\n0;1\n";
+    std::ofstream(folder() / "rover.ulg", std::ios::binary) << "ULog\x01\x12\x35" << std::string(200, '\0');
+    EXPECT_EQ(run({{"verb", "check"}, {"log", "wide.ulg"}})["state"], "done");
+    EXPECT_EQ(run({{"verb", "check"}, {"log", "rover.ulg"}})["state"], "refused");
+    json logs = json::array();
+    const json state = workshop_->state();
+    for (const json &file : state["files"])
+        if (file["kind"] == "log") logs.push_back(file["name"]);
+    EXPECT_EQ(logs, json({"above.csv", "wide.csv", "wide.ulg"}));
 }
 
 TEST_F(Served, a_request_that_is_wrong_is_told_so_and_changes_nothing) {
