@@ -306,9 +306,9 @@ class Search {
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         // the rows are weighed by what they leave, the stated deviations are not: a model that misses draws its numbers from them by its
-        // misses alone, so they count less by the misses' square (Birge 1932, the ratio of external to internal error)
+        // misses alone. Widened by what is left, in noises (Birge 1932, the ratio of external to internal error), they still must tell
         const double birge = std::max(1.0, held.error);
-        const bool tolerances_pay = rival && spared > options_.least_prior_reduction * birge * birge;
+        const bool tolerances_pay = rival && spared > std::max(options_.least_prior_reduction, two_deviations_squared * birge * birge);
         if (!tolerances_pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};

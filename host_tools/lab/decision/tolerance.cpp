@@ -11,7 +11,6 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double two_deviations_squared = 4;
 constexpr double farthest = 3;  // opened deviations: a data sheet that is wrong by more is no tolerance
 constexpr double a_part = 0.25; // of the effect's reduction, at least, that a rival must reach by the linear step
 

@@ -14,6 +14,7 @@
 
 namespace traction::lab {
 
+inline constexpr double two_deviations_squared = 4;
 inline constexpr double opened = 3; // how many times wider a stated deviation may be: assumed
 
 struct ToleranceRival {

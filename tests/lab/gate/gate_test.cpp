@@ -4,6 +4,7 @@
 #include "tamper.h"
 
 #include "host_tools/check/check.h"
+#include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/gate.h"
@@ -163,6 +164,15 @@ TEST(Runs, two_runs_are_one_data_set_and_judge_each_other) {
         EXPECT_LT(v.fitted, 2 * single.train) << v.log; // the same machine, whose grip wanders
         EXPECT_NEAR(v.fitted, v.result, 1e-9) << v.log; // no effect was added
     }
+}
+
+// What the simulated ground's patches leave (4.7 times the noise) draws the camera's scale six stated deviations away: no cause for a name.
+TEST(Gate, a_sound_log_of_the_simulator_gets_no_name_by_stated_deviations_alone) {
+    const Base &b = sound("plant");
+    const lab::Diagnosis d = lab::diagnose(b.model, lab::make_dataset(b.model, b.log), {});
+    EXPECT_TRUE(d.effects.empty()) << d.effects.front();
+    EXPECT_FALSE(d.unknown.has_value());
+    EXPECT_NE(d.kind, "wrong_model");
 }
 
 TEST(Gate, a_wrong_model_gets_no_name) {
