@@ -15,7 +15,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <optional>
 
 namespace traction::log {
 
@@ -143,9 +142,9 @@ class Spool::Reader {
 // One column for the writer of ULog, which reads it twice.
 class Spool::Again : public UlogColumn {
   public:
-    Again(const Spool &spool, const Column &column) : spool_(spool), column_(column) { reader_.emplace(spool_, column_); }
+    Again(const Spool &spool, const Column &column) : spool_(spool), column_(column), reader_(std::make_unique<Reader>(spool, column)) {}
     const std::string &name() const override { return column_.signal.name; }
-    void rewind() override { reader_.emplace(spool_, column_); }
+    void rewind() override { reader_ = std::make_unique<Reader>(spool_, column_); }
     double t_s() const override { return reader_->t_s(); }
     double value() const override { return reader_->value(); }
     void next() override { reader_->next(); }
@@ -153,7 +152,7 @@ class Spool::Again : public UlogColumn {
   private:
     const Spool &spool_;
     const Column &column_;
-    std::optional<Reader> reader_;
+    std::unique_ptr<Reader> reader_;
 };
 
 void Spool::write(const std::map<std::string, std::string> &header) {
