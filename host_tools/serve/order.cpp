@@ -2,6 +2,7 @@
 
 #include "token.h"
 
+#include "host_tools/check/check.h"
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
@@ -165,6 +166,7 @@ void game_order(const Asked &asked, const Folder &folder, const std::string &res
         if (asked.flag("hard")) words.emplace_back("--hard");
     } else if (asked.verb == "game_look") { // the page of the present model, as for any log
         words = {"compare", (game / "run.csv").string(), "--model", (game / "model.toml").string()};
+        for (const std::string &id : check::error_ids()) words.insert(words.end(), {"--despite", id}); // the game's own log: as game.cpp
     } else if (asked.verb == "game_open") {
         words.emplace_back("--open");
     } else {

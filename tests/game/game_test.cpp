@@ -1,5 +1,8 @@
 // The game from the first look to the seal: what is told when, what is scored, what happens to a folder that is not as it was left.
+#include "host_tools/check/check.h"
 #include "host_tools/game/game.h"
+#include "host_tools/log/log.h"
+#include "host_tools/log/read.h"
 
 #include <gtest/gtest.h>
 
@@ -114,6 +117,20 @@ TEST_F(Game, the_same_seed_hides_the_same_thing) {
     expect_error([&] { start({.root = ".", .folder = (home() / "moon").string(), .soil = "moon", .seed = 4, .duration_s = 45}); },
                  "sand, gravel or concrete");
     EXPECT_FALSE(fs::exists(home() / "moon")); // nothing half made
+}
+
+// What the check refuses in a game's log may be what was hidden: a radar that tells of what was long ago.
+TEST_F(Game, a_log_that_the_check_refuses_is_played_to_its_end) {
+    const std::string folder = copy("late"), run = folder + "/run.csv";
+    log::Log log = log::read_csv(run);
+    for (log::Signal &s : log.signals)
+        if (s.name == "radar.speed_m_s")
+            for (double &t : s.t_s) t += 0.9;
+    log::write_csv(log, run);
+    const check::Report report = check::check(log, {}, {});
+    ASSERT_FALSE(report.passed());
+    EXPECT_NO_THROW(guess(folder, hidden(), wheel(), true));
+    EXPECT_NO_THROW(open(folder));
 }
 
 TEST_F(Game, a_folder_that_was_tampered_with_is_told) {
