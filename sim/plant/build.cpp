@@ -8,6 +8,18 @@
 
 namespace traction::sim {
 
+namespace {
+
+// Yaw (by its cosine and sine), then roll, then pitch (nose down).
+void turn_of(double c, double s, double roll_rad, double pitch_rad, dMatrix3 turn) {
+    const double cp = math::cos(pitch_rad), sp = math::sin(pitch_rad), cr = math::cos(roll_rad), sr = math::sin(roll_rad);
+    turn[0] = c * cp - s * sr * sp, turn[1] = -s * cr, turn[2] = c * sp + s * sr * cp, turn[3] = 0;
+    turn[4] = s * cp + c * sr * sp, turn[5] = c * cr, turn[6] = s * sp - c * sr * cp, turn[7] = 0;
+    turn[8] = -cr * sp, turn[9] = sr, turn[10] = cr * cp, turn[11] = 0;
+}
+
+} // namespace
+
 void Plant::World::build_bodies() {
     const RoverParameters &r = config.rover;
     const double height = law::load_transfer_m(r.centre_height_m, effects.body.raised_m);
@@ -88,19 +100,9 @@ Stance Plant::World::stance() const {
 // Both halves as one body: `middle` is where the centre of mass goes; yaw, then roll, then pitch (nose down).
 void Plant::World::pose(const Vec3 &middle, double roll_rad, double pitch_rad) {
     const double c = math::cos(config.yaw_rad), s = math::sin(config.yaw_rad);
-    const double cp = math::cos(pitch_rad), sp = math::sin(pitch_rad), cr = math::cos(roll_rad), sr = math::sin(roll_rad);
-    const dMatrix3 turn = {c * cp - s * sr * sp,
-                           -s * cr,
-                           c * sp + s * sr * cp,
-                           0,
-                           s * cp + c * sr * sp,
-                           c * cr,
-                           s * sp - c * sr * cp,
-                           0,
-                           -cr * sp,
-                           sr,
-                           cr * cp,
-                           0};
+    const double cr = math::cos(roll_rad), sr = math::sin(roll_rad);
+    dMatrix3 turn;
+    turn_of(c, s, roll_rad, pitch_rad, turn);
     const Vec3 across{-s * cr, c * cr, sr};
     dJointAttach(joint, nullptr, nullptr);
     for (int h = 0; h < 2; ++h) {
@@ -166,19 +168,9 @@ void Plant::World::place_on_terrain() {
     for (int h = 0; h < 2; ++h) {
         const auto n = static_cast<std::size_t>(h);
         const double pitch = math::atan2(height[n] - height[n + 2], 2 * r.half_wheelbase_m); // nose down
-        const double cp = math::cos(pitch), sp = math::sin(pitch), cr = math::cos(roll), sr = math::sin(roll);
-        const dMatrix3 turn = {c * cp - s * sr * sp,
-                               -s * cr,
-                               c * sp + s * sr * cp,
-                               0,
-                               s * cp + c * sr * sp,
-                               c * cr,
-                               s * sp - c * sr * cp,
-                               0,
-                               -cr * sp,
-                               sr,
-                               cr * cp,
-                               0}; // yaw, roll, pitch
+        const double cr = math::cos(roll), sr = math::sin(roll);
+        dMatrix3 turn;
+        turn_of(c, s, roll, pitch, turn);
         across = {-s * cr, c * cr, sr};
         const dReal *was = dBodyGetPosition(half[n]);
         const double aside = (h == 0 ? 1 : -1) * half_offset_share * r.width_m;
