@@ -16,6 +16,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double huber = 3.0;             // in units of the balance's scale
+constexpr double correlated_s = 2.5, fewest_blocks = 20; // blocks of the design effect, as those of the tests (screen.cpp)
 constexpr std::size_t passes_at_once = 4; // neighbours of the motion side by side: their own series must stay near too
 
 // The wheel that all slots are of; -1: several, or the body.
@@ -302,6 +303,26 @@ Eigen::VectorXd Problem::variance_parts(std::size_t b) const {
     return parts;
 }
 
+// How many of a balance's rows tell as much as one that is independent of the others: the variance of its scaled residual's sum over a
+// block beside that of as many independent rows (Kish 1965, the design effect; the integrated autocorrelation time where it is short
+// against the block). Ground that differs from place to place, or a law that is missing, leaves residuals that stay for a second.
+double Problem::design_effect(std::size_t b) const {
+    if (data_->independent_rows) return 1;
+    const char *mode = std::getenv("WEIGH"); if (mode && *mode == '0') return 1;
+    const Balance &balance = data_->balance[b];
+    const double length = std::min(correlated_s, data_->duration_s / fewest_blocks);
+    const auto first = static_cast<Eigen::Index>(forward_.first_row(b));
+    double squares = 0, of_sums = 0, sum = 0, block = -1;
+    for (std::size_t r = 0; r < balance.measured.size(); ++r) {
+        const auto row = first + static_cast<Eigen::Index>(r);
+        const double e = residual[row] * row_scale[row], at = std::floor((0.5 * (balance.t0_s[r] + balance.t1_s[r]) - data_->start_s) / length);
+        if (at != block) of_sums += sum * sum, sum = 0, block = at;
+        sum += e, squares += e * e;
+    }
+    of_sums += sum * sum;
+    return squares > 0 ? std::max(1.0, of_sums / squares) : 1;
+}
+
 void Problem::set_scales() {
     const Eigen::VectorXd noise = noise_rows(), before = row_scale;
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
@@ -314,6 +335,7 @@ void Problem::set_scales() {
             const double scale = std::sqrt(variance[r]), ratio = std::fabs(e[r]) / scale;
             row_scale[first + r] = std::sqrt(ratio > huber ? huber / ratio : 1.0) / (scale * noise[first + r]);
         }
+        row_scale.segment(first, n) /= std::sqrt(design_effect(b));
     }
     if (jacobian.rows() == row_scale.size()) jacobian = row_scale.cwiseQuotient(before).asDiagonal() * jacobian;
 }

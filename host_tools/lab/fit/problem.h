@@ -84,6 +84,7 @@ class Problem {
 
   private:
     friend class RowsCost;
+    double design_effect(std::size_t balance) const;
     void set_scales();                                  // the Jacobian, if there is one, is scaled anew
     void update_residual();                             // prediction and residual at the present increments; the Jacobian stays
     double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
