@@ -34,8 +34,8 @@ bool same(const log::Signal *a, const log::Signal *b) {
 
 // Nothing but two sensors' noise between two series: the difference has no memory.
 bool differ_by_noise_alone(const std::vector<double> &a, const std::vector<double> &b) {
-    constexpr std::size_t lag = 2;       // [cells] no sample is in both
-    constexpr double remembered = 0.2;   // assumed; of white noise beside 200 cells 0.07
+    constexpr std::size_t lag = 2;     // [cells] no sample is in both
+    constexpr double remembered = 0.2; // assumed; of white noise beside 200 cells 0.07
     if (a.size() != b.size() || a.size() <= lag) return false;
     std::vector<double> now, before;
     for (std::size_t k = lag; k < a.size(); ++k) now.push_back(a[k] - b[k]), before.push_back(a[k - lag] - b[k - lag]);
@@ -43,8 +43,8 @@ bool differ_by_noise_alone(const std::vector<double> &a, const std::vector<doubl
 }
 
 // Two sensors never read the same noise. Two wheels whose loops read no noise may turn alike to the last digit, as in a simulation on even
-// ground: then their currents differ by their sensors' noise alone, and nothing is copied. Where current and speed are both the same, one motor drives both wheels; where one of them is and
-// the other is not, a column stands twice.
+// ground: then their currents differ by their sensors' noise alone, and nothing is copied. Where current and speed are both the same, one
+// motor drives both wheels; where one of them is and the other is not, a column stands twice.
 void copies(const log::Log &log, const Grid &grid, Findings &findings) {
     const auto column = [](const Wheel &wheel, const char *tail) { return "wheel" + std::to_string(wheel.index) + "." + tail; };
     for (std::size_t i = 0; i < grid.wheel.size(); ++i) {
