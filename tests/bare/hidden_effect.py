@@ -20,7 +20,7 @@ CELLS = (
 )
 
 book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in CELLS])
-nbclient.NotebookClient(book, timeout=300, kernel_name="python3").execute()
+nbclient.NotebookClient(book, timeout=None, kernel_name="python3").execute()
 nbformat.write(book, sys.argv[1])
 for cell in book.cells:
     for output in cell.outputs:

@@ -33,8 +33,9 @@ GENERATORS = {
     "round_trip": ("independent", "apart", "plant"),
 }
 CATEGORIES = ("clean", "one", "two", "outside")
-PROGRAMS = {  # in the build folder: what makes the rows, and what that runs
-    "lab_bench": ("tests/bench/lab_bench", "tests/lab/generator/lab_generate", "host_tools/cli/traction"),
+SIMULATOR = "host_tools/cli/traction"  # in the build folder: it drives the plant, and tells its commit, so it is another after each
+PROGRAMS = {  # what makes the rows, and what that runs
+    "lab_bench": ("tests/bench/lab_bench", "tests/lab/generator/lab_generate"),
     "round_trip": ("tests/lab/round_trip/lab_round_trip",),
 }
 DATA = ("tests/lab/campaign/machine_*.toml", "models/rover_*.toml", "scenarios/identification.toml")  # that these read, of the checkout
@@ -59,7 +60,7 @@ class Programs:
     digests: tuple[tuple[str, str], ...]
 
     @staticmethod
-    def of(kind: str) -> Programs:
+    def of(kind: str, generators: list[str]) -> Programs:
         """Those of $TRACTION_BUILD, or of build/host of the checkout. Raises CampaignError where they are not built."""
         given = os.environ.get("TRACTION_BUILD")
         builds = [Path(given)] if given else [root / "build/host" for root in roots()]
@@ -69,7 +70,9 @@ class Programs:
             raise CampaignError(f"kind = {kind!r}: {PROGRAMS[kind][0]} is not in {builds[0]}; to mend: {mend}", key="kind", mend=mend)
         home = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE)
         source = Path(home[1]) if home else build
-        files = [build / name for name in PROGRAMS[kind]] + sorted(file for pattern in DATA for file in source.glob(pattern))
+        files = [build / name for name in PROGRAMS[kind] + ((SIMULATOR,) if "plant" in generators else ())] + sorted(
+            file for pattern in DATA for file in source.glob(pattern)
+        )
         return Programs(str(build), str(source), tuple((str(file), _digest(str(file))) for file in files))
 
     def path(self, kind: str) -> str:
@@ -121,7 +124,7 @@ def _words(kind: str, programs: Programs, row: Row, duration_s: float) -> list[s
     seed, generator = str(row["seed"]), str(row["generator"])
     if kind == "round_trip":
         return [programs.path(kind), generator, seed, seed, repr(duration_s), "--row"]
-    words = [programs.path(kind), "--traction", str(Path(programs.build) / PROGRAMS[kind][2]), "--row", "--seed", seed]
+    words = [programs.path(kind), "--traction", str(Path(programs.build) / SIMULATOR), "--row", "--seed", seed]
     words += ["--generator", generator, "--duration", repr(duration_s)]
     return words + (["--category", str(row["category"])] if row["category"] else [])
 
@@ -229,7 +232,7 @@ class LabSpec:
     @functools.cached_property
     def programs(self) -> Programs:
         """What makes the rows."""
-        return Programs.of(self.kind)
+        return Programs.of(self.kind, self.generators)
 
     @property
     def fingerprint(self) -> str:
