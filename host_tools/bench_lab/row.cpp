@@ -22,8 +22,7 @@ json intervals(const json &answer) {
 
 } // namespace
 
-std::vector<Judged> run_blind(const CampaignOptions &options,
-                              const std::function<void(const std::vector<SealedLog> &)> &before_seals) {
+std::vector<Judged> run_blind(const CampaignOptions &options, const std::function<void(const std::vector<SealedLog> &)> &before_seals) {
     std::vector<SealedLog> logs = make_logs(options);
     answer_all(logs, options, [](const SealedLog &one) { return ask_lab(one.log, one.model, one.map); });
     if (before_seals) before_seals(logs);

@@ -59,8 +59,8 @@ struct Score {
     std::vector<Line> lines;
     std::map<std::string, std::vector<Line>> by_soil, by_group;  // group: size of the rover, sensor chain, where the seals tell them
     std::map<std::string, std::map<std::string, int>> confusion; // hidden -> said -> how often, single effects
-    nlohmann::json cases;                                        // one entry per log (case_json): what was hidden, what was said, why it counts
-    int failures = 0;                                            // logs on which the lab did not answer
+    nlohmann::json cases; // one entry per log (case_json): what was hidden, what was said, why it counts
+    int failures = 0;     // logs on which the lab did not answer
 };
 
 Score judge(const std::vector<Judged> &judged);

@@ -38,8 +38,7 @@ std::string interpreter() {
 // The programs of a bench of the lab are those of this one's build folder, unless another is named.
 void name_build() {
     const std::filesystem::path build = std::filesystem::path(own_program()).parent_path() / ".." / "..";
-    if (std::filesystem::exists(build / "CMakeCache.txt"))
-        setenv("TRACTION_BUILD", std::filesystem::weakly_canonical(build).c_str(), 0);
+    if (std::filesystem::exists(build / "CMakeCache.txt")) setenv("TRACTION_BUILD", std::filesystem::weakly_canonical(build).c_str(), 0);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// campaign_program.h - campaigns are the Python package's (python/traction/campaigns): their samples are scipy's, their table is Parquet, and
-// neither has a C++ library in Debian. The command line runs them there.
+// campaign_program.h - campaigns are the Python package's (python/traction/campaigns): their samples are scipy's, their table is Parquet,
+// and neither has a C++ library in Debian. The command line runs them there.
 #pragma once
 
 #include "verbs.h"

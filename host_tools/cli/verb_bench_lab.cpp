@@ -38,7 +38,8 @@ std::vector<std::string> arguments(const Request &request) {
 
 // The same logs as a campaign (docs/campaign.md): a row a log, which goes on where it was stopped.
 void run_as_campaign(const Request &request, Outcome &outcome) {
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / ("traction_bench_lab_" + std::to_string(getpid()) + ".toml");
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("traction_bench_lab_" + std::to_string(getpid()) + ".toml");
     std::string text = "title = \"bench lab, " + request.generator + "\"\nkind = \"lab_bench\"\ngenerator = \"" + request.generator +
                        "\"\nseed = " + std::to_string(request.seed) + "\nlogs = " + std::to_string(request.logs) +
                        "\nduration_s = " + std::to_string(request.duration_s) + "\n";

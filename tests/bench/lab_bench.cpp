@@ -144,8 +144,7 @@ int run_row(bench_lab::CampaignOptions &options) {
 
 int judge_rows(const Request &request) {
     std::ifstream lines(request.judge);
-    if (!lines)
-        throw std::filesystem::filesystem_error("cannot read", request.judge, std::error_code(errno, std::generic_category()));
+    if (!lines) throw std::filesystem::filesystem_error("cannot read", request.judge, std::error_code(errno, std::generic_category()));
     const std::vector<bench_lab::Case> cases = bench_lab::read_rows(lines);
     const bench_lab::Score score = bench_lab::score_of(cases);
     print_table(request.campaign, cases.size(), score);

@@ -51,8 +51,8 @@ bool read_request(std::vector<const char *> words, Request &request) {
         words.resize(words.size() - 2);
     }
     if (words.empty() || words.size() > 4 || words.size() == 2) return false;
-    const auto *source = std::find_if(std::begin(sources), std::end(sources),
-                                      [&](const auto &one) { return std::strcmp(words[0], one.first) == 0; });
+    const auto *source =
+        std::find_if(std::begin(sources), std::end(sources), [&](const auto &one) { return std::strcmp(words[0], one.first) == 0; });
     if (source == std::end(sources)) return false;
     request.name = source->first;
     request.source = source->second;

@@ -149,7 +149,7 @@ std::vector<Estimate> run(Source source, std::uint64_t seed, double duration_s) 
 
 nlohmann::json estimate_json(const Estimate &e) {
     const auto number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(std::to_string(value)); };
-    return {{"log", e.log},          {"key", e.key},         {"truth", number(e.truth)}, {"value", number(e.value)},
+    return {{"log", e.log},         {"key", e.key},           {"truth", number(e.truth)}, {"value", number(e.value)},
             {"low", number(e.low)}, {"high", number(e.high)}, {"inside", e.inside()}};
 }
 
@@ -158,7 +158,7 @@ Estimate read_estimate(const nlohmann::json &from) {
         const nlohmann::json &value = from.at(key);
         return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr) : value.get<double>();
     };
-    return {from.at("key").get<std::string>(), number("truth"), number("value"), number("low"), number("high"),
+    return {from.at("key").get<std::string>(),  number("truth"), number("value"), number("low"), number("high"),
             from.at("log").get<std::uint64_t>()};
 }
 
