@@ -55,7 +55,9 @@ TEST(Row, makes_the_table_that_the_logs_make) {
     EXPECT_EQ(table_json(rows), table_json(direct));
     EXPECT_EQ(rows.failures, 1);
     for (const Line &line : rows.lines)
-        if (line.key == "error_lag_p95") EXPECT_DOUBLE_EQ(line.value, 1.1); // backlash's: 1.1 left, 1.0 with the truth
+        if (line.key == "error_lag_p95") {
+            EXPECT_DOUBLE_EQ(line.value, 1.1); // backlash's: 1.1 left, 1.0 with the truth
+        }
 }
 
 TEST(Row, tells_what_was_hidden_and_what_was_said) {
