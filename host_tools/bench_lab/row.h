@@ -7,6 +7,8 @@
 
 #include "campaign.h"
 
+#include <stdexcept>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
