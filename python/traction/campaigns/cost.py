@@ -194,7 +194,9 @@ def main(arguments: list[str] | None = None) -> int:
         print(f" {cost.first_MB:>16.1f} {cost.last_MB:>7.1f} {cost.bytes_a_row:>12.0f} {cost.failed:>7}")
     for drives in given.drives if given.rounds > 1 else ():
         of = [share for cost, share in zip(costs, shares, strict=True) if cost.drives == drives]
-        middle = {key: median(share[key] for share in of if share[key] is not None) for key in ("of_cores_x_single", "cpu_of_single")}
+        middle = {
+            key: median([value for share in of if (value := share[key]) is not None]) for key in ("of_cores_x_single", "cpu_of_single")
+        }
         print(f"{drives} drives, median of {len(of)}: {number(middle['of_cores_x_single'])} of cores x single,", end="")
         print(f" {number(middle['cpu_of_single'])} by CPU time")
     about_parent: dict[str, Any] = {}
