@@ -33,7 +33,7 @@ class Telemetry {
     // heard_s: this machine's clock. False: older than what was there, or the same again; it is left out.
     bool add(const Status &status, double heard_s);
     std::size_t rows() const { return rows_; }
-    double last_s() const { return last_s_; }                // of the log, 0 before the first
+    double last_s() const { return last_s_; }                     // of the log, 0 before the first
     void write(const std::map<std::string, std::string> &header); // throws log::LogError
 
   private:
@@ -43,17 +43,18 @@ class Telemetry {
         std::size_t slip, valid, current;
     };
     std::array<Wheel, 4> wheel_{};
-    std::size_t speed_ = 0, speed_std_ = 0, asked_ = 0, battery_ = 0, mode_ = 0, faults_ = 0, fault_wheels_ = 0, standstill_ = 0, drive_ = 0;
+    std::size_t speed_ = 0, speed_std_ = 0, asked_ = 0, battery_ = 0, mode_ = 0, faults_ = 0, fault_wheels_ = 0, standstill_ = 0,
+                drive_ = 0;
     std::size_t rows_ = 0;
     std::uint32_t session_ = 0, first_ms_ = 0;
     double last_s_ = 0, base_s_ = 0, began_s_ = 0;
 };
 
 struct Received {
-    std::size_t rows = 0;   // in the log
-    double seconds = 0;     // from the first to the last
-    int silences = 0;       // longer than silent_after_s, after the first status
-    double longest_s = 0;   // of them
+    std::size_t rows = 0; // in the log
+    double seconds = 0;   // from the first to the last
+    int silences = 0;     // longer than silent_after_s, after the first status
+    double longest_s = 0; // of them
 };
 
 // Takes what comes into `log` until `stopped`, or for `seconds`. A rover that is silent, a network that is gone are waited for. `row` gets

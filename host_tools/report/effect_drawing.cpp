@@ -18,7 +18,7 @@ using sim::ActsOn;
 // ---- the curve
 constexpr int points = 41;
 constexpr double usual_speed_rad_s = 5, usual_v_m_s = 0.3, usual_slip = 0.2, knee_slip = 0.1; // assumed
-constexpr double run_in_s = 1e9;                                                       // long after the start
+constexpr double run_in_s = 1e9;                                                              // long after the start
 
 struct Probe {
     const char *what, *over;
@@ -41,12 +41,14 @@ const std::vector<Probe> &probes() {
     using W = sim::WheelEffects;
     using B = sim::BodyEffects;
     static const std::vector<Probe> all = {
-        {"friction [N m]", "wheel speed [rad/s]", -10, 10,
-         [](const W &e, const B &, double x) { return friction_Nm(e, x, 0, run_in_s); }},
-        {"friction [N m]", "tooth torque [N m]", 0, 1, [](const W &e, const B &, double x) { return friction_Nm(e, usual_speed_rad_s, x, run_in_s); }},
+        {"friction [N m]", "wheel speed [rad/s]", -10, 10, [](const W &e, const B &, double x) { return friction_Nm(e, x, 0, run_in_s); }},
+        {"friction [N m]", "tooth torque [N m]", 0, 1,
+         [](const W &e, const B &, double x) { return friction_Nm(e, usual_speed_rad_s, x, run_in_s); }},
         {"friction [N m]", "time [s]", 0, 120, [](const W &e, const B &, double x) { return friction_Nm(e, usual_speed_rad_s, 0, x); }},
-        {"torque [N m]", "wheel angle [rad]", 0, 6.3, [](const W &e, const B &, double x) { return sim::periodic_Nm(e, x, false) + sim::periodic_Nm(e, x, true); }},
-        {"torque constant [1]", "heat of the winding [K]", 0, 60, [](const W &e, const B &, double x) { return sim::motor_constant(1, e, x) - sim::motor_constant(1, W{}, x); }},
+        {"torque [N m]", "wheel angle [rad]", 0, 6.3,
+         [](const W &e, const B &, double x) { return sim::periodic_Nm(e, x, false) + sim::periodic_Nm(e, x, true); }},
+        {"torque constant [1]", "heat of the winding [K]", 0, 60,
+         [](const W &e, const B &, double x) { return sim::motor_constant(1, e, x) - sim::motor_constant(1, W{}, x); }},
         {"circuit [ohm]", "winding [ohm]", 0, 4, [](const W &e, const B &, double x) { return sim::circuit_ohm(x, e) - x; }},
         {"winding heats to [K]", "current [A]", 0, 1, [](const W &e, const B &, double x) { return sim::heating_gap_K(e, x, 3, 0); }},
         {"resistance/load [1]", "slip [1]", -0.8, 0.8, [](const W &e, const B &b, double x) { return resistance(e, b, x, usual_v_m_s); }},
@@ -55,8 +57,12 @@ const std::vector<Probe> &probes() {
         {"grip [1]", "way [m]", 0, 4, [](const W &, const B &b, double x) { return sim::strength_here(1, b, x, x, 0) - 1; }},
         {"grip [1]", "in a track [0, 1]", 0, 1, [](const W &, const B &b, double x) { return sim::strength_here(1, b, -1e9, 0, x) - 1; }},
         {"grip [1]", "sliding [m/s]", 0, 1, [](const W &, const B &b, double x) { return sim::strength_sliding(1.0, b, x) - 1; }},
-        {"grip [1]", "slip [1]", -0.8, 0.8, [](const W &, const B &b, double x) { return sim::strength_slipping(1.0, b, x, knee_slip) - 1; }},
-        {"force [N]", "speed [m/s]", -1, 1, [](const W &, const B &b, double x) { return sim::dragged_N(b, x, x < 0 ? -1 : x > 0 ? 1 : 0); }},
+        {"grip [1]", "slip [1]", -0.8, 0.8,
+         [](const W &, const B &b, double x) { return sim::strength_slipping(1.0, b, x, knee_slip) - 1; }},
+        {"force [N]", "speed [m/s]", -1, 1,
+         [](const W &, const B &b, double x) {
+             return sim::dragged_N(b, x, x < 0 ? -1 : x > 0 ? 1 : 0);
+         }},
     };
     return all;
 }
@@ -93,7 +99,8 @@ std::string box(const char *kind, double x, double y, double width, double heigh
 std::string arrow(double x, double y, double dx, double dy) {
     const double length = std::hypot(dx, dy), ux = dx / length, uy = dy / length, tx = x + dx, ty = y + dy;
     return path("force", "M%,%L%,%", {x, y, tx, ty}) +
-           path("force", "M%,%L%,%L%,%", {tx - 5 * ux - 3.5 * uy, ty - 5 * uy + 3.5 * ux, tx, ty, tx - 5 * ux + 3.5 * uy, ty - 5 * uy - 3.5 * ux});
+           path("force", "M%,%L%,%L%,%",
+                {tx - 5 * ux - 3.5 * uy, ty - 5 * uy + 3.5 * ux, tx, ty, tx - 5 * ux + 3.5 * uy, ty - 5 * uy - 3.5 * ux});
 }
 
 std::string rover() {
@@ -112,27 +119,32 @@ std::string torque(double x) { // against the wheel's turning, which is clockwis
 }
 
 std::string motor_circuit() { // battery, resistance, motor at the wheel
-    return path("mark", "M30,44V36 M26,36H34 M28,33H32 M30,33V24H46", {}) + box("mark", 46, 20.5, 18, 7) + path("mark", "M64,24H%V%", {front, axle - 6}) +
-           circle("mark", front, axle, 6) + path("mark", "M%,%H30V44", {front - 6, axle});
+    return path("mark", "M30,44V36 M26,36H34 M28,33H32 M30,33V24H46", {}) + box("mark", 46, 20.5, 18, 7) +
+           path("mark", "M64,24H%V%", {front, axle - 6}) + circle("mark", front, axle, 6) + path("mark", "M%,%H30V44", {front - 6, axle});
 }
 
 // A sensor by the first word of the row's name; one that is new stands on the body.
 std::string sensor(std::string_view name) {
     const std::string_view word = name.substr(0, name.find('_'));
     if (word == "radar")
-        return path("mark", "M%,34h9l-3,8h-6z", {front + 3}) + path("ray", "M%,42L%,% M%,42L%,%", {front + 8, front + 26, ground, front + 6, front + 15, ground});
+        return path("mark", "M%,34h9l-3,8h-6z", {front + 3}) +
+               path("ray", "M%,42L%,% M%,42L%,%", {front + 8, front + 26, ground, front + 6, front + 15, ground});
     if (word == "encoder") {
         std::string teeth = circle("mark", front, axle, 7);
         for (int i = 0; i < 8; ++i) {
             const double a = i * 0.785398163;
-            teeth += path("mark", "M%,%L%,%", {front + 7 * std::cos(a), axle + 7 * std::sin(a), front + 10 * std::cos(a), axle + 10 * std::sin(a)});
+            teeth += path("mark", "M%,%L%,%",
+                          {front + 7 * std::cos(a), axle + 7 * std::sin(a), front + 10 * std::cos(a), axle + 10 * std::sin(a)});
         }
         return teeth;
     }
-    if (word == "current") return path("mark", "M40,40H%V%", {front, axle - 6}) + circle("mark", front, axle, 6) + circle("mark", 62, 40, 6) + path("mark", "M59.5,42.5L62,37L64.5,42.5", {});
+    if (word == "current")
+        return path("mark", "M40,40H%V%", {front, axle - 6}) + circle("mark", front, axle, 6) + circle("mark", 62, 40, 6) +
+               path("mark", "M59.5,42.5L62,37L64.5,42.5", {});
     if (word == "voltage") return box("mark", 26, 35, 22, 10) + path("mark", "M48,38h2v4h-2 M31,40h4 M40,40h4 M42,38v4", {});
     if (word == "camera") return box("mark", 50, 2, 16, 9) + path("ray", "M52,11L%,% M64,11L%,%", {rear, 31, front, 31});
-    if (word == "gyro") return path("mark", "M50,41A9,4 0 1 1 66,41", {}) + path("mark", "M63,44.5L66,41L61,39.5", {}) + circle("mark", 58, 40, 1.5);
+    if (word == "gyro")
+        return path("mark", "M50,41A9,4 0 1 1 66,41", {}) + path("mark", "M63,44.5L66,41L61,39.5", {}) + circle("mark", 58, 40, 1.5);
     return box("mark", 51, 35, 14, 10) + arrow(58, 40, 18, 0);
 }
 
@@ -197,13 +209,16 @@ std::string plotted(const EffectCurve &curve) {
     const auto words = [&](double x, double y, const char *anchor, const std::string &text) {
         return format("<text x=\"%\" y=\"%\" text-anchor=\"", {x, y}) + anchor + "\">" + text + "</text>";
     };
-    return out + words((left + right) / 2, 68, "middle", curve.over) + words((left + right) / 2, 78, "middle", curve.what + " to " + number(*high_at >= -*low_at * (1 - 1e-9) ? *high_at : *low_at));
+    return out + words((left + right) / 2, 68, "middle", curve.over) +
+           words((left + right) / 2, 78, "middle", curve.what + " to " + number(*high_at >= -*low_at * (1 - 1e-9) ? *high_at : *low_at));
 }
 
-constexpr const char *own_colours =
-    "<style>svg{color:#1a1d21}.force{stroke:#c44e00}.mark,.curve{stroke:#0067a3}.soil{stroke:#8a5a00}.body,.axis,.ray{stroke:#59626d}text{fill:#59626d}"
-    "path,circle,rect{fill:none;stroke-width:1.4}.force,.mark,.curve{stroke-width:2}.maybe,.ray{stroke-dasharray:3 2}text{font:6.3px sans-serif}"
-    "@media(prefers-color-scheme:dark){.force{stroke:#ff9d5c}.mark,.curve{stroke:#6cbcf0}.soil{stroke:#e6b450}.body,.axis,.ray{stroke:#a3adb8}text{fill:#a3adb8}}</style>";
+constexpr const char *own_colours = "<style>svg{color:#1a1d21}.force{stroke:#c44e00}.mark,.curve{stroke:#0067a3}.soil{stroke:#8a5a00}.body,"
+                                    ".axis,.ray{stroke:#59626d}text{fill:#59626d}"
+                                    "path,circle,rect{fill:none;stroke-width:1.4}.force,.mark,.curve{stroke-width:2}.maybe,.ray{stroke-"
+                                    "dasharray:3 2}text{font:6.3px sans-serif}"
+                                    "@media(prefers-color-scheme:dark){.force{stroke:#ff9d5c}.mark,.curve{stroke:#6cbcf0}.soil{stroke:#"
+                                    "e6b450}.body,.axis,.ray{stroke:#a3adb8}text{fill:#a3adb8}}</style>";
 
 void collect(const nlohmann::json &value, nlohmann::json &found) {
     if (value.is_array() && !value.empty() && value.front().is_primitive()) return; // numbers, by the thousand
@@ -212,7 +227,8 @@ void collect(const nlohmann::json &value, nlohmann::json &found) {
             collect(one, found);
         } else if (one.is_string() && (key == "effect" || key == "name")) {
             const auto name = one.get<std::string>();
-            if (const sim::Effect *effect = sim::find_effect(name); effect != nullptr && !found.contains(name)) found[name] = effect_svg(*effect, false);
+            if (const sim::Effect *effect = sim::find_effect(name); effect != nullptr && !found.contains(name))
+                found[name] = effect_svg(*effect, false);
         }
     }
 }
@@ -233,7 +249,7 @@ std::optional<EffectCurve> curve_of(const sim::Effect &effect) {
         }
         const auto [low, high] = std::minmax_element(curve.y.begin(), curve.y.end());
         const double size = std::max(std::fabs(*low), std::fabs(*high));
-        if (!(size > 1e-9)) continue; // what has faded away adds nothing
+        if (!(size > 1e-9)) continue;                      // what has faded away adds nothing
         const double bends = (*high - *low) / size + 1e-6; // how far it follows, over what it adds; a constant is better than nothing
         if (bends > most + 1e-9) best = std::move(curve), most = bends;
     }
@@ -242,13 +258,15 @@ std::optional<EffectCurve> curve_of(const sim::Effect &effect) {
 
 std::string drawing_words(const sim::Effect &effect) {
     std::string words = std::string(effect.name) + " acts: " + acting_words(effect) + (effect.per_wheel ? ", on all wheels or one" : "");
-    if (const std::optional<EffectCurve> curve = curve_of(effect)) words += ". Curve: " + curve->what + " that it adds, over " + curve->over;
+    if (const std::optional<EffectCurve> curve = curve_of(effect))
+        words += ". Curve: " + curve->what + " that it adds, over " + curve->over;
     return words;
 }
 
 std::string effect_svg(const sim::Effect &effect, bool alone) {
     const std::string words = drawing_words(effect);
-    std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"effect\" viewBox=\"0 0 220 84\" role=\"img\" aria-label=\"" + words + "\">";
+    std::string out =
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"effect\" viewBox=\"0 0 220 84\" role=\"img\" aria-label=\"" + words + "\">";
     if (alone) out += "<title>" + words + "</title>" + own_colours;
     out += rover() + acting(effect);
     if (const std::optional<EffectCurve> curve = curve_of(effect)) out += plotted(*curve);

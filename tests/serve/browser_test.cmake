@@ -1,7 +1,12 @@
-# cmake -DNODE= -DNPM= -DSOURCE= -DPACKAGES= -DWORK= -DTRACTION= [-DTRACTIOND=] -P browser_test.cmake: clicks through `traction serve` in a
-# real Chromium; with TRACTIOND a rover is watched too. PACKAGES: the folder of the report's tests, whose packages these are.
+# cmake -DNODE= -DNPM= -DSOURCE= -DPACKAGES= -DWORK= -DTRACTION= [-DTRACTIOND=] [-DLONG=ON] -P browser_test.cmake: clicks through
+# `traction serve` in a real Chromium; with TRACTIOND a rover is watched too. LONG: a log of 1000 s instead. PACKAGES: the folder of the
+# report's tests, whose packages these are.
 include(${PACKAGES}/browser_packages.cmake)
 if(SKIPPED)
+  return()
+endif()
+if(LONG)
+  run_or_fail("a long log is shown too slowly, or takes too much memory" ${NODE} long_test.mjs ${CHROMIUM} ${TRACTION} ${WORK}/long ${WORK}/shots)
   return()
 endif()
 run_or_fail("a claim about the live page does not hold" ${NODE} browser_test.mjs ${CHROMIUM} ${TRACTION} ${WORK}/folder ${WORK}/shots)

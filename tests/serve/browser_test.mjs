@@ -83,6 +83,15 @@ claim('check, compare, diagnose, add: the error falls, in both browsers', async 
   await page.screenshot({ path: `${shots}/added.png`, fullPage: true });
 });
 
+claim('the effect that is about to be added is drawn: where it acts, and the curve that it adds', async () => {
+  for (const name of ['slip_sinkage', 'camera_delay']) {
+    await page.selectOption('#effect', name);
+    assert.equal(await page.$eval('#drawn', (e) => e.dataset.effect), name);
+    assert.ok((await page.getAttribute('#drawn svg', 'aria-label')).startsWith(`${name} acts: `));
+    assert.equal((await page.$$('#drawn svg .curve')).length, name === 'slip_sinkage' ? 1 : 0);
+  }
+});
+
 claim('drop: a model without it, compared at once', async () => {
   await click(page, '#bench', 'Drop');
   await until(page, () => /drop slip_sinkage.*[\d.]+ → [\d.]+/.test(document.querySelector('#history tbody tr').textContent));

@@ -51,7 +51,9 @@ TEST(EffectDrawing, what_acts_elsewhere_looks_otherwise) {
 TEST(EffectDrawing, curves_are_the_laws_at_their_usual_size) {
     const std::map<std::string, std::function<double(double)>> laws = {
         // closed forms as docs and `traction effects` print them, at the catalogue's typical values
-        {"coulomb_friction", [](double w) { return w > 0 ? 0.04 : w < 0 ? -0.04 : 0; }},
+        {"coulomb_friction", [](double w) { return w > 0   ? 0.04
+                                                   : w < 0 ? -0.04
+                                                           : 0; }},
         {"viscous_friction", [](double w) { return 0.005 * w; }},
         {"stribeck_friction", [](double w) { return w == 0 ? 0 : 0.03 * std::exp(-w * w) * (w > 0 ? 1 : -1); }},
         {"mesh_loss", [](double torque) { return 0.1 * torque; }},
@@ -63,7 +65,9 @@ TEST(EffectDrawing, curves_are_the_laws_at_their_usual_size) {
         {"soil_patch", [](double x) { return x >= 1 && x < 1.8 ? 0.35 : 0; }},
         {"soil_gradient", [](double x) { return 0.06 * x; }},
         {"sliding_speed_loss", [](double v) { return std::exp(-0.5 * v) - 1; }},
-        {"body_drag", [](double v) { return v > 0 ? -1.2 : v < 0 ? 1.2 : 0; }},
+        {"body_drag", [](double v) { return v > 0   ? -1.2
+                                            : v < 0 ? 1.2
+                                                    : 0; }},
         {"fluid_drag", [](double v) { return -8 * v * std::fabs(v); }},
     };
     for (const auto &[name, law] : laws) {
