@@ -350,8 +350,8 @@ void read_effects(const Reader &reader, const toml::table &root, Model &model) {
             reader.fail(*table, where + ".wheel", "is " + std::to_string(use.wheel),
                         "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
         use.acts_on = (*table)["acts_on"].value_or(std::string());
-        check_effect_wheel(*table, where, model, use);
         use.expression = (*table)["expression"].value_or(std::string());
+        check_effect_wheel(*table, where, model, use);
         const sim::Effect *effect = use.expression.empty() ? sim::find_effect(use.name) : nullptr;
         if (effect == nullptr && use.expression.empty())
             reader.fail(*table, where + ".name", "unknown effect \"" + use.name + "\"",
