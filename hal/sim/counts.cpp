@@ -21,7 +21,7 @@ CountScale count_scale(const sim::RoverDescription &rover) {
     scale.radar_rate_Hz = rover.at("radar", "rate_Hz");
     scale.current_max = whole(rover.at("current", "max_count"));
     scale.battery_max = whole(rover.at("battery", "max_count"));
-    const unsigned absent = ~sim::firmware_wheels(rover.layout().kind) & 0xfu;
+    const unsigned absent = ~sim::firmware_wheels(rover.layout()) & 0xfu;
     scale.present &= ~(absent * FRAME_ENCODER_0 | absent * FRAME_CURRENT_0 | absent * FRAME_BRIDGE_0);
     for (std::size_t i = 0; i < WHEEL_COUNT; i++) {
         scale.current_offset[i] = whole(rover.current_offset_count(i));

@@ -220,7 +220,7 @@ BoardLog read_board_log(const std::string &path) {
 }
 
 log::Log to_log(const BoardLog &board, const sim::RoverDescription &rover) {
-    Recorder recorder(board.ticks.size(), rover.at("radar", "rate_Hz"), "", sim::firmware_wheels(rover.layout().kind));
+    Recorder recorder(board.ticks.size(), rover.at("radar", "rate_Hz"), "", sim::firmware_wheels(rover.layout()));
     for (const BoardTick &tick : board.ticks) recorder.add(tick.frame, tick.command, tick.trace);
     log::Log log = recorder.take();
     sim::Scenario scenario;

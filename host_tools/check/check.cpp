@@ -30,12 +30,33 @@ const char *severity_name(Severity severity) {
 }
 
 const std::vector<std::string> &error_ids() {
-    static const std::vector<std::string> ids = {
-        "axis",         "clipped",      "clock_jump",        "copied",          "stamps", "clock_rate",
-        "counter_jump", "dead_sensor",  "drive_unexplained", "heading",         "late",   "no_motion",
-        "magnitude",    "not_finite",   "nothing_to_use",    "samples_missing", "scale",  "short",
-        "sign",         "stuck_sensor", "swapped_wheels",    "time_unit",       "unit",   "unrelated",
-        "wheels",       "wrapped"};
+    static const std::vector<std::string> ids = {"axis",
+                                                 "clipped",
+                                                 "clock_jump",
+                                                 "copied",
+                                                 "stamps",
+                                                 "clock_rate",
+                                                 "counter_jump",
+                                                 "coupled",
+                                                 "dead_sensor",
+                                                 "drive_unexplained",
+                                                 "heading",
+                                                 "late",
+                                                 "no_motion",
+                                                 "magnitude",
+                                                 "not_finite",
+                                                 "nothing_to_use",
+                                                 "samples_missing",
+                                                 "scale",
+                                                 "short",
+                                                 "sign",
+                                                 "stuck_sensor",
+                                                 "swapped_wheels",
+                                                 "time_unit",
+                                                 "unit",
+                                                 "unrelated",
+                                                 "wheels",
+                                                 "wrapped"};
     return ids;
 }
 
@@ -57,6 +78,19 @@ void declared_wheels(const log::Log &log, const Machine &machine, std::vector<Fi
                         .value = static_cast<double>(wheels)});
 }
 
+// Its two motors (header `rover.drives`) against the model: the wheels of a side that have none would be taken to stand.
+void declared_drives(const log::Log &log, const Machine &machine, std::vector<Finding> &findings) {
+    const auto told = log.header.find("rover.drives");
+    if (told == log.header.end() || machine.wheel_y_m.empty() || !machine.on_ground || !machine.motor_of_wheel.empty()) return;
+    findings.push_back({.id = "wheels",
+                        .severity = Severity::error,
+                        .signal = "",
+                        .text = "the log's rover has two motors, at the wheels " + told->second +
+                                " (header rover.drives), in the model every wheel has its own",
+                        .mend = "say so in the model: drives = [LEFT, RIGHT] under [rover]",
+                        .value = 2});
+}
+
 } // namespace
 
 Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const Machine &machine) {
@@ -64,6 +98,7 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
     const Grid grid = make_grid(log, machine);
     check_quality(log, repairs, grid, report.findings, report.rates);
     declared_wheels(log, machine, report.findings);
+    declared_drives(log, machine, report.findings);
     if (grid.count >= 50) { // 2.5 s
         check_magnitudes(grid, report.findings);
         check_drives(grid, machine, report.findings);

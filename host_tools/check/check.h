@@ -32,9 +32,10 @@ struct Machine {
     double battery_V = std::numeric_limits<double>::quiet_NaN();       // used where the log has no battery voltage
     double counts_per_turn = std::numeric_limits<double>::quiet_NaN(); // of an encoder, at the wheel
     std::vector<double> wheel_y_m = {};                                // to the left of the middle; empty: 0, 2 left and 1, 3 right
-    bool wheels_point_forward = true;                                  // false (omni): wheel speeds are not compared with the body's
-    bool on_ground = true;                                             // false: wheels in the air
-    bool rolls_freely = true; // false: a bench imposes slip, so speed over ground says nothing of the radius
+    std::vector<int> motor_of_wheel = {}; // of each, the wheel whose motor turns it; empty: every wheel has its own
+    bool wheels_point_forward = true;     // false (omni): wheel speeds are not compared with the body's
+    bool on_ground = true;                // false: wheels in the air
+    bool rolls_freely = true;             // false: a bench imposes slip, so speed over ground says nothing of the radius
 };
 
 struct Rate {

@@ -121,15 +121,16 @@ void gyro(const Grid &grid, Findings &findings) {
 
 // Left wheels against right wheels: the ground, or the gyro, tells whether the machine drives straight or spins.
 void sides(const Grid &grid, const Machine &machine, Findings &findings) {
-    if (!machine.wheels_point_forward || !machine.rolls_freely || machine.wheel_y_m.size() != grid.wheel.size()) return;
+    if (!machine.wheels_point_forward || !machine.rolls_freely || !knows_sides(grid, machine)) return;
     if (has_error(findings, "wheel") || grid.ground_speed.empty()) return;
     std::vector<double> sum(grid.count, 0), difference(grid.count, 0), ground = grid.ground_speed;
     int left = 0, right = 0;
     for (std::size_t i = 0; i < grid.wheel.size(); ++i) {
         if (grid.wheel[i].speed.empty()) return;
-        const bool is_left = machine.wheel_y_m[i] > 0;
-        left += is_left, right += machine.wheel_y_m[i] < 0;
-        if (machine.wheel_y_m[i] == 0) continue;
+        const double y = left_of(grid, machine, i);
+        const bool is_left = y > 0;
+        left += is_left, right += y < 0;
+        if (y == 0) continue;
         for (std::size_t k = 0; k < grid.count; ++k)
             sum[k] += grid.wheel[i].speed[k], difference[k] += (is_left ? -1 : 1) * grid.wheel[i].speed[k];
     }
@@ -147,6 +148,39 @@ void sides(const Grid &grid, const Machine &machine, Findings &findings) {
         "turn the signs of that side's speeds, currents and duties round (map: sign = -1)", spinning);
 }
 
+double size_of(const std::vector<double> &x) {
+    double sum = 0, n = 0;
+    for (const double v : x)
+        if (std::isfinite(v)) sum += v * v, ++n;
+    return n > 0 ? std::sqrt(sum / n) : 0;
+}
+
+// Wheels that the machine says one motor turns: they turn alike, or the machine is another.
+void coupled(const Grid &grid, const Machine &machine, Findings &findings) {
+    constexpr double most_apart = 0.1; // of the speed, root mean square over half a second: assumed, beyond any encoder's rounding
+    for (const Wheel &wheel : grid.wheel) {
+        const auto index = static_cast<std::size_t>(wheel.index);
+        if (index >= machine.motor_of_wheel.size() || machine.motor_of_wheel[index] == wheel.index) continue;
+        const int motor = machine.motor_of_wheel[index];
+        if (!wheel.current.empty())
+            findings.push_back(
+                {"coupled", Severity::warning, "wheel" + std::to_string(wheel.index) + ".current_A",
+                 say("wheel %d has a current, and in the model it turns with the motor of wheel %d: it is not read", wheel.index, motor),
+                 "give the motor's current as that of its own wheel alone; or give this wheel a drive in the model",
+                 static_cast<double>(motor)});
+        const auto own = std::find_if(grid.wheel.begin(), grid.wheel.end(), [&](const Wheel &w) { return w.index == motor; });
+        if (wheel.speed.empty() || own == grid.wheel.end() || own->speed.empty() || has_error(findings, wheel.speed_column)) continue;
+        std::vector<double> apart(grid.count, not_known);
+        for (std::size_t k = 0; k < grid.count; ++k) apart[k] = wheel.speed[k] - own->speed[k];
+        const double share = size_of(smooth(apart, 5)) / std::max(size_of(smooth(own->speed, 5)), 1e-9);
+        if (!(share > most_apart)) continue;
+        add(findings, "coupled", wheel.speed_column,
+            say("'%s' and '%s' differ by %.0f %% of the speed (root mean square), and in the model one motor turns both",
+                wheel.speed_column.c_str(), own->speed_column.c_str(), 100 * share),
+            "mend drives in the model's [rover], or the wheels' order, sign or counts per turn in the log's map", share);
+    }
+}
+
 } // namespace
 
 void check_misplaced(const log::Log &log, const Grid &grid, const Machine &machine, Findings &findings) {
@@ -154,6 +188,7 @@ void check_misplaced(const log::Log &log, const Grid &grid, const Machine &machi
     buffers(log, findings);
     gyro(grid, findings);
     sides(grid, machine, findings);
+    coupled(grid, machine, findings);
 }
 
 } // namespace traction::check

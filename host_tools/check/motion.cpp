@@ -276,11 +276,11 @@ void Motion::yaw() {
     if (grid_.gyro.empty()) return;
     const double fastest = std::max(std::fabs(quantile(grid_.gyro, 0.01)), std::fabs(quantile(grid_.gyro, 0.99)));
     std::vector<double> apart(grid_.count, not_known); // right minus left; without a model 1, 3 and 0, 2
-    const bool known = machine_.wheel_y_m.size() == grid_.wheel.size();
+    const bool known = knows_sides(grid_, machine_);
     const bool sides = (known || grid_.wheel.size() == 4) &&
                        std::none_of(grid_.wheel.begin(), grid_.wheel.end(), [](const Wheel &wheel) { return wheel.speed.empty(); });
     const auto side = [&](std::size_t i) {
-        return known ? (machine_.wheel_y_m[i] > 0) - (machine_.wheel_y_m[i] < 0) : i % 2 == 0 ? 1 : -1;
+        return known ? (left_of(grid_, machine_, i) > 0) - (left_of(grid_, machine_, i) < 0) : i % 2 == 0 ? 1 : -1;
     };
     int left = 0, right = 0;
     for (std::size_t i = 0; i < grid_.wheel.size(); ++i) left += side(i) > 0, right += side(i) < 0;

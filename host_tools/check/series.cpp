@@ -295,6 +295,16 @@ void add_ground_speed(Grid &grid, const Machine &machine) {
 
 } // namespace
 
+bool knows_sides(const Grid &grid, const Machine &machine) {
+    if (machine.motor_of_wheel.empty()) return machine.wheel_y_m.size() == grid.wheel.size();
+    return std::all_of(grid.wheel.begin(), grid.wheel.end(),
+                       [&](const Wheel &wheel) { return wheel.index < static_cast<int>(machine.wheel_y_m.size()); });
+}
+
+double left_of(const Grid &grid, const Machine &machine, std::size_t i) {
+    return machine.wheel_y_m[machine.motor_of_wheel.empty() ? i : static_cast<std::size_t>(grid.wheel[i].index)];
+}
+
 Grid make_grid(const log::Log &log, const Machine &machine) {
     Grid grid;
     double first = 0, last = 0;

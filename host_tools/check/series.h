@@ -56,6 +56,10 @@ struct Grid {
 };
 Grid make_grid(const log::Log &log, const Machine &machine);
 
+// Does the machine say on which side each wheel of the log is? One motor may stand for several wheels: then by the wheels' numbers.
+bool knows_sides(const Grid &grid, const Machine &machine);
+double left_of(const Grid &grid, const Machine &machine, std::size_t i); // y of grid.wheel[i]; meaningless unless knows_sides()
+
 // The change of x over +-half_span samples, per second.
 std::vector<double> slope(const std::vector<double> &x, std::size_t half_span);
 

@@ -39,6 +39,10 @@ void check(const sim::Scenario &scenario, Sensors sensors) {
         throw sim::ScenarioError(scenario.file, 0, "layout.wheels", std::to_string(static_cast<int>(scenario.rover.at("layout", "wheels"))),
                                  "the emulated board has four wheel nodes on its bus",
                                  "use `traction simulate`, where the wheels are wired");
+    if (scenario.rover.drives[0] >= 0)
+        throw sim::ScenarioError(scenario.file, scenario.rover.drives_line, "layout.drives", "",
+                                 "the emulated board has four wheel nodes on its bus",
+                                 "use `traction simulate`, where the wheels are wired");
     if (!scenario.missed_ticks.empty()) refuse(scenario, "missed_ticks", "the board misses its own ticks; leave it out");
     for (const sim::CanFault &fault : scenario.can_faults)
         if (fault.kind == sim::CanFaultKind::bus_off && (fault.node == sim::CanNode::computer || fault.node == sim::CanNode::all))

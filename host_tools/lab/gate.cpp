@@ -36,6 +36,8 @@ check::Machine machine_of(const Model &model) {
         const auto y = wheel.geometry.find("y_m");
         machine.wheel_y_m.push_back(y != wheel.geometry.end() ? y->second.value : 0);
     }
+    for (std::size_t i = 0; i < model.wheel.size() && model.couples(); ++i)
+        machine.motor_of_wheel.push_back(static_cast<int>(model.motor_of(i)));
     return machine;
 }
 

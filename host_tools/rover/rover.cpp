@@ -55,10 +55,10 @@ parameters_t firmware_parameters(const sim::RoverDescription &rover) {
         set(out, "encoder_sign_" + std::to_string(i), rover.wheel[i].encoder_sign, true);
         set(out, "current_offset_count_" + std::to_string(i), rover.current_offset_count(i), true);
     }
-    const sim::Layout layout = rover.layout().kind;
+    const sim::LayoutParameters layout = rover.layout();
     set(out, "wheel_mask", sim::firmware_wheels(layout), true);
     // the firmware takes a quarter of its mass for a wheel's load; told so that this is the heaviest's
-    if (layout != sim::Layout::four) set(out, "mass_kg", 4 * rover.heaviest_kg(), true);
+    if (!sim::is_plain(layout)) set(out, "mass_kg", 4 * rover.heaviest_kg(), true);
     rover_parameters_scale(&out.rover, out.given);
     return out;
 }

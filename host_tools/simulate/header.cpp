@@ -48,6 +48,7 @@ void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &l
         log.header["quantum." + wheel + "speed_rad_s"] = number(rad_per_count / 0.01);
     }
     if (rover.layout().kind != sim::Layout::four) log.header["rover.wheels"] = number(rover.at("layout", "wheels"));
+    if (rover.drives[0] >= 0) log.header["rover.drives"] = std::to_string(rover.drives[0]) + ' ' + std::to_string(rover.drives[1]);
     log.header["encoder.rad_per_count"] = number(rad_per_count);
     log.header["noise.battery.voltage_V"] = number(sensors.battery.noise);
     log.header["quantum.battery.voltage_V"] = number(scale.battery_V);

@@ -83,7 +83,7 @@ class Session : public Link {
             std::uint64_t expected_ticks)
         : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
           recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path,
-                    sim::firmware_wheels(believed(scenario).layout().kind)),
+                    sim::firmware_wheels(believed(scenario).layout())),
           truth_(options.truth_path, !scenario.plant.ground.terrain.flat(), scenario.plant.rover.layout.kind) {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
@@ -141,8 +141,9 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     std::vector<sim::ActiveEffect> effects = scenario.effects;
     effects.insert(effects.end(), options.effects.begin(), options.effects.end());
     if (const auto &hide = options.hide ? options.hide : scenario.hidden) {
-        if (scenario.rover.layout().kind != sim::Layout::four)
-            throw sim::ScenarioError(scenario.file, 0, "--hide", "", "effects are hidden in rovers of four wheels alone", "leave it out");
+        if (!sim::is_plain(scenario.rover.layout()))
+            throw sim::ScenarioError(scenario.file, 0, "--hide", "", "effects are hidden in rovers of four wheels alone, with a motor each",
+                                     "leave it out");
         result.hidden = sim::draw_effects(*hide);
         result.hide_seed = hide->seed;
         effects.insert(effects.end(), result.hidden.begin(), result.hidden.end());

@@ -28,10 +28,16 @@ bool has_wheel(Layout layout, int slot) {
 
 bool is_caster(Layout layout, int slot) { return layout == Layout::caster && slot == 4; }
 
-unsigned firmware_wheels(Layout layout) {
+int motor_of(const LayoutParameters &layout, int slot) {
+    return layout.drives[0] < 0 ? slot : layout.drives[static_cast<std::size_t>(slot % 2)];
+}
+
+bool is_plain(const LayoutParameters &layout) { return layout.kind == Layout::four && layout.drives[0] < 0; }
+
+unsigned firmware_wheels(const LayoutParameters &layout) {
     unsigned mask = 0;
-    for (const int slot : wheels_of(layout))
-        if (slot < 4) mask |= 1u << static_cast<unsigned>(slot);
+    for (const int slot : wheels_of(layout.kind))
+        if (slot < 4 && motor_of(layout, slot) == slot) mask |= 1u << static_cast<unsigned>(slot);
     return mask;
 }
 

@@ -30,14 +30,21 @@ struct LayoutParameters {
     double caster_m = 0, caster_radius_m = 0.02;
     double caster_rolling = 0; // of its bearing, over its load, beside the ground's: 0..1
     double drawbar_N = 0;      // carriage: a constant pull against the heading
+    // four, six: the slots of the left and of the right motor, each of which turns all wheels of its side by a chain, one to one. -1: every
+    // wheel has a motor of its own.
+    std::array<int, 2> drives{-1, -1};
 };
 
 // The slots that there are, in the order in which the plant steps them.
 std::span<const int> wheels_of(Layout layout);
 bool has_wheel(Layout layout, int slot);
 bool is_caster(Layout layout, int slot);
-// Bit i: the firmware has wheel i (0..3).
-unsigned firmware_wheels(Layout layout);
+// The slot whose motor turns this one.
+int motor_of(const LayoutParameters &layout, int slot);
+// Four wheels, a motor each.
+bool is_plain(const LayoutParameters &layout);
+// Bit i: the firmware has wheel i (0..3): one with a motor.
+unsigned firmware_wheels(const LayoutParameters &layout);
 
 // Where the four wheels of a rover with these half distances are, or those of another layout [m].
 struct WheelPlace {

@@ -62,7 +62,8 @@ Plant::World::World(const PlantConfig &c)
     for (const int i : wheels) {
         if (is_caster(config.rover.layout.kind, i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
-        const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[n].radius_change);
+        const auto m = static_cast<std::size_t>(motor_of(i));
+        const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[m].radius_change);
         drive[n].wheel_speed_rad_s = drive[n].motor_speed_rad_s = config.speed_m_s / radius;
     }
     truth.battery_voltage_V = config.rover.battery_voltage_V;
@@ -117,6 +118,7 @@ double Plant::World::kinetic() const {
         sum += 0.5 * (mass.I[0] * w[0] * w[0] + mass.I[5] * w[1] * w[1] + mass.I[10] * w[2] * w[2]);
     }
     for (const int slot : wheels) {
+        if (motor_of(slot) != slot) continue; // in its motor's inertia
         const auto i = static_cast<std::size_t>(slot);
         const DriveParameters &p = config.rover.drive;
         const bool two_masses = effects.wheel[i].play_rad > 0;
@@ -170,11 +172,14 @@ void Plant::World::step() {
         dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     }
     const Vec3 before = mean_velocity();
-    for (const int i : wheels)
-        if (is_caster(config.rover.layout.kind, i))
+    for (const int i : wheels) {
+        if (is_caster(config.rover.layout.kind, i)) {
             step_caster(i);
-        else
-            step_wheel(i, supply_V);
+            continue;
+        }
+        step_wheel(i);
+        if (is_last_of(motor_of(i), i)) turn(motor_of(i), supply_V);
+    }
     push_body();
     dWorldStep(world, dt);
     ++steps;
@@ -247,7 +252,7 @@ void Plant::World::observe(const Vec3 &velocity_before) {
         w.motor_angle_rad = drive[i].motor_angle_rad;
         w.motor_speed_rad_s = drive[i].motor_speed_rad_s;
         w.current_A = drive[i].current_A;
-        w.duty = enabled ? duty[i] : 0;
+        w.duty = enabled && motor_of(slot) == slot ? duty[i] : 0;
         w.winding_temperature_C = 25 + drive[i].heat_K; // ambient 25 C, assumed
     }
 }

@@ -214,7 +214,7 @@ Plant::World::Stand Plant::World::stand(int i) {
     return at;
 }
 
-void Plant::World::step_wheel(int i, double supply_V) {
+void Plant::World::step_wheel(int i) {
     const auto n = static_cast<std::size_t>(i);
     const RoverParameters &r = config.rover;
     const WheelEffects &mine = effects.wheel[n];
@@ -224,7 +224,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     const double along = dot(at.velocity, at.ahead), across = dot(at.velocity, at.left);
 
     const double radius = law::wheel_radius_m(r.wheel_radius_m, mine.radius_change);
-    const double rim = radius * drive[n].wheel_speed_rad_s;
+    const double rim = radius * drive[n].wheel_speed_rad_s; // of a motor's wheels all, as it left them
     const bool soft = config.ground.contact != ContactLaw::aggregated;
     const Footing foot = footing(at.point, at.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
     const Soil &soil = *foot.front;
@@ -263,20 +263,7 @@ void Plant::World::step_wheel(int i, double supply_V) {
     else
         dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], bottom[0], bottom[1], bottom[2]);
 
-    DriveState &d = drive[n];
-    const double speed_before = d.wheel_speed_rad_s;
-    if (blocked[n]) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
-    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s, current_of_others(i)) : 0;
-    if (!blocked[n]) {
-        out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
-        const DriveWork work = drive_step(r.drive, mine, d, out.torque_Nm, config.dt_s);
-        energy.motor += work.motor;
-        energy.friction += work.friction;
-    }
-    out.spin_mean_rad_s = blocked[n] ? 0 : 0.5 * (speed_before + d.wheel_speed_rad_s);
-    // the wheel's own spin-up turns the chassis the other way about y
-    const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
-    if (law::load_transfer_m(r.centre_height_m, b.raised_m) > 0) dBodyAddRelTorque(body, 0, -spin, 0);
+    out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
 
     WheelTruth &w = truth.slot(i);
     w.traction_N = pull;
@@ -287,6 +274,46 @@ void Plant::World::step_wheel(int i, double supply_V) {
     w.slip = std::clamp(contact[n].slip, -1.0, 1.0); // beyond: wheels that turn against the motion, full sliding all the same
     w.sinkage_m = met.sinkage_m;
     w.ground_speed_m_s = along;
+}
+
+bool Plant::World::is_last_of(int motor, int slot) const {
+    int last = motor;
+    for (const int i : wheels)
+        if (!is_caster(config.rover.layout.kind, i) && motor_of(i) == motor) last = i;
+    return slot == last;
+}
+
+// One drive train for all the wheels that the motor turns: it carries their torques together, and they share its speed.
+void Plant::World::turn(int motor, double supply_V) {
+    const auto n = static_cast<std::size_t>(motor);
+    const RoverParameters &r = config.rover;
+    const WheelEffects &mine = effects.wheel[n];
+    bool held = false;
+    double torque_Nm = 0;
+    for (const int i : wheels) {
+        if (is_caster(r.layout.kind, i) || motor_of(i) != motor) continue;
+        held = held || blocked[static_cast<std::size_t>(i)];
+        torque_Nm += applied[static_cast<std::size_t>(i)].torque_Nm;
+    }
+    DriveState &d = drive[n];
+    const double speed_before = d.wheel_speed_rad_s;
+    if (held) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
+    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s, current_of_others(motor)) : 0;
+    if (!held) {
+        const DriveWork work = drive_step(r.drive, mine, d, torque_Nm, config.dt_s);
+        energy.motor += work.motor;
+        energy.friction += work.friction;
+    }
+    for (const int i : wheels) {
+        if (is_caster(r.layout.kind, i) || motor_of(i) != motor) continue;
+        const auto j = static_cast<std::size_t>(i);
+        if (i != motor) drive[j] = d, drive[j].current_A = 0;
+        applied[j].spin_mean_rad_s = held ? 0 : 0.5 * (speed_before + d.wheel_speed_rad_s);
+        // the wheel's own spin-up turns the chassis the other way about y
+        const double radius = law::wheel_radius_m(r.wheel_radius_m, effects.wheel[j].radius_change);
+        const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
+        if (law::load_transfer_m(r.centre_height_m, effects.body.raised_m) > 0) dBodyAddRelTorque(half_of(i), 0, -spin, 0);
+    }
 }
 
 // A ball that rolls any way: the ground's resistance and its bearing's, against its velocity. No motor turns it, so where rolling takes a

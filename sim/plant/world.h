@@ -46,7 +46,10 @@ struct Plant::World {
     void stand_up(double height_m);
     void place_whole_on_terrain();
     void step();
-    void step_wheel(int i, double supply_V);
+    void step_wheel(int i);                // what the ground does to it
+    void turn(int motor, double supply_V); // and the motor's wheels by it
+    int motor_of(int slot) const { return sim::motor_of(config.rover.layout, slot); }
+    bool is_last_of(int motor, int slot) const; // in the order of `wheels`
     void step_caster(int i);
     struct Stand {                        // where a wheel meets the ground: the plane it touches and how far it is pressed in
         Vec3 point{}, velocity{};         // contact point of the body, world

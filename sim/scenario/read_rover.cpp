@@ -69,6 +69,25 @@ void check_own_radar(Keys &keys, const RoverDescription &rover) {
     }
 }
 
+// layout.drives = [0, 1]: the wheels with a motor, one a side, in any order.
+void read_drives(Keys &layout, RoverDescription &rover) {
+    const toml::node *node = layout.node("drives");
+    if (node == nullptr) return;
+    const char *mend = "give the wheel whose motor turns the left side (0 or 2) and the one of the right (1 or 3), such as [0, 1]";
+    const toml::array *list = node->as_array();
+    if (list == nullptr || list->size() != 2) layout.fail_at(*node, "drives", "not a list of two wheels", mend);
+    std::array<int, 2> drives{-1, -1};
+    for (const toml::node &item : *list) {
+        const auto slot = item.is_integer() ? item.value<std::int64_t>() : std::nullopt;
+        if (!slot || *slot < 0 || *slot >= wheel_count) layout.fail_at(item, "drives", "holds what is no wheel of 0 to 3", mend);
+        int &side = drives[static_cast<std::size_t>(*slot % 2)];
+        if (side >= 0) layout.fail_at(item, "drives", "has two motors on one side and none on the other: its wheels have no drive", mend);
+        side = static_cast<int>(*slot);
+    }
+    rover.drives = drives;
+    rover.drives_line = node->source().begin.line;
+}
+
 // The sections over what `rover` has; with `whole` every key that is no choice must be there.
 void read_sections(Keys &top, RoverDescription &rover, bool whole) {
     std::map<std::string, std::unique_ptr<Keys>, std::less<>> sections;
@@ -101,6 +120,7 @@ void read_sections(Keys &top, RoverDescription &rover, bool whole) {
         rover.radar_line = radar->node("model")->source().begin.line;
     }
     if (Keys *radar = sections.at("radar").get(); radar != nullptr) check_own_radar(*radar, rover);
+    if (Keys *layout = sections.at("layout").get(); layout != nullptr) read_drives(*layout, rover);
     for (const auto &[name, keys] : sections)
         if (keys) keys->finish();
     if (const toml::array *wheels = top.tables("wheel")) read_wheels(*wheels, top.file(), rover);
@@ -223,23 +243,28 @@ void set_rover(Scenario &scenario, RoverDescription rover) {
 }
 
 void check_wheels(const Scenario &scenario, std::span<const ActiveEffect> effects) {
-    const Layout layout = scenario.rover.layout().kind;
-    if (layout == Layout::four) return;
-    const auto need = [&](const char *key, int wheel) {
+    const LayoutParameters parameters = scenario.rover.layout();
+    const Layout layout = parameters.kind;
+    if (is_plain(parameters)) return;
+    const auto need = [&](const char *key, int wheel, bool motor = true) {
         if (wheel >= 0 && !has_wheel(layout, wheel))
             throw ScenarioError(scenario.file, 0, key, std::to_string(wheel), "the rover has no such wheel",
                                 layout == Layout::carriage ? "a bench carriage has wheel 0"
                                                            : "a rover of two wheels has 0 (left) and 1 (right)");
+        if (const int own = wheel < 0 ? wheel : motor_of(parameters, wheel); motor && own != wheel)
+            throw ScenarioError(scenario.file, 0, key, std::to_string(wheel),
+                                "this wheel has no motor: it turns with wheel " + std::to_string(own), "write " + std::to_string(own));
     };
     if (scenario.can_bus)
         throw ScenarioError(scenario.file, 0, "bus", "can", "only a rover of four wheels has its wheels on a bus", "leave bus out");
     if (scenario.hidden)
-        throw ScenarioError(scenario.file, 0, "hidden", "", "effects are hidden in rovers of four wheels alone", "leave [hidden] out");
+        throw ScenarioError(scenario.file, 0, "hidden", "", "effects are hidden in rovers of four wheels alone, with a motor each",
+                            "leave [hidden] out");
     for (const SensorFault &fault : scenario.sensor_faults) need("fault.wheel", fault.wheel);
-    for (const WheelBlockSpan &span : scenario.wheel_blocks) need("fault.wheel", span.wheel);
+    for (const WheelBlockSpan &span : scenario.wheel_blocks) need("fault.wheel", span.wheel, false);
     for (const WheelBlockSpan &span : scenario.open_motors) need("fault.wheel", span.wheel);
-    for (const ActiveEffect &effect : scenario.effects) need("effect.wheel", effect.wheel);
-    for (const ActiveEffect &effect : effects) need("effect.wheel", effect.wheel);
+    for (const ActiveEffect &effect : scenario.effects) need("effect.wheel", effect.wheel, of_motor(*effect.effect));
+    for (const ActiveEffect &effect : effects) need("effect.wheel", effect.wheel, of_motor(*effect.effect));
     for (const DriveSegment &segment : scenario.drive)
         for (int wheel = 0; wheel < wheel_count; wheel++)
             if (segment.slip_wheel[static_cast<std::size_t>(wheel)]) need("drive.slip_wheels", wheel);

@@ -160,12 +160,14 @@ LayoutParameters RoverDescription::layout() const {
     out.axle_m = at("layout", "axle_m"), out.caster_m = at("layout", "caster_m");
     out.caster_radius_m = at("layout", "caster_radius_m"), out.caster_rolling = at("layout", "caster_rolling");
     out.drawbar_N = at("layout", "drawbar_N");
+    out.drives = drives;
     return out;
 }
 
 double RoverDescription::heaviest_kg() const {
     const LayoutParameters l = layout();
     const double mass = at("body", "mass_kg"), stiffness = at("wheels", "contact_stiffness_N_m");
+    if (l.drives[0] >= 0) return mass / 2; // all that one side's motor carries, at every track
     if (l.kind == Layout::four) return mass / 4;
     std::vector<double> ahead_m;
     for (const int slot : wheels_of(l.kind))
@@ -199,6 +201,11 @@ void check_layout(const RoverDescription &rover) {
             fail(owned.key, "means nothing for a rover of " + std::to_string(static_cast<int>(wheels)) + " wheels",
                  "leave it out, or write wheels = " + std::to_string(static_cast<int>(owned.wheels)));
     const LayoutParameters l = rover.layout();
+    if (l.drives[0] >= 0 && wheels < 4)
+        throw ScenarioError(rover.file, rover.drives_line, "layout.drives", "",
+                            "means nothing for a rover of " + std::to_string(static_cast<int>(wheels)) +
+                                (wheels == 1 ? " wheel" : " wheels"),
+                            "leave it out, or write wheels = 4 or 6");
     const double half = rover.at("body", "half_wheelbase_m");
     if (l.kind == Layout::six && std::fabs(l.middle_m) >= half)
         fail("middle_m", "not between the outer axles", "give less than body.half_wheelbase_m, ahead or (negative) behind");

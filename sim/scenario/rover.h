@@ -49,6 +49,8 @@ struct RoverDescription {
     std::size_t hardware_line = 0;  // of [hardware], which hal/linux/hardware.h reads; 0: none
     std::vector<RoverValue> values; // by index of rover_keys()
     std::array<RoverWheel, wheel_count> wheel;
+    std::array<int, 2> drives{-1, -1}; // layout.drives, left and right; -1: every wheel has a motor of its own
+    std::size_t drives_line = 0;
 
     RoverDescription();                                               // the reference rover
     double at(std::string_view section, std::string_view name) const; // throws std::logic_error for a name that is no key

@@ -54,7 +54,7 @@ std::string message_of(const std::function<void()> &call) {
     return "accepted";
 }
 
-const char *const names[] = {"six_wheels", "two_wheels", "bench_carriage"};
+const char *const names[] = {"six_wheels", "two_wheels", "bench_carriage", "two_motors"};
 
 // A speed of 0.3 m/s ahead from 5 to 10 s in all of them.
 TEST(Wheels, every_rover_holds_its_speed_on_hard_and_soft_ground_without_a_fault) {
@@ -92,7 +92,7 @@ TEST(Wheels, a_middle_wheel_follows_its_side) {
 }
 
 TEST(Wheels, what_a_rover_has_not_is_neither_logged_nor_waited_for_nor_driven) {
-    for (const auto &[name, wheels] : {std::pair{"two_wheels", 2}, {"bench_carriage", 1}}) {
+    for (const auto &[name, wheels] : {std::pair{"two_wheels", 2}, {"bench_carriage", 1}, {"two_motors", 2}}) {
         const SimulationResult result = run(scenario_of(name));
         for (int wheel = 0; wheel < 4; wheel++)
             for (const char *signal : {".speed_rad_s", ".current_A", ".duty", ".slip"})
@@ -146,7 +146,8 @@ TEST(Wheels, a_run_repeats_and_its_log_replays_bit_for_bit) {
 // The firmware takes a quarter of its mass for a wheel's load; a wheel of each of these rovers bears 7.06 N, as the reference's do.
 TEST(Wheels, the_firmware_is_told_the_load_of_a_wheel_and_which_there_are) {
     const control_config_t reference = rover_config_default();
-    for (const auto &[name, mask, share] : {std::tuple{"six_wheels", 15u, 0.25f}, {"two_wheels", 3u, 0.5f}, {"bench_carriage", 1u, 1.0f}}) {
+    for (const auto &[name, mask, share] :
+         {std::tuple{"six_wheels", 15u, 0.25f}, {"two_wheels", 3u, 0.5f}, {"bench_carriage", 1u, 1.0f}, {"two_motors", 3u, 0.5f}}) {
         const control_config_t config = firmware_config(scenario_of(name).rover);
         EXPECT_EQ(config.geometry.wheels, mask) << name;
         EXPECT_EQ(config.geometry.wheel_share, share) << name;
@@ -172,6 +173,19 @@ TEST(Wheels, a_layout_that_cannot_work_is_refused_by_its_key) {
     EXPECT_NE(told("middle_m = 0.01").find("means nothing for a rover of 4 wheels"), std::string::npos);
     EXPECT_NE(told("rigid = 0.5").find("layout.rigid"), std::string::npos);
     EXPECT_EQ(told("wheels = 6\nmiddle_m = -0.02\nrigid = 1"), "accepted");
+    EXPECT_EQ(told("drives = [1, 0]"), "accepted");
+    EXPECT_EQ(told("wheels = 6\ndrives = [2, 3]"), "accepted");
+    EXPECT_NE(told("drives = [0, 2]").find("test.toml:4: layout.drives"), std::string::npos) << told("drives = [0, 2]");
+    EXPECT_NE(told("drives = [0, 2]").find("two motors on one side"), std::string::npos) << told("drives = [0, 2]");
+    EXPECT_NE(told("drives = [0]").find("not a list of two wheels"), std::string::npos) << told("drives = [0]");
+    EXPECT_NE(told("drives = [0, 5]").find("no wheel of 0 to 3"), std::string::npos) << told("drives = [0, 5]");
+    EXPECT_NE(told("wheels = 1\ndrives = [0, 1]").find("means nothing for a rover of 1 wheel"), std::string::npos);
+    const std::string wire = "\n[[fault]]\nwhat = \"motor_open\"\nwheel = 2\nfrom_s = 0.1\nto_s = 0.2\n";
+    EXPECT_NE(told("drives = [0, 1]", wire).find("this wheel has no motor: it turns with wheel 0"), std::string::npos)
+        << told("drives = [0, 1]", wire);
+    const std::string friction = "\n[[effect]]\nname = \"coulomb_friction\"\nwheel = 3\ntorque_Nm = 0.05\n";
+    EXPECT_NE(told("drives = [0, 1]", friction).find("it turns with wheel 1"), std::string::npos) << told("drives = [0, 1]", friction);
+    EXPECT_EQ(told("drives = [0, 1]", "\n[[effect]]\nname = \"wheel_radius\"\nwheel = 3\nchange = 0.01\n"), "accepted");
     const std::string fault = "\n[[fault]]\nwhat = \"wheel_blocked\"\nwheel = 2\nfrom_s = 0.1\nto_s = 0.2\n";
     EXPECT_NE(told("wheels = 1", fault).find("the rover has no such wheel"), std::string::npos) << told("wheels = 1", fault);
     EXPECT_EQ(told("wheels = 6", fault), "accepted");

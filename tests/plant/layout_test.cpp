@@ -248,15 +248,80 @@ TEST(layout, a_carriage_keeps_to_its_rail) {
     EXPECT_GT(std::fabs(plant.truth().position_m[2] - z0), 1e-5); // free in height: slip digs
 }
 
+// One motor a side, all at its rear wheel: front and rear wheel turn as one, whatever each meets, and no current flows in a wheel that has
+// no motor. Steady: KG I = b w + t0 + R (Ft of both).
+TEST(layout, a_motor_of_a_side_turns_its_wheels_as_one_and_carries_both) {
+    for (const Layout kind : {Layout::four, Layout::six})
+        for (const std::array<int, 2> drives : {std::array{0, 1}, {2, 3}, {2, 1}}) {
+            PlantConfig config = rover(kind, "sand");
+            config.rover.layout.drives = drives;
+            config.rover.layout.rigid = false;
+            config.ground.patches.push_back({.x_min_m = 0.2, .x_max_m = 0.4, .y_min_m = 0, .y_max_m = 1, .soil = *find_soil("concrete")});
+            Plant plant(config);
+            double apart = 0;
+            for (int k = 0; k < 4000; ++k) {
+                drive(plant, 0.7, 0.5, 1);
+                for (const int slot : wheels_of(kind)) {
+                    const WheelTruth &w = plant.truth().slot(slot), &m = plant.truth().slot(drives[static_cast<std::size_t>(slot % 2)]);
+                    apart = std::fmax(apart, std::fabs(w.speed_rad_s - m.speed_rad_s) + std::fabs(w.angle_rad - m.angle_rad));
+                    if (&w != &m) {
+                        EXPECT_EQ(w.current_A, 0);
+                        EXPECT_EQ(w.duty, 0);
+                    }
+                }
+            }
+            EXPECT_EQ(apart, 0);
+            for (const int motor : drives) {
+                double pull = 0;
+                for (const int slot : wheels_of(kind))
+                    if (slot % 2 == motor % 2) pull += plant.truth().slot(slot).traction_N;
+                const DriveParameters &p = config.rover.drive;
+                const WheelTruth &w = plant.truth().slot(motor);
+                const double gear = p.viscous_Nms * w.speed_rad_s + p.coulomb_Nm;
+                // 1 %: it still turns a little, round a bend
+                EXPECT_NEAR(p.torque_constant_Nm_A * w.current_A, gear + config.rover.wheel_radius_m * pull,
+                            0.01 * (gear + 0.057 * std::fabs(pull)));
+            }
+        }
+}
+
+// With the same ground everywhere, straight ahead, two motors of twice the strength are four: the same speed to the last digits.
+TEST(layout, two_motors_of_twice_the_strength_drive_as_four_do) {
+    PlantConfig four = rover(Layout::four, "concrete"), two = four;
+    two.rover.layout.drives = {0, 1};
+    DriveParameters &p = two.rover.drive;
+    p.resistance_ohm /= 2, p.inertia_kg_m2 *= 2, p.viscous_Nms *= 2, p.coulomb_Nm *= 2;
+    Plant a(four), b(two);
+    for (int k = 0; k < 3000; ++k) drive(a, 0.6, 0.6, 1), drive(b, 0.6, 0.6, 1);
+    // front and rear wheels bear alike, so each pair shares a speed anyway: what is left is rounding
+    EXPECT_NEAR(a.truth().v_body_m_s[0], b.truth().v_body_m_s[0], 1e-9);
+    EXPECT_NEAR(2 * a.truth().wheel[0].current_A, b.truth().wheel[0].current_A, 1e-8);
+    EXPECT_GT(a.truth().v_body_m_s[0], 0.2);
+}
+
+TEST(layout, a_blocked_wheel_holds_all_that_its_chain_turns) {
+    PlantConfig config = rover(Layout::four, "concrete");
+    config.rover.layout.drives = {0, 1};
+    Plant plant(config);
+    plant.block_wheel(2, true);
+    drive(plant, 0.5, 0.5, 500);
+    EXPECT_EQ(plant.truth().wheel[0].speed_rad_s, 0);
+    EXPECT_EQ(plant.truth().wheel[2].speed_rad_s, 0);
+    EXPECT_GT(plant.truth().wheel[3].speed_rad_s, 1);
+    EXPECT_GT(plant.truth().wheel[0].current_A, 0.5); // stalled
+}
+
 // As plant_numerics_test does for four wheels.
 TEST(layout, the_energy_closes_within_a_thousandth) {
-    for (const Layout kind : {Layout::six, Layout::caster, Layout::carriage})
+    for (const auto &[kind, coupled] :
+         {std::pair{Layout::six, false}, {Layout::caster, false}, {Layout::carriage, false}, {Layout::four, true}})
         for (const char *soil : {"concrete", "sand"})
             for (const ContactLaw contact : {ContactLaw::aggregated, ContactLaw::bekker, ContactLaw::arc}) {
                 PlantConfig config = rover(kind, soil, contact);
                 config.ground.slope_rad = 0.05, config.ground.slope_direction_rad = 0.3;
                 config.rover.centre_height_m = 0.04;
                 if (kind == Layout::carriage) config.rover.layout.drawbar_N = 0.5;
+                if (coupled) config.rover.layout.drives = {0, 1};
                 Plant plant(config);
                 const double start = plant.energy().kinetic + plant.energy().potential;
                 double throughput = 0, last = 0;

@@ -20,7 +20,8 @@ namespace {
 std::vector<int> wheel_choices(const sim::Effect &effect, const Model &model) {
     std::vector<int> wheels = {-1};
     if (effect.per_wheel && model.wheel.size() > 1)
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) wheels.push_back(static_cast<int>(i));
+        for (std::size_t i = 0; i < model.wheel.size(); ++i)
+            if (!sim::of_motor(effect) || model.wheel[i].drive < 0) wheels.push_back(static_cast<int>(i));
     return wheels;
 }
 
@@ -144,7 +145,7 @@ FreeParameter strength_parameter(const Candidate &candidate, const EffectHandle 
         free.slots.push_back(slot);
     } else {
         for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
-            if (candidate.wheel >= 0 && static_cast<std::size_t>(candidate.wheel) != i) continue;
+            if (!handle.acts_at(physics, candidate.wheel, i)) continue;
             Slot slot;
             slot.in_wheel = place.in_wheel;
             slot.wheel = static_cast<int>(i);
@@ -304,7 +305,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
         c.axis = kind.axis;
         c.target = kind.target;
         c.touched = target_stages(kind.target);
-        const AxisValues x = values_on(kind.axis, data, motion, physics, current_A);
+        const AxisValues x = values_on(kind.axis, data, motion, physics, current_A, acts_on_motor(kind.target));
         if (x.values.empty()) continue;
         c.varies_between_wheels = x.varies_between_wheels;
         c.knots = knots_on(kind.axis, x.values, kind.target == TermTarget::wheel_torque);

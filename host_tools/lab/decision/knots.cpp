@@ -70,6 +70,21 @@ std::vector<double> current_of_others(Axis axis, const Physics &physics, const s
     return sum;
 }
 
+// Of the wheels that one motor turns, as its own terms have it (Forward::signals_of): loads add up, the rest are means.
+std::vector<double> of_turned(Axis axis, const Motion &motion, const Physics &physics, std::size_t motor) {
+    std::vector<double> sum;
+    double wheels = 0;
+    each_wheel_of(physics, motor, [&](std::size_t i) {
+        const Motion::Wheel &m = motion.wheel[i];
+        const std::vector<double> &one = axis == Axis::slip ? m.slip : axis == Axis::load ? m.load_N : m.ground_speed_m_s;
+        sum.resize(one.size(), 0);
+        for (std::size_t k = 0; k < one.size(); ++k) sum[k] += one[k];
+        ++wheels;
+    });
+    for (double &x : sum) x /= axis == Axis::load ? 1 : wheels;
+    return sum;
+}
+
 // Squares of X about its mean on each wheel, and of those means about theirs.
 struct Spread {
     double within = 0, between = 0, count = 0, mean = 0;
@@ -88,13 +103,17 @@ struct Spread {
 } // namespace
 
 AxisValues values_on(Axis axis, const Dataset &data, const Motion &motion, const Physics &physics,
-                     const std::vector<std::vector<double>> &current_A) {
+                     const std::vector<std::vector<double>> &current_A, bool of_motors) {
     AxisValues out;
     Spread spread;
     const bool absolute = axis == Axis::abs_speed || axis == Axis::abs_wheel_speed;
     for (std::size_t i = 0; i < data.wheel.size(); ++i) {
-        const std::vector<double> others = of_others(axis) ? current_of_others(axis, physics, current_A, i) : std::vector<double>();
-        const std::vector<double> *series = of_others(axis) ? &others : axis_series(axis, data, motion, current_A, i);
+        if (of_motors && !is_motor(physics, i)) continue;
+        const bool turned = of_motors && !physics.motor.empty() && (axis == Axis::slip || axis == Axis::load || axis == Axis::direction);
+        const std::vector<double> made = of_others(axis) ? current_of_others(axis, physics, current_A, i)
+                                         : turned        ? of_turned(axis, motion, physics, i)
+                                                         : std::vector<double>();
+        const std::vector<double> *series = of_others(axis) || turned ? &made : axis_series(axis, data, motion, current_A, i);
         if (axis == Axis::time)
             for (std::size_t k = 0; k < data.count; k += data.independent_rows ? 1 : 20) out.values.push_back(data.time(k));
         else if (series != nullptr)

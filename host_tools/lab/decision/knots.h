@@ -15,7 +15,7 @@ struct AxisValues {
 
 // `current_A`: the model's, per wheel.
 AxisValues values_on(Axis axis, const Dataset &data, const Motion &motion, const Physics &physics,
-                     const std::vector<std::vector<double>> &current_A);
+                     const std::vector<std::vector<double>> &current_A, bool of_motors = false);
 
 // At quantiles; over even steps where most of the time is spent at one value; after a reversal where friction turns; at the ends of a
 // current that drives a torque; near zero of a voltage. Fewer than three: the log has no such X.

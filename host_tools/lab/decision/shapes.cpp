@@ -153,18 +153,21 @@ bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
 // One value between two that are nothing: a resonance. What a curve of many values says of it is less sure.
 bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
 
-// Single wheels, and those that stand abreast (axles): at most eight wheels, or the shapes become too many.
-std::vector<std::vector<int>> wheel_groups(const Physics &physics) {
+// Single wheels, and those that stand abreast (axles): at most eight wheels, or the shapes become too many. motors: those with a motor
+// alone.
+std::vector<std::vector<int>> wheel_groups(const Physics &physics, bool motors) {
     std::vector<std::vector<int>> groups;
-    const int n = static_cast<int>(physics.wheel.size());
-    if (n < 2 || n > 8) return groups;
+    std::vector<int> wheels;
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+        if (!motors || is_motor(physics, i)) wheels.push_back(static_cast<int>(i));
+    if (wheels.size() < 2 || wheels.size() > 8) return groups;
     const auto wheel = [&](int i) -> const WheelPhysics & { return physics.wheel[static_cast<std::size_t>(i)]; };
-    for (int i = 0; i < n; ++i) {
+    for (const int i : wheels) {
         groups.push_back({i});
         std::vector<int> axle;
-        for (int j = 0; j < n; ++j)
+        for (const int j : wheels)
             if (same_axle(wheel(i), wheel(j))) axle.push_back(j);
-        if (axle.size() > 1 && static_cast<int>(axle.size()) < n && axle.front() == i) groups.push_back(axle);
+        if (axle.size() > 1 && axle.size() < wheels.size() && axle.front() == i) groups.push_back(axle);
     }
     return groups;
 }
@@ -182,7 +185,7 @@ void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, c
                         const Eigen::MatrixXd &columns, const Dataset *keep) {
     const unsigned electric = stage_torque | stage_voltage;
     if ((shape.touched & electric) == 0 || (shape.touched & ~electric) != 0 || shape.varies_between_wheels) return;
-    for (const std::vector<int> &group : wheel_groups(problem.physics())) {
+    for (const std::vector<int> &group : wheel_groups(problem.physics(), true)) {
         Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
         Eigen::Index first = 0;
         for (const Balance &b : problem.data().balance) {
@@ -200,7 +203,7 @@ void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &pro
     if (shape.touched != stage_motion || !is_straight(shape) || shape.order > 0) return;
     const std::vector<Eigen::MatrixXd> each = columns.of_each_wheel(shape);
     if (each.empty()) return;
-    for (const std::vector<int> &group : wheel_groups(problem.physics())) {
+    for (const std::vector<int> &group : wheel_groups(problem.physics(), false)) {
         Eigen::MatrixXd part = Eigen::MatrixXd::Zero(each[0].rows(), each[0].cols());
         for (const int i : group) part += each[static_cast<std::size_t>(i)];
         list.push_back(scored(on_wheels(shape, group), part, screen, keep));

@@ -146,6 +146,20 @@ std::size_t Forward::balance_of(BalanceKind kind, std::size_t wheel) const {
     return b;
 }
 
+const std::vector<double> &Forward::shaft_traction(const Physics &physics, const Motion &motion, std::size_t wheel,
+                                                   std::vector<double> &sum) {
+    std::size_t turned = 0;
+    each_wheel_of(physics, wheel, [&](std::size_t) { ++turned; });
+    if (turned == 1) return motion.wheel[wheel].traction_N;
+    sum.assign(motion.wheel[wheel].traction_N.size(), 0);
+    const double own = rolling_radius(physics.wheel[wheel]);
+    each_wheel_of(physics, wheel, [&](std::size_t i) {
+        const double arm = rolling_radius(physics.wheel[i]) / own;
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += arm * motion.wheel[i].traction_N[k];
+    });
+    return sum;
+}
+
 // The torque balance's change where only the traction differs from the base motion's: (17) is linear in it.
 void Forward::torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const {
     const std::size_t balance = balance_of(BalanceKind::current_torque, wheel);
@@ -155,7 +169,8 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     if (!(KG > 0)) return;
     const double per_N = factor * radius / KG, gain = count_gain(p);
     const bool by_load = sim::load_friction_Nm(p, 1, 1) != 0;
-    const std::vector<double> &now = motion.wheel[wheel].traction_N, &before = base_motion_.wheel[wheel].traction_N;
+    const std::vector<double> &now = shaft_traction(physics, motion, wheel, shaft_now_),
+                              &before = shaft_traction(physics, base_motion_, wheel, shaft_before_);
     series_.resize(data_->count);
     for (std::size_t k = 0; k < data_->count; ++k) {
         series_[k] = per_N * (now[k] - before[k]);
@@ -172,13 +187,16 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
 Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const {
     const Dataset &d = *data_;
     const WheelInput &in = d.wheel[wheel];
-    const Motion::Wheel &m = motion.wheel[wheel];
     const double gain = count_gain(physics.wheel[wheel]);
     Signals s;
-    s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.v = m.ground_speed_m_s[k], s.s = m.slip[k], s.Fn = m.load_N[k],
-    s.theta = gain * in.angle_rad[k];
-    s.x = motion.path_m[k] + physics.wheel[wheel].x, s.a = motion.accel_m_s2[k], s.Ft = m.traction_N[k], s.V = motion.v_m_s[k],
-    s.r = motion.yaw_rate_rad_s[k];
+    s.t = d.time(k), s.w = gain * in.speed_rad_s[k], s.theta = gain * in.angle_rad[k];
+    double turned = 0; // loads and tractions add up, speeds, slips and places are means
+    each_wheel_of(physics, wheel, [&](std::size_t i) {
+        const Motion::Wheel &m = motion.wheel[i];
+        s.v += m.ground_speed_m_s[k], s.s += m.slip[k], s.Fn += m.load_N[k], s.Ft += m.traction_N[k], s.x += physics.wheel[i].x, ++turned;
+    });
+    s.v /= turned, s.s /= turned, s.x = motion.path_m[k] + s.x / turned;
+    s.a = motion.accel_m_s2[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k];
     s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / sim::law::voltage_gain(1, physics.body.voltage_gain);
     s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = s.Ia = s.Is = 0;
     for (std::size_t j = 0; j < base_current_.size(); ++j) {
@@ -194,15 +212,17 @@ void Forward::share_leads(const Physics &physics, const Motion &motion) const {
     lead_current_.clear();
     if (!shares_leads(physics)) return;
     std::vector<std::vector<double>> current(physics.wheel.size());
-    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electric_series(physics, motion, i, current[i], electric_);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+        if (is_motor(physics, i)) electric_series(physics, motion, i, current[i], electric_);
     lead_current_ = std::move(current);
 }
 
 double Forward::current_of_others(const Physics &physics, std::size_t wheel, std::size_t k) const {
     double sum = 0;
     for (std::size_t j = 0; j < lead_current_.size(); ++j)
-        if (j != wheel && sim::law::shares_lead(physics.wheel[wheel].shared_with, same_axle(physics.wheel[wheel], physics.wheel[j]),
-                                                same_side(physics.wheel[wheel], physics.wheel[j])))
+        if (j != wheel && !lead_current_[j].empty() &&
+            sim::law::shares_lead(physics.wheel[wheel].shared_with, same_axle(physics.wheel[wheel], physics.wheel[j]),
+                                  same_side(physics.wheel[wheel], physics.wheel[j])))
             sum += lead_current_[j][k];
     return sum;
 }
@@ -230,7 +250,7 @@ void Forward::electric_steps(const Physics &physics, const Motion &motion, std::
     const Dataset &d = *data_;
     const WheelPhysics p = physics.wheel[wheel]; // a copy: what is written below cannot change it
     const WheelInput &in = d.wheel[wheel];
-    const std::vector<double> &traction = motion.wheel[wheel].traction_N;
+    const std::vector<double> &traction = shaft_traction(physics, motion, wheel, shaft_now_);
     const double gain = count_gain(p), radius = rolling_radius(p), soft_rad_s = friction_share * d.standstill_rad_s, start_s = d.start_s;
     const double by_voltage = sim::law::voltage_gain(1, physics.body.voltage_gain);
     const bool unsigned_current = physics.unsigned_current;
@@ -397,7 +417,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
     share_leads(physics, motion);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         const WheelPhysics &p = physics.wheel[i];
-        const bool whole = electric && (wheel < 0 || shared || static_cast<std::size_t>(wheel) == i);
+        const bool whole = electric && (wheel < 0 || shared || motor_of(physics, static_cast<std::size_t>(wheel)) == i);
         if (whole || (moves && (terms || shared || sim::needs_any(p, sim::needs_heat))))
             electrical(physics, motion, i, stages, current_, out);
         else if (moves)

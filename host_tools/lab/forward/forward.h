@@ -72,6 +72,10 @@ class Forward {
     template <bool cold>
     void electric_steps(const Physics &physics, const Motion &motion, std::size_t wheel, const std::vector<const ExtraTerm *> &terms,
                         std::vector<double> &current, ElectricSeries &out) const;
+    // The traction at the motor's own wheel that would brake the motor as its wheels do together, each by its radius; where it turns no
+    // other wheel, that wheel's own. `sum`: where it goes when there are several.
+    static const std::vector<double> &shaft_traction(const Physics &physics, const Motion &motion, std::size_t wheel,
+                                                     std::vector<double> &sum);
     // Currents of all wheels, for those that share a lead; nothing where none does.
     void share_leads(const Physics &physics, const Motion &motion) const;
     double current_of_others(const Physics &physics, std::size_t wheel, std::size_t k) const;
@@ -92,7 +96,7 @@ class Forward {
     std::vector<std::size_t> first_row_;
     Physics base_physics_;
     Motion base_motion_, scratch_;
-    mutable std::vector<double> series_, current_;
+    mutable std::vector<double> series_, current_, shaft_now_, shaft_before_;
     mutable ElectricSeries electric_;
     mutable std::vector<std::vector<double>> lead_current_; // per wheel, where leads are shared
     std::vector<Motion> shaped_, beside_;

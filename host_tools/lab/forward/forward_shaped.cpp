@@ -49,6 +49,7 @@ std::vector<Forward::ElectricSeries> Forward::electric_unit(const Physics &base,
     ElectricSeries plain;
     std::vector<double> current;
     for (std::size_t i = 0; i < unit.size(); ++i) {
+        if (!is_motor(base, i)) continue;
         electric_series(base, base_motion_, i, current, plain);
         electric_series(moved, base_motion_, i, current, unit[i]);
         for (std::size_t k = 0; k < data_->count; ++k) {
@@ -68,6 +69,7 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
     std::vector<double> series(d.count);
     Eigen::VectorXd out(base_prediction_.size()), through;
     for (std::size_t i = 0; i < unit.size(); ++i) {
+        if (!is_motor(base, i)) continue;
         for (std::size_t k = 0; k < d.count; ++k) {
             Signals s = signals_of(base, base_motion_, i, k);
             s.I = base_current_[i].empty() ? 0 : base_current_[i][k];

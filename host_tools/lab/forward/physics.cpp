@@ -84,6 +84,7 @@ std::vector<EffectHandle> make_handles() {
         handle.name = effect.name;
         handle.touched = effect.needs & stage_all;
         handle.remembers = (effect.needs & sim::needs_memory) != 0;
+        handle.of_motor = sim::of_motor(effect);
         for (const sim::EffectParameter &p : effect.parameters)
             (p.strength ? handle.strengths : handle.shapes).push_back({std::string(p.name), p.in_wheel, p.in_body});
         handles.push_back(std::move(handle));
@@ -92,14 +93,14 @@ std::vector<EffectHandle> make_handles() {
 }
 
 // As a scenario switches it on: strengths of one kind add up.
-void set_effect(Physics &physics, const EffectHandle::Strength &place, int wheel, double value, bool shape) {
+void set_effect(Physics &physics, const EffectHandle &handle, const EffectHandle::Strength &place, int wheel, double value, bool shape) {
     const auto put = [&](double &number) { number = shape ? value : number + value; };
     if (place.in_body != nullptr) {
         put(physics.body.*place.in_body);
         return;
     }
     for (std::size_t i = 0; i < physics.wheel.size(); ++i)
-        if (wheel < 0 || static_cast<std::size_t>(wheel) == i) put(physics.wheel[i].*place.in_wheel);
+        if (handle.acts_at(physics, wheel, i)) put(physics.wheel[i].*place.in_wheel);
 }
 
 void add_user_effect(Physics &physics, const Model &model, const EffectUse &use) {
@@ -126,6 +127,12 @@ void add_user_effect(Physics &physics, const Model &model, const EffectUse &use)
 }
 
 } // namespace
+
+bool EffectHandle::acts_at(const Physics &physics, int wheel, std::size_t i) const {
+    if (!of_motor) return wheel < 0 || static_cast<std::size_t>(wheel) == i;
+    const std::size_t motor = motor_of(physics, i);
+    return (wheel < 0 || static_cast<std::size_t>(wheel) == motor) && (motor == i || (touched & stage_motion) != 0);
+}
 
 double &Slot::of(Physics &physics) const {
     if (in_wheel != nullptr) return physics.wheel[static_cast<std::size_t>(wheel)].*in_wheel;
@@ -157,17 +164,20 @@ Physics make_physics(const Model &model) {
     physics.motion = model.motion;
     physics.unsigned_current = model.unsigned_current;
     physics.halves = model.halves;
-    for (const WheelSpec &spec : model.wheel) {
+    for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+        const WheelSpec &spec = model.wheel[i], &motors = model.wheel[model.motor_of(i)];
         WheelPhysics wheel;
         wheel.x = value_of(spec.geometry, "x_m");
         wheel.y = value_of(spec.geometry, "y_m");
         wheel.heading = value_of(spec.geometry, "heading_rad");
         wheel.load = value_of(spec.geometry, "load_N");
         for (const Key &key : keys)
-            if (key.in_wheel != nullptr) wheel.*key.in_wheel = value_of(table_of(spec, key.table), key.key);
-        if (!spec.motor.at("back_emf_Vs_rad").given) wheel.ke = wheel.KG;
+            if (key.in_wheel != nullptr)
+                wheel.*key.in_wheel = value_of(table_of(std::string_view(key.table) == "motor" ? motors : spec, key.table), key.key);
+        if (!motors.motor.at("back_emf_Vs_rad").given) wheel.ke = wheel.KG;
         physics.wheel.push_back(wheel);
         physics.driven.push_back(spec.driven);
+        if (model.couples()) physics.motor.push_back(model.motor_of(i));
         physics.grips_sideways.push_back(spec.grips_sideways);
     }
     for (const Key &key : keys)
@@ -192,7 +202,7 @@ Physics make_physics(const Model &model) {
         for (const auto *list : {&handle->strengths, &handle->shapes})
             for (const auto &place : *list)
                 if (use.parameters.count(place.key) != 0)
-                    set_effect(physics, place, use.wheel, use.parameters.at(place.key).value, list == &handle->shapes);
+                    set_effect(physics, *handle, place, use.wheel, use.parameters.at(place.key).value, list == &handle->shapes);
     }
     return physics;
 }
@@ -234,6 +244,9 @@ FreeParameter own_parameter(const Model &model, const FreeParameter &shared, con
 // Wheels that have a tolerance each, or whose numbers agree, move together; an overridden wheel moves alone.
 void append_shared(std::vector<FreeParameter> &list, const Model &model, const Key &key) {
     std::vector<bool> done(model.wheel.size(), false);
+    const bool of_motor = std::string_view(key.table) == "motor";
+    for (std::size_t i = 0; i < model.wheel.size() && of_motor; ++i) done[i] = model.wheel[i].drive >= 0; // the motor's own wheel has it
+    const auto left = static_cast<std::size_t>(std::count(done.begin(), done.end(), false));
     for (std::size_t i = 0; i < model.wheel.size(); ++i) {
         const Parameters &table = table_of(model.wheel[i], key.table);
         const auto found = table.find(key.key);
@@ -257,7 +270,7 @@ void append_shared(std::vector<FreeParameter> &list, const Model &model, const K
             together.push_back(j);
             for (const Slot &slot : slots_at(model, key, j)) free.slots.push_back(slot);
         }
-        free.wheel = together.size() < model.wheel.size() ? static_cast<int>(i) : -1;
+        free.wheel = together.size() < left ? static_cast<int>(i) : -1;
         free.step = difference_step(p.value, std::max(p.prior, p.each_wheel * std::fabs(p.value)));
         if (p.prior > 0) list.push_back(free);
         for (const std::size_t j : together)
@@ -272,7 +285,7 @@ bool is_shape(const EffectHandle &handle, const std::string &key) {
 // A place along the path moves whole rows from one side of an edge to the other: its step is as long as a row (50 ms at 1 m/s).
 double shape_step(const Parameter &p) { return p.unit == "m" ? 0.05 : 1e-4 * std::max(std::fabs(p.value), 0.1); }
 
-void append_effects(std::vector<FreeParameter> &list, const Model &model) {
+void append_effects(std::vector<FreeParameter> &list, const Model &model, const Physics &physics) {
     int term = 0;
     for (const EffectUse &use : model.effects) {
         const EffectHandle *handle = use.expression.empty() ? find_handle(use.name) : nullptr;
@@ -303,7 +316,7 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model) {
                             free.slots = {body_slot(place.in_body)};
                         else
                             for (std::size_t i = 0; i < model.wheel.size(); ++i)
-                                if (use.wheel < 0 || static_cast<std::size_t>(use.wheel) == i)
+                                if (handle->acts_at(physics, use.wheel, i))
                                     free.slots.push_back(wheel_slot(place.in_wheel, static_cast<int>(i)));
                     }
             }
@@ -318,7 +331,7 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model) {
 
 } // namespace
 
-std::vector<FreeParameter> free_parameters(const Model &model, const Physics &) {
+std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics) {
     std::vector<FreeParameter> list;
     for (const Key &key : keys) {
         if (key.in_wheel != nullptr) {
@@ -342,7 +355,7 @@ std::vector<FreeParameter> free_parameters(const Model &model, const Physics &) 
         free.touched = key.touched;
         list.push_back(std::move(free));
     }
-    append_effects(list, model);
+    append_effects(list, model, physics);
     return list;
 }
 

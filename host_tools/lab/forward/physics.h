@@ -60,9 +60,19 @@ struct Physics {
     bool unsigned_current = false, halves = false;
     std::vector<WheelPhysics> wheel;
     std::vector<bool> driven, grips_sideways;
+    std::vector<std::size_t> motor; // per wheel: the wheel whose motor turns it; empty: each has its own
     BodyPhysics body;
     std::vector<ExtraTerm> terms;
 };
+
+// Wheels of one motor share its speed; it carries their tractions together. What is on a motor stands at its own wheel.
+inline std::size_t motor_of(const Physics &p, std::size_t wheel) { return p.motor.empty() ? wheel : p.motor[wheel]; }
+inline bool is_motor(const Physics &p, std::size_t wheel) { return motor_of(p, wheel) == wheel; }
+template <typename Do> void each_wheel_of(const Physics &p, std::size_t motor, Do &&act) { // its own first, alone where it turns no other
+    act(motor);
+    for (std::size_t i = 0; i < p.motor.size(); ++i)
+        if (i != motor && p.motor[i] == motor) act(i);
+}
 
 // One number inside a Physics.
 struct Slot {
@@ -104,6 +114,10 @@ struct EffectHandle {
     std::vector<Strength> strengths, shapes;
     unsigned touched = stage_all;
     bool remembers = false; // whole integrations with a kink
+    bool of_motor = false;  // on motors, gears or their sensors
+    // Is the effect's number to be set at wheel i where the effect is on `wheel` (-1: all)? On a motor it stands at its own wheel; where it
+    // changes how the wheels turn, at each that the motor turns.
+    bool acts_at(const Physics &physics, int wheel, std::size_t i) const;
 };
 const std::vector<EffectHandle> &effect_handles(); // the catalogue's rows, in its order
 const EffectHandle *find_handle(const std::string &name);

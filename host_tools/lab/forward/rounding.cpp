@@ -25,7 +25,7 @@ double uniform(std::uint64_t draw, std::uint64_t wheel, std::uint64_t sample) {
 void add_rounding(Dataset &data, std::uint64_t draw) {
     for (std::size_t i = 0; i < data.wheel.size(); ++i) {
         WheelInput &in = data.wheel[i];
-        if (!(in.scatter_rad > 0) || !(in.sample_s > 0)) continue;
+        if (in.turns_with >= 0 || !(in.scatter_rad > 0) || !(in.sample_s > 0)) continue;
         std::vector<double> t, error;
         const double last = data.time(data.count - 1) + in.half_s;
         for (std::uint64_t j = 0; data.start_s - in.half_s + static_cast<double>(j) * in.sample_s < last; ++j) {
@@ -36,6 +36,8 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
         for (std::size_t k = 0; k < data.count; ++k)
             if (std::fabs(in.speed_rad_s[k]) > data.standstill_rad_s) in.speed_rad_s[k] += noise.slope[k];
     }
+    for (WheelInput &in : data.wheel) // one encoder a motor
+        if (in.turns_with >= 0) in.speed_rad_s = data.wheel[static_cast<std::size_t>(in.turns_with)].speed_rad_s;
 }
 
 } // namespace

@@ -97,6 +97,12 @@ struct Builder : InputBuilder {
 
     void currents(std::size_t i) {
         const log::Signal *current = wheel_signal(i, "current_A");
+        if (model.wheel[i].drive >= 0) {
+            if (current != nullptr)
+                say(current->name + " is not read: wheel " + std::to_string(i) + " turns with the motor of wheel " +
+                    std::to_string(model.wheel[i].drive));
+            return;
+        }
         if (current == nullptr) {
             if (model.wheel[i].driven && model.motion != BodyMotion::imposed)
                 say("wheel" + std::to_string(i) + ".current_A is missing: its torque and voltage balances are left out");
@@ -278,8 +284,9 @@ struct Builder : InputBuilder {
             const std::string w = "wheel" + std::to_string(i);
             simple(w + ".drawbar_pull_N", "drawbar pull of wheel " + std::to_string(i), "N", BalanceKind::force, static_cast<int>(i),
                    "force.noise_N");
-            simple(w + ".torque_Nm", "torque of wheel " + std::to_string(i), "N m", BalanceKind::torque, static_cast<int>(i),
-                   "torque.noise_Nm");
+            if (model.wheel[i].drive < 0) // a motor's shaft
+                simple(w + ".torque_Nm", "torque of wheel " + std::to_string(i), "N m", BalanceKind::torque, static_cast<int>(i),
+                       "torque.noise_Nm");
         }
         if (model.motion == BodyMotion::imposed || model.motion == BodyMotion::none) return;
         simple("imu.accel_x_m_s2", "longitudinal acceleration", "m/s^2", BalanceKind::accel, -1, "accel.noise_m_s2");

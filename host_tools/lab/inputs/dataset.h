@@ -53,6 +53,7 @@ struct WheelInput {
     std::vector<double> voltage_V;                        // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
     std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged
+    int turns_with = -1;                                  // the wheel whose motor turns this one: its motion is that wheel's; -1: its own
 };
 
 struct Dataset {
@@ -82,6 +83,7 @@ struct Dataset {
     double acceleration_loss(double omega_rad_s) const;
     // Integral of a wheel's voltage at voltage_t_s + lag_s, where the command acts lag_s late on the supply of its own time.
     std::vector<double> voltage_integral(const WheelInput &input, double lag_s) const;
+    std::size_t motor_of(std::size_t i) const { return wheel[i].turns_with < 0 ? i : static_cast<std::size_t>(wheel[i].turns_with); }
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
 

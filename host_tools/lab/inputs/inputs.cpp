@@ -62,6 +62,12 @@ void InputBuilder::header_of_log() {
 }
 
 const log::Signal *InputBuilder::motion_signal(std::size_t i, double &angle_scale) const {
+    for (const std::size_t j : wheels_of_motor(model, model.motor_of(i)))
+        if (const log::Signal *found = own_motion_signal(j, angle_scale)) return found;
+    return nullptr;
+}
+
+const log::Signal *InputBuilder::own_motion_signal(std::size_t i, double &angle_scale) const {
     angle_scale = 0;
     if (const log::Signal *count = wheel_signal(i, "encoder_count")) {
         // an encoder that counts the other way says so in the header
@@ -109,7 +115,10 @@ bool InputBuilder::grid_and_wheels() {
     const auto wheels = [this](double step_s) {
         data.wheel.assign(model.wheel.size(), {});
         if (!set_grid(step_s)) return false;
-        for (std::size_t i = 0; i < model.wheel.size(); ++i) wheel_motion(i), travel(data.wheel[i]);
+        for (std::size_t i = 0; i < model.wheel.size(); ++i)
+            if (model.wheel[i].drive < 0) wheel_motion(i), travel(data.wheel[i]);
+        for (std::size_t i = 0; i < model.wheel.size(); ++i)
+            if (model.wheel[i].drive >= 0) data.wheel[i] = data.wheel[model.motor_of(i)], data.wheel[i].turns_with = model.wheel[i].drive;
         return true;
     };
     const std::vector<std::string> said = data.messages;
@@ -310,6 +319,7 @@ void InputBuilder::voltages() {
     }
     bool told = false;
     for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+        if (model.wheel[i].drive >= 0) continue; // one voltage a motor
         WheelInput &input = data.wheel[i];
         if (const log::Signal *voltage = wheel_signal(i, "voltage_V")) {
             for (std::size_t k = 0; k < data.count; ++k) input.voltage_V.push_back(interpolate(voltage->t_s, voltage->value, data.time(k)));

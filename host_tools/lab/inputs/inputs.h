@@ -33,6 +33,8 @@ struct InputBuilder {
     void header_of_log();
     // The signal that tells wheel i's motion best: counts, then angle, then speed.
     const log::Signal *motion_signal(std::size_t i, double &angle_scale) const;
+    // The same of wheel i's own sensor; motion_signal() takes that of the motor's wheel, else that of any wheel which turns with it.
+    const log::Signal *own_motion_signal(std::size_t i, double &angle_scale) const;
     bool set_grid(double step_s);
     // Steps of 20 ms, of 10 ms where the wheels swing so quickly that the integration would lose more of it than it may. False: no grid.
     bool grid_and_wheels();

@@ -2,6 +2,7 @@
 
 #include "host_tools/log/log.h"
 #include "model_keys.h"
+#include "read_drives.h"
 #include "sim/physics/effects/catalogue.h"
 #include "terms.h"
 
@@ -251,7 +252,7 @@ void read_soil(const Reader &reader, const toml::table &source, const std::strin
 
 void read_rover(const Reader &reader, const toml::table &root, Model &model) {
     if (const toml::table *rover = root["rover"].as_table()) {
-        reader.table(*rover, "rover", rover_keys(), model.rover, {"motion", "halves"});
+        reader.table(*rover, "rover", rover_keys(), model.rover, {"motion", "halves", "drives"});
         const std::string motion = (*rover)["motion"].value_or(std::string("longitudinal"));
         static const char *names[] = {"longitudinal", "planar", "imposed", "none"}; // as BodyMotion has them
         const auto found = std::find(std::begin(names), std::end(names), motion);
@@ -350,6 +351,7 @@ void read_effects(const Reader &reader, const toml::table &root, Model &model) {
                         "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
         use.acts_on = (*table)["acts_on"].value_or(std::string());
         use.expression = (*table)["expression"].value_or(std::string());
+        check_effect_wheel(*table, where, model, use);
         const sim::Effect *effect = use.expression.empty() ? sim::find_effect(use.name) : nullptr;
         if (effect == nullptr && use.expression.empty())
             reader.fail(*table, where + ".name", "unknown effect \"" + use.name + "\"",
@@ -406,6 +408,19 @@ ModelError::ModelError(const std::string &file_, std::size_t line_, const std::s
                        const std::string &mend_)
     : std::runtime_error(complete_message(file_, line_, key_, what_is_wrong, mend_)), file(file_), line(line_), key(key_), mend(mend_) {}
 
+bool Model::couples() const {
+    return std::any_of(wheel.begin(), wheel.end(), [](const WheelSpec &w) { return w.drive >= 0; });
+}
+
+std::vector<std::size_t> wheels_of_motor(const Model &model, std::size_t index) {
+    std::vector<std::size_t> out;
+    if (model.motor_of(index) != index) return out;
+    out.push_back(index);
+    for (std::size_t i = 0; i < model.wheel.size(); ++i)
+        if (i != index && model.motor_of(i) == index) out.push_back(i);
+    return out;
+}
+
 const EffectUse *Model::find_effect(const std::string &effect, int wheel_index) const {
     for (const EffectUse &use : effects)
         if (use.name == effect && use.wheel == wheel_index) return &use;
@@ -434,6 +449,7 @@ Model parse_model(const std::string &text, const std::string &file) {
         reader.fail(*root.get("format"), "format", "is \"" + *format + "\"", "this program reads \"traction.model/1\"");
     read_rover(reader, root, model);
     read_wheels(reader, root, model);
+    read_drives(root, model);
     read_sensors(reader, root, model);
     read_effects(reader, root, model);
     read_lineage(root, model);

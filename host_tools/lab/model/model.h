@@ -53,6 +53,7 @@ struct WheelSpec {
     Parameters motor;    // complete: the [motor] table with this wheel's overrides
     Parameters soil;     // complete: the [soil] table with this wheel's overrides
     bool driven = true;
+    int drive = -1;             // the wheel whose motor turns this one too, by a chain or a belt one to one; -1: its own motor, or none
     bool grips_sideways = true; // false: rollers (omni)
 };
 
@@ -90,7 +91,17 @@ struct Model {
     std::vector<LineageEntry> lineage;
 
     const EffectUse *find_effect(const std::string &effect, int wheel_index) const; // nullptr when absent
+    std::size_t motor_of(std::size_t index) const {                                 // the wheel at whose motor wheel `index` turns
+        return wheel[index].drive < 0 ? index : static_cast<std::size_t>(wheel[index].drive);
+    }
+    bool couples() const; // some motor turns several wheels
 };
+
+// On a motor, its gear or its sensors: it cannot be on a wheel that turns with another wheel's.
+bool acts_on_motor(const EffectUse &use);
+
+// What one motor turns: its own wheel and those that turn with it. Empty for a wheel that turns with another.
+std::vector<std::size_t> wheels_of_motor(const Model &model, std::size_t index);
 
 // Reads a model file. Throws ModelError; log::FileError when the file cannot be read.
 Model read_model(const std::string &path);

@@ -60,6 +60,19 @@ void write_overrides(std::string &out, const std::string &heading, const Paramet
     if (!body.empty()) out += heading + "\n" + body;
 }
 
+// [[0, 2], [1, 3]]: of each motor the wheels that it turns, its own first.
+std::string drives_text(const Model &model) {
+    std::string out = "[";
+    for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+        const std::vector<std::size_t> turned = wheels_of_motor(model, i);
+        if (turned.empty() || !model.wheel[i].driven) continue;
+        out += out.size() > 1 ? ", [" : "[";
+        for (std::size_t j = 0; j < turned.size(); ++j) out += (j > 0 ? ", " : "") + std::to_string(turned[j]);
+        out += "]";
+    }
+    return out + "]";
+}
+
 void write_lineage(std::string &out, const Model &model) {
     for (const LineageEntry &entry : model.lineage) {
         out += "\n[[lineage]]\nlabel = " + quoted(entry.label) + "\nlog = " + quoted(entry.log) + "\n";
@@ -78,10 +91,12 @@ std::string model_text(const Model &model) {
     std::string out = "format = \"traction.model/1\"\nname = " + quoted(model.name) + "\n\n[rover]\nmotion = ";
     out += quoted(motions[static_cast<int>(model.motion)]) + "\n";
     if (model.halves) out += "halves = true\n";
+    if (model.couples()) out += "drives = " + drives_text(model) + "\n";
     write_table(out, model.rover);
     const WheelSpec &first = model.wheel.front();
     out += "\n[motor]\n";
-    write_table(out, first.motor);
+    const Parameters &motor = model.wheel[model.motor_of(0)].motor;
+    write_table(out, motor);
     out += "\n[soil]\nlaw = " + quoted(model.soil_law == SoilLaw::janosi ? "janosi" : "burckhardt") + "\n";
     write_table(out, first.soil);
     for (const WheelSpec &wheel : model.wheel) {
@@ -89,7 +104,7 @@ std::string model_text(const Model &model) {
         if (!wheel.driven) out += "driven = false\n";
         if (!wheel.grips_sideways) out += "grips_sideways = false\n";
         write_table(out, wheel.geometry);
-        write_overrides(out, "[wheel.motor]", wheel.motor, first.motor);
+        if (wheel.drive < 0) write_overrides(out, "[wheel.motor]", wheel.motor, motor);
         write_overrides(out, "[wheel.soil]", wheel.soil, first.soil);
     }
     std::string sensor;

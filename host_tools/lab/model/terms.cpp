@@ -162,6 +162,8 @@ bool parse_target(std::string_view name, TermTarget &target) {
     return true;
 }
 
+bool acts_on_motor(TermTarget target) { return (target_stages(target) & (stage_torque | stage_voltage)) != 0; }
+
 unsigned target_stages(TermTarget target) {
     switch (target) {
     case TermTarget::wheel_torque:

@@ -48,6 +48,7 @@ enum class TermTarget {
 std::string_view target_name(TermTarget target);
 bool parse_target(std::string_view name, TermTarget &target);
 unsigned target_stages(TermTarget target); // Stage bits
+bool acts_on_motor(TermTarget target);     // on the motor, its gear or its sensors: once for all the wheels that it turns
 
 struct Signals {
     double t = 0, w = 0, v = 0, s = 0, Fn = 0, theta = 0, x = 0, a = 0, I = 0, u = 0, Ft = 0, V = 0, r = 0, X = 0, d = 0, Io = 0, Ia = 0,

@@ -35,9 +35,13 @@ class Drive {
                    "speed_m_s = " + speed_m_s + (yaw_rate_rad_s.empty() ? "" : "\nyaw_rate_rad_s = " + yaw_rate_rad_s));
     }
     Drive &wheels(double for_s, const std::string &wheel_speed_rad_s) {
+        made_.each_wheel = made_.each_wheel || wheel_speed_rad_s.front() == '[';
         return add(for_s, "wheel_speed", "wheel_speed_rad_s = " + wheel_speed_rad_s);
     }
-    Drive &sweep(double for_s, const std::string &speed_m_s) { return add(for_s, "soil_sweep", "speed_m_s = " + speed_m_s); }
+    Drive &sweep(double for_s, const std::string &speed_m_s) {
+        made_.each_wheel = true;
+        return add(for_s, "soil_sweep", "speed_m_s = " + speed_m_s);
+    }
     Drive &duty(double for_s, const std::string &duty) { return add(for_s, "open_loop", "duty = " + duty); }
     Manoeuvre made() { return made_; }
 
@@ -169,6 +173,27 @@ const std::vector<Manoeuvre> &manoeuvres() {
     return list;
 }
 
+const std::vector<Manoeuvre> &manoeuvres_of(const Model &model) {
+    static const std::vector<Manoeuvre> of_sides = [] {
+        std::vector<Manoeuvre> list = manoeuvres();
+        std::erase_if(list, [](const Manoeuvre &m) { return m.each_wheel; });
+        return list;
+    }();
+    return model.couples() ? of_sides : manoeuvres();
+}
+
+namespace {
+
+// One motor a side: the wheels that have them. Nothing where the motors turn other wheels than that.
+std::vector<std::size_t> motors_of_sides(const Model &model) {
+    std::vector<std::size_t> motors;
+    for (std::size_t i = 0; i < 2; ++i)
+        if (model.motor_of(i) % 2 == i && model.motor_of(i + 2) == model.motor_of(i)) motors.push_back(model.motor_of(i));
+    return motors.size() == 2 ? motors : std::vector<std::size_t>();
+}
+
+} // namespace
+
 std::string cannot_drive(const Model &model) {
     if (model.motion == BodyMotion::imposed) return "a carriage imposes its motion";
     if (model.motion == BodyMotion::none) return "its wheels turn in the air";
@@ -183,6 +208,8 @@ std::string cannot_drive(const Model &model) {
             return "its wheel " + std::to_string(i) +
                    " is not a driven wheel where the simulated rover has its own (0 rear left, 1 rear right, 2 front left, 3 front right)";
     }
+    if (model.couples() && motors_of_sides(model).empty())
+        return "its motors turn other wheels than those of one side each, which is all that the simulated rover's do";
     if (!(number_of(model.rover, "mass_kg") > 0) || !(number_of(model.wheel[0].motor, "resistance_ohm") > 0) ||
         !(number_of(model.wheel[0].motor, "torque_constant_Nm_A") > 0))
         return "its mass, motor constant or winding resistance is not given";
@@ -216,6 +243,10 @@ std::string scenario_of(const Model &model, const std::string &title, const std:
     put("relaxation_length_m", relaxation, relaxation >= 0.0005);
     for (const char *key : {"torque_constant_Nm_A", "resistance_ohm", "inertia_kg_m2", "viscous_Nms", "coulomb_Nm"})
         put(key, mean(&WheelSpec::motor, key), true);
+    if (model.couples()) {
+        const std::vector<std::size_t> motors = motors_of_sides(model);
+        text += "layout = { drives = [" + std::to_string(motors[0]) + ", " + std::to_string(motors[1]) + "] }\n";
+    }
     const double battery_V = number_of(model.rover, "battery_voltage_V");
     put("battery_voltage_V", battery_V, battery_V > 0);
     text += "\n";

@@ -14,13 +14,16 @@ struct Manoeuvre {
     std::string title;
     std::string segments; // [[drive]] tables
     double duration_s = 0;
+    bool each_wheel = false;           // asks wheels of one side for different speeds
     std::vector<std::string> good_for; // effects it is known to show or separate: said where nothing can be simulated
 };
 
 const std::vector<Manoeuvre> &manoeuvres();
+// Those that this machine can drive: where a motor turns several wheels, none that asks each wheel for a speed of its own.
+const std::vector<Manoeuvre> &manoeuvres_of(const Model &model);
 
 // Why the plant cannot drive this machine ("it has 3 wheels"); empty when it can: four driven wheels, straight, at (+-x, +-y), rear
-// left, rear right, front left, front right, free to move on the ground.
+// left, rear right, front left, front right, free to move on the ground, with a motor each or one a side.
 std::string cannot_drive(const Model &model);
 
 // A scenario with the model's own numbers for rover, ground and catalogue effects, and these manoeuvres in their order, a rest before

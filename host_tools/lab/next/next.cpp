@@ -148,7 +148,7 @@ struct Choice {
 };
 
 void name_kinds(const Plan &plan, NextExperiment &next) {
-    for (const Manoeuvre &m : manoeuvres()) {
+    for (const Manoeuvre &m : manoeuvres_of(plan.base)) {
         const bool fits = std::any_of(plan.candidates.begin(), plan.candidates.end(), [&](const SizedCandidate &s) {
             return std::find(m.good_for.begin(), m.good_for.end(), s.candidate.effect) != m.good_for.end();
         });
@@ -226,7 +226,7 @@ void enlarge(Plan &plan, const Eigen::MatrixXd &everything, const Eigen::VectorX
 }
 
 void judge_alone(Table &table, const Eigen::MatrixXd &everything, NextExperiment &next) {
-    const std::vector<Manoeuvre> &list = manoeuvres();
+    const std::vector<Manoeuvre> &list = manoeuvres_of(table.plan.base);
     for (std::size_t q = 0; q < next.questions.size(); ++q) {
         Question &one = next.questions[q];
         table.by_log.push_back(table.distance_at(table.log, q));
@@ -268,7 +268,7 @@ Choice choose(const Table &table) {
     const auto consider = [&](const std::vector<std::size_t> &set) {
         Eigen::MatrixXd gram = table.log;
         double seconds = 0;
-        for (const std::size_t m : set) gram += table.grams[m], seconds += manoeuvres()[m].duration_s;
+        for (const std::size_t m : set) gram += table.grams[m], seconds += manoeuvres_of(table.plan.base)[m].duration_s;
         Choice c{set, 0, 1e300, 0};
         for (std::size_t q = 0; q < table.before.size(); ++q) {
             if (!table.answerable[q]) continue;
@@ -307,7 +307,7 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
     }
     Table table{plan, {}, {}, {}, {}, {}};
     condition_on_log(plan, best, table.log, table.precision);
-    for (const Manoeuvre &m : manoeuvres()) {
+    for (const Manoeuvre &m : manoeuvres_of(plan.base)) {
         next.notes.clear(); // the same for each
         table.grams.push_back(information_of(plan, scenario_of(plan.base, {&m}, next.notes), drive));
     }
@@ -319,7 +319,7 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
     Eigen::MatrixXd after = table.log;
     if (!choice.manoeuvres.empty()) {
         std::vector<const Manoeuvre *> list;
-        for (const std::size_t m : choice.manoeuvres) list.push_back(&manoeuvres()[m]);
+        for (const std::size_t m : choice.manoeuvres) list.push_back(&manoeuvres_of(plan.base)[m]);
         next.notes.clear();
         next.scenario_toml = scenario_of(plan.base, list, next.notes);
         for (const Manoeuvre *m : list) next.title += (next.title.empty() ? "" : ", then ") + m->title, next.duration_s += m->duration_s;

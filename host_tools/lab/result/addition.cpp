@@ -26,6 +26,19 @@ void append_lineage(Model &model, const Dataset &data, const std::vector<LadderS
     }
 }
 
+namespace {
+
+void refuse_turned(const Model &model, const EffectUse &use) {
+    const int motor = use.wheel < 0 ? -1 : model.wheel[static_cast<std::size_t>(use.wheel)].drive;
+    if (motor < 0 || !acts_on_motor(use)) return;
+    throw ModelError(model.file, 0, "--wheel",
+                     "is " + std::to_string(use.wheel) + ", which turns with wheel " + std::to_string(motor) + ", and " + use.name +
+                         " is on a motor",
+                     "give --wheel " + std::to_string(motor));
+}
+
+} // namespace
+
 Added add_effect(const Model &model, const Dataset &data, const std::string &effect, int wheel, const std::string &file) {
     Added added;
     added.model = model;
@@ -50,11 +63,13 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
                              "give the name of one of its [[effect]] tables");
         added.model.effects.push_back(*found);
         added.model.effects.back().wheel = wheel >= 0 ? wheel : found->wheel;
+        refuse_turned(model, added.model.effects.back());
     } else {
         const sim::Effect *known = sim::find_effect(effect);
         if (known == nullptr)
             throw ModelError(model.file, 0, effect, "is no effect of the catalogue",
                              "`traction effects` lists them; for your own use --effect-file");
+        refuse_turned(model, {effect, wheel, {}, "", ""});
         if (wheel >= 0 && !known->per_wheel) throw ModelError(model.file, 0, effect, "cannot be confined to a wheel", "leave --wheel out");
         Problem problem = fitted_problem(model, data);
         const Screen screen(problem);

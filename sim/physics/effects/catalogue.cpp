@@ -24,6 +24,11 @@ const Effect *find_effect(std::string_view name) {
     return nullptr;
 }
 
+bool of_motor(const Effect &effect) {
+    const bool acts = effect.acts_on == ActsOn::wheel_torque || effect.acts_on == ActsOn::motor_voltage || effect.acts_on == ActsOn::sensor;
+    return acts && !effect.parameters.empty() && effect.parameters.front().in_wheel != nullptr;
+}
+
 bool EffectParameter::takes(double value) const {
     return (value >= minimum && value <= maximum) || (both_signs && value >= -maximum && value <= -minimum);
 }

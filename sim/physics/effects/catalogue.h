@@ -66,6 +66,9 @@ struct Effect {
     std::vector<EffectParameter> parameters;
 };
 
+// True of an effect on a motor, its gear or its sensors: there is one for all the wheels that a motor turns. False of one on a wheel.
+bool of_motor(const Effect &effect);
+
 // All effects, in a fixed order.
 std::span<const Effect> catalogue();
 
