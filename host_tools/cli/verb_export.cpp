@@ -29,7 +29,10 @@ std::string line(const char *name, double value, const char *comment) {
 
 // The numbers of rover_config_t that a model knows, with the effects that change them folded in.
 std::string firmware_text(const lab::Model &model) {
-    const lab::WheelSpec &wheel = model.wheel.front();
+    const lab::WheelSpec &wheel = model.wheel[model.motor_of(0)];
+    unsigned motors = 0, mask = 0; // of the firmware's four wheels
+    for (std::size_t i = 0; i < model.wheel.size(); ++i)
+        if (model.couples() && model.wheel[i].driven && model.motor_of(i) == i) ++motors, mask |= i < 4 ? 1u << i : 0u;
     double KG = wheel.motor.at("torque_constant_Nm_A").value, b = wheel.motor.at("viscous_Nms").value,
            t0 = wheel.motor.at("coulomb_Nm").value;
     double radius = wheel.geometry.at("radius_m").value;
@@ -45,7 +48,10 @@ std::string firmware_text(const lab::Model &model) {
            line("wheel_radius_m", radius, "m, under load") + line("torque_constant_Nm_A", KG, "N m/A at the wheel, (17)") +
            line("viscous_Nms", b, "N m s, (18)") + line("coulomb_Nm", t0, "N m, (18)") +
            line("inertia_kg_m2", wheel.motor.at("inertia_kg_m2").value, "kg m^2, (17)") +
-           line("resistance_ohm", wheel.motor.at("resistance_ohm").value, "ohm") + line("mass_kg", model.rover.at("mass_kg").value, "kg");
+           line("resistance_ohm", wheel.motor.at("resistance_ohm").value, "ohm") +
+           (motors > 0 ? line("mass_kg", 4 * model.rover.at("mass_kg").value / motors, "kg, four times what a motor's wheels bear") +
+                             line("wheel_mask", mask, "the wheels that have a motor")
+                       : line("mass_kg", model.rover.at("mass_kg").value, "kg"));
 }
 
 void export_all(const ExportRequest &request, Outcome &outcome) {

@@ -96,6 +96,9 @@ void drive_as(const std::string &file, sim::Scenario &scenario) {
     std::vector<std::string> notes;
     const sim::Scenario machine =
         sim::parse_scenario(lab::scenario_of(model, "", "[[drive]]\nfor_s = 1\nmode = \"stop\"\n", 1, notes), file);
+    if (machine.rover.drives != scenario.rover.drives)
+        throw lab::ModelError(file, 0, "--model", "has other motors (rover.drives) than the scenario's rover, which the firmware drives",
+                              "give a --rover whose [layout] has the same drives, such as rovers/two_motors.toml");
     sim::RoverDescription really = scenario.rover; // the firmware goes on believing the scenario's rover
     for (std::size_t i = 0; i < really.values.size(); i++)
         if (machine.rover.values[i].given) really.values[i] = machine.rover.values[i];

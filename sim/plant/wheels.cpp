@@ -277,6 +277,7 @@ void Plant::World::step_wheel(int i) {
 }
 
 bool Plant::World::is_last_of(int motor, int slot) const {
+    if (config.rover.layout.drives[0] < 0) return true;
     int last = motor;
     for (const int i : wheels)
         if (!is_caster(config.rover.layout.kind, i) && motor_of(i) == motor) last = i;
