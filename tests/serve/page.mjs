@@ -57,12 +57,18 @@ export async function nothingIsAmiss(page) {
   assert.ok(over <= 0, `${over} px too wide`);
 }
 
+const longest_s = 300; // of a claim: what waits on a page that is stuck is told by its name
+const within = (work) => {
+  let timer;
+  return Promise.race([work, new Promise((_, fail) => { timer = setTimeout(() => fail(new Error(`not done after ${longest_s} s`)), 1000 * longest_s); })]).finally(() => clearTimeout(timer));
+};
+
 // Tries [name, check] in their order; how many do not hold.
 export async function tryAll(claims, page, picture) {
   let failed = 0;
   for (const [name, check] of claims) {
     try {
-      await check();
+      await within(Promise.resolve().then(check));
       console.log(`ok      ${name}`);
     } catch (error) {
       failed += 1;
