@@ -121,7 +121,8 @@ void make_plant(const CampaignOptions &options, std::uint64_t seed, SealedLog &o
     text.replace(at, plain.size(), "soil = \"" + one.soil + "\"");
     const std::string scenario = options.folder + "/scenario_" + std::to_string(seed) + ".toml";
     log::write_file(text, scenario);
-    std::vector<std::string> command = {options.traction, "simulate", scenario, "--seed", std::to_string(seed), "--out", one.log};
+    std::vector<std::string> command = {options.traction,     "simulate", scenario, "--seed",
+                                        std::to_string(seed), "--out",    one.log,  "--quiet"};
     const std::uint64_t draw = seed % 20;
     if (draw < 3) {
         log::write_file("{\"schema\": \"traction.seal/1\", \"effects\": []}\n", one.seal);

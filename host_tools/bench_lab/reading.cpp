@@ -187,6 +187,7 @@ json reading_json(const Reading &r) {
             {"truth", r.truth},
             {"truth_wheel", r.truth_wheel},
             {"detectability", r.detectability},
+            {"visible", r.visible},
             {"said", r.said},
             {"named", r.named},
             {"named_right", r.named_right},
@@ -198,7 +199,31 @@ json reading_json(const Reading &r) {
             {"truths_named", r.truths_named},
             {"flagged_unknown", r.flagged_unknown},
             {"variable_right", r.variable_right},
+            {"has_lag", r.has_lag},
             {"error_over_floor", r.error_over_floor}};
+}
+
+Reading read_reading(const json &entry) {
+    Reading r;
+    r.category = entry.at("category").get<std::string>();
+    r.truth = entry.at("truth").get<std::string>();
+    r.truth_wheel = entry.at("truth_wheel").get<int>();
+    r.detectability = number(entry, "detectability");
+    r.visible = entry.at("visible").get<bool>();
+    r.said = entry.at("said").get<std::string>();
+    r.named = entry.at("named").get<std::vector<std::string>>();
+    r.named_right = entry.at("named_right").get<std::vector<bool>>();
+    r.covered = entry.at("covered").get<std::vector<bool>>();
+    r.silent = entry.at("silent").get<bool>();
+    r.first_right = entry.at("first_right").get<bool>();
+    r.first_named_right = entry.at("first_named_right").get<bool>();
+    r.wheel_right = entry.at("wheel_right").get<bool>();
+    r.truths_named = entry.at("truths_named").get<int>();
+    r.flagged_unknown = entry.at("flagged_unknown").get<bool>();
+    r.variable_right = entry.at("variable_right").get<bool>();
+    r.has_lag = entry.at("has_lag").get<bool>();
+    r.error_over_floor = number(entry, "error_over_floor");
+    return r;
 }
 
 } // namespace traction::bench_lab

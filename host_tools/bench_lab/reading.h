@@ -31,5 +31,6 @@ struct Reading {
 
 Reading read_case(const nlohmann::json &seal, const nlohmann::json &result);
 nlohmann::json reading_json(const Reading &reading);
+Reading read_reading(const nlohmann::json &); // the reverse; a null number is 0
 
 } // namespace traction::bench_lab

@@ -1,7 +1,5 @@
 #include "score.h"
 
-#include "reading.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,8 +15,9 @@ struct Tally {
     Share outside_misnamed, covered, beyond_floor;
     std::vector<double> error_over_floor, error_over_floor_lag, seconds;
 
-    void add(const Reading &r, const Judged &judged) {
-        seconds.push_back(judged.seconds * 120 / judged.seal.value("duration_s", 120.0));
+    void add(const Case &one) {
+        const Reading &r = one.reading;
+        seconds.push_back(one.seconds * 120 / one.duration_s);
         for (const bool right : r.named_right) false_terms.add(!right);
         for (const bool inside : r.covered) covered.add(inside);
         if (r.category == "clean") clean_silent.add(r.named.empty() && !r.flagged_unknown);
@@ -80,18 +79,6 @@ struct Tally {
     }
 };
 
-// Size of the rover and how its sensors reach the log; nothing where the seal tells neither.
-std::vector<std::string> groups_of(const nlohmann::json &seal) {
-    std::vector<std::string> groups;
-    if (seal.contains("size")) groups.push_back(seal["size"].get<std::string>());
-    if (!seal.contains("chain")) return groups;
-    const nlohmann::json &chain = seal["chain"];
-    const bool plain = chain.value("accel_late_s", 0.0) == 0 && !chain.value("current_at_end", false) &&
-                       !chain.value("angle_only", false) && chain.value("jitter_s", 0.0) == 0 && !chain.value("foreign", false);
-    groups.push_back(plain ? "chain 1" : "chain 2");
-    return groups;
-}
-
 std::string part_text(const std::map<std::string, std::vector<Line>> &parts, std::size_t line) {
     std::string text;
     for (const auto &[name, lines] : parts) {
@@ -128,26 +115,25 @@ std::pair<double, double> Share::interval() const {
 }
 
 Score judge(const std::vector<Judged> &judged) {
+    std::vector<Case> cases;
+    for (const Judged &one : judged) cases.push_back(case_of(one));
+    return score_of(cases);
+}
+
+Score score_of(const std::vector<Case> &cases) {
     Score score;
     Tally all;
     std::map<std::string, Tally> soils, groups;
     score.cases = nlohmann::json::array();
-    for (const Judged &one : judged) {
-        if (one.result.contains("error")) ++score.failures;
-        const Reading reading = read_case(one.seal, one.result);
-        all.add(reading, one);
-        soils[one.seal.value("soil", std::string("?"))].add(reading, one);
-        for (const std::string &group : groups_of(one.seal)) groups[group].add(reading, one);
+    for (const Case &one : cases) {
+        if (!one.error.empty()) ++score.failures;
+        all.add(one);
+        soils[one.soil].add(one);
+        for (const std::string &group : one.groups) groups[group].add(one);
+        const Reading &reading = one.reading;
         if (reading.category == "one" || reading.category == "clean")
             ++score.confusion[reading.truth.empty() ? "(clean)" : reading.truth][reading.said];
-        nlohmann::json entry = reading_json(reading);
-        entry["log"] = one.log;
-        entry["soil"] = one.seal.value("soil", std::string("?"));
-        entry["seed"] = one.seal.value("seed", 0);
-        entry["seconds"] = one.seconds;
-        entry["hidden"] = one.seal.value("effects", nlohmann::json::array());
-        if (one.result.contains("error")) entry["error"] = one.result["error"];
-        score.cases.push_back(std::move(entry));
+        score.cases.push_back(case_json(one));
     }
     score.lines = all.lines();
     for (const auto &[soil, tally] : soils) score.by_soil[soil] = tally.lines();

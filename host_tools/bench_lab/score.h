@@ -2,6 +2,8 @@
 // section 5.
 #pragma once
 
+#include "reading.h"
+
 #include <nlohmann/json.hpp>
 
 #include <map>
@@ -18,6 +20,20 @@ struct Judged {
     nlohmann::json result; // traction.lab/1 of diagnose; {"error": text} when the lab failed
     double seconds = 0;    // processor time of the lab on this log
 };
+
+// What the judge keeps of one log: it goes to JSON and back with the same table (non-finite numbers excepted: they come back as 0).
+struct Case {
+    std::string log, soil, error; // error: why there is no answer; empty where there is one
+    std::vector<std::string> groups;
+    Reading reading;
+    nlohmann::json seed, hidden; // as the seal has them
+    double duration_s = 120;     // of the log
+    double seconds = 0;          // processor time of the lab on this log
+};
+Case case_of(const Judged &);
+nlohmann::json case_json(const Case &);
+// The reverse. Throws nlohmann::json::exception where the text is no case.
+Case read_case_json(const nlohmann::json &);
 
 // A share with its 95 % Wilson interval (Wilson 1927).
 struct Share {
@@ -43,11 +59,12 @@ struct Score {
     std::vector<Line> lines;
     std::map<std::string, std::vector<Line>> by_soil, by_group;  // group: size of the rover, sensor chain, where the seals tell them
     std::map<std::string, std::map<std::string, int>> confusion; // hidden -> said -> how often, single effects
-    nlohmann::json cases;                                        // one entry per log: what was hidden, what was said, why it counts
-    int failures = 0;                                            // logs on which the lab did not answer
+    nlohmann::json cases; // one entry per log (case_json): what was hidden, what was said, why it counts
+    int failures = 0;     // logs on which the lab did not answer
 };
 
 Score judge(const std::vector<Judged> &judged);
+Score score_of(const std::vector<Case> &cases); // the same from what was judged before, in any order but that of `cases`
 std::string table_text(const Score &score);
 nlohmann::json table_json(const Score &score);
 

@@ -1,9 +1,14 @@
 // verb_bench_lab.cpp - traction bench lab: a blind campaign of the lab on sealed logs, and its table (tests/bench/lab_bench).
 #include "bench_program.h"
+#include "campaign_program.h"
+#include "host_tools/log/write_file.h"
 #include "verbs.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+
+#include <unistd.h>
 
 namespace traction::cli {
 
@@ -13,7 +18,7 @@ struct Request {
     int logs = 250, jobs = 2;
     std::uint64_t seed = 1000;
     double duration_s = 120;
-    std::string generator = "independent", category, folder;
+    std::string generator = "independent", category, folder, out, scheduler;
     bool time = false, peers = false;
 };
 
@@ -29,6 +34,24 @@ std::vector<std::string> arguments(const Request &request) {
     if (request.time) out.push_back("--time");
     if (request.peers) out.push_back("--peers");
     return out;
+}
+
+// The same logs as a campaign (docs/campaign.md): a row a log, which goes on where it was stopped.
+void run_as_campaign(const Request &request, Outcome &outcome) {
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("traction_bench_lab_" + std::to_string(getpid()) + ".toml");
+    std::string text = "title = \"bench lab, " + request.generator + "\"\nkind = \"lab_bench\"\ngenerator = \"" + request.generator +
+                       "\"\nseed = " + std::to_string(request.seed) + "\nlogs = " + std::to_string(request.logs) +
+                       "\nduration_s = " + std::to_string(request.duration_s) + "\n";
+    if (!request.category.empty()) text += "category = \"" + request.category + "\"\n";
+    log::write_file(text, file.string());
+    std::vector<std::string> arguments = {file.string(), "--out", request.out};
+    if (request.scheduler.empty())
+        arguments.insert(arguments.end(), {"--workers", std::to_string(request.jobs)});
+    else
+        arguments.insert(arguments.end(), {"--scheduler", request.scheduler});
+    run_campaign(std::move(arguments), "--table-json", outcome);
+    std::filesystem::remove(file);
 }
 
 } // namespace
@@ -65,6 +88,18 @@ Verb verb_bench_lab() {
               .value = "FOLDER",
               .kind = Kind::folder},
              {.name = "--time", .into = &request->time, .help = "measure the time a log: one job"},
+             {.name = "--out",
+              .into = &request->out,
+              .help = "as a campaign: a row a log into this folder, written as they come; the same command goes on where it was stopped",
+              .value = "FOLDER",
+              .kind = Kind::folder,
+              .excludes = {"--keep", "--time", "--peers"}},
+             {.name = "--scheduler",
+              .into = &request->scheduler,
+              .help = "of a campaign: a Dask scheduler, tcp://HOST:PORT, whose workers make and answer the logs",
+              .value = "ADDRESS",
+              .needs = {"--out"},
+              .excludes = {"--jobs", "--keep", "--time", "--peers"}},
              {.name = "--peers",
               .into = &request->peers,
               .help = "PySINDy and SysIdentPy on the same logs (a .venv with pinned packages)"}},
@@ -73,7 +108,10 @@ Verb verb_bench_lab() {
                 throw UsageError("--category is not for the plant, which hides by seed; to mend: leave it out, or take --generator apart");
             if (request->peers && (request->generator == "fleet" || request->generator == "strange"))
                 throw UsageError("--peers read no maps, which these logs need; to mend: take --generator independent or apart");
-            run_bench("lab_bench", arguments(*request), outcome);
+            if (!request->out.empty())
+                run_as_campaign(*request, outcome);
+            else
+                run_bench("lab_bench", arguments(*request), outcome);
         }};
 }
 

@@ -3,10 +3,12 @@
 #include "verbs.h"
 
 #if TRACTION_WITH_LINK
+#include "progress.h"
 #include "stop_signal.h"
 
 #include "firmware/core/signals.h"
 #include "host_tools/drive/drive.h"
+#include "host_tools/drive/telemetry.h"
 #include "host_tools/log/write_file.h"
 
 #include <cstdlib>
@@ -16,6 +18,7 @@
 #include <cstdio>
 #include <ctime>
 #include <limits>
+#include <map>
 #endif
 
 #include <memory>
@@ -27,7 +30,7 @@ namespace traction::cli {
 namespace {
 
 struct DriveOptions {
-    std::string host, key, new_key, out;
+    std::string host, key, new_key, out, record, live;
     std::vector<std::string> set;
     std::vector<std::string> wheels;
     int system = 1, fetch = 0;
@@ -128,7 +131,11 @@ void fetch(const DriveOptions &o, drive::Operator &link, Outcome &outcome) {
         std::find_if(all.begin(), all.end(), [&](const drive::LogEntry &e) { return e.id == static_cast<unsigned>(o.fetch); });
     if (found == all.end()) throw log::FileError("--fetch " + std::to_string(o.fetch), 0, 0, "is no log of the rover", "--logs lists them");
     double due_s = link.now_s() + 1;
+    Progress progress("fetch log " + std::to_string(o.fetch), std::max<long>(1, found->bytes));
+    long shown = 0;
     const std::string bytes = link.log(*found, [&](std::size_t got) {
+        progress.step(static_cast<long>(got) - shown);
+        shown = static_cast<long>(got);
         if (link.now_s() < due_s) return;
         std::fprintf(stderr, "traction: %zu of %u bytes\n", got, found->bytes);
         due_s = link.now_s() + 5;
@@ -162,6 +169,49 @@ void parameters(const DriveOptions &o, drive::Operator &link, Outcome &outcome) 
     outcome.json["parameters"] = list;
 }
 
+std::map<std::string, std::string> header_of(const drive::Operator &link) {
+    std::map<std::string, std::string> header = {{"title", "telemetry of a rover over the supervision link: what its firmware believes"},
+                                                 {"machine", "rover at " + link.address()},
+                                                 {"quantum.battery.voltage_V", "0.001"}};
+    char now[40];
+    const std::time_t time = std::time(nullptr);
+    if (std::tm utc{}; gmtime_r(&time, &utc) != nullptr && std::strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", &utc) > 0)
+        header["date"] = now;
+    for (int i = 0; i < WHEEL_COUNT; i++) {
+        header["quantum.wheel" + std::to_string(i) + ".slip"] = "0.0001";
+        header["quantum.wheel" + std::to_string(i) + ".current_A"] = "0.01";
+    }
+    return header;
+}
+
+// Nothing is sent but the heartbeat that makes the rover tell.
+void record(const DriveOptions &o, Outcome &outcome) {
+    const StopSignal signals("\ntraction: ending; what was received is written\n");
+    drive::Operator link(o.host, o.key, o.system);
+    drive::Telemetry log(o.record);
+    const auto row = [&](const std::string &line) {
+        if (!o.live.empty()) log::write_file(line + '\n', "-");
+    };
+    row(drive::live_names());
+    const double seconds = o.lasting ? o.for_s : std::numeric_limits<double>::infinity();
+    const drive::Received received = drive::record(link, log, seconds, row, [] { return StopSignal::asked() != 0; });
+    if (received.rows == 0) drive::must_be_heard(link, false);
+    log.write(header_of(link));
+    std::printf("%s: %zu statuses in %.1f s, silent %d times (longest %.1f s)\n", o.record.c_str(), received.rows, received.seconds,
+                received.silences, received.longest_s);
+    outcome.json = {{"schema", "traction.drive/1"},
+                    {"host", o.host},
+                    {"system", o.system},
+                    {"recorded",
+                     {{"out", o.record},
+                      {"statuses", received.rows},
+                      {"seconds", received.seconds},
+                      {"silences", received.silences},
+                      {"longest_silence_s", received.longest_s}}},
+                    {"status", status_json(link)},
+                    {"link", counts_json(link.counts())}};
+}
+
 void run_drive(const DriveOptions &o, Outcome &outcome) {
     const bool moves = o.speed || o.yaw || o.slips || o.sweep;
     const bool asks = o.logs || o.fetching || o.parameters || !o.set.empty();
@@ -175,6 +225,10 @@ void run_drive(const DriveOptions &o, Outcome &outcome) {
     if ((moves || o.stop || !o.set.empty()) && o.key.empty())
         throw UsageError("a command needs the rover's key; give --key FILE (--new-key makes one)");
     if (o.fetching && o.out.empty()) throw UsageError("--fetch needs a file to write: give --out FILE.ulg");
+    if (!o.live.empty() && o.record.empty()) throw UsageError("--live shows what --record keeps: give --record LOG.csv too");
+    if (!o.record.empty() && (moves || asks || o.stop))
+        throw UsageError("--record watches and does nothing else; a second `traction drive` may drive, ask or stop meanwhile");
+    if (!o.record.empty()) return record(o, outcome);
     (void)order_of(o); // its mistakes before anything is sent
     const StopSignal signals("\ntraction: stopping the rover\n");
     drive::Operator link(o.host, o.key, o.system);
@@ -229,6 +283,17 @@ std::vector<Option> question_rows(DriveOptions &o) {
              .help = "the log's bytes (ULog: traction convert reads it)",
              .value = "FILE",
              .kind = Kind::output},
+            {.name = "--record",
+             .into = &o.record,
+             .help = "watch, and keep what comes as a log; waits for a rover that is silent; until Ctrl-C, or --for",
+             .value = "LOG",
+             .kind = Kind::output},
+            {.name = "--live",
+             .into = &o.live,
+             .help = "with --record: speed, slip, currents, battery, mode, faults, age of the link to standard output, ten rows a second",
+             .value = "-",
+             .kind = Kind::output,
+             .one_of = {"-"}},
             {.name = "--parameters", .into = &o.parameters, .help = "list the rover's parameters as they are in force"},
             {.name = "--set",
              .into = &o.set,

@@ -3,10 +3,13 @@
 #include "verbs.h"
 
 #include "host_tools/lab/result/effects_json.h"
+#include "host_tools/report/effect_drawing.h"
+#include "host_tools/report/report.h"
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 namespace traction::cli {
@@ -61,7 +64,17 @@ void explain(const sim::Effect &effect) {
         std::string(effect.name).c_str(), strength.c_str());
 }
 
-void effects(const std::string &name, Outcome &outcome) {
+// A file of its own for each.
+void draw(const std::string &folder) {
+    if (!std::filesystem::is_directory(folder)) throw UsageError("--drawings " + folder + ": is no folder; make it first");
+    for (const sim::Effect &effect : sim::catalogue())
+        report::write_text(report::effect_svg(effect, true) + "\n",
+                           (std::filesystem::path(folder) / (std::string(effect.name) + ".svg")).string());
+    std::printf("%zu drawings in %s\n", sim::catalogue().size(), folder.c_str());
+}
+
+void effects(const std::string &name, const std::string &drawings, Outcome &outcome) {
+    if (!drawings.empty()) draw(drawings);
     nlohmann::json list = nlohmann::json::array();
     if (!name.empty()) {
         need_effect("NAME", name, "");
@@ -82,11 +95,16 @@ void effects(const std::string &name, Outcome &outcome) {
 } // namespace
 
 Verb verb_effects() {
-    const auto name = std::make_shared<std::string>();
+    const auto name = std::make_shared<std::string>(), drawings = std::make_shared<std::string>();
     return {.name = "effects",
             .summary = "list the physical effects that can be simulated and found, or explain one",
-            .options = {{.argument = "NAME", .into = name.get(), .help = "the effect to explain", .kind = Kind::effect}},
-            .run = [name](Outcome &outcome) { effects(*name, outcome); }};
+            .options = {{.argument = "NAME", .into = name.get(), .help = "the effect to explain", .kind = Kind::effect},
+                        {.name = "--drawings",
+                         .into = drawings.get(),
+                         .help = "draw every effect, where it acts and what it adds, as FOLDER/NAME.svg",
+                         .value = "FOLDER",
+                         .kind = Kind::folder}},
+            .run = [name, drawings](Outcome &outcome) { effects(*name, *drawings, outcome); }};
 }
 
 } // namespace traction::cli

@@ -98,8 +98,13 @@ void show(const ReportOptions &options, Outcome &outcome) {
         throw UsageError("--truth, --map, --rover: are for the drive of a log; give the log, or --log beside a result");
     nlohmann::json result = log ? page_of_log(options) : one ? read_result(options.results.front()) : side_by_side(options.results);
     if (!options.log.empty() && result.is_object()) result["replay"] = drive_of(options, options.log);
+    const bool data = std::filesystem::path(options.out).extension() == ".json";
+    if (data && !log) throw UsageError("--out " + options.out + ": the data of a page is written for the drive of a log; give FILE.html");
     try {
-        report::write_html(result, options.out);
+        if (data)
+            report::write_text(result.dump() + '\n', options.out);
+        else
+            report::write_html(result, options.out);
     } catch (const report::ReportError &error) {
         throw report::ReportError(options.results.front() + ": " + error.what());
     }
@@ -137,7 +142,12 @@ Verb verb_report() {
               .help = "the rover that is drawn (rovers/*.toml); else the reference",
               .value = "FILE",
               .kind = Kind::rover},
-             {.name = "--out", .into = &options->out, .help = "the page", .value = "FILE.html", .kind = Kind::output, .required = true}},
+             {.name = "--out",
+              .into = &options->out,
+              .help = "the page; of a log also FILE.json: what its page shows (traction.look/1)",
+              .value = "FILE.html",
+              .kind = Kind::output,
+              .required = true}},
         .run = [options](Outcome &outcome) { show(*options, outcome); }};
 }
 

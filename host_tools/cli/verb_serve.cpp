@@ -5,6 +5,9 @@
 #include "data_files.h"
 #include "stop_signal.h"
 
+#if TRACTION_WITH_LINK
+#include "host_tools/drive/operator.h"
+#endif
 #include "host_tools/serve/http.h"
 #include "host_tools/serve/token.h"
 
@@ -18,6 +21,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <thread>
 #endif
 
@@ -29,8 +33,8 @@ namespace traction::cli {
 namespace {
 
 struct ServeOptions {
-    std::string folder = ".";
-    int port = 8471;
+    std::string folder = ".", host, key;
+    int port = 8471, system = 1;
     bool open = false;
 };
 
@@ -49,11 +53,26 @@ void open_browser(const std::string &address) {
     posix_spawn_file_actions_destroy(&files);
 }
 
+// The rover to be watched, its address and key judged before anything is served.
+std::optional<serve::Rover> rover_of(const ServeOptions &options) {
+    if (options.host.empty()) {
+        if (!options.key.empty()) throw UsageError("--key: is a rover's; give its --host ADDR too");
+        return std::nullopt;
+    }
+#if TRACTION_WITH_LINK
+    const drive::Operator tried(options.host, options.key, options.system);
+    const std::string key = options.key.empty() ? "" : std::filesystem::absolute(options.key).string();
+    return serve::Rover{.host = options.host, .key = key, .system = options.system};
+#else
+    throw UsageError("--host: not in this build: there was no pymavlink when it was configured; ./traction build brings it (python3-venv)");
+#endif
+}
+
 void serve_folder(const ServeOptions &options, Outcome &outcome) {
     std::error_code none;
     const std::string program = std::filesystem::read_symlink("/proc/self/exe", none).string();
     if (program.empty()) throw std::runtime_error("/proc is not mounted: this program cannot find itself to run the verbs");
-    serve::Workshop workshop(options.folder, data_root(), program);
+    serve::Workshop workshop(options.folder, data_root(), program, rover_of(options));
     const std::filesystem::path own = std::filesystem::canonical(options.folder) / "traction_serve";
     serve::Server server(workshop, options.port, serve::keep_token((own / "token").string()));
     std::printf("serving %s\nopen    %s\nend     Ctrl-C\n", own.parent_path().c_str(), server.address().c_str());
@@ -95,6 +114,21 @@ Verb verb_serve() {
                          .help = "on 127.0.0.1; 0: one that is free",
                          .shows_default = true,
                          .range = Range{0, 65535}},
+                        {.name = "--host",
+                         .into = &options->host,
+                         .help = "a rover whose telemetry is shown and kept: where its tractiond --link listens",
+                         .value = "ADDR"},
+                        {.name = "--key",
+                         .into = &options->key,
+                         .help = "the rover's key: what is not signed with it is not believed",
+                         .value = "FILE",
+                         .kind = Kind::input},
+                        {.name = "--system",
+                         .into = &options->system,
+                         .help = "the rover's MAVLink number",
+                         .value = "N",
+                         .shows_default = true,
+                         .range = Range{1, 250}},
                         {.name = "--open", .into = &options->open, .help = "open the page in this desktop's browser"}},
             .run = [options](Outcome &outcome) { serve_folder(*options, outcome); },
             .details =

@@ -1,6 +1,5 @@
 #include "drive.h"
 
-#include "firmware/core/fault_name.h"
 #include "firmware/core/safety.h"
 #include "firmware/core/signals.h"
 #include "host_tools/log/log.h"
@@ -29,18 +28,6 @@ void begin(Operator &link) {
 
 } // namespace
 
-std::string fault_words(std::uint32_t faults) {
-    std::string text;
-    for (std::int32_t bit = 0; bit < FAULT_COUNT; bit++)
-        if ((faults >> static_cast<unsigned>(bit) & 1u) != 0) text += std::string(text.empty() ? "" : ", ") + fault_name(bit);
-    return text.empty() ? "none" : text;
-}
-
-const char *mode_words(int mode) {
-    static const std::array<const char *, MODE_COUNT> words{"stop", "open loop", "wheel speed", "platform speed", "slip", "soil sweep"};
-    return mode >= 0 && mode < MODE_COUNT ? words[static_cast<std::size_t>(mode)] : "unknown";
-}
-
 std::string line_of(const Operator &link) {
     const Status &s = link.status();
     std::array<char, 160> text{};
@@ -59,19 +46,28 @@ std::string line_of(const Operator &link) {
     return line + " | faults: " + fault_words(s.faults);
 }
 
-void meet(Operator &link, bool to_command) {
-    const double until_s = link.now_s() + first_words_s;
-    const auto enough = [&] { return link.heard() && (!to_command || link.counted()); };
-    while (!enough() && link.now_s() < until_s) link.listen(period_s);
+namespace {
+
+bool enough(const Operator &link, bool to_command) { return link.heard() && (!to_command || link.counted()); }
+
+} // namespace
+
+void must_be_heard(const Operator &link, bool to_command) {
     const std::string host = "--host " + link.address();
     if (link.other_key())
         throw log::FileError(host, 0, 0, "signs with another key than --key", "copy the rover's key file to this machine");
     if (link.counted() && !link.counts().keyed && (to_command || !link.heard()))
         throw log::FileError(host, 0, 0, "has no key: it tells, and obeys nobody",
                              "start its tractiond with --link-key FILE, or watch without --key");
-    if (!enough())
+    if (!enough(link, to_command))
         throw log::FileError(host, 0, 0, "no rover answers",
                              "tractiond --link ADDRESS --link-key FILE must run there, --system be its number, and UDP be let through");
+}
+
+void meet(Operator &link, bool to_command) {
+    const double until_s = link.now_s() + first_words_s;
+    while (!enough(link, to_command) && link.now_s() < until_s) link.listen(period_s);
+    must_be_heard(link, to_command);
 }
 
 bool stop(Operator &link) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "operator.h"
+#include "words.h"
 
 #include <cstdint>
 #include <functional>
@@ -25,6 +26,7 @@ struct Drive {
 // Waits for the rover's first words. Throws log::FileError when none come, or none that the key is good for, or, where `to_command`, the
 // rover has no key.
 void meet(Operator &link, bool to_command);
+void must_be_heard(const Operator &link, bool to_command); // the same of what has come until now, without waiting
 
 // Stops the rover, clears what is latched, drives for `seconds`, stops again. `told` is called with every status, `stopped` asks whether to
 // end early. A latched fault ends the drive.
@@ -42,9 +44,5 @@ void by_hand(Operator &link, bool may_command, const std::function<bool()> &stop
 
 // "0.30 m/s +-0.01 | slip 0.02 0.02 - - | ...": one line, without a line's end.
 std::string line_of(const Operator &link);
-
-// The words of latched faults, "stall, low battery"; "none".
-std::string fault_words(std::uint32_t faults);
-const char *mode_words(int mode); // of control_mode_t
 
 } // namespace traction::drive

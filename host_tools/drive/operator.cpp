@@ -97,6 +97,7 @@ struct Operator::Socket {
     bool counted = false;
     std::vector<std::string> texts;
     std::function<void(const mavlink_message_t &)> waiting; // who waits for an answer
+    std::function<void(const Status &)> each_status;
 
     ~Socket() {
         if (fd >= 0) close(fd);
@@ -136,6 +137,7 @@ struct Operator::Socket {
             status = status_of(told);
             statuses++;
             last_status_s = now_s();
+            if (each_status) each_status(status);
             break;
         }
         case MAVLINK_MSG_ID_TRACTION_LINK: {
@@ -247,6 +249,7 @@ double Operator::silence_s() const { return self_->now_s() - self_->last_status_
 bool Operator::has_key() const { return self_->keyed; }
 bool Operator::other_key() const { return self_->foreign > 0 && self_->believed == 0; }
 std::size_t Operator::statuses() const { return self_->statuses; }
+void Operator::each_status(std::function<void(const Status &)> told) { self_->each_status = std::move(told); }
 const Status &Operator::status() const { return self_->status; }
 const LinkCounts &Operator::counts() const { return self_->counts; }
 bool Operator::counted() const { return self_->counted; }

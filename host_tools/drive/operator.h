@@ -57,8 +57,9 @@ class Operator {
     bool heard() const;       // a status has come
     double silence_s() const; // since the latest one; since the start where none came
     bool has_key() const;
-    bool other_key() const;       // the rover signs with another key: nothing that it says is believed
-    std::size_t statuses() const; // so many have come
+    bool other_key() const;                                           // the rover signs with another key: nothing that it says is believed
+    std::size_t statuses() const;                                     // so many have come
+    void each_status(std::function<void(const Status &status)> told); // called with every one that comes; replaces the one before
     const Status &status() const;
     const LinkCounts &counts() const; // of the latest second
     bool counted() const;             // they have come

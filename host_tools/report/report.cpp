@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include "effect_drawing.h"
 #include "page.h"
 
 #include "host_tools/log/write_file.h"
@@ -55,8 +56,10 @@ std::string to_html(const nlohmann::json &result) {
                 throw ReportError(
                     "results: only results of the lab stand beside one another (traction.lab/1: compare, diagnose, add, fit)");
     const bool has_drive = result.contains("replay") && result["replay"].is_object();
+    nlohmann::json shown = result;
+    if (nlohmann::json drawings = drawings_of(result); !drawings.empty()) shown["drawings"] = std::move(drawings);
     return put_in(page_template(),
-                  {{"__TRACTION_RESULT__", embeddable(result)}, {"__TRACTION_SCENE__", has_drive ? std::string(scene_code()) : ""}});
+                  {{"__TRACTION_RESULT__", embeddable(shown)}, {"__TRACTION_SCENE__", has_drive ? std::string(scene_code()) : ""}});
 }
 
 void write_html(const nlohmann::json &result, const std::string &path) { write_text(to_html(result), path); }

@@ -3,7 +3,12 @@
 #include "live_page.h"
 #include "token.h"
 
+#include "firmware/core/fault_name.h"
+#include "firmware/core/signals.h"
+#include "host_tools/drive/words.h"
 #include "host_tools/lab/result/effects_json.h"
+#include "host_tools/report/effect_drawing.h"
+#include "host_tools/report/page.h"
 #include "sim/physics/effects/catalogue.h"
 
 #include <cstdint>
@@ -33,9 +38,19 @@ constexpr int most_listeners = 16; // browsers at once, each of which holds a th
 constexpr int threads = most_listeners + 8;
 constexpr std::size_t most_body = 65536;
 
+// A body by its length. The library compresses whatever text is set whole, which costs seconds of a processor where brotli is there, and
+// saves nothing on a way that does not leave the machine.
+void plain(httplib::Response &response, std::string text, const char *type) {
+    if (text.empty()) return response.set_content("", type);
+    const std::size_t size = text.size();
+    response.set_content_provider(size, type, [text = std::move(text)](std::size_t from, std::size_t length, httplib::DataSink &sink) {
+        return sink.write(text.data() + from, length);
+    });
+}
+
 void answer(httplib::Response &response, int status, const json &body) {
     response.status = status;
-    response.set_content(body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n", "application/json");
+    plain(response, body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n", "application/json");
 }
 
 void refuse(httplib::Response &response, int status, const std::string &why) { answer(response, status, {{"error", why}}); }
@@ -108,7 +123,7 @@ struct Server::Inside {
         response.set_header("Content-Security-Policy",
                             "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
                                 "'; connect-src 'self'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
-        response.set_content(page_with(nonce), "text/html; charset=utf-8");
+        plain(response, page_with(nonce), "text/html; charset=utf-8");
     }
 
     void events(httplib::Response &response) {
@@ -163,13 +178,26 @@ struct Server::Inside {
         server.Get("/events", [this](const httplib::Request &, httplib::Response &response) { events(response); });
         server.Get("/api/effects", [](const httplib::Request &, httplib::Response &response) {
             json all = json::array();
-            for (const sim::Effect &effect : sim::catalogue()) all.push_back(lab::effect_json(effect));
+            for (const sim::Effect &effect : sim::catalogue()) {
+                all.push_back(lab::effect_json(effect));
+                all.back()["drawing"] = report::effect_svg(effect, false);
+            }
             answer(response, 200, all);
+        });
+        server.Get("/api/rover", [](const httplib::Request &, httplib::Response &response) {
+            json words = {{"faults", json::array()}, {"modes", json::array()}, {"bridges", json::array()}};
+            for (int i = 0; i < FAULT_COUNT; ++i) words["faults"].push_back(fault_name(i));
+            for (int i = 0; i < MODE_COUNT; ++i) words["modes"].push_back(drive::mode_words(i));
+            for (int i = DRIVE_OFF; i <= DRIVE_ON; ++i) words["bridges"].push_back(drive::bridge_words(i));
+            answer(response, 200, words);
+        });
+        server.Get("/api/scene", [](const httplib::Request &, httplib::Response &response) {
+            plain(response, std::string(report::scene_code()), "text/plain; charset=utf-8");
         });
         server.Get(R"(/api/result/([1-9][0-9]{0,8}))", [this](const httplib::Request &request, httplib::Response &response) {
             const auto text = workshop.result(std::atoi(request.matches[1].str().c_str()));
             if (!text) return refuse(response, 404, "there is no such result");
-            response.set_content(*text, "application/json");
+            plain(response, *text, "application/json");
         });
         server.Post("/api/run", [this](const httplib::Request &request, httplib::Response &response) {
             posted(request, response, [this](const json &body) { return json{{"id", workshop.run(body)}}; });
@@ -187,7 +215,7 @@ struct Server::Inside {
             });
         });
         server.set_error_handler([](const httplib::Request &, httplib::Response &response) {
-            if (!response.body.empty()) return;
+            if (response.has_header("Content-Type")) return; // answered already
             refuse(response, response.status,
                    response.status == 404   ? "there is nothing of that name"
                    : response.status == 413 ? "the body is larger than 64 kB"

@@ -2,6 +2,7 @@
 //
 //   GET  /                the page                  GET  /events          server-sent events (Workshop::events)
 //   GET  /api/effects     the catalogue             GET  /api/result/ID   a result, as --json wrote it
+//   GET  /api/rover       words of faults and modes GET  /api/scene       the code that draws a drive, as text
 //   POST /api/run         order.h                   POST /api/cancel, /api/seal   { "id": N }
 //
 // Every request: the token (query "token", or header X-Traction-Token), a Host that is this machine's own name at this port (DNS

@@ -21,6 +21,7 @@ namespace {
 const std::map<std::string, Words> &keys_of_verbs() {
     static const std::map<std::string, Words> keys = {
         {"check", {"log", "model", "map"}},
+        {"look", {"log", "map"}},
         {"compare", {"log", "model", "map"}},
         {"diagnose", {"log", "model", "map"}},
         {"next", {"log", "model", "map"}},
@@ -32,6 +33,9 @@ const std::map<std::string, Words> &keys_of_verbs() {
         {"game_guess", {"effect", "wheel"}},
         {"game_add", {"effect", "wheel"}},
         {"game_open", {}},
+        {"watch", {}},
+        {"rover_logs", {}},
+        {"rover_fetch", {"number"}},
     };
     return keys;
 }
@@ -178,13 +182,39 @@ void game_order(const Asked &asked, const Folder &folder, const std::string &res
     order.commands = {words};
 }
 
+// What `traction drive` is asked: to watch, to list, to fetch. Never a command.
+void rover_order(const Asked &asked, const Folder &folder, const Rover *rover, const std::string &result, Order &order) {
+    if (rover == nullptr) throw BadRequest("verb: no rover was named: start traction serve with --host ADDR");
+    Words words = {"drive", "--host", rover->host, "--system", std::to_string(rover->system)};
+    if (!rover->key.empty()) words.insert(words.end(), {"--key", rover->key});
+    words.insert(words.end(), {"--json", result});
+    if (asked.verb == "watch") {
+        const std::string log = folder.free_name("telemetry", ".csv");
+        words.insert(words.end(), {"--live", "-", "--record", (folder.root() / log).string()});
+        order.entry["log"] = log;
+        order.live = true;
+    } else if (asked.verb == "rover_logs") {
+        words.emplace_back("--logs");
+    } else {
+        if (!asked.has("number")) throw BadRequest("number: is missing; list the rover's logs and choose one");
+        const std::string number = std::to_string(asked.whole("number", 0, 65535)), stem = "rover_log_" + number;
+        const std::string made = folder.free_name(stem, ".ulg"), log = folder.free_name(stem, ".csv");
+        words.insert(words.end(), {"--fetch", number, "--out", (folder.root() / made).string()});
+        order.entry["made"] = made;
+        order.entry["log"] = log;
+        order.commands = {words, {"convert", (folder.root() / made).string(), "--out", (folder.root() / log).string()}};
+        return;
+    }
+    order.commands = {words};
+}
+
 void lab_order(const Asked &asked, const Folder &folder, const std::string &result, Order &order) {
     const std::string &verb = asked.verb;
     const File &log = asked.file("log", Kind::log);
     order.entry["log"] = log.name;
     Words input = {log.path.string()};
     std::string model;
-    if (verb != "check" || asked.has("model")) {
+    if (verb != "look" && (verb != "check" || asked.has("model"))) {
         const File &file = asked.file("model", Kind::model);
         model = file.path.string();
         order.entry["model"] = file.name;
@@ -193,6 +223,12 @@ void lab_order(const Asked &asked, const Folder &folder, const std::string &resu
         const File &map = asked.file("map", Kind::map);
         input.insert(input.end(), {"--map", map.path.string()});
         order.entry["map"] = map.name;
+    }
+    if (verb == "look") { // what its page would show
+        input.insert(input.begin(), "report");
+        input.insert(input.end(), {"--out", result});
+        order.commands = {input};
+        return;
     }
     const auto with_model = [&](const std::string &of) {
         Words words = input;
@@ -234,7 +270,7 @@ void lab_order(const Asked &asked, const Folder &folder, const std::string &resu
 
 } // namespace
 
-Order make_order(const json &request, const Folder &folder, const std::string &result, const std::string &seal) {
+Order make_order(const json &request, const Folder &folder, const std::string &result, const std::string &seal, const Rover *rover) {
     const Asked asked(request, folder);
     Order order;
     order.entry = {{"verb", asked.verb}};
@@ -242,6 +278,8 @@ Order make_order(const json &request, const Folder &folder, const std::string &r
         simulate_order(asked, folder, result, seal, order);
     else if (asked.verb.rfind("game", 0) == 0)
         game_order(asked, folder, result, order);
+    else if (asked.verb == "watch" || asked.verb.rfind("rover_", 0) == 0)
+        rover_order(asked, folder, rover, result, order);
     else
         lab_order(asked, folder, result, order);
     return order;

@@ -3,6 +3,7 @@
 #include "child.h"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
@@ -19,7 +20,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t most_entries = 500, most_rows = 36000; // an hour of a drive at ten rows a second
+constexpr std::size_t most_entries = 500,
+                      most_rows = 36000; // an hour of a drive at ten rows a second, of which the half is kept when it is over
 constexpr std::chrono::milliseconds look_every{700};
 
 std::int64_t now_ms() {
@@ -46,6 +48,14 @@ void sum_up(const json &result, json &entry) {
         if (text.is_string() && !entry.contains("headline")) entry["headline"] = text;
     if (member(result, "schema") == "traction.check/1")
         entry["headline"] = member(result, "passed") == true ? "fit to learn from" : "not fit to learn from until its errors are mended";
+    if (member(result, "schema") == "traction.look/1")
+        entry["headline"] =
+            "the drive, played again; the pose is the " + member(member(result, "replay"), "pose_from").get<std::string>() + "'s";
+    if (member(result, "logs").is_array()) entry["logs"] = result["logs"];
+    const json recorded = member(result, "recorded");
+    if (member(recorded, "statuses").is_number() && member(recorded, "seconds").is_number())
+        entry["headline"] =
+            recorded["statuses"].dump() + " statuses in " + std::to_string(std::lround(recorded["seconds"].get<double>())) + " s";
     json before = member(score, "error"), after = member(score, "adjusted");
     const bool game = member(result, "schema") == "traction.game/1";
     const json ladder = game ? json() : member(result, "ladder"), guesses = member(result, "guesses");
@@ -97,11 +107,12 @@ std::string compact(const json &value) { return value.dump(-1, ' ', false, json:
 
 } // namespace
 
-Workshop::Workshop(const fs::path &folder, const fs::path &data, std::string program)
-    : folder_(folder, data), alone_((folder_.own() / "history.json").string()), program_(std::move(program)) {
+Workshop::Workshop(const fs::path &folder, const fs::path &data, std::string program, std::optional<Rover> rover)
+    : folder_(folder, data), alone_((folder_.own() / "history.json").string()), program_(std::move(program)), rover_(std::move(rover)) {
     load_history();
     threads_.emplace_back([this] { watch(); });
-    for (const Place place : {lab, drive}) threads_.emplace_back([this, place] { work(place); });
+    for (const Place place : {lab, drive, watched}) threads_.emplace_back([this, place] { work(place); });
+    if (rover_) run({{"verb", "watch"}});
 }
 
 Workshop::~Workshop() {
@@ -113,7 +124,7 @@ void Workshop::stop() {
     stopping_ = true;
     const std::lock_guard lock(mutex_);
     slots_[lab].signal = SIGTERM;
-    slots_[drive].signal = SIGINT; // what was simulated is kept
+    for (const Place place : {drive, watched}) slots_[place].signal = SIGINT; // what was simulated, or received, is kept
     news_.notify_all();
 }
 
@@ -185,10 +196,11 @@ void Workshop::watch() {
 int Workshop::run(const json &request) {
     const std::lock_guard lock(mutex_);
     const std::string verb = request.is_object() && member(request, "verb").is_string() ? request["verb"].get<std::string>() : "";
-    Slot &slot = slots_[verb == "simulate" ? drive : lab];
+    const Place place = place_of(verb);
+    Slot &slot = slots_[place];
     if (folder_.look()) changed(); // a file that came this moment is there
     const int id = last_id_ + 1;
-    Order order = make_order(request, folder_, file_of(id, ".json"), file_of(id, ".seal.json"));
+    Order order = make_order(request, folder_, file_of(id, ".json"), file_of(id, ".seal.json"), rover_ ? &*rover_ : nullptr);
     if (stopping_) throw Busy("the server ends");
     if (slot.id != 0) throw Busy("something runs already (" + slot.work.value("verb", "") + "): wait for it, or cancel it");
     order.entry["id"] = last_id_ = id;
@@ -199,19 +211,19 @@ int Workshop::run(const json &request) {
     slot.signal = 0;
     slot.work = {{"id", id}, {"verb", verb}, {"words", "begins"}, {"done", 0}, {"total", 0}};
     slot.order = std::move(order);
-    if (verb == "simulate") {
-        drive_ = id;
-        rows_.clear();
-    }
+    if (place == drive) drive_rows_ = {.id = id, .part = 0, .rows = {}};
+    if (place == watched) telemetry_ = {.id = id, .part = 0, .rows = {}};
     changed();
     return id;
 }
+
+Workshop::Place Workshop::place_of(const std::string &verb) { return verb == "simulate" ? drive : verb == "watch" ? watched : lab; }
 
 void Workshop::cancel(int id) {
     const std::lock_guard lock(mutex_);
     for (Slot &slot : slots_)
         if (slot.id == id && id > 0) {
-            slot.signal = &slot == &slots_[drive] ? SIGINT : SIGTERM;
+            slot.signal = &slot == &slots_[lab] ? SIGTERM : SIGINT;
             slot.work["words"] = "stops";
             ++work_;
             news_.notify_all();
@@ -257,6 +269,7 @@ json Workshop::game() const {
 
 json Workshop::state_now() const {
     return {{"folder", folder_.root().string()},
+            {"rover", rover_ ? json{{"host", rover_->host}, {"keyed", !rover_->key.empty()}} : json()},
             {"files", folder_.json()},
             {"history", json(std::vector<json>(history_.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(100, history_.size())),
                                                history_.end()))},
@@ -274,13 +287,27 @@ json Workshop::state() const {
     return state_now();
 }
 
+bool Workshop::fresh(const Rows &rows, const Seen::Rows &seen) {
+    return rows.id > 0 && (seen.id != rows.id || seen.part != rows.part || seen.count < rows.rows.size());
+}
+
+// The rows that were not seen yet, all of them where others were.
+std::string Workshop::news(const char *name, const Rows &rows, Seen::Rows &seen) {
+    if (!fresh(rows, seen)) return "";
+    const std::size_t from = seen.id == rows.id && seen.part == rows.part ? seen.count : 0;
+    std::string text;
+    for (std::size_t i = from; i < rows.rows.size(); ++i) text += (i == from ? "" : ",") + rows.rows[i];
+    seen = {.id = rows.id, .part = rows.part, .count = rows.rows.size()};
+    return event(name, "{\"id\":" + std::to_string(rows.id) + ",\"from\":" + std::to_string(from) + ",\"rows\":[" + text + "]}");
+}
+
 std::string Workshop::events(Seen &seen, std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
-    const auto fresh = [&] {
-        return stopping_ || seen.state != state_ || seen.work != work_ ||
-               (drive_ > 0 && (seen.drive != drive_ || seen.rows < rows_.size()));
+    const auto some = [&] {
+        return stopping_ || seen.state != state_ || seen.work != work_ || fresh(drive_rows_, seen.drive) ||
+               fresh(telemetry_, seen.telemetry);
     };
-    if (!news_.wait_for(lock, longest, fresh) || stopping_) return "";
+    if (!news_.wait_for(lock, longest, some) || stopping_) return "";
     std::string out;
     if (seen.state != state_) out += event("state", compact(state_now()));
     if (seen.work != work_) {
@@ -289,22 +316,23 @@ std::string Workshop::events(Seen &seen, std::chrono::milliseconds longest) {
             if (slot.id != 0) running.push_back(slot.work);
         out += event("work", compact(running));
     }
-    if (drive_ > 0 && (seen.drive != drive_ || seen.rows < rows_.size())) {
-        const std::size_t from = seen.drive == drive_ ? seen.rows : 0;
-        std::string rows;
-        for (std::size_t i = from; i < rows_.size(); ++i) rows += (i == from ? "" : ",") + rows_[i];
-        out += event("rows", "{\"id\":" + std::to_string(drive_) + ",\"from\":" + std::to_string(from) + ",\"rows\":[" + rows + "]}");
-    }
-    seen = {.state = state_, .work = work_, .drive = drive_, .rows = rows_.size()};
+    out += news("rows", drive_rows_, seen.drive);
+    out += news("telemetry", telemetry_, seen.telemetry);
+    seen.state = state_;
+    seen.work = work_;
     return out;
 }
 
-void Workshop::row(int id, const std::string &line) {
+void Workshop::row(Rows &rows, int id, const std::string &line) {
     std::string row = row_of(line);
     if (row.empty()) return;
     const std::lock_guard lock(mutex_);
-    if (drive_ != id || rows_.size() >= most_rows) return;
-    rows_.push_back(std::move(row));
+    if (rows.id != id) return;
+    if (rows.rows.size() >= most_rows) {
+        rows.rows.erase(rows.rows.begin(), rows.rows.begin() + most_rows / 2);
+        ++rows.part;
+    }
+    rows.rows.push_back(std::move(row));
     news_.notify_all();
 }
 
@@ -319,7 +347,7 @@ json Workshop::done(const Order &order, Slot &slot, int id, Place place) {
         ++work_;
         news_.notify_all();
     };
-    if (place == drive) listening.line = [&](const std::string &line) { row(id, line); };
+    if (order.live) listening.line = [&](const std::string &line) { row(place == drive ? drive_rows_ : telemetry_, id, line); };
     Finished finished;
     try {
         for (const std::vector<std::string> &command : order.commands) {
@@ -345,7 +373,7 @@ json Workshop::done(const Order &order, Slot &slot, int id, Place place) {
     }
     std::error_code error;
     for (const char *made : {"log", "made"}) // what was to be written, and was not
-        if ((made == std::string("made") || place == drive) && entry.contains(made) &&
+        if ((made == std::string("made") || place != lab || order.entry["verb"] == "rover_fetch") && entry.contains(made) &&
             !fs::exists(folder_.root() / entry[made].get<std::string>(), error))
             entry.erase(made);
     return entry;

@@ -1,5 +1,5 @@
 // workshop.h - what all browsers of one `traction serve` share: the folder, the history of what was run, what runs now, the drive that is
-// being simulated. One verb of the lab (or of the game) and one drive may run side by side.
+// being simulated, the rover that is watched. One verb of the lab (or of the game), one drive and one watch may run side by side.
 //
 // Thread-safe. The history stands in traction_serve/history.json of the folder (schema traction.serve/1), each result beside it as ID.json.
 #pragma once
@@ -33,8 +33,9 @@ struct Busy : std::runtime_error {
 
 class Workshop {
   public:
-    // program: the traction that runs the verbs. Throws log::FileError.
-    Workshop(const std::filesystem::path &folder, const std::filesystem::path &data, std::string program);
+    // program: the traction that runs the verbs. rover: watched from now on. Throws log::FileError.
+    Workshop(const std::filesystem::path &folder, const std::filesystem::path &data, std::string program,
+             std::optional<Rover> rover = std::nullopt);
     ~Workshop(); // ends what runs
     Workshop(const Workshop &) = delete;
     Workshop &operator=(const Workshop &) = delete;
@@ -49,8 +50,11 @@ class Workshop {
     // What a browser has seen already; a fresh one has seen nothing.
     struct Seen {
         std::uint64_t state = 0, work = 0;
-        int drive = -1;
-        std::size_t rows = 0;
+        struct Rows {
+            int id = -1;
+            unsigned part = 0;
+            std::size_t count = 0;
+        } drive, telemetry;
     };
     // Server-sent events that bring `seen` up to date; empty when nothing happened for so long, or when all ends.
     std::string events(Seen &seen, std::chrono::milliseconds longest);
@@ -59,19 +63,28 @@ class Workshop {
     bool stopped() const { return stopping_; }
 
   private:
-    enum Place { lab, drive };
+    enum Place { lab, drive, watched };
     struct Slot {
         std::optional<Order> order;
         int id = 0; // 0: free
         nlohmann::json work;
         std::atomic<int> signal{0};
     };
+    // What a run tells while it goes on: the latest hour and more, in `part` that begins anew when the older half is let go.
+    struct Rows {
+        int id = -1;
+        unsigned part = 0;
+        std::vector<std::string> rows;
+    };
+    static Place place_of(const std::string &verb);
+    static bool fresh(const Rows &rows, const Seen::Rows &seen);
+    static std::string news(const char *name, const Rows &rows, Seen::Rows &seen);
     void load_history();
     void keep_history();
     void watch();
     void work(Place place);
     nlohmann::json done(const Order &order, Slot &slot, int id, Place place);
-    void row(int id, const std::string &line);
+    void row(Rows &rows, int id, const std::string &line);
     void changed();
     std::string file_of(int id, const char *ending) const;
     nlohmann::json game() const;
@@ -85,9 +98,9 @@ class Workshop {
     std::deque<nlohmann::json> history_;
     std::string trouble_;
     int last_id_ = 0;
-    std::array<Slot, 2> slots_;
-    int drive_ = -1; // whose rows these are
-    std::vector<std::string> rows_;
+    std::optional<Rover> rover_;
+    std::array<Slot, 3> slots_;
+    Rows drive_rows_, telemetry_;
     std::uint64_t state_ = 1, work_ = 1;
     std::atomic<bool> stopping_{false};
     std::vector<std::thread> threads_;

@@ -1,21 +1,26 @@
 // lab_bench - a blind campaign of the lab on sealed logs: made, answered, the seals opened, the table. Run by `traction bench lab`.
 //
 // Usage: lab_bench --traction PROGRAM [--logs N] [--jobs N] [--seed N] [--duration S] [--generator independent|apart|fleet|strange|plant]
-//                  [--category clean|one|two|outside] [--keep FOLDER] [--time] [--peers] [--json FILE]. Exit 1 when a log could not be
-//                  answered.
-#include "host_tools/bench_lab/answer.h"
-#include "host_tools/bench_lab/campaign.h"
+//                  [--category clean|one|two|outside] [--keep FOLDER] [--time] [--peers] [--json FILE]
+//        lab_bench --traction PROGRAM --row [--seed N ...]: one log, its row (host_tools/bench_lab/row.h) as a line on standard output
+//        lab_bench --judge FILE [--logs N --seed N ...] [--json FILE]: the table of such rows, a line each; the options are the campaign's
+// Exit 1 when a log could not be answered.
 #include "host_tools/bench_lab/peers.h"
+#include "host_tools/bench_lab/row.h"
 #include "host_tools/cli/progress.h"
 #include "host_tools/log/write_file.h"
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include <sys/prctl.h>
+
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <string>
@@ -27,8 +32,8 @@ namespace {
 
 struct Request {
     bench_lab::CampaignOptions campaign;
-    bool time = false, peers = false;
-    std::string json;
+    bool time = false, peers = false, row = false;
+    std::string json, judge;
 };
 
 // False, and said, where the command line cannot be meant.
@@ -44,6 +49,7 @@ bool read_request(int argc, char **argv, Request &request) {
         {"--category", [&](const std::string &word) { options.category = word; }},
         {"--keep", [&](const std::string &word) { options.folder = word; }},
         {"--json", [&](const std::string &word) { request.json = word; }},
+        {"--judge", [&](const std::string &word) { request.judge = word; }},
     };
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -52,6 +58,8 @@ bool read_request(int argc, char **argv, Request &request) {
             request.time = true;
         } else if (word == "--peers") {
             request.peers = true;
+        } else if (word == "--row") {
+            request.row = true;
         } else if (one != valued.end() && i + 1 < argc) {
             try {
                 one->second(argv[++i]);
@@ -64,45 +72,45 @@ bool read_request(int argc, char **argv, Request &request) {
             return false;
         }
     }
-    if (!options.traction.empty()) return true;
+    if (!options.traction.empty() || !request.judge.empty()) return true;
     std::fputs("lab_bench: --traction PROGRAM is missing (traction bench lab gives it)\n", stderr);
     return false;
+}
+
+// A folder of its own where none is to be kept; false: the user's.
+bool make_folder(bench_lab::CampaignOptions &options) {
+    if (!options.folder.empty()) return false;
+    std::string pattern = (std::filesystem::temp_directory_path() / "traction_bench_XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr)
+        throw std::filesystem::filesystem_error("cannot make a folder for the campaign", pattern,
+                                                std::error_code(errno, std::generic_category()));
+    options.folder = pattern;
+    return true;
+}
+
+// `logs`: how many the table has, of options.logs.
+void print_table(const bench_lab::CampaignOptions &options, std::size_t logs, const bench_lab::Score &score) {
+    char length[32] = "60 to 300"; // these draw their own
+    if (options.generator != "fleet" && options.generator != "strange") std::snprintf(length, sizeof length, "%g", options.duration_s);
+    const std::string of = logs == static_cast<std::size_t>(options.logs) ? "" : " of " + std::to_string(options.logs);
+    std::printf("%zu%s sealed logs, generator: %s%s%s, %s s each, seeds %lu to %lu\n\n%s", logs, of.c_str(), options.generator.c_str(),
+                options.category.empty() ? "" : ", category: ", options.category.c_str(), length, static_cast<unsigned long>(options.seed),
+                static_cast<unsigned long>(options.seed) + static_cast<unsigned long>(options.logs) - 1,
+                bench_lab::table_text(score).c_str());
 }
 
 int run(Request &request) {
     bench_lab::CampaignOptions &options = request.campaign;
     if (request.time) options.jobs = 1; // one core, nothing beside it
-    const bool temporary = options.folder.empty();
-    if (temporary) {
-        std::string pattern = (std::filesystem::temp_directory_path() / "traction_bench_XXXXXX").string();
-        if (mkdtemp(pattern.data()) == nullptr)
-            throw std::filesystem::filesystem_error("cannot make a folder for the campaign", pattern,
-                                                    std::error_code(errno, std::generic_category()));
-        options.folder = pattern;
-    }
-    options.lab_generate = TRACTION_LAB_GENERATE;
-    options.scenario = TRACTION_SOURCE_DIR "/scenarios/identification.toml";
+    const bool temporary = make_folder(options);
     cli::Progress progress("blind campaign", 3L * options.logs);
     options.step = [&] { progress.step(); };
-    std::vector<bench_lab::SealedLog> logs = bench_lab::make_logs(options);
-    bench_lab::answer_all(logs, options, [](const bench_lab::SealedLog &one) { return bench_lab::ask_lab(one.log, one.model, one.map); });
     nlohmann::json peers;
-    if (request.peers) peers = bench_lab::run_peers(logs, options);
-    std::vector<bench_lab::Judged> judged = bench_lab::open_seals(logs); // only now
-    bench_lab::add_floors(judged, logs, options, [](const bench_lab::SealedLog &one, const nlohmann::json &seal) {
-        try {
-            return bench_lab::fit_with_truth(one, seal);
-        } catch (const std::exception &) { // no floor for this log; its answer counts all the same
-            return bench_lab::TruthFit{};
-        }
+    const std::vector<bench_lab::Judged> judged = bench_lab::run_blind(options, [&](const std::vector<bench_lab::SealedLog> &logs) {
+        if (request.peers) peers = bench_lab::run_peers(logs, options);
     });
     const bench_lab::Score score = bench_lab::judge(judged);
-    char length[32] = "60 to 300"; // these draw their own
-    if (options.generator != "fleet" && options.generator != "strange") std::snprintf(length, sizeof length, "%g", options.duration_s);
-    std::printf("%d sealed logs, generator: %s%s%s, %s s each, seeds %lu to %lu\n\n%s", options.logs, options.generator.c_str(),
-                options.category.empty() ? "" : ", category: ", options.category.c_str(), length, static_cast<unsigned long>(options.seed),
-                static_cast<unsigned long>(options.seed) + static_cast<unsigned long>(options.logs) - 1,
-                bench_lab::table_text(score).c_str());
+    print_table(options, judged.size(), score);
     nlohmann::json json = bench_lab::table_json(score);
     json["generator"] = options.generator;
     if (request.peers) {
@@ -117,13 +125,45 @@ int run(Request &request) {
     return score.failures > 0 ? 1 : 0;
 }
 
+// One log, in a folder of its own that is removed. A log that the lab cannot answer is a row too, and exit 0: the campaign counts it.
+int run_row(bench_lab::CampaignOptions &options) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL); // whoever asked is gone: nobody would read the answer
+    options.logs = options.jobs = 1;
+    const bool temporary = make_folder(options);
+    std::string row;
+    try {
+        row = bench_lab::row_json(bench_lab::run_blind(options).front()).dump();
+    } catch (...) {
+        if (temporary) std::filesystem::remove_all(options.folder);
+        throw;
+    }
+    if (temporary) std::filesystem::remove_all(options.folder);
+    std::printf("%s\n", row.c_str());
+    return 0;
+}
+
+int judge_rows(const Request &request) {
+    std::ifstream lines(request.judge);
+    if (!lines) throw std::filesystem::filesystem_error("cannot read", request.judge, std::error_code(errno, std::generic_category()));
+    const std::vector<bench_lab::Case> cases = bench_lab::read_rows(lines);
+    const bench_lab::Score score = bench_lab::score_of(cases);
+    print_table(request.campaign, cases.size(), score);
+    nlohmann::json json = bench_lab::table_json(score);
+    json["generator"] = request.campaign.generator;
+    if (!request.json.empty()) log::write_file(json.dump(1) + "\n", request.json);
+    return score.failures > 0 ? 1 : 0;
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
     Request request;
     if (!read_request(argc, argv, request)) return 2;
     try {
-        return run(request);
+        request.campaign.lab_generate = TRACTION_LAB_GENERATE;
+        request.campaign.scenario = TRACTION_SOURCE_DIR "/scenarios/identification.toml";
+        if (!request.judge.empty()) return judge_rows(request);
+        return request.row ? run_row(request.campaign) : run(request);
     } catch (const std::filesystem::filesystem_error &error) {
         std::fprintf(stderr, "lab_bench: %s\n", error.what());
         return 4;

@@ -99,13 +99,57 @@ def test_killed_with_its_workers_midway_it_loses_nothing(tmp_path, reference):
     process = subprocess.Popen([sys.executable, "-c", code, str(file), str(folder)])
     deadline = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < deadline:
-        if folder.exists() and len(list(folder.glob("inbox/drive-*"))) >= 2:
+        if any(file.read_bytes().count(b"\n") >= 2 for file in folder.glob("inbox/*.jsonl")):
             process.send_signal(signal.SIGKILL)
             break
-        time.sleep(0.005)
-    process.wait()
+        time.sleep(0.001)
+    assert process.wait() == -signal.SIGKILL  # it was under way
     whole = traction.campaign(SPEC, folder, workers=2)
     assert digests(whole.folder) == digests(reference.folder)
+
+
+def test_a_torn_inbox_costs_its_torn_drives_alone(tmp_path, reference):
+    class Enough(Exception):
+        pass
+
+    def stop(progress):
+        if progress.done >= 3:
+            raise Enough
+
+    with pytest.raises(Enough):
+        traction.campaign(SPEC, tmp_path / "c", workers=0, progress=lambda p: stop(p) if time.sleep(0.11) is None else None)
+    (inbox,) = (tmp_path / "c" / "inbox").iterdir()
+    first, second, third = inbox.read_bytes().splitlines(keepends=True)
+    inbox.write_bytes(first + b"\0" * 200 + b"\n" + third[:-20])  # a power cut: a block that was not written, an end that is missing
+    assert traction.campaigns.Campaign(tmp_path / "c").table().column("drive").to_pylist() == [0]
+    driven = []
+    whole = traction.campaign(SPEC, tmp_path / "c", workers=0, progress=lambda p: driven.append(p.done))
+    assert digests(whole.folder) == digests(reference.folder)
+    inbox.write_bytes(second)  # a stop between a part's writing and its inbox's removal
+    assert whole.table().num_rows == 12 and traction.campaign(SPEC, whole.folder).table().num_rows == 12 and not inbox.exists()
+
+
+def test_rows_too_long_for_a_pipe_and_quick_ones_come_back_each_with_its_own(tmp_path):
+    from traction.campaigns.pool import drive_all
+
+    (tmp_path / "echo_task.py").write_text(
+        "import os, signal\n\n\nclass Echo:\n    def run(self, row):\n        if row['drive'] == 30:\n"
+        "            os.kill(os.getpid(), signal.SIGKILL)\n        return {'status': 'done', 'said': row['drive'], 'text': row['text']}\n"
+    )
+    sys.path.insert(0, str(tmp_path))
+    try:
+        from echo_task import Echo
+
+        rows = [{"drive": n, "text": "x" * (300_000 if n < 40 else 10)} for n in range(60)]
+        told = list(drive_all(Echo(), rows, 3))
+    finally:
+        sys.path.remove(str(tmp_path))
+    assert sorted(row["drive"] for row, _ in told) == list(range(60))
+    for row, answer in told:
+        if row["drive"] == 30:
+            assert answer == {"status": "failed", "error": "its process ended (signal SIGKILL)"}
+        else:
+            assert (answer["said"], answer["text"]) == (row["drive"], row["text"])
 
 
 def test_a_drive_that_ends_its_process_is_a_row(tmp_path, monkeypatch):

@@ -300,7 +300,7 @@ def test_the_command_line_drives_plots_and_tells(tmp_path):
 
 
 def test_the_cost_of_a_drive_is_measured(tmp_path):
-    words = ["--drives", "4", "12", "--duration", "1", "--json", "cost.json"]
+    words = ["--drives", "4", "12", "--duration", "1", "--parent", "2000", "--json", "cost.json"]
     done = subprocess.run([sys.executable, "-m", "traction.campaigns.cost", *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     told = json.loads((tmp_path / "cost.json").read_text())
@@ -312,5 +312,13 @@ def test_the_cost_of_a_drive_is_measured(tmp_path):
         assert row["failed"] == 0 and row["of_cores_x_single"] == pytest.approx(row["drives"] / row["wall_s"] / alone)
         assert row["workers_cpu_s"] >= 0.5 * row["drives"] * min(one["cpu_s"] for one in told["single"])  # the drives are in it
         assert 0 < row["parent_cpu_s"] < row["wall_s"] and 20 < row["first_MB"] <= row["last_MB"] + 5 < 1000
+        cpu = np.mean([told["single"][at]["cpu_s"] for at in (told["campaigns"].index(row), told["campaigns"].index(row) + 1)])
+        assert row["cpu_of_single"] == pytest.approx(cpu * row["drives"] / (row["workers_cpu_s"] + row["parent_cpu_s"]))
+    assert 0 < told["parent"]["cpu_s"] <= 1.1 * told["parent"]["wall_s"]  # one process: its clock's grain apart
     lines = done.stdout.splitlines()
-    assert lines[-1].split()[0] == "12" and "of cores x single" in done.stdout and "the drive alone" in done.stdout
+    assert (
+        lines[-2].split()[0] == "12"
+        and lines[-1].startswith("the parent alone, 2000 drives")
+        and "of cores x single" in done.stdout
+        and "the drive alone" in done.stdout
+    )

@@ -1,32 +1,17 @@
-# cmake -DNODE= -DNPM= -DSOURCE= -DPACKAGES= -DWORK= -DTRACTION= -P browser_test.cmake: clicks through `traction serve` in a real Chromium.
-find_program(CHROMIUM NAMES chromium chromium-browser)
-if(NOT CHROMIUM OR NOT NODE OR NOT NPM)
-  message("SKIPPED: the live page was not looked at: it needs chromium, node and npm (Debian: apt-get install chromium nodejs npm)")
+# cmake -DNODE= -DNPM= -DSOURCE= -DPACKAGES= -DWORK= -DTRACTION= [-DTRACTIOND=] [-DLONG=ON] -P browser_test.cmake: clicks through
+# `traction serve` in a real Chromium; with TRACTIOND a rover is watched too. LONG: a log of 1000 s instead. PACKAGES: the folder of the
+# report's tests, whose packages these are.
+include(${PACKAGES}/browser_packages.cmake)
+if(SKIPPED)
   return()
 endif()
-execute_process(COMMAND ${CHROMIUM} --version OUTPUT_VARIABLE version ERROR_QUIET RESULT_VARIABLE status)
-if(NOT status EQUAL 0)
-  message("SKIPPED: the live page was not looked at: ${CHROMIUM} does not start (on Ubuntu it is a snap, which needs snapd)")
+if(LONG)
+  run_or_fail("a long log is shown too slowly, or takes too much memory" ${NODE} long_test.mjs ${CHROMIUM} ${TRACTION} ${WORK}/long ${WORK}/shots)
   return()
-endif()
-
-function(run_or_fail what)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${what}")
-  endif()
-endfunction()
-
-# the packages of the report's test: one lock for both
-file(COPY ${SOURCE}/browser_test.mjs ${PACKAGES}/package.json ${PACKAGES}/package-lock.json ${PACKAGES}/.npmrc DESTINATION ${WORK})
-file(SHA256 ${PACKAGES}/package-lock.json lock)
-set(installed "")
-if(EXISTS ${WORK}/node_modules/.traction-lock)
-  file(READ ${WORK}/node_modules/.traction-lock installed)
-endif()
-if(NOT installed STREQUAL lock)
-  run_or_fail("npm could not bring playwright-core and axe-core (pinned in tests/e2e/report/package-lock.json); is the npm registry reachable?"
-              ${NPM} ci --no-audit --no-fund --loglevel=error)
-  file(WRITE ${WORK}/node_modules/.traction-lock ${lock})
 endif()
 run_or_fail("a claim about the live page does not hold" ${NODE} browser_test.mjs ${CHROMIUM} ${TRACTION} ${WORK}/folder ${WORK}/shots)
+if(TRACTIOND)
+  run_or_fail("a claim about a rover on the live page does not hold" ${NODE} rover_test.mjs ${CHROMIUM} ${TRACTION} ${TRACTIOND} ${WORK}/rover ${WORK}/shots)
+else()
+  message("no rover was watched: there is no supervision link in this build (pymavlink)")
+endif()

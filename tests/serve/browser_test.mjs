@@ -2,49 +2,16 @@
 // drives, its log is checked and diagnosed, what was named is added, the error falls; two browsers, a reload, a server that goes and comes
 // back; a sealed game; every width, dark and light, by keyboard alone, with axe-core.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { appendFileSync, copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { chromium } from 'playwright-core';
+import { appendFileSync, copyFileSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { begin, click, launch, nothingIsAmiss, open as openPage, ready, serve, tryAll, until } from './page.mjs';
 
 const [executablePath, traction, folder, shots] = process.argv.slice(2);
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-mkdirSync(shots, { recursive: true });
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-// Starts the server; its address, and how to end it: exit code.
-async function serve(port = 0) {
-  const child = spawn(traction, ['serve', folder, '--port', String(port)], { stdio: ['ignore', 'pipe', 'pipe'] });
-  const ended = new Promise((done) => child.on('exit', (code, signal) => done(signal ?? code)));
-  let said = '';
-  const address = await new Promise((found, fail) => {
-    child.stdout.on('data', (bytes) => { said += bytes; const at = said.match(/http:\/\/\S+/); if (at) found(at[0]); });
-    ended.then((code) => fail(new Error(`traction serve ended with ${code}: ${said}`)));
-  });
-  return { address, port: +new URL(address).port, child, end: (signal = 'SIGINT') => { child.kill(signal); return ended; } };
-}
-
-const browser = await chromium.launch({ executablePath, args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
-let server = await serve();
+const browser = await begin(executablePath, folder, shots, ['--disable-gpu']);
+let server = await serve(traction, folder);
 const trouble = [];
-async function open(settings = {}) {
-  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...settings });
-  const page = await context.newPage();
-  page.on('console', (m) => { if (['error', 'warning'].includes(m.type()) && !/ERR_CONNECTION_REFUSED|ERR_INCOMPLETE_CHUNKED|ERR_EMPTY_RESPONSE|ERR_CONNECTION_RESET/.test(m.text())) trouble.push(`console: ${m.text()}`); });
-  page.on('pageerror', (e) => trouble.push(`error: ${e.message}`));
-  page.on('request', (r) => { if (!/^(data|blob):/.test(r.url()) && new URL(r.url()).host !== new URL(server.address).host) trouble.push(`request: ${r.url()}`); });
-  await page.goto(server.address);
-  await ready(page);
-  return { page, close: () => context.close() };
-}
-const ready = (page) => page.waitForSelector('html[data-ready=yes]', { timeout: 20000 });
-const click = (page, where, words) => page.click(`${where} button:text-is("${words}")`);
-const until = (page, what, argument) => page.waitForFunction(what, argument, { timeout: 240000 });
+const open = (settings) => openPage(browser, () => server.address, trouble, settings);
 const title = (page, begin) => until(page, (words) => document.querySelector('#result h1')?.textContent.startsWith(words), begin);
 const newest = (page) => page.$eval('#history tbody tr', (e) => e.textContent);
-const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 const chosen = (page, list) => page.$eval(`#${list} input:checked`, (e) => e.value);
 
 const claims = [];
@@ -62,14 +29,14 @@ claim('an empty folder: the page says where to begin, and the rover is open', as
 claim('a drive at the pace of the clock grows before the eyes of both, and is stopped by the other browser', async () => {
   await page.fill('#seconds', '60');
   await page.check('#realtime');
-  await click(page, '#drive', 'Start the drive');
+  await click(page, '#simulated', 'Start the drive');
   for (const p of [page, other]) await until(p, () => +document.querySelector('#live').dataset.rows > 15);
   const rows = await page.$eval('#live', (e) => +e.dataset.rows);
   await until(page, (n) => +document.querySelector('#live').dataset.rows > n + 8, rows);
   assert.equal((await page.$$('#live canvas')).length, 3); // speed, slip, current
   assert.match(await page.textContent('#driving'), /Driving: [\d.]+ s driven/);
   await page.screenshot({ path: `${shots}/driving.png` });
-  await click(other, '#drive', 'Stop');
+  await click(other, '#simulated', 'Stop');
   await until(page, () => /The drive ended after/.test(document.querySelector('#driving').textContent));
   assert.match(await newest(page), /simulated drive.*cancelled/);
   await page.waitForSelector('#logs input[value="identification_1.csv"]');
@@ -80,7 +47,7 @@ claim('a drive with an effect: its log is chosen when it ends', async () => {
   await page.fill('#seconds', '40');
   await page.selectOption('#scenario', 'shipped/demo_sand.toml');
   await page.selectOption('#drive-effect', 'slip_sinkage');
-  await click(page, '#drive', 'Start the drive');
+  await click(page, '#simulated', 'Start the drive');
   for (const p of [page, other]) await until(p, () => document.querySelector('#logs input:checked')?.value === 'demo_sand_1.csv');
   assert.equal(await chosen(page, 'models'), 'shipped/rover_sand.toml');
 });
@@ -103,7 +70,7 @@ claim('check, compare, diagnose, add: the error falls, in both browsers', async 
   const where = await page.$eval('#folder', (e) => { const text = e.textContent; e.textContent = 'drives'; return text; });
   await page.screenshot({ path: `${shots}/serve.png`, fullPage: true, clip: { x: 90, y: 0, width: 1220, height: 1560 } });
   await page.$eval('#folder', (e, text) => { e.textContent = text; }, where);
-  await page.$eval('#drive', (e) => { e.open = true; });
+  await page.$eval('#simulated', (e) => { e.open = true; });
   await click(page, '#hint', 'Add slip_sinkage');
   await title(page, 'add');
   await title(other, 'add');
@@ -116,12 +83,56 @@ claim('check, compare, diagnose, add: the error falls, in both browsers', async 
   await page.screenshot({ path: `${shots}/added.png`, fullPage: true });
 });
 
+claim('the effect that is about to be added is drawn: where it acts, and the curve that it adds', async () => {
+  for (const name of ['slip_sinkage', 'camera_delay']) {
+    await page.selectOption('#effect', name);
+    assert.equal(await page.$eval('#drawn', (e) => e.dataset.effect), name);
+    assert.ok((await page.getAttribute('#drawn svg', 'aria-label')).startsWith(`${name} acts: `));
+    assert.equal((await page.$$('#drawn svg .curve')).length, name === 'slip_sinkage' ? 1 : 0);
+  }
+});
+
 claim('drop: a model without it, compared at once', async () => {
   await click(page, '#bench', 'Drop');
   await until(page, () => /drop slip_sinkage.*[\d.]+ → [\d.]+/.test(document.querySelector('#history tbody tr').textContent));
   assert.ok(readdirSync(folder).includes('rover_sand_slip_sinkage_without_slip_sinkage.toml'));
   assert.ok(readdirSync(folder).includes('rover_sand_slip_sinkage.toml'));
 });
+
+// x and y of the camera in a log, nearest to a time
+function cameraAt(file, t) {
+  const lines = readFileSync(file, 'utf8').split('\n').filter((l) => l && !l.startsWith('#')), names = lines[0].split(',');
+  const [at, x, y] = ['t_s', 'camera.x_m', 'camera.y_m'].map((n) => names.indexOf(n));
+  const rows = lines.slice(1).map((l) => l.split(',')).filter((c) => c[x] !== '' && c[x] !== undefined).map((c) => [+c[at], +c[x], +c[y]]);
+  return rows.reduce((a, b) => (Math.abs(b[0] - t) < Math.abs(a[0] - t) ? b : a)).slice(1);
+}
+
+for (const [what, more, view] of [['in three dimensions, by the processor', ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'], '3d'], ['as a map, without WebGL', ['--disable-gpu', '--disable-3d-apis'], '2d']])
+  claim(`look: the drive is played again ${what}; another result takes its place`, async () => {
+    const own = await launch(executablePath, more);
+    try {
+      const { page: p } = await openPage(own, () => server.address, trouble);
+      await p.check('#logs input[value="demo_sand_1.csv"]');
+      await click(p, '#bench', 'Look');
+      await title(p, 'drive: demo_sand_1.csv');
+      await p.waitForSelector(`.stage[data-view="${view}"]`);
+      const scrub = (t) => p.evaluate((to) => { const s = document.querySelector('.player input[type=range]'); s.value = to; s.dispatchEvent(new Event('input')); }, t);
+      for (const t of [5, 20, 35]) {
+        await scrub(t);
+        const [x, y] = await p.$eval('.stage', (e) => e.dataset.pose.split(' ').map(Number)), [cx, cy] = cameraAt(`${folder}/demo_sand_1.csv`, t);
+        assert.ok(Math.hypot(x - cx, y - cy) < 0.1, `${t} s: ${x} ${y}, the camera ${cx} ${cy}`); // half of its 1/7 s at 0.5 m/s, and its noise
+      }
+      await scrub(10);
+      await click(p, '#result', 'Play');
+      await until(p, () => +document.querySelector('.stage').dataset.time > 10.5 && +document.querySelector('.stage').dataset.frames > 5);
+      await p.screenshot({ path: `${shots}/look_${view}.png`, fullPage: true });
+      await click(p, '#bench', 'Check');
+      await title(p, 'check');
+      assert.equal(await p.$('#result .stage'), null);
+      await p.click('#history tbody tr:has(th:has-text("look")) button:text-is("Show")');
+      await p.waitForSelector(`.stage[data-view="${view}"]`); // once more, with the code that is there
+    } finally { await own.close(); }
+  });
 
 claim('next drive: a scenario of this folder that the rover can drive', async () => {
   await page.check('#models input[value="shipped/rover_sand.toml"]');
@@ -142,7 +153,7 @@ claim('a reload keeps what was run, what is chosen and what is shown', async () 
   await title(page, 'diagnose');
   assert.equal(await page.textContent('#history tbody'), runs);
   assert.equal(await chosen(page, 'logs'), 'identification_1.csv');
-  await page.$eval('#drive', (e) => { e.open = true; }); // it is closed where there are logs
+  await page.$eval('#simulated', (e) => { e.open = true; }); // it is closed where there are logs
   await until(page, () => +document.querySelector('#live').dataset.rows > 100); // the last drive's rows come again
 });
 
@@ -166,7 +177,7 @@ claim('the server goes: both are told so; it comes back: both go on by themselve
   assert.ok(await page.isDisabled('#bench button:text-is("Diagnose")'));
   await page.screenshot({ path: `${shots}/gone.png` });
   const runs = await page.textContent('#history tbody');
-  server = await serve(server.port);
+  server = await serve(traction, folder, { port: server.port });
   for (const p of [page, other]) await until(p, () => document.querySelector('#link').textContent === 'Connected');
   assert.equal(await page.textContent('#history tbody'), runs);
   await page.check('#logs input[value="demo_sand_1.csv"]');
@@ -196,11 +207,11 @@ claim('a sealed game: look, try, keep, open', async () => {
 });
 
 claim('a drive that hides an effect: the seal is opened on the page', async () => {
-  await page.click('#drive summary');
-  if (!(await page.isVisible('#drive-effect'))) await page.click('#drive summary');
+  await page.click('#simulated summary');
+  if (!(await page.isVisible('#drive-effect'))) await page.click('#simulated summary');
   await page.selectOption('#drive-effect', '?');
   await page.fill('#seconds', '10');
-  await click(page, '#drive', 'Start the drive');
+  await click(page, '#simulated', 'Start the drive');
   await page.waitForSelector('#history tbody tr:first-child button:text-is("Open the seal")', { timeout: 60000 });
   assert.doesNotMatch(await newest(page), /Hidden:/);
   await page.click('#history tbody tr:first-child button:text-is("Open the seal")');
@@ -227,12 +238,7 @@ for (const width of [420, 1400, 1920])
     claim(`${width} px, ${colorScheme}: axe finds nothing, nothing is cut`, async () => {
       const { page: p, close } = await open({ viewport: { width, height: 900 }, colorScheme, bypassCSP: true }); // for axe alone
       await p.waitForSelector('#result[data-run]');
-      await p.$$eval('details', (all) => all.forEach((e) => { e.open = true; }));
-      await p.waitForTimeout(500);
-      await p.addScriptTag({ content: axe });
-      const found = await p.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-      assert.deepEqual(found.violations.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.target.join(' ')).join('; ')}`), []);
-      assert.ok((await overflow(p)) <= 0, `${await overflow(p)} px too wide`);
+      await nothingIsAmiss(p);
       await p.screenshot({ path: `${shots}/live_${width}_${colorScheme}.png`, fullPage: true });
       await close();
     });
@@ -245,18 +251,7 @@ claim('Ctrl-C ends it at once, with pages open', async () => {
   assert.ok(Date.now() - asked < 5000, `${Date.now() - asked} ms`);
 });
 
-let failed = 0;
-for (const [name, check] of claims) {
-  try {
-    await check();
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    failed += 1;
-    console.log(`FAILED  ${name}\n${error.stack}`);
-    await page.screenshot({ path: `${shots}/failed_${failed}.png`, fullPage: true }).catch(() => {});
-  }
-}
+const failed = await tryAll(claims, page, `${shots}/failed`);
 server.child.kill('SIGTERM');
 await browser.close();
-console.log(`${claims.length - failed} of ${claims.length} claims hold`);
 process.exit(failed ? 1 : 0);

@@ -17,15 +17,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -92,8 +97,8 @@ class Served : public testing::Test {
         end();
         fs::remove_all(home_);
     }
-    void begin() {
-        workshop_ = std::make_unique<Workshop>(folder(), fs::path("."), TRACTION_PROGRAM);
+    void begin(std::optional<Rover> rover = std::nullopt, const std::string &program = TRACTION_PROGRAM) {
+        workshop_ = std::make_unique<Workshop>(folder(), fs::path("."), program, std::move(rover));
         server_ = std::make_unique<Server>(*workshop_, 0, token);
         thread_ = std::thread([this] { server_->listen(); });
         for (int i = 0; i < 100; ++i) { // until it listens
@@ -157,7 +162,7 @@ TEST_F(Served, nothing_is_answered_without_the_token) {
     std::string nearly = token;
     nearly.back() = 'X';
     for (const std::string &wrong : {std::string(), std::string("x"), token.substr(1), token + "0", nearly})
-        for (const char *target : {"/", "/events", "/api/effects", "/api/result/1", "/nothing"})
+        for (const char *target : {"/", "/events", "/api/effects", "/api/rover", "/api/scene", "/api/result/1", "/nothing"})
             EXPECT_EQ(status_of(get(target, "", wrong)), 403) << target << " with '" << wrong << "'";
     EXPECT_EQ(status_of(get("/?token=" + token, "", "")), 200);
     EXPECT_EQ(status_of(get("/?token=" + token, "", nearly)), 403); // the header counts where both are there
@@ -202,6 +207,18 @@ TEST_F(Served, the_page_forbids_what_it_does_not_need) {
     EXPECT_NE(answer.find("<script type=\"module\" nonce=\"" + nonce_of(answer)), std::string::npos);
     EXPECT_NE(nonce_of(answer), nonce_of(again));
     EXPECT_EQ(answer.find("Access-Control"), std::string::npos);
+}
+
+TEST_F(Served,
+       no_answer_is_packed_whatever_the_browser_takes) { // brotli would cost seconds of a processor to save a way inside the machine
+    for (const char *target : {"/", "/api/scene", "/api/effects"}) {
+        const std::string answer = get(target, "Accept-Encoding: gzip, deflate, br\r\n");
+        EXPECT_EQ(status_of(answer), 200);
+        EXPECT_EQ(answer.find("Content-Encoding"), std::string::npos) << target;
+        const std::size_t at = answer.find("Content-Length: ");
+        ASSERT_NE(at, std::string::npos) << target;
+        EXPECT_EQ(std::strtoul(answer.c_str() + at + 16, nullptr, 10), answer.size() - answer.find("\r\n\r\n") - 4) << target;
+    }
 }
 
 TEST_F(Served, no_name_leads_out_of_the_folder) {
@@ -381,6 +398,30 @@ TEST_F(Served, the_pages_results_are_the_command_lines) {
     }
 }
 
+TEST_F(Served, a_drive_is_looked_at_as_its_page_shows_it_and_a_log_without_a_pose_is_told_so) {
+    ASSERT_EQ(run(drive(5))["state"], "done");
+    const json looked = run({{"verb", "look"}, {"log", "cruise_3.csv"}});
+    ASSERT_EQ(looked["state"], "done") << looked;
+    const json shown = body_of(get("/api/result/" + looked["id"].dump()));
+    const std::string page = (home_ / "page.html").string();
+    std::atomic<int> none{0};
+    ASSERT_EQ(run_child(TRACTION_PROGRAM, {"report", (folder() / "cruise_3.csv").string(), "--out", page}, {}, none).exit_code, 0);
+    const std::string text = content(page), begin = "<script type=\"application/json\" id=\"result\">";
+    const std::size_t from = text.find(begin) + begin.size();
+    EXPECT_EQ(json::parse(text.substr(from, text.find("</script>", from) - from)), shown);
+    EXPECT_EQ(shown["replay"]["pose_from"], "camera");
+    const std::string scene = get("/api/scene");
+    EXPECT_NE(text.find(scene.substr(scene.find("\r\n\r\n") + 4)), std::string::npos); // the code is the page's, every byte
+    std::ofstream(folder() / "blind.csv") << "t_s,wheel0.current_A\n# format: traction-log 1\n0,1\n1,2\n";
+    const json blind = run({{"verb", "look"}, {"log", "blind.csv"}});
+    EXPECT_EQ(blind["state"], "failed");
+    EXPECT_NE(blind["message"].get<std::string>().find("says nowhere where the rover was"), std::string::npos) << blind;
+    EXPECT_EQ(run({{"verb", "look"}, {"log", "cruise_3.csv"}, {"model", "shipped/rover_sand.toml"}})["status"], 400);
+    const std::string result = (folder() / "traction_serve/1.json").string(), data = (home_ / "data.json").string();
+    EXPECT_EQ(run_child(TRACTION_PROGRAM, {"report", result, "--out", data}, {}, none).exit_code, 2); // of a log alone
+    EXPECT_FALSE(fs::exists(data));
+}
+
 TEST_F(Served, a_model_of_ones_own_is_never_written_over) {
     ASSERT_EQ(run({{"verb", "simulate"}, {"scenario", "shipped/demo_sand.toml"}, {"seconds", 10}})["state"], "done");
     fs::copy("models/rover_sand.toml", folder() / "mine.toml");
@@ -511,6 +552,185 @@ TEST_F(Served, a_program_that_fails_is_told_with_its_own_words) {
     EXPECT_EQ(entry["state"], "failed");
     EXPECT_NE(entry["message"].get<std::string>().find("foreign.csv"), std::string::npos) << entry;
 }
+
+TEST_F(Served, no_request_reaches_a_rover_that_was_not_named_or_moves_one_that_was) {
+    for (const json &request : {json{{"verb", "watch"}}, json{{"verb", "rover_logs"}}, json{{"verb", "rover_fetch"}, {"number", 1}}})
+        EXPECT_NE(run(request)["message"].get<std::string>().find("--host"), std::string::npos) << request;
+    end();
+    begin(Rover{.host = "127.0.0.1:9", .key = "", .system = 1});
+    ASSERT_EQ(status_of(post("/api/cancel", R"({"id": 1})")), 200); // it watches from its beginning on
+    ended(1);
+    for (const json &request :
+         {json{{"verb", "watch"}, {"host", "10.0.0.5"}}, json{{"verb", "watch"}, {"key", "k"}}, json{{"verb", "drive"}},
+          json{{"verb", "watch"}, {"speed", 1}}, json{{"verb", "rover_fetch"}}, json{{"verb", "rover_stop"}},
+          json{{"verb", "rover_fetch"}, {"number", -1}}, json{{"verb", "rover_fetch"}, {"number", "1; ls"}}})
+        EXPECT_EQ(run(request)["status"], 400) << request;
+}
+
+TEST_F(Served, of_a_long_watch_the_latest_rows_are_kept_and_sent) {
+    end();
+    const fs::path teller = home_ / "teller"; // 80,000 rows as `drive --live -` tells them
+    std::ofstream(teller) << "#!/bin/sh\n[ \"$1\" = drive ] && seq 1 80000 | sed 's/$/,0.5,0.1/'\n";
+    fs::permissions(teller, fs::perms::owner_all);
+    begin(Rover{.host = "127.0.0.1", .key = "", .system = 1}, teller.string());
+    EXPECT_EQ(ended(1)["state"], "done");
+    Workshop::Seen seen;
+    std::string all = workshop_->events(seen, 1000ms);
+    const json rows = json::parse(all.substr(all.find("{", all.find("event: telemetry"))).substr(0, all.rfind("\n\n")))["rows"];
+    EXPECT_EQ(rows.back()[0], 80000);
+    EXPECT_EQ(rows.front()[0].get<int>(), 80001 - static_cast<int>(rows.size())); // none is missing between
+    EXPECT_GE(rows.size(), 18000u);                                               // half an hour at ten a second
+    EXPECT_LE(rows.size(), 36000u);
+    seen.telemetry.part = 0; // a page that saw only the rows that were let go meanwhile
+    seen.telemetry.count = 10;
+    EXPECT_NE(workshop_->events(seen, 1000ms).find("\"from\":0,"), std::string::npos);
+}
+
+#ifdef TRACTIOND_PROGRAM
+
+// A simulated rover that stands, on a free port of its own: it can go and come back.
+class Watched : public Served {
+  protected:
+    void SetUp() override {
+        Served::SetUp();
+        end();
+        std::atomic<int> none{0};
+        ASSERT_EQ(run_child(TRACTION_PROGRAM, {"drive", "--new-key", key()}, {}, none).exit_code, 0);
+        std::ofstream(home_ / "cruise.toml") << "title = \"drives\"\nduration_s = 300.0\nseed = 7\n[ground]\nsoil = \"concrete\"\n"
+                                                "[[drive]]\nfor_s = 300.0\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n";
+        const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+        socklen_t size = sizeof address;
+        ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr *>(&address), size), 0);
+        getsockname(fd, reinterpret_cast<sockaddr *>(&address), &size);
+        at_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+        close(fd);
+    }
+    void TearDown() override {
+        rover_goes();
+        Served::TearDown();
+    }
+    std::string key() const { return (home_ / "key").string(); }
+    void rover_comes() {
+        signal_ = 0;
+        rover_ = std::thread([this] {
+            run_child(TRACTIOND_PROGRAM,
+                      {"--hal", "sim", (home_ / "cruise.toml").string(), "--link", at_, "--link-key", key(), "--log",
+                       (home_ / "onboard").string()},
+                      {}, signal_);
+        });
+    }
+    void rover_goes() {
+        signal_ = SIGTERM;
+        if (rover_.joinable()) rover_.join();
+    }
+    // The first row from now on that is as asked; null after 30 s.
+    json row(const std::function<bool(const json &)> &good) {
+        for (const auto until = std::chrono::steady_clock::now() + 30s; std::chrono::steady_clock::now() < until;) {
+            std::stringstream lines(workshop_->events(seen_, 1000ms));
+            for (std::string line, name; std::getline(lines, line);) {
+                if (line.rfind("event: ", 0) == 0) name = line.substr(7);
+                if (name != "telemetry" || line.rfind("data: ", 0) != 0) continue;
+                const json news = json::parse(line.substr(6));
+                for (const json &one : news["rows"])
+                    if (one.size() == 17 && good(one)) return one;
+            }
+        }
+        return nullptr;
+    }
+    static bool heard(const json &row) { return row[15] == 0; }
+    static bool silent(const json &row) { return row[15] == 2; }
+    std::string at_;
+    Workshop::Seen seen_;
+    std::thread rover_;
+    std::atomic<int> signal_{0};
+};
+
+TEST_F(Watched, telemetry_grows_survives_silence_and_a_restart_and_is_kept) {
+    begin(Rover{.host = at_, .key = key(), .system = 1});
+    EXPECT_FALSE(row([](const json &r) { return r[15] == 1; }).is_null()); // nobody there yet
+    rover_comes();
+    // 0.3 m/s on concrete; a tenth: the platform's speed loop, as in tests/link/supervision.sh
+    const json first = row([](const json &r) { return heard(r) && r[1].is_number() && std::abs(r[1].get<double>() - 0.3) < 0.03; });
+    ASSERT_FALSE(first.is_null());
+    EXPECT_EQ(first[11], 3);   // platform speed
+    EXPECT_EQ(first[12], 0);   // no fault
+    EXPECT_GT(first[10], 5.0); // two lithium cells, 7.2 V
+    EXPECT_LT(first[10], 9.0);
+    for (int i = 0; i < 4; ++i) EXPECT_GT(first[6 + i], 0.0) << first; // every motor draws current
+    EXPECT_LT(first[16], 1.5);
+    rover_goes();
+    const json gone = row(silent);
+    ASSERT_FALSE(gone.is_null());
+    EXPECT_TRUE(gone[1].is_null());
+    const json later = row([&](const json &r) { return silent(r) && r[16].get<double>() > gone[16].get<double>() + 1; });
+    ASSERT_FALSE(later.is_null()); // its age grows
+    EXPECT_NEAR(later[0].get<double>() - gone[0].get<double>(), later[16].get<double>() - gone[16].get<double>(), 0.01);
+    rover_comes(); // its clock begins anew
+    const json back = row(heard);
+    ASSERT_FALSE(back.is_null());
+    EXPECT_GT(back[0], later[0]);
+    const json more = row([&](const json &r) { return heard(r) && r[0].get<double>() > back[0].get<double>() + 1; });
+    ASSERT_FALSE(more.is_null());
+    // who watches was never taken for one who commands
+    std::atomic<int> none{0};
+    const std::string told = (home_ / "told.json").string();
+    ASSERT_EQ(run_child(TRACTION_PROGRAM, {"drive", "--host", at_, "--key", key(), "--for", "1.5", "--json", told}, {}, none).exit_code, 0);
+    for (const auto &[name, count] : json::parse(content(told))["link"].items()) EXPECT_EQ(count, 0) << name;
+
+    EXPECT_EQ(status_of(post("/api/cancel", R"({"id": 1})")), 200);
+    const json entry = ended(1);
+    EXPECT_EQ(entry["state"], "done") << entry;
+    ASSERT_EQ(entry["log"], "telemetry.csv") << entry;
+    const log::Log log = log::read_csv((folder() / "telemetry.csv").string()); // throws where times do not rise
+    const log::Signal *speed = log.find("estimate.speed_m_s");
+    ASSERT_NE(speed, nullptr);
+    double gap_s = 0;
+    for (std::size_t i = 1; i < speed->t_s.size(); ++i) gap_s = std::max(gap_s, speed->t_s[i] - speed->t_s[i - 1]);
+    EXPECT_GT(gap_s, 2.5); // silent for 1.5 s when it was first told, and a second more
+    for (const char *name : {"wheel0.slip", "wheel3.current_A", "battery.voltage_V", "control.mode", "control.faults"})
+        EXPECT_NE(log.find(name), nullptr) << name;
+    EXPECT_EQ(log.header.at("machine"), "rover at " + at_);
+}
+
+TEST_F(Watched, the_rovers_own_logs_come_into_the_folder_while_it_is_watched) {
+    rover_comes();
+    begin(Rover{.host = at_, .key = key(), .system = 1});
+    ASSERT_FALSE(row([](const json &r) { return heard(r) && r[0] > 3; }).is_null());
+    const json listed_logs = run({{"verb", "rover_logs"}});
+    ASSERT_EQ(listed_logs["state"], "done") << listed_logs;
+    ASSERT_FALSE(listed_logs["logs"].empty());
+    const json fetched = run({{"verb", "rover_fetch"}, {"number", listed_logs["logs"][0]["id"]}});
+    ASSERT_EQ(fetched["state"], "done") << fetched;
+    EXPECT_EQ(fetched["log"], "rover_log_1.csv");
+    EXPECT_TRUE(fs::exists(folder() / "rover_log_1.ulg"));
+    const log::Log log = log::read_csv((folder() / "rover_log_1.csv").string());
+    EXPECT_NE(log.find("wheel0.encoder_count"), nullptr); // what telemetry does not carry
+    EXPECT_EQ(run({{"verb", "check"}, {"log", "rover_log_1.csv"}})["state"], "done");
+    const json none = run({{"verb", "rover_fetch"}, {"number", 777}});
+    EXPECT_EQ(none["state"], "failed");
+    EXPECT_NE(none["message"].get<std::string>().find("is no log of the rover"), std::string::npos) << none;
+    EXPECT_FALSE(none.contains("log"));
+    EXPECT_EQ(workshop_->state()["history"][0]["state"], "running"); // it was watched all the while
+    end();                                                           // and what was received is kept when the server ends
+    EXPECT_TRUE(fs::exists(folder() / "telemetry.csv"));
+}
+
+TEST_F(Watched, what_another_key_signed_is_not_believed) {
+    rover_comes();
+    std::atomic<int> none{0};
+    const std::string other = (home_ / "other_key").string();
+    ASSERT_EQ(run_child(TRACTION_PROGRAM, {"drive", "--new-key", other}, {}, none).exit_code, 0);
+    begin(Rover{.host = at_, .key = other, .system = 1});
+    EXPECT_FALSE(row([](const json &r) { return r[15] == 3 && r[1].is_null(); }).is_null());
+    EXPECT_EQ(status_of(post("/api/cancel", R"({"id": 1})")), 200);
+    EXPECT_FALSE(ended(1).contains("log"));
+    EXPECT_FALSE(fs::exists(folder() / "telemetry.csv"));
+}
+
+#endif
 
 TEST(Token, is_kept_only_where_it_is_ours_alone) {
     const fs::path path = fs::temp_directory_path() / ("traction_token_" + std::to_string(getpid()));

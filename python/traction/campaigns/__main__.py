@@ -10,7 +10,7 @@ from typing import Any
 
 from .._errors import FileError, InputError
 from .._extras import extra
-from . import Campaign, Spec, campaign
+from . import Campaign, campaign, read_plan
 from .picture import check_ending
 from .run import bar
 from .sensitivity import Sensitivity
@@ -36,10 +36,15 @@ def _write(
         json.dump(about, stream)
 
 
-def _told(result: Campaign, file: str | None, picture: str | None = None) -> int:
+def _told(result: Campaign, file: str | None, picture: str | None = None, table: str | None = None) -> int:
     status = result.status
     failed = f", {status.failed} of them failed (column `error`)" if status.failed else ""
     print(f"{result.title}: {status.done} of {status.total} drives{failed}, in {result.folder}/results")
+    for one in result.tables():
+        print("\n" + one.text + (f"{one.missing} logs are not in it, for their program failed\n" if one.missing else ""), end="")
+        if table is not None:
+            with open(table, "w", encoding="utf-8") as stream:
+                json.dump(one.json, stream)
     effects = None
     if picture is not None:
         effects = result.plot(picture)
@@ -60,6 +65,7 @@ def main(arguments: list[str] | None = None) -> int:
         "--plot", metavar="FILE", help="a picture of the drives that are done, .svg or .png; without FILE.toml drives nothing"
     )
     parser.add_argument("--dry-run", action="store_true", help="the number of drives, and the first rows; drives nothing")
+    parser.add_argument("--table-json", help=argparse.SUPPRESS)  # of traction bench lab --out: traction.bench_lab/1
     parser.add_argument("--json", metavar="FILE", help="the result for programs, schema traction.campaign/1")
     given = parser.parse_args(arguments)
     if given.workers is not None and given.workers < 0:
@@ -78,7 +84,7 @@ def main(arguments: list[str] | None = None) -> int:
             return 0  # the picture counts what failed
         if given.status:
             return _told(Campaign(given.out), given.json)
-        spec = Spec.read(given.spec)
+        spec = read_plan(given.spec)
         if given.dry_run:
             print(f"{spec.title}: {len(spec.rows)} drives")
             for row in spec.rows[:5]:
@@ -86,7 +92,7 @@ def main(arguments: list[str] | None = None) -> int:
             _write(given.json, spec.title, None, len(spec.rows), 0, 0)
             return 0
         result = campaign(spec, given.out, workers=given.workers, scheduler=given.scheduler, progress=bar(spec.title))
-        return _told(result, given.json, given.plot)
+        return _told(result, given.json, given.plot, given.table_json)
     except KeyboardInterrupt:
         print("\nstopped; the same command goes on where it was", file=sys.stderr)
         return 130

@@ -10,13 +10,13 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from .._errors import CampaignError
-from .drive import Job, run_row
-from .spec import Row
+from .drive import run_row
+from .plan import Row, Task
 
 PATIENCE_S = 120.0  # how long a scheduler may be away: a restart by whatever watches over it
 
 
-def drive_all(job: Job, rows: Iterable[Row], scheduler: Any) -> Iterator[tuple[Row, Row]]:
+def drive_all(job: Task, rows: Iterable[Row], scheduler: Any) -> Iterator[tuple[Row, Row]]:
     """Each row with what came of it, as they come. `scheduler`: an address ("tcp://host:8786"), or a distributed.Client.
 
     A worker that dies is Dask's business: its rows are driven elsewhere, and a row that ended four workers is a failed one. A scheduler

@@ -15,7 +15,8 @@ from ..lab import Model, diagnose
 from ..log import Log
 from ..scenario import Rover, drive, load
 from .formula import Formula, figures
-from .spec import Row, Spec, _flat
+from .plan import Row, Task
+from .spec import Spec, _flat
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,15 @@ class Job:
         """Of a campaign that writes into `folder`."""
         return Job(spec.table, spec.texts, spec.paths, str(Path(folder) / "logs") if spec.keep.get("logs") else "")
 
+    def run(self, row: Row) -> Row:
+        """One drive."""
+        return {"status": "done", "error": None, **_drive(self, row)}
 
-def run_row(job: Job, row: Row) -> Row:
+
+def run_row(job: Task, row: Row) -> Row:
     """What a row's table row has beside the factors. What goes wrong in the drive is told in `error`, and stops no other."""
     try:
-        return {"status": "done", "error": None, **_drive(job, row)}
+        return job.run(row)
     except (InputError, ArithmeticError, LookupError, RuntimeError, TypeError, ValueError) as error:
         return {"status": "failed", "error": str(error) or type(error).__name__}
 

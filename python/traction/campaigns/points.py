@@ -84,6 +84,8 @@ def read_points(store: Store) -> Points:
     spec = about["spec"]
     keep = spec.get("keep", {})
     figures = [*keep.get("figures", {}), *(("error_before", "error_after") if keep.get("diagnosis") else ())]
+    if "kind" in spec:
+        raise _cannot(where, "is a bench of the lab", "look at its table: traction campaign --status --out FOLDER")
     if not figures:
         raise _cannot(where, "keeps no figure", "write [keep.figures] with a formula each, or diagnosis, and drive it into another folder")
     rows = pq.read_table(store.folder / "rows.parquet")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -11,14 +12,16 @@ from pathlib import Path
 from typing import Any
 
 from .. import _html
+from .._errors import CampaignError
 from . import cluster
-from .drive import Job
+from .lab_bench import LabSpec, LabTable, plan_of, read_plan, tables_of
 from .picture import check_ending, draw
+from .plan import Plan
 from .points import read_points
 from .pool import drive_all
 from .sensitivity import Sensitivity, analyse
 from .spec import Spec
-from .store import Store, schema_of, table_of
+from .store import Store
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,20 @@ class Campaign:
     def to_pandas(self) -> Any:
         """The same as a pandas frame."""
         return self.table().to_pandas()
+
+    def times(self) -> Any:
+        """What is another each time, as a pyarrow table: `drive` and processor times in s, of every drive that is done.
+
+        None where none is kept. So the table is the same, bit for bit, and these are not.
+        """
+        return self._store.times()
+
+    def tables(self) -> list[LabTable]:
+        """Of a lab's bench or round trip, the tables that its own judge makes of the rows that are done, one a generator and category.
+
+        Empty for every other campaign. Raises CampaignError where the judge's program is not built here.
+        """
+        return tables_of(self._about["spec"], self._store)
 
     def sensitivity(self) -> Sensitivity:
         """The effect of each factor on each figure, of the drives that are done, by Sobol indices or what comes nearest (extra `plot`).
@@ -106,7 +123,7 @@ class Campaign:
 
 
 def campaign(
-    spec: Spec | str | os.PathLike[str] | Mapping[str, Any],
+    spec: Spec | LabSpec | str | os.PathLike[str] | Mapping[str, Any],
     folder: str | os.PathLike[str],
     *,
     workers: int | None = None,
@@ -129,9 +146,9 @@ def campaign(
 
     """
     if isinstance(spec, Mapping):
-        spec = Spec.of(spec)
-    elif not isinstance(spec, Spec):
-        spec = Spec.read(spec)
+        spec = plan_of(spec)
+    elif not isinstance(spec, (Spec, LabSpec)):
+        spec = read_plan(spec)
     store = Store(folder)
     if workers is None:
         workers = len(os.sched_getaffinity(0))
@@ -145,30 +162,30 @@ def plot_campaign(folder: str | os.PathLike[str], out: str | os.PathLike[str]) -
     return Campaign(folder).plot(out)
 
 
-def _run(spec: Spec, store: Store, workers: int, scheduler: Any, progress: Callable[[Progress], None] | None) -> None:
-    schema, rows, size = schema_of(spec), spec.rows, spec.part
+def _run(spec: Plan, store: Store, workers: int, scheduler: Any, progress: Callable[[Progress], None] | None) -> None:
+    schema, rows, size = spec.schema(), spec.rows, spec.part
     parts = set(store.parts())
-    waiting: dict[int, int] = {}  # drives in the inbox, a part
-    kept, failed = set(), 0
-    for drive in store.letters():
-        table = store.letter(drive, schema)
-        if table is not None:
-            kept.add(drive)
-            failed += table.column("status")[0].as_py() == "failed"
-            waiting[drive // size] = waiting.get(drive // size, 0) + 1
+    kept, failed = dict[int, set[int]](), 0  # drives in the inbox, by part
+    for part, known in store.waiting():
+        kept[part] = {row["drive"] for row in known}
+        failed += sum(row["status"] == "failed" for row in known)
     of_part = [range(first, min(first + size, len(rows))) for first in range(0, len(rows), size)]
-    for part in [p for p, count in waiting.items() if count == len(of_part[p])]:
+    done = sum(len(drives) for drives in kept.values()) + sum(len(of_part[part]) for part in parts)
+    for part in [part for part, drives in kept.items() if len(drives) == len(of_part[part])]:
         store.close_part(part, of_part[part], schema)
-    done = len(kept) + sum(len(of_part[p]) for p in parts)
-    todo = (row for row in rows if row["drive"] // size not in parts and row["drive"] not in kept)
+        parts.add(part)
+    todo = (row for row in rows if row["drive"] // size not in parts and row["drive"] not in kept.get(row["drive"] // size, ()))
     began, before, told = time.monotonic(), done, 0.0
-    job = Job.of(spec, store.folder)
+    job = spec.task(store.folder)
     for row, answer in drive_all(job, todo, workers) if scheduler is None else cluster.drive_all(job, todo, scheduler):
+        if answer["status"] == "broken":
+            raise CampaignError(str(answer["error"]))
         drive, part = row["drive"], row["drive"] // size
-        store.put(drive, table_of(schema, [{**row, **answer}]))
-        waiting[part] = waiting.get(part, 0) + 1
-        if waiting[part] == len(of_part[part]):
+        store.put(part, {"drive": drive, **row, **answer})
+        kept.setdefault(part, set()).add(drive)
+        if len(kept[part]) == len(of_part[part]):
             store.close_part(part, of_part[part], schema)
+            del kept[part]
         done += 1
         failed += answer["status"] == "failed"
         now = time.monotonic()
@@ -176,6 +193,7 @@ def _run(spec: Spec, store: Store, workers: int, scheduler: Any, progress: Calla
             told = now
             rate = (done - before) / max(now - began, 1e-9)
             progress(Progress(done, failed, len(rows), rate, (len(rows) - done) / rate))
+    shutil.rmtree(store.folder / "scratch", ignore_errors=True)  # a bench's logs
 
 
 def bar(title: str) -> Callable[[Progress], None]:

@@ -9,7 +9,7 @@ import json
 import math
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,7 @@ from .._data import find
 from .._errors import CampaignError
 from .._extras import extra
 from .formula import Formula
+from .plan import LAYOUT, Row, Task, plain
 
 METHODS = ("grid", "latin_hypercube", "sobol", "saltelli", "list")
 _KEYS = ("title", "about", "scenario", "seed", "method", "drives", "base", "repeats", "hide", "set", "vary", "row", "keep", "part")
@@ -29,10 +30,22 @@ OWN = (
     "drive repeat seed hide_seed status error ticks faults fault_names trace_hash hidden "
     "verdict named error_before error_after"
 )  # columns of every table
-Row = dict[str, Any]
 
 
-def _wrong(file: str, key: str, value: object, what: str, mend: str) -> CampaignError:
+def read_table(file: str | os.PathLike[str]) -> dict[str, Any]:
+    """The keys of a campaign's TOML file. Raises CampaignError."""
+    name = os.fspath(file)
+    try:
+        with open(name, "rb") as stream:
+            return tomllib.load(stream)
+    except OSError as error:
+        raise CampaignError(f"{name}: {error.strerror}; to mend: give a campaign's TOML file", name, mend="give a file") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise CampaignError(f"{name}: is no TOML: {error}; to mend: write it as docs/campaign.md shows", name) from None
+
+
+def wrong(file: str, key: str, value: object, what: str, mend: str) -> CampaignError:
+    """What is wrong with a key of a campaign's file, or of a dict where there is no file."""
     where = f"{file}: {key}" if file else key
     shown = "" if value is None else f" = {value!r}"
     return CampaignError(f"{where}{shown}: {what}; to mend: {mend}", file, key=key, value="" if value is None else str(value), mend=mend)
@@ -73,15 +86,7 @@ class Spec:
     @staticmethod
     def read(file: str | os.PathLike[str]) -> Spec:
         """Read a campaign's TOML file. Raises CampaignError with key, value, mend; with the line where it is no TOML."""
-        name = os.fspath(file)
-        try:
-            with open(name, "rb") as stream:
-                table = tomllib.load(stream)
-        except OSError as error:
-            raise CampaignError(f"{name}: {error.strerror}; to mend: give a campaign's TOML file", name, mend="give a file") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise CampaignError(f"{name}: is no TOML: {error}; to mend: write it as docs/campaign.md shows", name) from None
-        return Spec.of(table, name)
+        return Spec.of(read_table(file), os.fspath(file))
 
     @staticmethod
     def of(table: Mapping[str, Any], file: str = "") -> Spec:
@@ -92,7 +97,7 @@ class Spec:
         spec._check_method()
         for name, text in spec.table.get("keep", {}).get("figures", {}).items():
             if not isinstance(text, str):
-                raise _wrong(file, f"keep.figures.{name}", text, "is no formula", "write a text such as 'mean(wheel0.slip)'")
+                raise wrong(file, f"keep.figures.{name}", text, "is no formula", "write a text such as 'mean(wheel0.slip)'")
             spec.formulas[name] = Formula(text, name)
         spec._read_texts()
         spec._check_columns()
@@ -104,24 +109,24 @@ class Spec:
                 if key not in known:
                     near = difflib.get_close_matches(key, known, 1)
                     mend = f"is {near[0]!r} meant?" if near else "the keys are " + " ".join(known)
-                    raise _wrong(self.file, prefix + key, None, "is no key of a campaign", mend)
+                    raise wrong(self.file, prefix + key, None, "is no key of a campaign", mend)
         for key, low in (("drives", 1), ("base", 1), ("repeats", 1), ("seed", 0), ("hide", 0), ("part", 1)):
             value = self.table.get(key, low)
             if not isinstance(value, int) or isinstance(value, bool) or value < low or (key == "hide" and value > 5):
-                raise _wrong(
+                raise wrong(
                     self.file, key, value, "cannot be", f"give a whole number of {low} or more" + (", 5 at most" if key == "hide" else "")
                 )
         for key in ("set", "vary", "keep"):
             if not isinstance(self.table.get(key, {}), dict):
-                raise _wrong(self.file, key, self.table[key], "is no table", f"write [{key}]")
+                raise wrong(self.file, key, self.table[key], "is no table", f"write [{key}]")
         if "scenario" not in self.table and "scenario" not in self.table.get("vary", {}) and not self.table.get("row"):
-            raise _wrong(self.file, "scenario", None, "is missing", "give a scenario file, or a list of them under [vary]")
+            raise wrong(self.file, "scenario", None, "is missing", "give a scenario file, or a list of them under [vary]")
         keep = self.table.get("keep", {})
         if not isinstance(keep.get("columns", []), list):
-            raise _wrong(self.file, "keep.columns", keep["columns"], "is no list", "give a list of column names")
+            raise wrong(self.file, "keep.columns", keep["columns"], "is no list", "give a list of column names")
         rate = keep.get("rate_Hz", 1)
         if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not rate > 0:
-            raise _wrong(self.file, "keep.rate_Hz", rate, "is no rate", "give a number above 0")
+            raise wrong(self.file, "keep.rate_Hz", rate, "is no rate", "give a number above 0")
 
     def _factors(self) -> dict[str, Range | list[Any]]:
         out: dict[str, Range | list[Any]] = {}
@@ -131,7 +136,7 @@ class Spec:
             elif isinstance(value, list) and value:
                 out[key] = value
             else:
-                raise _wrong(self.file, f"vary.{key}", value, "is no factor", "give a list of values, or { low = , high = }")
+                raise wrong(self.file, f"vary.{key}", value, "is no factor", "give a list of values, or { low = , high = }")
         return out
 
     def _range(self, key: str, value: dict[str, Any]) -> Range:
@@ -139,33 +144,33 @@ class Spec:
         unknown = set(value) - {"low", "high", "log", "count"}
         numbers = all(isinstance(value.get(n), (int, float)) and math.isfinite(value[n]) for n in ("low", "high"))
         if unknown or not numbers or not value["low"] < value["high"]:
-            raise _wrong(self.file, where, value, "is no range", "give { low = , high = } with low below high, log and count if wanted")
+            raise wrong(self.file, where, value, "is no range", "give { low = , high = } with low below high, log and count if wanted")
         count = value.get("count", 0)
         if not isinstance(count, int) or count < 0:
-            raise _wrong(self.file, where, value, "has no such count", "give a whole number")
+            raise wrong(self.file, where, value, "has no such count", "give a whole number")
         if value.get("log") and value["low"] <= 0:
-            raise _wrong(self.file, where, value, "has no logarithm at its low end", "give a low above 0")
+            raise wrong(self.file, where, value, "has no logarithm at its low end", "give a low above 0")
         return Range(float(value["low"]), float(value["high"]), bool(value.get("log", False)), count)
 
     def _check_method(self) -> None:
         if self.method not in METHODS:
-            raise _wrong(self.file, "method", self.method, "is none", "give " + ", ".join(METHODS))
+            raise wrong(self.file, "method", self.method, "is none", "give " + ", ".join(METHODS))
         if self.method == "list" and not self.table.get("row"):
-            raise _wrong(self.file, "row", None, "is missing", "write [[row]] tables, or another method")
+            raise wrong(self.file, "row", None, "is missing", "write [[row]] tables, or another method")
         if self.method == "grid":
             for key, factor in self.factors.items():
                 if isinstance(factor, Range) and factor.count < 1:
-                    raise _wrong(self.file, f"vary.{key}", None, "has no count, which a grid needs", "give count, or a list of values")
+                    raise wrong(self.file, f"vary.{key}", None, "has no count, which a grid needs", "give count, or a list of values")
         if self.method in ("latin_hypercube", "sobol") and ("drives" not in self.table or not self.factors):
-            raise _wrong(self.file, "drives", None, f"and [vary] are what {self.method} needs", "say how many drives, and of what")
+            raise wrong(self.file, "drives", None, f"and [vary] are what {self.method} needs", "say how many drives, and of what")
 
         base = self.table.get("base")
         if self.method == "saltelli" and (base is None or not self.factors or base & (base - 1)):
             mend = "give a power of two, 64 or more for indices of use; the drives are base x (factors + 2)"
-            raise _wrong(self.file, "base", base, "cannot be" if base and self.factors else "and [vary] are what saltelli needs", mend)
+            raise wrong(self.file, "base", base, "cannot be" if base and self.factors else "and [vary] are what saltelli needs", mend)
         for key, factor in self.factors.items():
             if self.method == "saltelli" and isinstance(factor, list) and len(factor) < 2:
-                raise _wrong(self.file, f"vary.{key}", factor, "does not vary", "put it under [set], or give more values")
+                raise wrong(self.file, f"vary.{key}", factor, "does not vary", "put it under [set], or give more values")
 
     @property
     def title(self) -> str:
@@ -191,7 +196,7 @@ class Spec:
     def fingerprint(self) -> str:
         """Of everything that the results depend on: the specification, the files that it names, and the compiled half of this package."""
         core = hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()
-        whole = json.dumps([{k: v for k, v in self.table.items() if k not in ("title", "about")}, self.texts, core], sort_keys=True)
+        whole = json.dumps([plain(self.table), self.texts, core, LAYOUT], sort_keys=True)
         return hashlib.sha256(whole.encode()).hexdigest()
 
     @cached_property
@@ -253,6 +258,35 @@ class Spec:
         """The factors' names."""
         return list(dict.fromkeys(key for point in self.points for key in point))
 
+    def schema(self) -> Any:
+        """The table's columns (pyarrow), known before the first drive; so a part does not depend on which drives failed."""
+        import pyarrow as pa
+
+        fields = [pa.field("drive", pa.int64()), pa.field("repeat", pa.int32()), pa.field("seed", pa.int64())]
+        if self.table.get("hide", 0):
+            fields.append(pa.field("hide_seed", pa.int64()))
+        fields += [pa.field(key, _type_of([point.get(key) for point in self.points])) for key in self.keys]
+        fields += [
+            pa.field("status", pa.string()),
+            pa.field("error", pa.string()),
+            pa.field("ticks", pa.int64()),
+            pa.field("faults", pa.int64()),
+        ]
+        fields += [pa.field(name, pa.string()) for name in ("fault_names", "trace_hash", "hidden")]
+        fields += [pa.field(name, pa.float64(), metadata={"formula": f.text}) for name, f in self.formulas.items()]
+        if self.keep.get("diagnosis"):
+            fields += [pa.field("verdict", pa.string()), pa.field("named", pa.string())]
+            fields += [pa.field("error_before", pa.float64()), pa.field("error_after", pa.float64())]
+        if self.keep.get("columns"):
+            fields += [pa.field(name, pa.list_(pa.float64())) for name in ("series.t_s", *(f"series.{c}" for c in self.keep["columns"]))]
+        return pa.schema(fields)
+
+    def task(self, folder: str | os.PathLike[str]) -> Task:
+        """What its workers are given."""
+        from .drive import Job
+
+        return Job.of(self, folder)
+
     def _read_texts(self) -> None:
         """The files that rows name, so that a run does not depend on what happens to them."""
         wanted: list[tuple[str, str]] = [("scenario", str(self.table["scenario"]))] if isinstance(self.table.get("scenario"), str) else []
@@ -274,16 +308,29 @@ class Spec:
             try:
                 self.texts[f"{key}:{name}"] = Path(path).read_text(encoding="utf-8")
             except OSError as error:
-                raise _wrong(self.file, key, name, f"cannot be read ({error.strerror})", "give a file that is there") from None
+                raise wrong(self.file, key, name, f"cannot be read ({error.strerror})", "give a file that is there") from None
 
     def _check_columns(self) -> None:
         own = set(OWN.split())
         for name in (*self.keys, *self.formulas):
             if name in own:
-                raise _wrong(self.file, name, None, "is a column of every campaign's table", "choose another name")
+                raise wrong(self.file, name, None, "is a column of every campaign's table", "choose another name")
         for name in self.formulas:
             if name in self.keys:
-                raise _wrong(self.file, f"keep.figures.{name}", None, "is a factor too", "choose another name")
+                raise wrong(self.file, f"keep.figures.{name}", None, "is a factor too", "choose another name")
+
+
+def _type_of(values: Iterable[Any]) -> Any:
+    import pyarrow as pa
+
+    kinds = {type(value) for value in values if value is not None}
+    if kinds == {bool}:
+        return pa.bool_()
+    if kinds == {int}:
+        return pa.int64()
+    if kinds and kinds <= {int, float}:
+        return pa.float64()
+    return pa.string()
 
 
 def _plain(value: Any) -> Any:

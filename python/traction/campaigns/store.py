@@ -2,8 +2,10 @@
 
 campaign.json   what it is, and the fingerprint of what its results depend on
 rows.parquet    every drive's factors and seeds
+columns.parquet the table's columns, without a row
 results/        part-000000.parquet, ...: one row a drive, `part` rows a file, each written once and renamed into place
-inbox/          drive-00000012.arrow: drives whose part is not full yet
+times/          part-000000.parquet, ...: what is another each time (processor time), where a campaign keeps it
+inbox/          part-000000.jsonl, ...: drives whose part is not full yet, a line of JSON each, written as they come
 logs/           drive-00000012.csv, where whole logs are kept
 """
 
@@ -12,6 +14,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,46 +22,11 @@ from typing import Any
 
 from .._errors import CampaignError
 from .._parquet import write_table
-from .spec import Row, Spec
+from .plan import Plan, Row
 
 FORMAT = "traction.campaign/1"
-
-
-def schema_of(spec: Spec) -> Any:
-    """The table's columns, known before the first drive; so a part does not depend on which drives failed."""
-    import pyarrow as pa
-
-    fields = [pa.field("drive", pa.int64()), pa.field("repeat", pa.int32()), pa.field("seed", pa.int64())]
-    if spec.table.get("hide", 0):
-        fields.append(pa.field("hide_seed", pa.int64()))
-    fields += [pa.field(key, _type_of([point.get(key) for point in spec.points])) for key in spec.keys]
-    fields += [
-        pa.field("status", pa.string()),
-        pa.field("error", pa.string()),
-        pa.field("ticks", pa.int64()),
-        pa.field("faults", pa.int64()),
-    ]
-    fields += [pa.field(name, pa.string()) for name in ("fault_names", "trace_hash", "hidden")]
-    fields += [pa.field(name, pa.float64(), metadata={"formula": f.text}) for name, f in spec.formulas.items()]
-    if spec.keep.get("diagnosis"):
-        fields += [pa.field("verdict", pa.string()), pa.field("named", pa.string())]
-        fields += [pa.field("error_before", pa.float64()), pa.field("error_after", pa.float64())]
-    if spec.keep.get("columns"):
-        fields += [pa.field(name, pa.list_(pa.float64())) for name in ("series.t_s", *(f"series.{c}" for c in spec.keep["columns"]))]
-    return pa.schema(fields)
-
-
-def _type_of(values: Iterable[Any]) -> Any:
-    import pyarrow as pa
-
-    kinds = {type(value) for value in values if value is not None}
-    if kinds == {bool}:
-        return pa.bool_()
-    if kinds == {int}:
-        return pa.int64()
-    if kinds and kinds <= {int, float}:
-        return pa.float64()
-    return pa.string()
+HEAD = re.compile(rb'\{"drive": (\d+)[,}]')  # what a line of an inbox begins with
+SLICE = 64  # rows that are brought from JSON to columns at once: long series are not all in memory as Python's numbers
 
 
 def table_of(schema: Any, rows: Iterable[Row]) -> Any:
@@ -73,14 +41,28 @@ def table_of(schema: Any, rows: Iterable[Row]) -> Any:
     return pa.Table.from_pylist([{f.name: cell(row.get(f.name), f.type) for f in schema} for row in rows], schema=schema)
 
 
+def _sound(data: bytes) -> Iterator[tuple[bytes, Row | None]]:
+    """Lines of an inbox, each with its row. None where a stop or a power cut left it torn."""
+    for line in data.splitlines(keepends=True):
+        row: Row | None = None
+        if line.endswith(b"\n"):
+            try:
+                told = json.loads(line)
+                row = told if isinstance(told, dict) and isinstance(told.get("drive"), int) else None
+            except ValueError:
+                pass
+        yield line, row
+
+
 class Store:
     """A campaign's folder, for its one writer and any readers."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
+        self._open: dict[int, Any] = {}  # inboxes of the writer
 
     @contextmanager
-    def writing(self, spec: Spec) -> Iterator[None]:
+    def writing(self, spec: Plan) -> Iterator[None]:
         """Claims the folder for `spec`, makes it on the first run, and sees on later ones that it is the same campaign."""
         self.folder.mkdir(parents=True, exist_ok=True)
         with open(self.folder / ".lock", "a+", encoding="utf-8") as lock:
@@ -95,10 +77,15 @@ class Store:
             lock.write(f"process {os.getpid()} on {os.uname().nodename}: campaign {spec.title!r}\n")
             lock.flush()
             self._claim(spec)
-            yield
+            try:
+                yield
+            finally:
+                for stream in self._open.values():
+                    stream.close()
+                self._open.clear()
             lock.truncate(0)
 
-    def _claim(self, spec: Spec) -> None:
+    def _claim(self, spec: Plan) -> None:
         known = self.folder / "campaign.json"
         if known.exists():
             there = self.about()
@@ -111,10 +98,11 @@ class Store:
             if others:
                 mend = "give an empty folder, or a new one"
                 raise CampaignError(f"{self.folder}: holds {others[0]!r} and no campaign; to mend: {mend}", str(self.folder), mend=mend)
-            schema = schema_of(spec)
+            schema = spec.schema()
             keys = [f.name for f in schema][: schema.get_field_index("status")]
             import pyarrow as pa
 
+            write_table(schema.empty_table(), self.folder / "columns.parquet")
             write_table(table_of(pa.schema([schema.field(k) for k in keys]), spec.rows), self.folder / "rows.parquet")
             about = {
                 "schema": FORMAT,
@@ -130,9 +118,20 @@ class Store:
         for name in ("results", "inbox"):
             (self.folder / name).mkdir(exist_ok=True)
         written = set(self.parts())
-        for drive in self.letters():  # a stop between a part's writing and its inbox's emptying
-            if drive // spec.part in written:
-                self._letter(drive).unlink(missing_ok=True)
+        for part in self._inboxes():
+            if part in written:  # a stop between a part's writing and its inbox's removal
+                self._inbox(part).unlink(missing_ok=True)
+            else:
+                self._mend(part)
+
+    def _mend(self, part: int) -> None:
+        """Takes torn lines out of an inbox: their drives are driven again."""
+        sound = list(_sound(self._inbox(part).read_bytes()))
+        if all(row is not None for _, row in sound):
+            return
+        spare = self.folder / "inbox" / f".{part}.tmp"
+        spare.write_bytes(b"".join(line for line, row in sound if row is not None))
+        os.replace(spare, self._inbox(part))
 
     def about(self) -> dict[str, Any]:
         """campaign.json. Raises CampaignError where there is none."""
@@ -143,76 +142,104 @@ class Store:
             raise CampaignError(f"{self.folder}: holds no campaign; to mend: {mend}", str(self.folder), mend=mend) from None
         return about
 
-    def _letter(self, drive: int) -> Path:
-        return self.folder / "inbox" / f"drive-{drive:08d}.arrow"
+    def _inbox(self, part: int) -> Path:
+        return self.folder / "inbox" / f"part-{part:06d}.jsonl"
 
-    def _part(self, part: int) -> Path:
-        return self.folder / "results" / f"part-{part:06d}.parquet"
+    def _inboxes(self) -> list[int]:
+        return sorted(int(p.stem[5:]) for p in (self.folder / "inbox").glob("part-*.jsonl"))
+
+    def _part(self, part: int, folder: str = "results") -> Path:
+        return self.folder / folder / f"part-{part:06d}.parquet"
 
     def parts(self) -> list[int]:
         """Numbers of the parts that are written."""
         return sorted(int(p.stem[5:]) for p in (self.folder / "results").glob("part-*.parquet"))
 
-    def letters(self) -> list[int]:
-        """Numbers of the drives that are done and in no part yet."""
-        return sorted(int(p.stem[6:]) for p in (self.folder / "inbox").glob("drive-*.arrow"))
+    def waiting(self) -> Iterator[tuple[int, list[Row]]]:
+        """Parts that are not written yet, each with the drives of it that are done, in the order of rows."""
+        written = set(self.parts())
+        for part in self._inboxes():
+            if part in written:
+                continue
+            try:
+                data = self._inbox(part).read_bytes()
+            except FileNotFoundError:  # its part was written meanwhile
+                continue
+            rows = {row["drive"]: row for _, row in _sound(data) if row is not None}
+            yield part, [rows[drive] for drive in sorted(rows)]
 
-    def put(self, drive: int, table: Any) -> None:
-        """Keep a drive that is done."""
-        import pyarrow as pa
-
-        spare = self.folder / "inbox" / f".{drive}.tmp"
-        with pa.OSFile(str(spare), "wb") as stream, pa.ipc.new_file(stream, table.schema) as writer:
-            writer.write_table(table)
-        os.replace(spare, self._letter(drive))
-
-    def letter(self, drive: int, schema: Any) -> Any:
-        """A drive from the inbox; None where a power cut left it torn: it is then driven again."""
-        import pyarrow as pa
-
-        try:
-            with pa.OSFile(str(self._letter(drive)), "rb") as stream:
-                table = pa.ipc.open_file(stream).read_all()
-            return table if table.schema.equals(schema) else None
-        except (OSError, pa.ArrowInvalid):
-            self._letter(drive).unlink(missing_ok=True)
-            return None
+    def put(self, part: int, row: Row) -> None:
+        """Keep a drive that is done: one line, in the file when this returns."""
+        stream = self._open.get(part)
+        if stream is None:
+            stream = self._open[part] = open(self._inbox(part), "ab", buffering=0)
+        line = memoryview(json.dumps(row, default=_number).encode() + b"\n")
+        while line:
+            line = line[stream.write(line) :]
 
     def close_part(self, part: int, drives: range, schema: Any) -> None:
-        """Writes a part whose drives are all in the inbox, then empties that."""
+        """Writes a part whose drives are all in the inbox, then removes that."""
         import pyarrow as pa
 
-        tables = [self.letter(drive, schema) for drive in drives]
-        if any(table is None for table in tables):
+        if part in self._open:
+            self._open.pop(part).close()
+        offsets, data = dict[int, tuple[int, int]](), self._inbox(part).read_bytes()
+        at = 0
+        for line in data.splitlines(keepends=True):
+            if found := HEAD.match(line):
+                offsets[int(found[1])] = (at, at + len(line))
+            at += len(line)
+        if any(drive not in offsets for drive in drives):
             raise CampaignError(f"{self.folder}: a drive of part {part} is unreadable; to mend: run the campaign again, it is driven anew")
-        write_table(pa.concat_tables(tables).combine_chunks(), self._part(part))
-        for drive in drives:
-            self._letter(drive).unlink(missing_ok=True)
+        slices = [range(first, min(first + SLICE, drives.stop)) for first in range(drives.start, drives.stop, SLICE)]
+        tables = [table_of(schema, [json.loads(data[slice(*offsets[drive])]) for drive in some]) for some in slices]
+        table = pa.concat_tables(tables).combine_chunks()
+        apart = [field.name for field in schema if _apart(field)]
+        if apart:
+            (self.folder / "times").mkdir(exist_ok=True)
+            write_table(table.select(["drive", *apart]), self._part(part, "times"))
+        write_table(table.drop_columns(apart), self._part(part))
+        self._inbox(part).unlink(missing_ok=True)
+
+    def _schema(self) -> Any:
+        import pyarrow.parquet as pq
+
+        return pq.read_schema(self.folder / "columns.parquet")
 
     def columns(self) -> list[str]:
         """Names of the table's columns, in its order; empty where no drive is done."""
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        if parts := self.parts():
-            return list(pq.read_schema(self._part(parts[0])).names)
-        for drive in self.letters():
-            with pa.OSFile(str(self._letter(drive)), "rb") as stream:
-                return list(pa.ipc.open_file(stream).schema.names)
-        return []
+        if not self.parts() and not any(rows for _, rows in self.waiting()):
+            return []
+        return [field.name for field in self._schema() if not _apart(field)]
 
     def table(self, columns: list[str] | None = None) -> Any:
         """Every drive that is done, in the order of rows; all columns, or these."""
+        schema = self._schema()
+        return self._read("results", schema, [f.name for f in schema if not _apart(f)] if columns is None else columns)
+
+    def times(self) -> Any:
+        """What is another each time, of every drive that is done: `drive` and the columns that are kept apart; None where none is."""
+        schema = self._schema()
+        apart = [field.name for field in schema if _apart(field)]
+        return self._read("times", schema, ["drive", *apart]) if apart else None
+
+    def _read(self, folder: str, schema: Any, names: list[str]) -> Any:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        tables = [(part, pq.read_table(self._part(part), columns=columns)) for part in self.parts()]
-        written, part_size = set(self.parts()), int(self.about()["part"])
-        for drive in self.letters():
-            if drive // part_size not in written:
-                with pa.OSFile(str(self._letter(drive)), "rb") as stream:
-                    table = pa.ipc.open_file(stream).read_all()
-                tables.append((drive // part_size, table if columns is None else table.select(columns)))
+        wanted = pa.schema([schema.field(name) for name in names])
+        tables = [(part, table_of(wanted, rows)) for part, rows in self.waiting()]  # first: what is written meanwhile is then in both
+        known = {part for part, _ in tables}
+        tables += [(part, pq.read_table(self._part(part, folder), columns=names)) for part in self.parts() if part not in known]
         if not tables:
-            return pq.read_table(self.folder / "rows.parquet").slice(0, 0)
+            return wanted.empty_table()
         return pa.concat_tables([table for _, table in sorted(tables, key=lambda item: item[0])])
+
+
+def _apart(field: Any) -> bool:
+    """Whether a column is no part of the table, for it is another each time (plan.apart)."""
+    return b"apart" in (field.metadata or {})
+
+
+def _number(value: Any) -> Any:
+    return value.item()  # NumPy's

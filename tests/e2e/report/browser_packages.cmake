@@ -1,14 +1,14 @@
-# Included by the tests that look at pages: CHROMIUM, run_or_fail(words command...), and in WORK the scripts and packages of SOURCE.
-# Sets SKIPPED where there is no browser.
+# Included by the tests that look at pages: CHROMIUM, run_or_fail(words command...), and in WORK the scripts of SOURCE and the packages of
+# this folder. Sets SKIPPED where there is no browser.
 find_program(CHROMIUM NAMES chromium chromium-browser)
-if(NOT CHROMIUM)
-  message("SKIPPED: the report page was not looked at: no chromium here (Debian: apt-get install chromium)")
+if(NOT CHROMIUM OR NOT NODE OR NOT NPM)
+  message("SKIPPED: the page was not looked at: it needs chromium, node and npm (Debian: apt-get install chromium nodejs npm)")
   set(SKIPPED TRUE)
   return()
 endif()
 execute_process(COMMAND ${CHROMIUM} --version OUTPUT_VARIABLE version ERROR_QUIET RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
-  message("SKIPPED: the report page was not looked at: ${CHROMIUM} does not start (on Ubuntu it is a snap, which needs snapd)")
+  message("SKIPPED: the page was not looked at: ${CHROMIUM} does not start (on Ubuntu it is a snap, which needs snapd)")
   set(SKIPPED TRUE)
   return()
 endif()
@@ -20,8 +20,10 @@ function(run_or_fail what)
   endif()
 endfunction()
 
-file(COPY ${SOURCE}/ DESTINATION ${WORK} FILES_MATCHING PATTERN *.mjs PATTERN *.json PATTERN .npmrc)
-file(SHA256 ${SOURCE}/package-lock.json lock)
+set(packages ${CMAKE_CURRENT_LIST_DIR})
+file(COPY ${SOURCE}/ DESTINATION ${WORK} FILES_MATCHING PATTERN *.mjs)
+file(COPY ${packages}/package.json ${packages}/package-lock.json ${packages}/.npmrc DESTINATION ${WORK})
+file(SHA256 ${packages}/package-lock.json lock)
 set(installed "")
 if(EXISTS ${WORK}/node_modules/.traction-lock)
   file(READ ${WORK}/node_modules/.traction-lock installed)

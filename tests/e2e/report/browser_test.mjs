@@ -34,7 +34,7 @@ const shown = (page) => page.$eval('.toolbar output', (e) => e.textContent);
 const sectionIds = (page) => page.$$eval('main > section', (all) => all.map((e) => e.id));
 const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-for (const name of ['check', 'compare', 'diagnose', 'demo', 'gaps', 'compared', 'figures', 'empty', 'odd', 'large', 'real_compare', 'real_check', 'real_speed', 'real_history'])
+for (const name of ['every_effect', 'check', 'compare', 'diagnose', 'demo', 'gaps', 'compared', 'figures', 'empty', 'odd', 'large', 'real_compare', 'real_check', 'real_speed', 'real_history'])
   claim(`${name}: opens from disk without an error and without a request`, async () => {
     const { page, trouble, close } = await open(name);
     assert.deepEqual(trouble, []);
@@ -72,9 +72,22 @@ claim('no percentage beyond 100, and the words of what a person reads first hold
   await close();
 });
 
+claim('every effect of the catalogue has its drawing where it is named, with words for who does not see it', async () => {
+  const { page, close } = await open('every_effect');
+  const { effects } = JSON.parse(readFileSync(`${pages}/../effects.json`, 'utf8'));
+  await page.$$eval('details', (all) => all.forEach((e) => { e.open = true; }));
+  for (const { name } of effects) {
+    const drawings = await page.$$eval('#ruled-out th:has(svg.effect)', (all, n) => all.filter((e) => e.querySelector('strong').textContent === n)
+      .map((e) => ({ words: e.querySelector('svg').getAttribute('aria-label'), wide: e.querySelector('svg').getBoundingClientRect().width, parts: e.querySelectorAll('svg .mark, svg .force').length })), name);
+    assert.equal(drawings.length, 1, name);
+    assert.ok(drawings[0].words.startsWith(`${name} acts: `) && drawings[0].wide > 100 && drawings[0].parts > 0, `${name}: ${JSON.stringify(drawings[0])}`);
+  }
+  await close();
+});
+
 for (const width of [420, 1400, 1920])
   for (const colorScheme of ['light', 'dark'])
-    for (const name of width === 1400 ? ['demo', 'real_compare', 'compared'] : ['demo', 'check', 'figures', 'real_compare', 'compared'])
+    for (const name of width === 1400 ? ['demo', 'real_compare', 'compared'] : ['demo', 'check', 'figures', 'real_compare', 'compared', 'every_effect'])
       claim(`${name} at ${width} px, ${colorScheme}: axe finds nothing, nothing is cut`, async () => {
         const { page, trouble, close } = await open(name, { viewport: { width, height: 900 }, colorScheme });
         await page.$$eval('details', (all) => all.forEach((e) => { e.open = true; }));

@@ -1,7 +1,7 @@
-// sample.mjs OUT_DIR - writes results of every kind for the report page to be looked at: made-up numbers, seeded, in the shape of
+// sample.mjs OUT_DIR EFFECTS.json - writes results of every kind for the report page to be looked at: made-up numbers, seeded, in the shape of
 // docs/json_schema.md. diagnose.json has every part; compare.json few; empty.json none; odd.json values that would break a
 // careless page; large.json 11 balances of 1000 s, 20000 rows each; gaps.json rows left out and single rows; figures.json the page of `traction reproduce`.
-import { mkdirSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 
 let state = 20240607n; // seed of splitmix64 (Steele, Lea and Flood 2014)
 function uniform() {
@@ -124,7 +124,8 @@ const check = { schema: 'traction.check/1', log: 'sand_identification.csv', map:
   rates: [{ signal: 'wheel2.speed_rad_s', samples: 12000, median_s: 0.01, jitter: 0.002, missing: 0, largest_gap_s: 0.01 }],
   excitation: { duration_s: 120, speed_max_m_s: 0.41, constant_input: false, wheels: [{ wheel: 0, slip_low: -0.2, slip_high: 0.4 }, { wheel: 1, slip_low: null, slip_high: 0.4 }] } };
 
-const out = process.argv[2];
+const [out, catalogue] = process.argv.slice(2); // catalogue: what `traction effects --json` wrote
+const every_effect = { ...diagnose, title: 'Every effect', accepted: [], candidates: JSON.parse(readFileSync(catalogue, 'utf8')).effects.map((e, i) => ({ ...candidate(i + 1, e.name, 0, 'no_help', {}), title: e.title })) };
 mkdirSync(out, { recursive: true });
-for (const [name, result] of Object.entries({ check, compare, diagnose, odd, large, figures, gaps, demo, compared, method, empty: { schema: 'traction.lab/1' } }))
+for (const [name, result] of Object.entries({ every_effect, check, compare, diagnose, odd, large, figures, gaps, demo, compared, method, empty: { schema: 'traction.lab/1' } }))
   writeFileSync(`${out}/${name}.json`, JSON.stringify(result));

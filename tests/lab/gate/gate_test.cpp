@@ -10,6 +10,7 @@
 #include "host_tools/lab/gate.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/lab/validate.h"
+#include "host_tools/simulate/simulate.h"
 #include "tests/lab/generator/generator.h"
 #include "tests/log/files.h"
 
@@ -17,6 +18,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +58,24 @@ TEST(Gate, no_sound_log_is_refused) {
         for (const bool known : {false, true})
             EXPECT_EQ(errors(check::check(log.log, {}, known ? lab::machine_of(log.model) : check::Machine{})), "") << log.about;
     }
+}
+
+// On even ground two wheels on one axle count alike to the last digit; only their currents' noise differs.
+TEST(Gate, wheels_that_a_simulation_turns_alike_are_no_copies) {
+    sim::Scenario scenario = sim::read_scenario("scenarios/identification.toml");
+    scenario.duration_s = 20;
+    scenario.plant.ground.grip_noise = 0;
+    SimulateOptions options;
+    options.seed = 3;
+    const log::Log log = simulate(scenario, options).log;
+    ASSERT_EQ(log.find("wheel0.encoder_count")->value, log.find("wheel1.encoder_count")->value);
+    for (const bool known : {false, true})
+        EXPECT_EQ(errors(check::check(log, {}, known ? lab::machine_of(lab::read_model("models/rover_sand.toml")) : check::Machine{})), "");
+    log::Log copied = log; // the same wheel's counts beside a current of its own, which the ground moves
+    for (log::Signal &s : copied.signals)
+        if (s.name == "wheel1.current_A")
+            for (std::size_t i = 0; i < s.value.size(); ++i) s.value[i] *= 1 + 0.05 * std::sin(2 * s.t_s[i]);
+    EXPECT_NE(check::check(copied, {}, {}).find("copied", "wheel1.speed_rad_s"), nullptr);
 }
 
 // A loop that holds a slow wheel to one count rate for seconds, as counts and as the speed that a driver makes of them.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -144,6 +145,21 @@ std::vector<Estimate> run(Source source, std::uint64_t seed, double duration_s) 
     const lab::Parameter &p = model.effects.back().parameters.at(hidden.key);
     out.push_back({"effect: " + hidden.name, hidden.size, p.value, p.low, p.high, seed});
     return out;
+}
+
+nlohmann::json estimate_json(const Estimate &e) {
+    const auto number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(std::to_string(value)); };
+    return {{"log", e.log},         {"key", e.key},           {"truth", number(e.truth)}, {"value", number(e.value)},
+            {"low", number(e.low)}, {"high", number(e.high)}, {"inside", e.inside()}};
+}
+
+Estimate read_estimate(const nlohmann::json &from) {
+    const auto number = [&](const char *key) {
+        const nlohmann::json &value = from.at(key);
+        return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr) : value.get<double>();
+    };
+    return {from.at("key").get<std::string>(),  number("truth"), number("value"), number("low"), number("high"),
+            from.at("log").get<std::uint64_t>()};
 }
 
 double Tally::share_error() const {

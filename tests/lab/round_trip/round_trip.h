@@ -5,6 +5,8 @@
 // size is hidden in each and its place in the model is given to the fit: what is judged is the interval, not the search.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -25,6 +27,10 @@ struct Estimate {
 
 // One log: simulated, fitted, compared. Throws what the lab throws.
 std::vector<Estimate> run(Source source, std::uint64_t seed, double duration_s);
+
+// An estimate as JSON {log, key, truth, value, low, high, inside} and back, without loss: what is not finite is a text.
+nlohmann::json estimate_json(const Estimate &);
+Estimate read_estimate(const nlohmann::json &); // throws nlohmann::json::exception where it is none
 
 struct Tally {
     int inside = 0, count = 0;

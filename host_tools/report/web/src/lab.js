@@ -2,6 +2,7 @@
 // what cannot be seen, then the details.
 import { correlation } from './charts.js';
 import { h, table } from './dom.js';
+import { drawing } from './effects.js';
 import { signals } from './signals.js';
 import { ladder, more, seal, section, verdict } from './story.js';
 import { found, ruledOut, statistics, unknown, unseen } from './tried.js';
@@ -52,7 +53,7 @@ function lineage(result) {
   const text = (x) => (x == null ? '–' : isNumber(x) ? num(x, 4) : typeof x === 'object' ? JSON.stringify(x) : String(x));
   return more('lineage', 'The model and where it comes from',
     effects.length ? table(`Effects in ${result.model.name || result.model.file || 'the model'}`, [{ head: 'effect' }, { head: 'size [95 %]' }],
-      effects.map((e) => [effectName(e), Object.entries(e.parameters ?? {}).map(([n, p]) => h('div', {}, `${n} = ${sized(p)}`))])) : null,
+      effects.map((e) => [[drawing(e.name), effectName(e)], Object.entries(e.parameters ?? {}).map(([n, p]) => h('div', {}, `${n} = ${sized(p)}`))])) : null,
     fitted.length ? table('Fitted parameters', [{ head: 'parameter' }, { head: 'value [95 %]' }], fitted.map(([name, p]) => [name, sized(p)])) : null,
     limits.length ? h('ul', {}, limits.map((l) => h('li', {}, l.text))) : null,
     history.length ? table('Lineage, oldest first', keys.map((k) => ({ head: k.replaceAll('_', ' ') })), history.map((entry) => keys.map((k) => text(entry?.[k])))) : null);

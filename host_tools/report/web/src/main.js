@@ -4,12 +4,14 @@ import './page.css'; // after uPlot's own, which it mends
 import { check } from './check.js';
 import { h, markScrollers } from './dom.js';
 import { driveLog } from './drive.js';
+import { setDrawings } from './effects.js';
 import { figures } from './figures.js';
 import { lab } from './lab.js';
 import { models } from './models.js';
 import { driveSection } from './replay/section.js';
 
 const result = JSON.parse(document.getElementById('result').textContent);
+setDrawings(result.drawings);
 const page = document.getElementById('page');
 document.title = result.title || (result.log && typeof result.log === 'string' ? `check: ${result.log}` : 'Traction report');
 
@@ -33,9 +35,9 @@ new ResizeObserver(() => markScrollers(page)).observe(page);
 page.addEventListener('toggle', () => markScrollers(page), true); // a folded table has no width
 document.documentElement.dataset.ready = 'yes';
 
-// what the lab put out; the replay is the log's
+// what the lab put out; the replay is the log's, the drawings are the catalogue's
 function save() {
-  const address = URL.createObjectURL(new Blob([JSON.stringify({ ...result, replay: undefined }, null, 1)], { type: 'application/json' }));
+  const address = URL.createObjectURL(new Blob([JSON.stringify({ ...result, replay: undefined, drawings: undefined }, null, 1)], { type: 'application/json' }));
   h('a', { href: address, download: 'result.json' }).click();
   setTimeout(() => URL.revokeObjectURL(address), 1000);
 }

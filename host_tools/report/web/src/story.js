@@ -1,5 +1,6 @@
 // story.js - the first screens: the verdict with its five answers, the seal of a demo, the ladder of errors with what is left in parts.
 import { h } from './dom.js';
+import { drawing } from './effects.js';
 import { effectName, even, isNumber, list, num, verdictKind } from './words.js';
 
 export function section(id, short, title, ...content) {
@@ -29,7 +30,7 @@ export function seal(result) {
   const d = result.demo;
   if (!d) return null;
   return section('seal', 'Seal', 'The seal, opened last: who was right?',
-    h('dl', { class: 'answers' }, h('div', {}, h('dt', {}, 'Hidden in the drive'), h('dd', {}, d.hidden_text || effectName(d.hidden ?? {}))),
+    h('dl', { class: 'answers' }, h('div', {}, h('dt', {}, 'Hidden in the drive'), h('dd', {}, drawing(d.hidden?.effect ?? d.hidden?.name), d.hidden_text || effectName(d.hidden ?? {}))),
       h('div', {}, h('dt', {}, 'The answer'), h('dd', {}, list(d.named).join(', ') || 'nothing was named')),
       h('div', {}, h('dt', {}, 'Judgement'), h('dd', {}, h('span', { class: `badge ${d.right ? 'good' : 'odd'}` }, d.right ? '✔ right' : 'not named'), ` ${d.judgement ?? ''}`))));
 }

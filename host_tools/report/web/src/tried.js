@@ -1,12 +1,13 @@
 // tried.js - what was found, what was ruled out and why, what this log cannot show, and the drive that would.
 import { evidenceStrip, shape } from './charts.js';
 import { h, table } from './dom.js';
+import { drawing } from './effects.js';
 import { more, section } from './story.js';
 import { zoom } from './timeplots.js';
 import { candidateVerdict, effectName, isNumber, list, num, parameters, percent, seconds, variant } from './words.js';
 
 const SHOWN = 8; // candidates that a reader sees without asking for more
-const titled = (c) => [h('strong', {}, effectName(c)), c.title && h('div', { class: 'quiet' }, c.title), variant(c.variant) && h('div', { class: 'quiet' }, variant(c.variant))];
+const titled = (c, drawn = true) => [drawn && drawing(c.effect ?? c.name), h('strong', {}, effectName(c)), c.title && h('div', { class: 'quiet' }, c.title), variant(c.variant) && h('div', { class: 'quiet' }, variant(c.variant))];
 
 export function found(result) {
   const all = list(result.accepted);
@@ -73,7 +74,7 @@ export function statistics(result) {
     + 'p: chance of such a gain by noise alone, corrected for the number tried. d′: the size over its standard error. The fall that a refit reaches stands on the ladder.'),
   table('Candidate effects, best first', [{ head: 'rank', number: true }, { head: 'effect' }, { head: 'gain [95 %]', number: true }, { head: 'size [95 %]' },
     { head: 'p', number: true }, { head: 'd′', number: true }, { head: 'verdict' }, { head: 'where the evidence sits' }],
-  all.map((c) => [isNumber(c.rank) ? String(c.rank) : '–', titled(c), [percent(c.heldout_gain), isNumber(c.gain_low) && h('div', { class: 'quiet' }, `${percent(c.gain_low)} to ${percent(c.gain_high)}`)],
+  all.map((c) => [isNumber(c.rank) ? String(c.rank) : '–', titled(c, false), [percent(c.heldout_gain), isNumber(c.gain_low) && h('div', { class: 'quiet' }, `${percent(c.gain_low)} to ${percent(c.gain_high)}`)],
     parameters(c.parameters).map((p) => h('div', {}, p)), isNumber(c.p_value) ? (c.p_value < 1e-4 ? '< 0.0001' : num(c.p_value, 2)) : '–', isNumber(c.detectability) ? num(c.detectability, 2) : '–',
     candidateVerdict(c), strip(c)])));
 }

@@ -167,13 +167,21 @@ function player(replay) {
       hasForce.some(Boolean) ? h('label', {}, forces, ' forces ') : null, drive.has('ghost.x_m') ? h('label', {}, ghost, ' ghost ') : null, fill),
     h('div', { class: 'gauges' }, dials.nodes), h('p', {}, dials.line), keyLine, notes);
   const start = () => {
+    shown = () => { playing = false; view?.dispose(); view = null; };
     legend();
     look(wished);
     onPoint((t) => go(t, true));
     new ResizeObserver(() => render()).observe(stage);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { view.recolour(palette()); render(); });
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { view?.recolour(palette()); render(); });
   };
   return { node, start };
+}
+
+// Lets the picture of the drive that is shown go, with what it holds of the graphics: another result takes its place.
+let shown = null;
+export function closeDrive() {
+  shown?.();
+  shown = null;
 }
 
 // The section of a result's drive, folded unless `open`; and what to do once it stands in the page.

@@ -1,5 +1,6 @@
 // bench.js - the folder's logs and models, the buttons of the lab, and how far what runs is.
 import { h } from '../dom.js';
+import { drawing } from '../effects.js';
 import { post } from './link.js';
 import { busy, choose, chosen, clock, effectOptions, fill, now, of, onChange, onWheel, saying, size, wheels } from './shared.js';
 
@@ -62,19 +63,27 @@ export function bench() {
   fill(addWheel, wheels, '-1');
   const run = (verb, more = {}) => tried(async () => {
     choose({ follow: true });
-    await post('/api/run', { verb, log: chosen.log, ...(chosen.model && { model: chosen.model }), ...(chosen.map && { map: chosen.map }), ...more });
+    await post('/api/run', { verb, log: chosen.log, ...(chosen.model && verb !== 'look' && { model: chosen.model }), ...(chosen.map && { map: chosen.map }), ...more });
   });
   const button = (words, title, work, kind) => h('button', { type: 'button', class: kind, title, onclick: work }, words);
-  const buttons = [button('Check', 'is this log fit to learn from?', () => run('check')), button('Compare', 'how far is the model from the log, and where?', () => run('compare')),
+  const buttons = [button('Check', 'is this log fit to learn from?', () => run('check')), button('Look', 'the drive, played again: where the rover went, how it slipped', () => run('look')), button('Compare', 'how far is the model from the log, and where?', () => run('compare')),
     button('Diagnose', 'which physics does the model lack?', () => run('diagnose'), 'main'), button('Next drive', 'the drive that answers what this log left open', () => run('next'))];
   const addButton = button('Add', 'a new model with this effect, fitted', () => run('add', { effect: add.value, wheel: +addWheel.value }));
   const dropButton = button('Drop', 'a new model without this effect', () => { const [effect, wheel] = drop.value.split(' on wheel '); return run('drop', { effect, ...(wheel !== undefined && { wheel: +wheel }) }); });
+  const drawn = h('p', { id: 'drawn', class: 'quiet' });
+  const draw = () => {
+    const e = now.effects.find((one) => one.name === add.value);
+    if (drawn.dataset.effect === (e?.name ?? '')) return;
+    drawn.dataset.effect = e?.name ?? '';
+    drawn.replaceChildren(...(e ? [drawing(e.name), `${e.title}. ${e.signature}`].filter(Boolean) : []));
+  };
+  add.addEventListener('change', draw);
   const hint = h('p', { class: 'hint', id: 'hint', hidden: true }), bar = h('progress', { max: 1, 'aria-label': 'how far it is' }), words = h('span', { role: 'status' });
   const stop = button('Cancel', 'end it; nothing half-written stays', () => tried(() => post('/api/cancel', { id: busy('lab')?.id })));
   const progress = h('p', { class: 'running', id: 'running', hidden: true }, bar, ' ', words, ' ', stop);
   const node = h('section', { id: 'bench', 'data-short': 'Run the lab' }, h('h2', {}, 'Log and model'), h('div', { class: 'bench' }, logNode, modelNode),
     h('div', { class: 'controls' }, h('p', {}, buttons.flatMap((b) => [b, ' '])),
-      h('p', {}, h('label', { for: 'effect' }, 'Effect '), add, ' ', h('label', { for: 'wheel', class: 'hidden' }, 'on which wheel'), addWheel, ' ', addButton),
+      h('p', {}, h('label', { for: 'effect' }, 'Effect '), add, ' ', h('label', { for: 'wheel', class: 'hidden' }, 'on which wheel'), addWheel, ' ', addButton), drawn,
       h('p', { id: 'dropping' }, h('label', { for: 'drop' }, 'In the model '), drop, ' ', dropButton)),
     hint, progress, wrong);
 
@@ -86,12 +95,13 @@ export function bench() {
     fill(map, [['', 'none'], ...maps.map((f) => [f.name, f.name.replace('shipped/', '')])], maps.some((f) => f.name === chosen.map) ? chosen.map : '');
     mapRow.hidden = !of('foreign').some((f) => f.name === chosen.log);
     fill(add, effectOptions());
+    draw();
     const inside = effectsOf(of('model').find((f) => f.name === chosen.model));
     fill(drop, inside.map((name) => [name, name]));
     drop.closest('p').hidden = !inside.length;
     const running = busy('lab'), off = !now.connected || !!running;
     for (const b of [...buttons, addButton, dropButton]) b.disabled = off || !chosen.log;
-    buttons.slice(1).concat(addButton).forEach((b) => { b.disabled ||= !chosen.model; });
+    buttons.slice(2).concat(addButton).forEach((b) => { b.disabled ||= !chosen.model; });
     progress.hidden = !running;
     if (running) {
       const known = running.total > 0 && running.done <= running.total;

@@ -1,10 +1,11 @@
 // history.js - every run of this folder, the newest first, with the error that it ends with as a bar: the ladder over all of them.
 import { h } from '../dom.js';
+import { drawing } from '../effects.js';
 import { effectName, even, isNumber, list, num } from '../words.js';
 import { post } from './link.js';
 import { choose, chosen, clock, now, onChange, onWheel, saying } from './shared.js';
 
-const verbs = { check: 'check', compare: 'compare', diagnose: 'diagnose', next: 'next drive', simulate: 'simulated drive', game_new: 'game: new', game_look: 'game: look',
+const verbs = { check: 'check', look: 'look', compare: 'compare', diagnose: 'diagnose', next: 'next drive', simulate: 'simulated drive', watch: 'telemetry', rover_logs: 'rover: its logs', rover_fetch: 'rover: fetched a log', game_new: 'game: new', game_look: 'game: look',
   game_guess: 'game: tried', game_add: 'game: kept', game_open: 'game: seal' };
 const what = (e) => (e.verb === 'add' || e.verb === 'drop' ? `${e.verb} ${e.effect}${onWheel(e)}` : e.verb.startsWith('game_') && e.effect ? `${verbs[e.verb]} ${e.effect}${onWheel(e)}` : verbs[e.verb] ?? e.verb);
 const hidden = (e) => list(e.hidden_effects).map((one) => `${effectName(one)}: ${Object.entries(one.parameters ?? {}).map(([n, p]) => `${n} = ${num(p.value)}${p.unit === '1' ? '' : ` ${p.unit}`}`).join(', ')}`).join('; ');
@@ -16,7 +17,7 @@ function bar(e, most) {
   const wide = (x) => `width:${((100 * Math.min(x, most)) / most).toFixed(2)}%`;
   return [h('div', { class: 'bar before', style: wide(isNumber(e.before) ? e.before : e.after) }), h('div', { class: 'bar', style: wide(e.after) })];
 }
-export const showable = (e) => e.result && !['simulate', 'game_new', 'game_guess', 'game_add', 'game_open'].includes(e.verb);
+export const showable = (e) => e.result && !['simulate', 'watch', 'rover_logs', 'rover_fetch', 'game_new', 'game_guess', 'game_add', 'game_open'].includes(e.verb);
 
 export function history() {
   const [wrong, tried] = saying(), body = h('tbody', {}), none = h('p', { class: 'quiet' }, 'Nothing was run yet. Choose a log and a model above, or let the simulated rover drive.');
@@ -34,7 +35,7 @@ export function history() {
       h('td', { class: 'number', 'data-head': 'error' }, error(e)),
       h('td', { class: 'wide', 'aria-hidden': 'true' }, bar(e, most)),
       h('td', { 'data-head': 'answer' }, e.state === 'running' ? 'runs' : e.state === 'failed' ? h('span', { class: 'wrong' }, e.message) : e.state === 'cancelled' ? 'cancelled' : e.state === 'ended' ? e.message : e.headline ?? e.hidden ?? 'done',
-        e.hidden_effects && h('div', {}, h('strong', {}, `Hidden: ${hidden(e)}`))),
+        e.hidden_effects && h('div', {}, list(e.hidden_effects).map((one) => drawing(one.name ?? one.effect)), h('strong', {}, `Hidden: ${hidden(e)}`))),
       h('td', {}, showable(e) && h('button', { type: 'button', 'data-run': e.id, 'aria-pressed': String(e.id === chosen.shown), onclick: () => { choose({ shown: e.id, follow: false }); document.getElementById('result').scrollIntoView(); } }, 'Show'),
         e.sealed && !e.hidden_effects && e.state !== 'running' && h('button', { type: 'button', onclick: () => tried(() => post('/api/seal', { id: e.id })) }, 'Open the seal')))));
     if (focused) body.querySelector(`[data-run="${focused}"]`)?.focus();

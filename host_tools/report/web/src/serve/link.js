@@ -18,16 +18,26 @@ async function ask(path, body) {
   return answer;
 }
 
+// The code that draws a drive, once, as text that the page runs when a drive is opened; without it the drive is a map.
+export async function bringScene() {
+  if (document.getElementById('scene')) return;
+  const response = await fetch('/api/scene', { headers: { 'X-Traction-Token': token } }).catch(() => null);
+  if (!response?.ok) return;
+  const code = Object.assign(document.createElement('script'), { type: 'text/plain', id: 'scene', nonce: document.querySelector('script[nonce]').nonce });
+  code.textContent = await response.text();
+  document.head.append(code);
+}
+
 export const get = (path) => ask(path);
 export const post = (path, body) => ask(path, body);
 
-// handlers: { state, work, rows, link(connected, words) }. Comes back by itself, and then gets everything anew.
+// handlers: { state, work, rows, telemetry, link(connected, words) }. Comes back by itself, and then gets everything anew.
 export function listen(handlers) {
   let gone = null;
   const open = () => {
     const events = new EventSource(`/events?token=${encodeURIComponent(token)}`);
     events.onopen = () => { gone = null; handlers.link(true, 'Connected'); };
-    for (const name of ['state', 'work', 'rows']) events.addEventListener(name, (e) => handlers[name](JSON.parse(e.data)));
+    for (const name of ['state', 'work', 'rows', 'telemetry']) events.addEventListener(name, (e) => handlers[name](JSON.parse(e.data)));
     events.onerror = async () => {
       gone ??= new Date().toLocaleTimeString([], { hour12: false });
       handlers.link(false, `The server has not answered since ${gone}. Start traction serve again with this folder and port; the page comes back by itself.`);

@@ -1,9 +1,11 @@
 // result.js - the result of a run: the same story as the report page.
 import { check } from '../check.js';
 import { h, markScrollers } from '../dom.js';
+import { driveLog } from '../drive.js';
 import { lab } from '../lab.js';
+import { closeDrive } from '../replay/section.js';
 import { forget } from '../timeplots.js';
-import { get } from './link.js';
+import { bringScene, get } from './link.js';
 import { showable } from './history.js';
 import { choose, chosen, now, onChange } from './shared.js';
 
@@ -15,13 +17,15 @@ export function result() {
     let answer;
     try {
       answer = await get(`/api/result/${id}`);
+      if (answer.replay) await bringScene();
     } catch (error) {
       if (wanted === id) { wanted = 0; place.replaceChildren(h('p', { class: 'wrong' }, `Number ${id} cannot be shown: ${error.message}`)); }
       return;
     }
     if (wanted !== id) return; // another one was asked for meanwhile
     forget();
-    const { parts, then } = ({ 'traction.check/1': check }[answer.schema] ?? lab)(answer);
+    closeDrive();
+    const { parts, then } = ({ 'traction.check/1': check, 'traction.look/1': driveLog }[answer.schema] ?? lab)(answer);
     const sections = parts.filter(Boolean);
     place.replaceChildren(h('h1', {}, answer.title ?? `check: ${answer.log}`), h('nav', { 'aria-label': 'Contents of the result' }, h('ul', {}, sections.filter((p) => p.id && p.dataset.short).map((p) => h('li', {}, h('a', { href: `#${p.id}` }, p.dataset.short))))),
       ...sections, h('p', {}, h('button', { type: 'button', onclick: () => save(answer, id) }, 'Save the data (JSON)')));

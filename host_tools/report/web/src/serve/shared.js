@@ -2,7 +2,7 @@
 import { h } from '../dom.js';
 import { isNumber, num } from '../words.js';
 
-export const now = { files: [], history: [], game: null, work: [], connected: false, effects: [] };
+export const now = { rover: null, files: [], history: [], game: null, work: [], connected: false, effects: [] };
 
 // What is chosen survives a reload of this page.
 const kept = JSON.parse(sessionStorage.getItem('traction') ?? '{}');
@@ -18,7 +18,8 @@ export const onChange = (part) => parts.push(part);
 export function tell() { parts.forEach((part) => part()); }
 
 export const of = (...kinds) => now.files.filter((f) => kinds.includes(f.kind));
-export const busy = (where) => now.work.find((w) => (w.verb === 'simulate') === (where === 'drive'));
+const places = { simulate: 'drive', watch: 'rover' };
+export const busy = (where) => now.work.find((w) => (places[w.verb] ?? 'lab') === where);
 
 export const size = (bytes) => (bytes < 1e3 ? `${bytes} B` : bytes < 1e6 ? `${num(bytes / 1e3, 2)} kB` : `${num(bytes / 1e6, 3)} MB`);
 export const clock = (ms) => (isNumber(ms) ? new Date(ms).toLocaleTimeString([], { hour12: false }) : '');
