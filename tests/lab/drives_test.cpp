@@ -147,7 +147,8 @@ TEST(Drives, each_wheel_of_a_motor_keeps_its_own_radius_slip_and_load) {
     integrate(data, physics, motion, nullptr, true);
     const std::size_t k = 380;
     const double v = motion.v_m_s[k];
-    EXPECT_GT(v, 0.5), EXPECT_LT(v, 0.51); // between the two rims
+    EXPECT_GT(v, 0.5); // between the two rims
+    EXPECT_LT(v, 0.51);
     for (std::size_t i = 0; i < 4; ++i) {
         const double rim = i < 2 ? 0.5 : 0.51;
         EXPECT_NEAR(motion.wheel[i].slip[k], (rim - v) / std::max(rim, v), 1e-6) << i; // (1) of wheel_laws.h
