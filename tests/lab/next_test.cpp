@@ -95,7 +95,7 @@ TEST(Detectability, what_the_residual_shows_of_an_effect_is_counted_against_it) 
 
 TEST(Detectability, rows_that_err_alike_count_less) {
     const Model model = sand();
-    const Manoeuvre cruise{"", "[[drive]]\nfor_s = 20\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n", 20, {}};
+    const Manoeuvre cruise{"", "[[drive]]\nfor_s = 20\nmode = \"platform_speed\"\nspeed_m_s = 0.3\n", 20, false, {}};
     std::vector<std::string> notes;
     Dataset data = make_dataset(model, drive(scenario_of(model, {&cruise}, notes)));
     const Physics physics = make_physics(model);
