@@ -86,12 +86,21 @@ TEST(DrivesLog, sensitivities_are_those_of_whole_integrations) {
     Forward forward(data);
     forward.set_base(physics);
     std::size_t seen = 0;
+    // Front and rear wheel of a side slip alike, so where the weight is between them changes nothing that a motor feels; and no two motors
+    // are on one side.
+    const auto blind = [](const std::string &what) {
+        return what.starts_with("load_transfer") || what.starts_with("mass_offset_x") || what == "shared_lead resistance_ohm of a side";
+    };
     const auto compare = [&](const Physics &base, const FreeParameter &p, double step, const std::string &what) {
         Physics small = base, moved = base, back = base;
         p.add(small, 1e-3 * step), p.add(moved, step), p.add(back, -step);
         const int wheel = p.slots.size() == 1 && p.slots[0].in_wheel != nullptr ? p.slots[0].wheel : -1;
         const Eigen::VectorXd tangent = (forward.predict_from_base(small, p.touched, wheel) - forward.base()) / (1e-3 * step);
         const Eigen::VectorXd whole = (forward.predict(moved) - forward.predict(back)) / (2 * step);
+        if (blind(what)) {
+            EXPECT_NEAR(whole.norm(), 0, 1e-6) << what; // rounding over the step
+            return;
+        }
         // 3 %: curvature over the larger step
         EXPECT_LT((tangent - whole).norm(), 0.03 * whole.norm() + 1e-9) << what << ": " << tangent.norm() << " against " << whole.norm();
         EXPECT_GT(whole.norm(), 0) << what << " moves nothing";
@@ -110,7 +119,9 @@ TEST(DrivesLog, sensitivities_are_those_of_whole_integrations) {
         c.prepare(base);
         for (std::size_t j = 0; j < c.strengths.size(); ++j)
             if (c.effect != "bridge_dead_time") // bends
-                compare(base, c.strengths[j], 1e-3 * c.of_interest[j], c.label() + " " + c.strengths[j].key);
+                compare(base, c.strengths[j], 1e-3 * c.of_interest[j],
+                        c.label() + " " + c.strengths[j].key +
+                            (c.effect == "shared_lead" && base.wheel[0].shared_with == 2 ? " of a side" : ""));
     }
     EXPECT_GT(seen, 40U);
 }
@@ -136,10 +147,8 @@ TEST(DrivesLog, effects_of_a_motor_are_tried_on_motors_and_those_of_a_wheel_on_w
     }
     EXPECT_EQ(friction, (std::vector<int>{-1, 0, 1}));
     EXPECT_EQ(rolling, (std::vector<int>{-1, 0, 1, 2, 3}));
-    for (const FreeParameter &p : free_parameters(model, physics)) {
-        if (p.owner != "motor") continue;
-        for (const Slot &slot : p.slots) EXPECT_LT(slot.wheel, 2) << name_of(p);
-    }
+    for (const FreeParameter &p : free_parameters(model, physics))
+        for (const Slot &slot : p.slots) EXPECT_TRUE(p.owner != "motor" || slot.wheel < 2) << name_of(p);
     for (const Manoeuvre &m : manoeuvres_of(model)) EXPECT_FALSE(m.each_wheel) << m.title;
     EXPECT_EQ(cannot_drive(model), "");
     std::vector<std::string> notes;
@@ -155,17 +164,28 @@ TEST(DrivesLog, a_clean_drive_names_nothing) {
         }
 }
 
-TEST(DrivesLog, a_hidden_effect_is_named_on_its_motor_or_its_wheel) {
+TEST(DrivesLog, a_hidden_effect_is_named_on_its_motor) {
     struct Case {
         const char *effect, *name;
     };
-    for (const Case &c : {Case{"wiring_resistance:resistance_ohm=0.3,wheel=1", "wiring_resistance on wheel 1"},
-                          {"coulomb_friction:torque_Nm=0.06,wheel=0", "coulomb_friction on wheel 0"},
+    for (const Case &c : {Case{"wiring_resistance:resistance_ohm=0.6,wheel=1", "wiring_resistance on wheel 1"},
+                          {"viscous_friction:coefficient_Nms=0.006,wheel=0", "viscous_friction on wheel 0"},
+                          {"current_gain:change=0.15,wheel=1", "current_gain on wheel 1"},
                           {"slip_sinkage:coefficient=0.2", "slip_sinkage"}}) {
         const Diagnosis d = diagnose(model_on("sand"), make_dataset(model_on("sand"), driven("sand", c.effect)), {});
         ASSERT_EQ(d.effects.size(), 1U) << c.effect << ": " << d.text;
         EXPECT_EQ(d.effects[0], c.name) << d.text;
     }
+}
+
+// One current tells what both wheels of a side pull: which of them it is stays open, and that is said.
+TEST(DrivesLog, what_one_wheel_of_a_side_does_is_a_question_between_the_wheels_of_its_motor) {
+    const Diagnosis d =
+        diagnose(model_on("sand"), make_dataset(model_on("sand"), driven("sand", "rolling_resistance:coefficient=0.15,wheel=3")), {});
+    ASSERT_EQ(d.classes.size(), 1U) << d.text;
+    std::vector<std::string> members = d.classes[0].members;
+    std::sort(members.begin(), members.end());
+    EXPECT_EQ(members, (std::vector<std::string>{"rolling_resistance on wheel 1", "rolling_resistance on wheel 3"})) << d.text;
 }
 
 } // namespace

@@ -146,14 +146,17 @@ TEST(Wheels, a_run_repeats_and_its_log_replays_bit_for_bit) {
 // The firmware takes a quarter of its mass for a wheel's load; a wheel of each of these rovers bears 7.06 N, as the reference's do.
 TEST(Wheels, the_firmware_is_told_the_load_of_a_wheel_and_which_there_are) {
     const control_config_t reference = rover_config_default();
-    for (const auto &[name, mask, share] :
-         {std::tuple{"six_wheels", 15u, 0.25f}, {"two_wheels", 3u, 0.5f}, {"bench_carriage", 1u, 1.0f}, {"two_motors", 3u, 0.5f}}) {
+    for (const auto &[name, mask, share] : {std::tuple{"six_wheels", 15u, 0.25f}, {"two_wheels", 3u, 0.5f}, {"bench_carriage", 1u, 1.0f}}) {
         const control_config_t config = firmware_config(scenario_of(name).rover);
         EXPECT_EQ(config.geometry.wheels, mask) << name;
         EXPECT_EQ(config.geometry.wheel_share, share) << name;
         EXPECT_NEAR(config.geometry.mass_kg, 2.88f, 1e-5f) << name;
         EXPECT_NEAR(config.safety.stall_current_A, reference.safety.stall_current_A, 1e-4f) << name;
     }
+    const control_config_t sides = firmware_config(scenario_of("two_motors").rover); // each motor bears half the rover
+    EXPECT_EQ(sides.geometry.wheels, 3u);
+    EXPECT_EQ(sides.geometry.wheel_share, 0.5f);
+    EXPECT_NEAR(sides.geometry.mass_kg, 2 * 2.88f, 1e-5f); // a quarter of it is that half
     sim::RoverDescription uneven = scenario_of("two_wheels").rover;
     uneven.wheel[0].radius_m = 0.055, uneven.wheel[1].radius_m = 0.061, uneven.wheel[2].radius_m = 0.2; // the third is not there
     EXPECT_NEAR(firmware_config(uneven).geometry.wheel_radius_m, 0.058f, 1e-7f);
@@ -175,7 +178,7 @@ TEST(Wheels, a_layout_that_cannot_work_is_refused_by_its_key) {
     EXPECT_EQ(told("wheels = 6\nmiddle_m = -0.02\nrigid = 1"), "accepted");
     EXPECT_EQ(told("drives = [1, 0]"), "accepted");
     EXPECT_EQ(told("wheels = 6\ndrives = [2, 3]"), "accepted");
-    EXPECT_NE(told("drives = [0, 2]").find("test.toml:4: layout.drives"), std::string::npos) << told("drives = [0, 2]");
+    EXPECT_NE(told("drives = [0, 2]").find("test.toml:4: rover.layout.drives"), std::string::npos) << told("drives = [0, 2]");
     EXPECT_NE(told("drives = [0, 2]").find("two motors on one side"), std::string::npos) << told("drives = [0, 2]");
     EXPECT_NE(told("drives = [0]").find("not a list of two wheels"), std::string::npos) << told("drives = [0]");
     EXPECT_NE(told("drives = [0, 5]").find("no wheel of 0 to 3"), std::string::npos) << told("drives = [0, 5]");
