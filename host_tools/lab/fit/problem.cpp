@@ -15,9 +15,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double huber = 3.0;                            // in units of the balance's scale
-constexpr double correlated_s = 2.5, fewest_blocks = 20; // blocks of the design effect, as those of the tests (screen.cpp)
-constexpr std::size_t passes_at_once = 4;                // neighbours of the motion side by side: their own series must stay near too
+constexpr double huber = 3.0;             // in units of the balance's scale
+constexpr std::size_t passes_at_once = 4; // neighbours of the motion side by side: their own series must stay near too
 
 // The wheel that all slots are of; -1: several, or the body.
 int wheel_of(const FreeParameter &p) {
@@ -303,41 +302,6 @@ Eigen::VectorXd Problem::variance_parts(std::size_t b) const {
     return parts;
 }
 
-// How many of a balance's rows tell as much as one that were independent of all others: the mean square of the scaled residual's sums over
-// blocks, its mean over all of them taken off, beside that of independent rows (Kish 1965, the design effect). Ground that differs from
-// place to place, or a law that is missing, leaves a residual that keeps its sign for a second, or twenty rows. A mean is an offset, not a
-// memory.
-double Problem::design_effect(std::size_t b) const {
-    const Balance &balance = data_->balance[b];
-    const double length = std::min(correlated_s, data_->duration_s / fewest_blocks);
-    const auto first = static_cast<Eigen::Index>(forward_.first_row(b)), n = static_cast<Eigen::Index>(balance.measured.size());
-    if (n == 0) return 1;
-    Eigen::VectorXd e = residual.segment(first, n).cwiseProduct(row_scale.segment(first, n));
-    e.array() -= e.mean();
-    double of_sums = 0, sum = 0, block = -1;
-    for (Eigen::Index r = 0; r < n; ++r) {
-        const auto at = static_cast<std::size_t>(r);
-        const double here = std::floor((0.5 * (balance.t0_s[at] + balance.t1_s[at]) - data_->start_s) / length);
-        if (here != block) of_sums += sum * sum, sum = 0, block = here;
-        sum += e[r];
-    }
-    of_sums += sum * sum;
-    return of_sums > e.squaredNorm() ? of_sums / e.squaredNorm() : 1;
-}
-
-// All rows weigh less by their mean design effect, the magnitude adjustment of a composite likelihood (Ribatet, Cooley and Davison 2012):
-// counted one by one they would outweigh what the model states. One factor for all: by factors of their own the balances that a missing law
-// disturbs the most would hardly count, and the law would not be seen.
-void Problem::weigh_as_independent() {
-    if (data_->independent_rows) return;
-    double sum = 0, rows = 0;
-    for (std::size_t b = 0; b < data_->balance.size(); ++b) {
-        const auto n = static_cast<double>(data_->balance[b].measured.size());
-        sum += n * design_effect(b), rows += n;
-    }
-    if (rows > 0) row_scale *= std::sqrt(rows / sum);
-}
-
 void Problem::set_scales() {
     const Eigen::VectorXd noise = noise_rows(), before = row_scale;
     for (std::size_t b = 0; b < data_->balance.size(); ++b) {
@@ -351,7 +315,6 @@ void Problem::set_scales() {
             row_scale[first + r] = std::sqrt(ratio > huber ? huber / ratio : 1.0) / (scale * noise[first + r]);
         }
     }
-    weigh_as_independent();
     if (jacobian.rows() == row_scale.size()) jacobian = row_scale.cwiseQuotient(before).asDiagonal() * jacobian;
 }
 

@@ -4,8 +4,7 @@
 // from a linear recursion beside it (tangent.cpp).
 // Scales: the variance of a row is a non-negative sum of its constant part and of five that follow the drive (row_variance in problem.cpp),
 // fitted to its balance's residual and never below the row's measurement noise: what the model cannot explain in a channel must not drown
-// the others. Huber weights beyond three scales. A residual that keeps its sign from row to row is worth fewer rows: all are weighed down
-// by their mean design effect, or they would outweigh what the model states (weigh_as_independent in problem.cpp).
+// the others. Huber weights beyond three scales.
 #pragma once
 
 #include "host_tools/lab/forward/forward.h"
@@ -47,7 +46,7 @@ class Problem {
     Eigen::VectorXd theta;     // increments
     Eigen::VectorXd residual;  // measured - predicted, unscaled
     Eigen::MatrixXd jacobian;  // scaled: d predicted / d theta * row_scale
-    Eigen::VectorXd row_scale; // sqrt(Huber weight / design effect) / sigma of the row
+    Eigen::VectorXd row_scale; // sqrt(Huber weight) / sigma of the row
     std::vector<double> sigma; // per balance: scale in use
     Eigen::VectorXd prior_precision() const;
 
@@ -85,8 +84,6 @@ class Problem {
 
   private:
     friend class RowsCost;
-    double design_effect(std::size_t balance) const;
-    void weigh_as_independent();
     void set_scales();                                  // the Jacobian, if there is one, is scaled anew
     void update_residual();                             // prediction and residual at the present increments; the Jacobian stays
     double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]
