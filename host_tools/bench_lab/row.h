@@ -7,9 +7,9 @@
 
 #include "campaign.h"
 
-#include <stdexcept>
 #include <functional>
 #include <iosfwd>
+#include <stdexcept>
 #include <string>
 #include <vector>
 

@@ -23,6 +23,7 @@ struct DriveParameters {
     double coulomb_Nm = 0.03;                                         // (18)
     double gear_stiffness_Nm_rad = 40;                                // of the teeth once they touch, with backlash only, assumed
     double gear_damping_Nms_rad = 0.05;                               // the same, assumed
+    bool operator==(const DriveParameters &) const = default;
 };
 
 struct DriveState {

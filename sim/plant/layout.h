@@ -33,6 +33,7 @@ struct LayoutParameters {
     // four, six: the slots of the left and of the right motor, each of which turns all wheels of its side by a chain, one to one. -1: every
     // wheel has a motor of its own.
     std::array<int, 2> drives{-1, -1};
+    bool operator==(const LayoutParameters &) const = default;
 };
 
 // The slots that there are, in the order in which the plant steps them.

@@ -38,6 +38,7 @@ struct RoverParameters {
     double tyre_hysteresis = 0.005;       // Rh/Fn of (3), soft contact only, assumed: a nearly rigid tyre
     double gravity_m_s2 = 9.81;
     LayoutParameters layout;
+    bool operator==(const RoverParameters &) const = default;
 };
 
 struct PlantConfig {

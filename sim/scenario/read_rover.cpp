@@ -3,6 +3,7 @@
 #include "read_parts.h"
 #include "scenario.h"
 
+#include <cstdint>
 #include <algorithm>
 #include <array>
 #include <filesystem>

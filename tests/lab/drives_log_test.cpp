@@ -12,6 +12,8 @@
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <array>
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>
