@@ -47,6 +47,7 @@ TEST(Drives, a_motor_turns_the_wheels_of_its_side_or_those_that_are_named) {
     const std::string six = with("[0, 1]", "[[wheel]]\ny_m = 0.3\n[[wheel]]\ny_m = -0.3\n");
     EXPECT_EQ(motors(parse_model(six, "m")), (Of{0, 1, 0, 1, 0, 1}));
     EXPECT_EQ(motors(parse_model(with("[0, 1]", "[[wheel]]\ndriven = false\n"), "m")), (Of{0, 1, 0, 1, 4})); // a caster
+    EXPECT_EQ(motors(read_model("models/husky.toml")), (Of{0, 1, 0, 1}));
 }
 
 TEST(Drives, a_grouping_that_cannot_be_is_refused_with_line_and_mend) {

@@ -326,16 +326,19 @@ TEST(layout, the_energy_closes_within_a_thousandth) {
                 Plant plant(config);
                 const double start = plant.energy().kinetic + plant.energy().potential;
                 double throughput = 0, last = 0;
-                for (const auto &[left, right] : {std::pair{0.5, 0.5}, {0.6, 0.35}, {-0.4, -0.4}, {-0.5, 0.5}, {0.0, 0.0}})
+                for (const auto &[left, right] : {std::pair{0.5, 0.5}, {0.6, 0.35}, {-0.4, -0.4}, {-0.5, 0.5}, {0.0, 0.0}}) {
                     for (int k = 0; k < 1000; ++k) {
                         drive(plant, left, right, 1);
                         throughput += std::fabs(plant.energy().motor - last);
                         last = plant.energy().motor;
                     }
-                const Energy &e = plant.energy();
-                const double rest = e.motor - (e.friction + e.slip + e.rolling + e.body + e.kinetic + e.potential - start);
-                EXPECT_GT(throughput, 0.5);
-                EXPECT_LT(std::fabs(rest), 1e-3 * throughput) << static_cast<int>(kind) << ' ' << soil << ' ' << static_cast<int>(contact);
+                    if (left != 0 && !coupled) continue; // at rest, the spin of coupled wheels would not show
+                    const Energy &e = plant.energy();
+                    const double rest = e.motor - (e.friction + e.slip + e.rolling + e.body + e.kinetic + e.potential - start);
+                    EXPECT_GT(throughput, left == 0 ? 0.5 : 0);
+                    EXPECT_LT(std::fabs(rest), 1e-3 * throughput)
+                        << static_cast<int>(kind) << ' ' << soil << ' ' << static_cast<int>(contact) << ' ' << left;
+                }
             }
 }
 
