@@ -3,9 +3,9 @@
 #include "read_parts.h"
 #include "scenario.h"
 
-#include <cstdint>
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
