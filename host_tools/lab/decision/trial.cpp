@@ -175,7 +175,6 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
     for (Eigen::Index j = 0; j < k; ++j) t.value.push_back(problem.theta[n + j]);
     t.gain = base_screen.heldout_error() - (screen.heldout_error() - t.assessment.gain);
     t.assessment.prior_reduction += base_screen.penalty() - screen.penalty();
-    t.assessment.spared += base_screen.deviations() - screen.deviations();
     t.block_gain = base_screen.block_error() - (screen.block_error() - t.assessment.block_gain);
     test(t);
     t.gain_error = sum_error(t.block_gain);
@@ -191,7 +190,7 @@ void judge(Trial &t, double base_error, const DiagnoseOptions &options) {
     const double relative = base_error > 0 ? t.gain / base_error : 0;
     const bool by_rows =
         relative > options.least_gain || t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
-    const bool gains = t.gain > 0 && (by_rows || t.assessment.spared > options.least_prior_reduction);
+    const bool gains = t.gain > 0 && (by_rows || t.assessment.prior_reduction > options.least_prior_reduction);
     if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
