@@ -73,15 +73,15 @@ TEST(Judge, asks_for_a_fall_of_the_held_out_error_in_all_or_one_balance_or_of_th
     EXPECT_EQ(verdict_of(t), "passes");
     t.best_balance_gain = 0.99 * options.least_gain_one;
     EXPECT_EQ(verdict_of(t), "not_significant");
-    t.assessment.prior_reduction = 1.01 * options.least_prior_reduction;
+    t.assessment.spared = 1.01 * options.least_prior_reduction;
     EXPECT_EQ(verdict_of(t), "passes");
-    t.assessment.prior_reduction = 0.99 * options.least_prior_reduction;
+    t.assessment.spared = 0.99 * options.least_prior_reduction;
     EXPECT_EQ(verdict_of(t), "not_significant");
 }
 
 TEST(Judge, believes_no_relief_of_priors_and_no_single_balance_where_the_held_out_error_rises) {
     Trial t = good("a");
-    t.gain = -1, t.best_balance_gain = 0.5, t.assessment.prior_reduction = 100;
+    t.gain = -1, t.best_balance_gain = 0.5, t.assessment.spared = 100;
     EXPECT_EQ(verdict_of(t), "not_significant");
     t.gain = 0;
     EXPECT_EQ(verdict_of(t), "not_significant");
@@ -92,7 +92,7 @@ TEST(Judge, lets_the_ranks_speak_only_where_rows_fell) {
     Trial t = good("a");
     t.own_p_value = 0.5;
     EXPECT_EQ(verdict_of(t), "passes");
-    t.gain = 1, t.best_balance_gain = 0, t.assessment.prior_reduction = 100;
+    t.gain = 1, t.best_balance_gain = 0, t.assessment.spared = 100;
     EXPECT_EQ(verdict_of(t), "not_significant");
     t.own_p_value = 1e-6;
     EXPECT_EQ(verdict_of(t), "passes");
@@ -105,10 +105,19 @@ TEST(Judge, refuses_a_wrong_sign_a_size_of_no_interest_and_one_at_its_bound) {
     t.candidate.minimum = {-1}, t.candidate.strengths[0].minimum = -1; // a size that may be either
     EXPECT_EQ(verdict_of(t), "passes");
     t = good("a");
+    t.value = {0.0999 + t.half_width[0]}; // surely of interest: the nearer end of the 95 % interval is
+    EXPECT_EQ(verdict_of(t), "too_small");
+    t.value = {-0.5}, t.half_width = {0.5001}, t.candidate.minimum = {-1}, t.candidate.strengths[0].minimum = -1;
+    EXPECT_EQ(verdict_of(t), "too_small"); // the interval holds zero
+    t = good("a");
+    t.value = {0.1001 + t.half_width[0]};
+    EXPECT_EQ(verdict_of(t), "passes");
+    t.refitted = false; // of a linear step the size alone
     t.value = {0.0999};
     EXPECT_EQ(verdict_of(t), "too_small");
-    t.value = {0.1};
+    t.value = {0.1001};
     EXPECT_EQ(verdict_of(t), "passes");
+    t.refitted = true;
     t.value = {1.0};
     EXPECT_EQ(verdict_of(t), "beyond_range");
     t.refitted = false; // a linear step that leaves the range is no fit yet

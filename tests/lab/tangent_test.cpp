@@ -261,7 +261,7 @@ TEST(Windows, take_the_mean_at_whatever_delay_and_remember_none_but_their_own) {
 }
 
 TEST(Fit, that_need_not_be_ready_ends_where_the_other_does_and_gets_ready_when_asked) {
-    const auto [model, data, physics] = sand(30);
+    const auto [model, data, physics] = sand(48); // whose last step is of a third of a deviation and more
     int put_off = 0;
     for (const int iterations : {1, 2, 3, 4}) {
         Problem whole(data, physics, free_parameters(model, physics)), bare = whole;

@@ -297,8 +297,8 @@ class Search {
         const bool falls = scaled.sure() && noise.sure();
         // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
         const double spared =
-            before.theta.cwiseAbs2().dot(before.prior_precision()) - compared.theta.cwiseAbs2().dot(compared.prior_precision());
-        const bool by_priors = rival && scaled.sum + spared > options_.least_prior_reduction + scaled.error && noise.sum > -noise.error;
+            before.theta.cwiseAbs2().dot(before.stated_precision()) - compared.theta.cwiseAbs2().dot(compared.stated_precision());
+        const bool by_priors = rival && scaled.sum + spared > options_.least_prior_reduction + scaled.error && noise.sum > -2 * noise.error;
         const bool as_much = rival && (rival->explains_as_much() || !falls);
         if (!falls && !by_priors) return std::nullopt;
         if (HeldOut own = held_out(problem); own.error < held_.error)

@@ -81,6 +81,13 @@ bool large_enough(const Candidate &c, const std::vector<double> &value) {
     return std::sqrt(size) >= least;
 }
 
+// The ends of the 95 % intervals that lie nearer to zero.
+std::vector<double> near_ends(const Trial &t) {
+    std::vector<double> near;
+    for (std::size_t j = 0; j < t.value.size(); ++j) near.push_back(std::max(0.0, std::fabs(t.value[j]) - t.half_width[j]));
+    return near;
+}
+
 bool beyond_range(const Candidate &c, const std::vector<double> &value) {
     for (std::size_t j = 0; j < value.size(); ++j) {
         const FreeParameter &p = c.strengths[j];
@@ -175,6 +182,7 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
     for (Eigen::Index j = 0; j < k; ++j) t.value.push_back(problem.theta[n + j]);
     t.gain = base_screen.heldout_error() - (screen.heldout_error() - t.assessment.gain);
     t.assessment.prior_reduction += base_screen.penalty() - screen.penalty();
+    t.assessment.spared += base_screen.deviations() - screen.deviations();
     t.block_gain = base_screen.block_error() - (screen.block_error() - t.assessment.block_gain);
     test(t);
     t.gain_error = sum_error(t.block_gain);
@@ -190,12 +198,12 @@ void judge(Trial &t, double base_error, const DiagnoseOptions &options) {
     const double relative = base_error > 0 ? t.gain / base_error : 0;
     const bool by_rows =
         relative > options.least_gain || t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
-    const bool gains = t.gain > 0 && (by_rows || t.assessment.prior_reduction > options.least_prior_reduction);
+    const bool gains = t.gain > 0 && (by_rows || t.assessment.spared > options.least_prior_reduction);
     if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
         t.verdict = "wrong_sign";
-    else if (!large_enough(t.candidate, t.value))
+    else if (!large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
         t.verdict = "too_small";
     else if (t.refitted && beyond_range(t.candidate, t.value))
         t.verdict = "beyond_range";

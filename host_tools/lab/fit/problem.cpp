@@ -15,8 +15,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double huber = 3.0;             // in units of the balance's scale
-constexpr std::size_t passes_at_once = 4; // neighbours of the motion side by side: their own series must stay near too
+constexpr double huber = 3.0;                            // in units of the balance's scale
+constexpr double correlated_s = 2.5, fewest_blocks = 20; // blocks of the design effect, as those of the tests (screen.cpp)
+constexpr double most_alike = 4;                         // no stated deviation counts for less than half of itself
+constexpr std::size_t passes_at_once = 4;                // neighbours of the motion side by side: their own series must stay near too
 
 // The wheel that all slots are of; -1: several, or the body.
 int wheel_of(const FreeParameter &p) {
@@ -87,7 +89,15 @@ Physics Problem::physics_at(const Eigen::VectorXd &increments) const {
     return physics;
 }
 
-Eigen::VectorXd Problem::prior_precision() const {
+Eigen::VectorXd Problem::alike() const {
+    Eigen::VectorXd rows(static_cast<Eigen::Index>(parameters.size()));
+    for (std::size_t i = 0; i < parameters.size(); ++i) rows[static_cast<Eigen::Index>(i)] = parameters[i].alike;
+    return rows;
+}
+
+Eigen::VectorXd Problem::prior_precision() const { return stated_precision().cwiseProduct(alike()); }
+
+Eigen::VectorXd Problem::stated_precision() const {
     Eigen::VectorXd precision(static_cast<Eigen::Index>(parameters.size()));
     for (std::size_t i = 0; i < parameters.size(); ++i)
         precision[static_cast<Eigen::Index>(i)] = parameters[i].prior > 0 ? 1 / (parameters[i].prior * parameters[i].prior) : 0;
@@ -316,6 +326,33 @@ void Problem::set_scales() {
         }
     }
     if (jacobian.rows() == row_scale.size()) jacobian = row_scale.cwiseQuotient(before).asDiagonal() * jacobian;
+    weigh_stated();
+}
+
+// Rows that err alike tell a parameter less than their number: the variance of its score's sums over blocks, their mean taken off, beside
+// that of independent rows (Kish 1965, the design effect). Counted one by one they would draw it from what the model states, so that counts
+// as often: the adjustment of a composite likelihood (Ribatet, Cooley and Davison 2012), parameter by parameter, up to a limit: what a
+// missing law leaves is alike too. A soil's numbers are a table's and another's at the next place, so theirs stay as stated. Weights of the
+// rows themselves would take them from what a missing law disturbs the most, and the law would not be seen.
+void Problem::weigh_stated() {
+    for (FreeParameter &p : parameters) p.alike = 1;
+    if (data_->independent_rows || jacobian.rows() != row_scale.size() || jacobian.cols() != theta.size()) return;
+    const double length = std::min(correlated_s, data_->duration_s / fewest_blocks);
+    const auto blocks = static_cast<Eigen::Index>(std::floor(data_->duration_s / length)) + 1;
+    const Eigen::VectorXd e = residual.cwiseProduct(row_scale);
+    Eigen::MatrixXd score = Eigen::MatrixXd::Zero(theta.size(), blocks);
+    Eigen::Index row = 0;
+    for (const Balance &b : data_->balance)
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
+            const double at = std::floor((0.5 * (b.t0_s[r] + b.t1_s[r]) - data_->start_s) / length);
+            score.col(std::clamp(static_cast<Eigen::Index>(at), Eigen::Index(0), blocks - 1)) += e[row] * jacobian.row(row).transpose();
+        }
+    const Eigen::VectorXd information = jacobian.colwise().squaredNorm();
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+        const double variance = (score.row(i).array() - score.row(i).mean()).square().sum();
+        FreeParameter &p = parameters[static_cast<std::size_t>(i)];
+        if (p.owner != "soil" && variance > information[i]) p.alike = std::min(most_alike, variance / information[i]);
+    }
 }
 
 void Problem::start_near(const Problem &other) { forward_.start_near(other.forward_); }
@@ -323,6 +360,12 @@ void Problem::start_near(const Problem &other) { forward_.start_near(other.forwa
 void Problem::keep_scales(const Problem &other) {
     row_scale = other.row_scale;
     sigma = other.sigma;
+    for (FreeParameter &p : parameters) {
+        const auto its = std::find_if(other.parameters.begin(), other.parameters.end(), [&](const FreeParameter &q) {
+            return q.owner == p.owner && q.key == p.key && q.wheel == p.wheel && q.own == p.own;
+        });
+        p.alike = its != other.parameters.end() ? its->alike : 1;
+    }
 }
 
 double Problem::cost() {

@@ -43,12 +43,14 @@ class Problem {
     Eigen::VectorXd column(const Physics &at, const FreeParameter &parameter, double step);
 
     std::vector<FreeParameter> parameters;
-    Eigen::VectorXd theta;     // increments
-    Eigen::VectorXd residual;  // measured - predicted, unscaled
-    Eigen::MatrixXd jacobian;  // scaled: d predicted / d theta * row_scale
-    Eigen::VectorXd row_scale; // sqrt(Huber weight) / sigma of the row
-    std::vector<double> sigma; // per balance: scale in use
-    Eigen::VectorXd prior_precision() const;
+    Eigen::VectorXd theta;                    // increments
+    Eigen::VectorXd residual;                 // measured - predicted, unscaled
+    Eigen::MatrixXd jacobian;                 // scaled: d predicted / d theta * row_scale
+    Eigen::VectorXd row_scale;                // sqrt(Huber weight) / sigma of the row
+    std::vector<double> sigma;                // per balance: scale in use
+    Eigen::VectorXd stated_precision() const; // per parameter: 1 / prior^2; 0: nothing is stated
+    Eigen::VectorXd prior_precision() const;  // the same beside rows that are counted one by one: times alike()
+    Eigen::VectorXd alike() const;            // per parameter
 
     Eigen::VectorXd noise_rows() const;          // measurement noise of each row
     Eigen::VectorXd smoothing_bias_rows() const; // Balance::smoothing_bias of each row
@@ -84,6 +86,7 @@ class Problem {
 
   private:
     friend class RowsCost;
+    void weigh_stated();                                // FreeParameter::alike, from residual, scales and Jacobian
     void set_scales();                                  // the Jacobian, if there is one, is scaled anew
     void update_residual();                             // prediction and residual at the present increments; the Jacobian stays
     double speed_range(double t0_s, double t1_s) const; // of the predicted body speed [m/s]

@@ -30,6 +30,7 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
     sparse_ = SparseJacobian(problem.data(), nuisance_);
     residual_ = problem.residual.cwiseProduct(problem.row_scale);
     precision_ = problem.prior_precision().head(n);
+    alike_ = problem.alike().head(n);
     // a parameter that the data do not see and no prior holds would make the system singular: a ridge (Tikhonov) holds it
     for (Eigen::Index j = 0; j < n; ++j) precision_[j] = std::max(precision_[j], 1e-9 * (1 + nuisance_.col(j).squaredNorm()));
     pull_ = -precision_.cwiseProduct(theta);
@@ -52,6 +53,7 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
     }
     const Eigen::VectorXd step = total_factor_.solve(moment_), final_theta = theta + step;
     base_penalty_ = final_theta.cwiseProduct(final_theta).dot(precision_);
+    base_deviations_ = final_theta.cwiseProduct(final_theta).dot(precision_.cwiseQuotient(alike_));
     base_error_ = block_error_.sum() + base_penalty_;
     error_ = residual_.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment_.dot(step);
 }
@@ -220,7 +222,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     const double scale = static_cast<double>(count - 1) / static_cast<double>(count);
     Eigen::MatrixXd covariance = scale * deviation * deviation.transpose();
     const Eigen::MatrixXd by_prior = schur_factor.solve(projection.transpose()); // d strength / d (precision * prior mean)
-    const Eigen::MatrixXd prior_part = by_prior * precision_.asDiagonal() * by_prior.transpose();
+    const Eigen::MatrixXd prior_part = by_prior * precision_.cwiseProduct(alike_).asDiagonal() * by_prior.transpose();
     const double effective_blocks = weight.squaredNorm() > 0 ? weight.sum() * weight.sum() / weight.squaredNorm() : 1;
     const double data_part = covariance.trace();
     covariance += prior_part;
@@ -254,6 +256,7 @@ Assessment Screen::assess(const Eigen::MatrixXd &columns, const Eigen::VectorXd 
     }
     const Eigen::VectorXd final_theta = problem_.theta.head(n) + out.change;
     out.prior_reduction = base_penalty_ - final_theta.cwiseProduct(final_theta).dot(precision_);
+    out.spared = base_deviations_ - final_theta.cwiseProduct(final_theta).dot(precision_.cwiseQuotient(alike_));
     out.gain = out.block_gain.sum() + out.prior_reduction;
     out.gain_error = sum_error(out.block_gain);
     out.strength = whole;
@@ -359,7 +362,8 @@ std::vector<ParameterError> Screen::errors_by(const Blocks &blocks_of, const Eig
     std::vector<ParameterError> errors;
     for (Eigen::Index j = 0; j < n; ++j) {
         const double by_data = deviation.row(j).squaredNorm() * static_cast<double>(count - 1) / static_cast<double>(count);
-        const double by_prior = inverse.row(j).cwiseAbs2().dot(precision_); // d theta / d prior mean = inverse * precision
+        const double by_prior =
+            inverse.row(j).cwiseAbs2().dot(precision_.cwiseProduct(alike_)); // d theta / d prior mean = inverse * precision
         const double all = std::max(by_data + by_prior, 0.25 * inverse.row(j).dot(weights.row(j))) + by_bias[j] * by_bias[j];
         const double blocks =
             information.row(j).squaredNorm() > 0 ? std::pow(information.row(j).sum(), 2) / information.row(j).squaredNorm() : 1;

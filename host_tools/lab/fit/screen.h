@@ -27,6 +27,7 @@ struct Assessment {
     double gain = 0;            // fall of the held-out error incl. priors, in squared units of scale
     double gain_error = 0;      // its standard error over blocks
     double prior_reduction = 0; // part of the gain that is fall of the priors' penalty
+    double spared = 0;          // the same in squared stated deviations
     double p_value = 1;         // of the robust F test, not corrected
     double column_norm = 0;     // size of the first column alone: what one unit changes, in standard deviations
     double freedom = 1;         // degrees of freedom of the test's denominator
@@ -60,9 +61,10 @@ class Screen {
     bool leaves_active_set(const Eigen::VectorXd &change) const;
     // Largest relative fall of one balance's error on all rows, by the linear step.
     double best_balance_fall(const Eigen::MatrixXd &columns, const Assessment &step) const;
-    double error() const { return error_; }              // on all rows, priors included, at the baseline's optimum
-    double penalty() const { return base_penalty_; }     // of the priors, at the baseline's optimum
-    double heldout_error() const { return base_error_; } // sum of squares over held-out blocks, priors included
+    double error() const { return error_; }                // on all rows, priors included, at the baseline's optimum
+    double penalty() const { return base_penalty_; }       // of the priors, at the baseline's optimum
+    double deviations() const { return base_deviations_; } // the same in squared stated deviations
+    double heldout_error() const { return base_error_; }   // sum of squares over held-out blocks, priors included
     const Eigen::VectorXd &block_error() const { return block_error_; }
     const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
     // Held-out sum of squares per balance; in_noise: in units of each row's measurement noise, which no model changes.
@@ -109,14 +111,15 @@ class Screen {
     Eigen::VectorXd residual_;           // scaled
     Eigen::VectorXd moment_;             // N' r + pull
     Eigen::VectorXd bias_, bias_moment_; // of the smoothing, scaled; N' bias
-    Eigen::VectorXd precision_;          // of the priors
+    Eigen::VectorXd precision_;          // of the priors, as the rows are counted
+    Eigen::VectorXd alike_;              // over what is stated
     Eigen::VectorXd pull_;               // -precision * theta
     Eigen::MatrixXd total_;
     Eigen::LLT<Eigen::MatrixXd> total_factor_;
     Blocks fine_, coarse_;
     std::vector<std::pair<double, double>> block_times_;
     Eigen::VectorXd block_error_;
-    double base_error_ = 0, base_penalty_ = 0, error_ = 0;
+    double base_error_ = 0, base_penalty_ = 0, base_deviations_ = 0, error_ = 0;
 };
 
 } // namespace traction::lab

@@ -93,6 +93,7 @@ struct FreeParameter {
     std::vector<Slot> slots;
     double base = 0;                 // value in the model, before the increment (first slot)
     double prior = 0;                // standard deviation of the increment; 0: free
+    double alike = 1;                // so many of its rows tell as much as one that is independent (design effect, problem.cpp): 1 or more
     double minimum = 0, maximum = 0; // of base + increment
     double step = 0;                 // for differences
     unsigned touched = stage_all;

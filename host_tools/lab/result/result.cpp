@@ -90,7 +90,7 @@ std::string candidate_words(const CandidateResult &r, const Diagnosis &d) {
                                                                   {"not_held_out", "predicts the rest of the log no better"},
                                                                   {"not_significant", "no sure help"},
                                                                   {"too_little", "there, but helps too little to matter"},
-                                                                  {"too_small", "there, but too small to matter"},
+                                                                  {"too_small", "there, but not surely large enough to matter"},
                                                                   {"beyond_range", "helps only at a size that is not plausible"},
                                                                   {"wrong_sign", "helps only with a sign that is not physical"},
                                                                   {"not_excited", "this log cannot show it"},
