@@ -4,8 +4,10 @@
 # The same system starts in two ways: rdinit=/sbin/network_init stands at the desk and is flashed (power_on.sh), rdinit=/init (board_init) drives in
 # lockstep what its slots hold. --if-built: exit code 77 where kernel or ssh server are not there yet.
 #
+# FOLDER/system is that initramfs as a folder, for an image that boots from the flash memory (power_on.sh from-flash).
+#
 # What FOLDER has of these is kept, what it lacks is made: key and key.pub (whom it obeys), rover.name, id and id.pub (who may log in), host, host.pub
-# and host_key (who it is), default (/etc/default/tractiond), frames (what a version drives at the desk, where it has no world), nor.img.
+# and host_key (who it is), link.key (who may drive it, docs/supervision.md), default (/etc/default/tractiond), frames (what a version drives at the desk, where it has no world), nor.img.
 set -eu
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 root=$1 target=$1/build/korebot traction=$2
@@ -23,8 +25,12 @@ trap 'rm -rf "$work"' EXIT
 [ -e "$board/key.pub" ] || "$traction" flash --new-key "$board/key" >"$work/said"
 [ -e "$board/rover.name" ] || echo Lhomme-Desages >"$board/rover.name"
 [ -e "$board/id.pub" ] || ssh-keygen -q -t ed25519 -N '' -C '' -f "$board/id"
+# the supervision link's key; a build without the link has no --link either
+[ -e "$board/link.key" ] || "$traction" drive --new-key "$board/link.key" >"$work/said" 2>&1 || rm -f "$board/link.key"
+link=''
+[ ! -e "$board/link.key" ] || link=' --link 0.0.0.0 --link-key /etc/link.key'
 [ -e "$board/default" ] ||
-    printf "STATE=/flash/state\nTRACTIOND_HAL=replay\nTRACTIOND_OPTIONS='--realtime --log-budget 4'\nTRACTIOND_ROVER=/frames\n" >"$board/default"
+    printf "STATE=/flash/state\nTRACTIOND_HAL=replay\nTRACTIOND_OPTIONS='--realtime --log-budget 4%s'\nTRACTIOND_ROVER=/frames\n" "$link" >"$board/default"
 [ -e "$board/frames" ] || "$traction" simulate cruise --frames "$board/frames" --out /dev/null >"$work/said"
 [ -e "$board/nor.img" ] || { dd if=/dev/zero bs=1M count=64 2>/dev/null | tr '\0' '\377' >"$work/nor.img"; mv "$work/nor.img" "$board/nor.img"; }
 if [ ! -e "$board/host_key" ]; then
@@ -58,6 +64,7 @@ echo 'root:x:0:' >"$work/group"
     echo "file /etc/default/tractiond $board/default 0644 0 0"
     echo "file /etc/rover.key.pub $board/key.pub 0644 0 0"
     echo "file /etc/rover.name $board/rover.name 0644 0 0"
+    [ -z "$link" ] || echo "file /etc/link.key $board/link.key 0600 0 0"
     echo "file /etc/dropbear/host_key $board/host_key 0600 0 0"
     echo "file /root/.ssh/authorized_keys $board/id.pub 0600 0 0"
     echo "file /frames $board/frames 0644 0 0"
@@ -67,6 +74,16 @@ echo 'root:x:0:' >"$work/group"
         if [ -L "$armel/root/$file" ]; then echo "slink /$file $(readlink "$armel/root/$file") 0777 0 0"; else echo "file /$file $armel/root/$file 0755 0 0"; fi
     done
 } >"$work/list"
+# the same as a folder: a root file system for `traction flash --image --system` (its /dev/console is the image's to make)
+while read -r kind path from mode _; do
+    case $kind in
+        dir) mkdir -p "$work/system$path" && chmod "$mode" "$work/system$path" ;;
+        file) cp "$from" "$work/system$path" && chmod "$mode" "$work/system$path" ;;
+        slink) ln -s "$from" "$work/system$path" ;;
+    esac
+done <"$work/list"
+rm -rf "$board/system"
+mv "$work/system" "$board/system"
 "$kernel/gen_init_cpio" -t 1704067200 "$work/list" | gzip -9n >"$work/initramfs"
 for file in zImage versatile-pb.dtb; do ln -sf "$kernel/$file" "$board/$file"; done
 mv "$work/initramfs" "$board/initramfs"

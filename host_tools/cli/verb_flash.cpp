@@ -1,4 +1,5 @@
-// verb_flash.cpp - traction flash: a signing key, a package, and a package onto a board over ssh (docs/flash.md).
+// verb_flash.cpp - traction flash: a signing key, a package, a package as a board's image, and a package onto a board over ssh
+// (docs/flash.md).
 #include "data_files.h"
 #include "help.h"
 #include "rows.h"
@@ -6,10 +7,13 @@
 #include "verbs.h"
 
 #include "host_tools/flash/flash.h"
+#include "host_tools/flash/image.h"
 #include "host_tools/flash/pack.h"
 #include "host_tools/log/write_file.h"
+#include "sim/scenario/rover.h"
 
 #include <cinttypes>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -24,7 +28,8 @@ namespace {
 struct FlashArguments {
     std::string package, new_key, pack, key, program, rover, parameters, host, user = "root", identity, known_hosts, ssh = "ssh";
     std::string folder = "/opt/traction", installer = "traction-slot";
-    int port = 22, wait_s = 90;
+    std::string image, system, mount = "/", architecture = "armel";
+    int port = 22, wait_s = 90, erase_kB = 256, size_kB = 0;
     bool dry_run = false, status = false;
 };
 
@@ -102,6 +107,47 @@ flash::Summary look(const FlashArguments &a, const std::string &bytes) {
     if (a.key.empty()) return flash::look(a.package, bytes, nullptr);
     const flash::PublicKey key = flash::read_public(a.key);
     return flash::look(a.package, bytes, &key);
+}
+
+void image(const FlashArguments &a, Outcome &outcome) {
+    if (a.package.empty()) throw UsageError("--image needs the package that goes into it; --pack OUT makes one");
+    if (a.key.empty()) throw UsageError("--image needs the key that the board will obey; give --key FILE (the public half is enough)");
+    for (const std::string &in : {a.package, a.key, a.rover}) {
+        std::error_code none;
+        if (!in.empty() && std::filesystem::equivalent(in, a.image, none))
+            throw UsageError("--image " + a.image + " would replace what goes into it");
+    }
+    const flash::PublicKey key = flash::read_public(a.key);
+    const std::string bytes = flash::bytes_of(a.package);
+    const flash::Summary summary = flash::look(a.package, bytes, &key);
+    const flash::ImageOptions options{.rover = a.rover.empty() ? "" : sim::read_rover_file(a.rover).name,
+                                      .architecture = a.architecture,
+                                      .system = a.system,
+                                      .mount = a.mount,
+                                      .folder = a.folder,
+                                      .flash = {.erase_bytes = static_cast<std::uint32_t>(a.erase_kB) * 1024,
+                                                .size_bytes = static_cast<std::uint64_t>(a.size_kB) * 1024}};
+    const flash::Image made = flash::make_image(a.package, bytes, key, options);
+    log::write_file(made.flash.bytes, a.image);
+    std::printf("%s: JFFS2, %zu bytes, %u erase blocks of %d kB, %u of them used; %zu files and folders\nSHA-256 %s\n", a.image.c_str(),
+                made.flash.bytes.size(), made.flash.blocks, a.erase_kB, made.flash.used_blocks, made.entries, made.sha.c_str());
+    tell(summary);
+    std::printf("for the NOR flash partition that the board mounts at %s: its boot loader erases it and writes this file there, or, on the "
+                "board, flashcp %s /dev/mtdN\n",
+                a.mount.c_str(), a.image.c_str());
+    outcome.json = {{"schema", "traction.flash/1"},
+                    {"action", "image"},
+                    {"out", a.image},
+                    {"package", package_json(summary)},
+                    {"image",
+                     {{"bytes", made.flash.bytes.size()},
+                      {"sha256", made.sha},
+                      {"erase_block_bytes", options.flash.erase_bytes},
+                      {"blocks", made.flash.blocks},
+                      {"blocks_used", made.flash.used_blocks},
+                      {"entries", made.entries},
+                      {"mount", a.mount},
+                      {"folder", a.folder}}}};
 }
 
 flash::FlashOptions options_of(const FlashArguments &a, nlohmann::json &steps) {
@@ -211,8 +257,10 @@ void onto_board(const FlashArguments &a, Outcome &outcome) {
 }
 
 void run_flash(const FlashArguments &a, Outcome &outcome) {
-    const int asked = (a.new_key.empty() ? 0 : 1) + (a.pack.empty() ? 0 : 1) + (a.host.empty() ? 0 : 1);
-    if (asked > 1) throw UsageError("--new-key, --pack and --host are three things; give one");
+    const int asked = (a.new_key.empty() ? 0 : 1) + (a.pack.empty() ? 0 : 1) + (a.host.empty() ? 0 : 1) + (a.image.empty() ? 0 : 1);
+    if (asked > 1) throw UsageError("--new-key, --pack, --image and --host are four things; give one");
+    if (!a.rover.empty() && a.pack.empty() && a.image.empty()) throw UsageError("--rover goes with --pack or --image");
+    if (!a.image.empty()) return image(a, outcome);
     if (!a.new_key.empty()) return make_key(a, outcome);
     if (!a.pack.empty()) return pack(a, outcome);
     if (a.status && a.host.empty()) throw UsageError("--status of which board? give --host ADDR");
@@ -224,6 +272,45 @@ void run_flash(const FlashArguments &a, Outcome &outcome) {
     std::printf("%s\n", a.key.empty() ? "whether its signature holds: give --key FILE (the public half is enough)"
                                       : "signed by this key, and whole");
     outcome.json = {{"schema", "traction.flash/1"}, {"action", "look"}, {"package", package_json(summary)}, {"verified", !a.key.empty()}};
+}
+
+std::vector<Option> image_rows(FlashArguments &a) {
+    return {{.name = "--image",
+             .into = &a.image,
+             .help = "make the contents of a board's NOR flash, with PACKAGE as the version that runs",
+             .value = "OUT",
+             .kind = Kind::output},
+            {.name = "--system",
+             .into = &a.system,
+             .help = "the board's root file system, which the image then has too",
+             .value = "FOLDER",
+             .kind = Kind::folder,
+             .needs = {"--image"}},
+            {.name = "--mount",
+             .into = &a.mount,
+             .help = "where the board mounts the image; --folder lies below it",
+             .value = "FOLDER",
+             .shows_default = true,
+             .needs = {"--image"}},
+            {.name = "--architecture",
+             .into = &a.architecture,
+             .help = "of the board, Debian's word",
+             .value = "WORD",
+             .shows_default = true,
+             .needs = {"--image"}},
+            {.name = "--erase-block",
+             .into = &a.erase_kB,
+             .help = "of the flash, as /proc/mtd on the board has it (there in bytes, hexadecimal)",
+             .value = "kB",
+             .shows_default = true,
+             .range = Range{8, 4096},
+             .needs = {"--image"}},
+            {.name = "--size",
+             .into = &a.size_kB,
+             .help = "of the whole partition: the image is filled up to it; only what it takes when left out",
+             .value = "kB",
+             .range = Range{1, 4194303},
+             .needs = {"--image"}}};
 }
 
 std::vector<Option> board_rows(FlashArguments &a) {
@@ -266,23 +353,22 @@ Verb verb_flash() {
               .needs = {"--pack"}},
              {.name = "--rover",
               .into = &a.rover,
-              .help = "the rover's description, with [hardware]",
+              .help = "the rover's description, with [hardware]; with --image the rover that the package must be for",
               .value = "FILE",
-              .kind = Kind::rover,
-              .needs = {"--pack"}},
+              .kind = Kind::rover},
              {.name = "--parameters",
               .into = &a.parameters,
               .help = "the firmware's numbers (traction export --firmware); the description's when left out",
               .value = "FILE",
               .kind = Kind::input,
               .needs = {"--pack"}}},
-            board_rows(a)),
+            rows(image_rows(a), board_rows(a))),
         .run = [arguments](Outcome &outcome) { run_flash(*arguments, outcome); },
         .details = "The board has two slots. The new version goes into the one that does not run; it is verified, self-tested and tried, "
                    "and only when "
                    "10 s of its ticks were without a fault does it stay. Otherwise the old one runs again, by itself. docs/flash.md has "
                    "the package, "
-                   "the board's first flash and what the signature protects from.\n\n"
+                   "the board's first flash, the image and what the signature protects from.\n\n"
                    "Exit codes: 1 the new version did not come up, or gave no answer in time; 3 the package is wrong, or refused by the "
                    "board; 4 no "
                    "connection, the board is busy or its disk full."};
