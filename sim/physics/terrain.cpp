@@ -66,7 +66,6 @@ HeightMap read_height_map(const std::string &path, double cell_m, double height_
     if (!in) throw std::runtime_error(path + ": cannot be read; name a CSV of heights");
     HeightMap map;
     map.cell_m = cell_m;
-    constexpr std::size_t most = 4'000'000; // nodes: 32 MB
     std::string line, field;
     for (int number = 1; std::getline(in, line); ++number) {
         if (const auto comment = line.find('#'); comment != std::string::npos) line.resize(comment);
@@ -82,7 +81,7 @@ HeightMap read_height_map(const std::string &path, double cell_m, double height_
         if (columns != map.columns)
             throw std::runtime_error(path + ':' + std::to_string(number) + ": " + std::to_string(columns) +
                                      " heights where the first row has " + std::to_string(map.columns) + "; give every row as many");
-        if (map.height_m.size() > most)
+        if (map.height_m.size() > height_map_most)
             throw std::runtime_error(path + ": more than 4 million heights; take a coarser lattice or a part of it");
         ++map.rows;
     }

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -29,9 +30,20 @@ struct HeightMap {
     double at(int column, int row) const; // clamped into the map
 };
 
+inline constexpr std::size_t height_map_most = 4'000'000; // nodes: 32 MB
+
 // Reads a CSV of numbers, one row of the lattice a line, y ascending; `#` begins a comment. Throws std::runtime_error with file, line,
 // field.
 HeightMap read_height_map(const std::string &path, double cell_m, double height_scale);
+
+// Whether it is to be read as a picture: its name ends in .png, or it begins as a PNG does.
+bool is_height_picture(const std::string &path);
+
+// Reads a grey PNG of 8 or 16 bit, interlaced or not, as one looks at a map: x to the right, y up, so that the lowest line of pixels is
+// the first row. Height of a pixel c of 0..2^bits - 1: black_m + c (white_m - black_m)/(2^bits - 1). Counts are taken as they stand: no
+// gamma, no colour profile. Throws std::runtime_error with file and mend for what is no such picture, is torn, or has more than
+// height_map_most pixels.
+HeightMap read_height_picture(const std::string &path, double cell_m, double black_m, double white_m);
 
 struct ProfilePoint {
     double distance_m = 0, height_m = 0;

@@ -42,6 +42,29 @@ SoilPatch read_patch(const toml::table &table, const std::string &file, const st
     return patch;
 }
 
+// A height map by its keys: of a CSV, or of a picture, whose pixels have no scale of their own.
+std::shared_ptr<const HeightMap> read_map(Keys &keys, const std::string &file) {
+    const std::string path = (std::filesystem::path(file).parent_path() / keys.text("map", "")).string();
+    const double x_m = keys.number("map_x_m", 0, {-1000, 1000}), y_m = keys.number("map_y_m", 0, {-1000, 1000});
+    const bool picture = is_height_picture(path);
+    for (const std::string_view key : {"map_white_m", "map_black_m"})
+        if (!picture && keys.has(key)) keys.fail(key, "is of a PNG, and the map is a CSV", "scale a CSV's heights by map_height");
+    if (picture && keys.has("map_height"))
+        keys.fail("map_height", "is of a CSV, and the map is a PNG", "give the heights of white and black: map_white_m, map_black_m");
+    constexpr Range cell{0.001, 10}, height{-1000, 1000};
+    const double cell_m = picture ? keys.need_number("map_cell_m", cell) : keys.number("map_cell_m", 0.02, cell);
+    const double white_m = picture ? keys.need_number("map_white_m", height) : 0,
+                 black_m = picture ? keys.number("map_black_m", 0, height) : 0;
+    const double factor = picture ? 1 : keys.number("map_height", 1, height);
+    try {
+        HeightMap read = picture ? read_height_picture(path, cell_m, black_m, white_m) : read_height_map(path, cell_m, factor);
+        read.x_m = x_m, read.y_m = y_m;
+        return std::make_shared<const HeightMap>(std::move(read));
+    } catch (const std::runtime_error &error) {
+        keys.fail("map", error.what(), "the file's place is counted from the scenario's folder");
+    }
+}
+
 // [ground.terrain]: what is not flat.
 void read_terrain(const toml::table &table, const std::string &file, Terrain &terrain) {
     Keys keys(table, file, "ground.terrain");
@@ -66,19 +89,7 @@ void read_terrain(const toml::table &table, const std::string &file, Terrain &te
         terrain.longest_m = keys.number("longest_m", terrain.longest_m, {0.1, 100});
         terrain.shortest_m = keys.number("shortest_m", terrain.shortest_m, {0.01, 0.5 * terrain.longest_m});
     }
-    if (keys.has("map")) {
-        const std::filesystem::path map = std::filesystem::path(file).parent_path() / keys.text("map", "");
-        const double cell_m = keys.number("map_cell_m", 0.02, {0.001, 10});
-        const double height = keys.number("map_height", 1, {-1000, 1000});
-        const double x_m = keys.number("map_x_m", 0, {-1000, 1000}), y_m = keys.number("map_y_m", 0, {-1000, 1000});
-        try {
-            HeightMap read = read_height_map(map.string(), cell_m, height);
-            read.x_m = x_m, read.y_m = y_m;
-            terrain.map = std::make_shared<const HeightMap>(std::move(read));
-        } catch (const std::runtime_error &error) {
-            keys.fail("map", error.what(), "the file's place is counted from the scenario's folder");
-        }
-    }
+    if (keys.has("map")) terrain.map = read_map(keys, file);
     keys.finish();
 }
 

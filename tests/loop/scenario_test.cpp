@@ -37,6 +37,22 @@ TEST(Scenario, every_file_of_the_gallery_reads) {
     EXPECT_GE(count, 11);
 }
 
+// The gallery's own picture, from where the test runs.
+TEST(Scenario, a_picture_of_heights_needs_its_scales_and_a_csv_has_others) {
+    const auto with = [](const std::string &keys) { return message("duration_s = 1\n[ground.terrain]\n" + keys + drive); };
+    const std::string dunes = "map = \"scenarios/dunes.png\"\n", cell = "map_cell_m = 0.05\n";
+    EXPECT_EQ(with(dunes + cell + "map_white_m = 0.1\n"), "accepted");
+    EXPECT_EQ(with(dunes + "map_white_m = 0.1\n"), "x.toml:2: ground.terrain.map_cell_m: missing; give a number from 0.001 to 10");
+    EXPECT_EQ(with(dunes + cell), "x.toml:2: ground.terrain.map_white_m: missing; give a number from -1000 to 1000");
+    EXPECT_EQ(with(dunes + cell + "map_height = 0.5\n"), "x.toml:5: ground.terrain.map_height = 0.5: is of a CSV, and the map is a PNG; "
+                                                         "give the heights of white and black: map_white_m, map_black_m");
+    EXPECT_EQ(with("map = \"README.md\"\nmap_black_m = 0.5\n"),
+              "x.toml:4: ground.terrain.map_black_m = 0.5: is of a PNG, and the map is a CSV; scale a CSV's heights by map_height");
+    EXPECT_EQ(with("map = \"none.png\"\n" + cell + "map_white_m = 1\n"),
+              "x.toml:3: ground.terrain.map = 'none.png': none.png: cannot be read; name a PNG of heights; the file's place is counted "
+              "from the scenario's folder");
+}
+
 TEST(Scenario, a_mistake_is_told_with_file_line_key_value_and_mend) {
     struct Case {
         std::string text, expected;
