@@ -4,11 +4,13 @@
 #include "rows.h"
 #include "verbs.h"
 
+#include "host_tools/lab/model/model.h"
 #include "host_tools/report/report.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -23,7 +25,7 @@ namespace {
 
 struct ReportOptions {
     std::vector<std::string> results;
-    std::string out, log, truth, map, rover;
+    std::string out, log, truth, map, rover, model;
 };
 
 // A result is JSON: it is called so, or begins as an object does. Anything else is a log.
@@ -36,12 +38,34 @@ bool is_log(const std::string &path) {
     return first != '{';
 }
 
+// The same wheels, to a twentieth of a radius: as a fit may have moved them.
+bool alike(const report::RoverShape &a, const report::RoverShape &b) {
+    return std::equal(a.wheel.begin(), a.wheel.end(), b.wheel.begin(), b.wheel.end(), [](const auto &one, const auto &other) {
+        const double most = 0.05 * other.radius_m;
+        return std::fabs(one.x_m - other.x_m) < most && std::fabs(one.y_m - other.y_m) < most &&
+               std::fabs(one.radius_m - other.radius_m) < most;
+    });
+}
+
+// What is drawn: the described rover; else the model's wheels, and where these are the reference's, or no model was given, the reference.
+report::RoverShape drawn(const ReportOptions &options) {
+    if (!options.rover.empty()) return shape_of(sim::read_rover_file(options.rover));
+    const report::RoverShape reference = shape_of(sim::RoverDescription());
+    if (options.model.empty()) return reference;
+    const lab::Model model = lab::read_model(options.model);
+    const report::RoverShape shape = shape_of(model);
+    const auto round = [](const report::RoverShape::Wheel &wheel) { return wheel.radius_m > 0; };
+    if (shape.wheel.empty() || !std::all_of(shape.wheel.begin(), shape.wheel.end(), round))
+        throw lab::ModelError(options.model, 0, "wheels", "no rover can be drawn from these wheels",
+                              "give the model of a rover, or --rover FILE");
+    return alike(shape, reference) ? reference : shape;
+}
+
 // The drive of a log, with what really happened where that is known. Throws log::LogError where the log has no pose.
 nlohmann::json drive_of(const ReportOptions &options, const std::string &path) {
     const log::Log log = log::read_csv(path, options.map);
     const log::Log truth = options.truth.empty() ? log::Log{} : log::read_csv(options.truth);
-    const sim::RoverDescription rover = options.rover.empty() ? sim::RoverDescription() : sim::read_rover_file(options.rover);
-    nlohmann::json replay = report::replay_of(log, options.truth.empty() ? nullptr : &truth, shape_of(rover));
+    nlohmann::json replay = report::replay_of(log, options.truth.empty() ? nullptr : &truth, drawn(options));
     if (replay.is_null())
         throw log::LogError(path, 0, 0, "this log says nowhere where the rover was",
                             "a page of a drive needs camera.x_m and camera.y_m, or --truth; `traction plot` draws any log");
@@ -94,8 +118,8 @@ void show(const ReportOptions &options, Outcome &outcome) {
     const bool one = options.results.size() == 1, log = one && is_log(options.results.front());
     if (log && !options.log.empty()) throw UsageError("--log: adds a drive to a result; here the log itself is shown");
     if (!one && !options.log.empty()) throw UsageError("--log: takes one result, not several");
-    if (!log && options.log.empty() && !(options.truth + options.map + options.rover).empty())
-        throw UsageError("--truth, --map, --rover: are for the drive of a log; give the log, or --log beside a result");
+    if (!log && options.log.empty() && !(options.truth + options.map + options.rover + options.model).empty())
+        throw UsageError("--truth, --map, --rover, --model: are for the drive of a log; give the log, or --log beside a result");
     nlohmann::json result = log ? page_of_log(options) : one ? read_result(options.results.front()) : side_by_side(options.results);
     if (!options.log.empty() && result.is_object()) result["replay"] = drive_of(options, options.log);
     const bool data = std::filesystem::path(options.out).extension() == ".json";
@@ -142,6 +166,12 @@ Verb verb_report() {
               .help = "the rover that is drawn (rovers/*.toml); else the reference",
               .value = "FILE",
               .kind = Kind::rover},
+             {.name = "--model",
+              .into = &options->model,
+              .help = "a model whose wheels are drawn, where the rover is not described",
+              .value = "FILE",
+              .kind = Kind::model,
+              .excludes = {"--rover"}},
              {.name = "--out",
               .into = &options->out,
               .help = "the page; of a log also FILE.json: what its page shows (traction.look/1)",

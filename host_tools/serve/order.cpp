@@ -21,7 +21,7 @@ namespace {
 const std::map<std::string, Words> &keys_of_verbs() {
     static const std::map<std::string, Words> keys = {
         {"check", {"log", "model", "map"}},
-        {"look", {"log", "map"}},
+        {"look", {"log", "model", "map"}},
         {"compare", {"log", "model", "map"}},
         {"diagnose", {"log", "model", "map"}},
         {"next", {"log", "model", "map"}},
@@ -214,7 +214,7 @@ void lab_order(const Asked &asked, const Folder &folder, const std::string &resu
     order.entry["log"] = log.name;
     Words input = {log.path.string()};
     std::string model;
-    if (verb != "look" && (verb != "check" || asked.has("model"))) {
+    if ((verb != "look" && verb != "check") || asked.has("model")) {
         const File &file = asked.file("model", Kind::model);
         model = file.path.string();
         order.entry["model"] = file.name;
@@ -226,6 +226,7 @@ void lab_order(const Asked &asked, const Folder &folder, const std::string &resu
     }
     if (verb == "look") { // what its page would show
         input.insert(input.begin(), "report");
+        if (!model.empty()) input.insert(input.end(), {"--model", model}); // its wheels are drawn
         input.insert(input.end(), {"--out", result});
         order.commands = {input};
         return;

@@ -416,7 +416,15 @@ TEST_F(Served, a_drive_is_looked_at_as_its_page_shows_it_and_a_log_without_a_pos
     const json blind = run({{"verb", "look"}, {"log", "blind.csv"}});
     EXPECT_EQ(blind["state"], "failed");
     EXPECT_NE(blind["message"].get<std::string>().find("says nowhere where the rover was"), std::string::npos) << blind;
-    EXPECT_EQ(run({{"verb", "look"}, {"log", "cruise_3.csv"}, {"model", "shipped/rover_sand.toml"}})["status"], 400);
+    const auto rover_of = [&](const std::string &model) {
+        const json one = run({{"verb", "look"}, {"log", "cruise_3.csv"}, {"model", model}});
+        EXPECT_EQ(one["state"], "done") << one;
+        return body_of(get("/api/result/" + one["id"].dump()))["replay"]["rover"];
+    };
+    EXPECT_EQ(rover_of("shipped/rover_sand.toml"), shown["replay"]["rover"]); // its wheels are the reference's
+    const json husky = rover_of("shipped/husky.toml");
+    ASSERT_EQ(husky["wheel"].size(), 4U) << husky;
+    EXPECT_NEAR(husky["wheel"][0]["radius_m"].get<double>(), 0.165, 0.01) << husky;
     const std::string result = (folder() / "traction_serve/1.json").string(), data = (home_ / "data.json").string();
     EXPECT_EQ(run_child(TRACTION_PROGRAM, {"report", result, "--out", data}, {}, none).exit_code, 2); // of a log alone
     EXPECT_FALSE(fs::exists(data));

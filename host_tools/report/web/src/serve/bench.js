@@ -63,7 +63,7 @@ export function bench() {
   fill(addWheel, wheels, '-1');
   const run = (verb, more = {}) => tried(async () => {
     choose({ follow: true });
-    await post('/api/run', { verb, log: chosen.log, ...(chosen.model && verb !== 'look' && { model: chosen.model }), ...(chosen.map && { map: chosen.map }), ...more });
+    await post('/api/run', { verb, log: chosen.log, ...(chosen.model && { model: chosen.model }), ...(chosen.map && { map: chosen.map }), ...more });
   });
   const button = (words, title, work, kind) => h('button', { type: 'button', class: kind, title, onclick: work }, words);
   const buttons = [button('Check', 'is this log fit to learn from?', () => run('check')), button('Look', 'the drive, played again: where the rover went, how it slipped', () => run('look')), button('Compare', 'how far is the model from the log, and where?', () => run('compare')),
