@@ -13,7 +13,12 @@ apt() {
     apt-get -qq -o APT::Architecture=armel -o APT::Architectures=armel -o Dir::State::Lists="$work/lists" -o Dir::State::Status="$work/status" \
         -o Dir::Cache="$work" -o APT::Sandbox::User=root -o APT::Install-Recommends=false "$@" >>"$work/log" 2>&1
 }
-if ! apt update || ! apt install -y --download-only busybox-static dropbear-bin; then
+if ! apt update; then
+    grep '^E:' "$work/log" | head -n 3 >&2
+    echo "armel.sh: apt's index of armel cannot be fetched, as while a mirror is being renewed; try again later (the rest of the emulated board needs none of it)" >&2
+    exit 1
+fi
+if ! apt install -y --download-only busybox-static dropbear-bin; then
     tail -n 3 "$work/log" >&2
     echo "armel.sh: apt brings no busybox-static and dropbear-bin for armel (Debian 12 has them)" >&2
     exit 1

@@ -83,7 +83,11 @@ for how in lost corrupted late duplicated; do
     { echo 'bus = "can"'; head_of 3.0 concrete; drive_of 3.0 0.3; printf '[[fault]]\nwhat = "can"\nhow = "%s"\nshare = 0.1\nnode = "all"\nfrom_s = 1.0\n' $how; } >$how.toml
     drive $how 0 $how.toml
 done
-{ echo 'bus = "can"'; head_of 3.0 concrete; drive_of 3.0 0.3; printf '[[fault]]\nwhat = "can"\nhow = "silent"\nnode = "wheel2"\nfrom_s = 1.0\n'; } >silent.toml
-drive silent 1 silent.toml
+for how in silent bus_off; do # of a wheel's node: the other three brake, and what was lost is latched
+    { echo 'bus = "can"'; head_of 3.0 concrete; drive_of 3.0 0.3; printf '[[fault]]\nwhat = "can"\nhow = "%s"\nnode = "wheel2"\nfrom_s = 1.0\n' $how; } >$how.toml
+    drive $how 1 $how.toml
+done
+{ echo 'bus = "can"'; head_of 3.0 concrete; drive_of 3.0 0.3; printf '[[fault]]\nwhat = "can"\nhow = "lost"\nshare = 1.0\nnode = "all"\nfrom_s = 1.0\nto_s = 1.1\n'; } >burst.toml
+drive burst 1 burst.toml
 
 echo "emulated board: holds"
