@@ -13,7 +13,11 @@ for (const seed of seeds) {
   const page = await browser.newPage();
   await page.goto(pathToFileURL(`${folder}/${seed}/report.html`).href);
   await page.waitForSelector('html[data-ready=yes]');
-  const pairs = (id) => page.$$eval(`#${id} .answers > div`, (all) => Object.fromEntries(all.map((e) => [e.querySelector('dt').textContent, e.querySelector('dd').textContent.trim()])));
+  const pairs = (id) => page.$$eval(`#${id} .answers > div`, (all) => Object.fromEntries(all.map((e) => {
+    const words = e.querySelector('dd').cloneNode(true); // without what stands in the drawings
+    words.querySelectorAll('svg').forEach((drawing) => drawing.remove());
+    return [e.querySelector('dt').textContent, words.textContent.trim()];
+  })));
   const answers = await pairs('verdict'), seal = await pairs('seal');
   await page.close();
   const hidden = JSON.parse(readFileSync(`${folder}/${seed}/sealed.json`, 'utf8')).effects[0], missing = answers['What is missing?'] ?? '';
