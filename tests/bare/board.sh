@@ -27,7 +27,7 @@ cat "$base/$suite.second_drive.log"
 made=$system/root/traction
 grep -q '"equal_in_process": true' "$made/first.json" || die "the trace is not that of the simulation in process"
 cmp -s "$made/first/records" "$made/second/records" || die "two runs of one scenario differ"
-say "$("$inside" sh -c 'qemu-system-arm --version' | head -n 1); $(cat "$system"/root/.cache/traction/board-*/kernel.txt); $("$inside" sh -c 'arm-linux-gnueabi-gcc --version' | head -n 1)"
+say "$("$inside" sh -c 'qemu-system-arm --version' | head -n 1); $("$inside" sh -c 'cat ~/.cache/traction/board-*/kernel.txt'); $("$inside" sh -c 'arm-linux-gnueabi-gcc --version' | head -n 1)"
 say "SHA-256 of the trace: $(sha256sum <"$made/first/trace.txt" | cut -d ' ' -f 1), of all records: $(sha256sum <"$made/first/records" | cut -d ' ' -f 1)"
 if [ "$run_tests" = yes ]; then
     timed board_tests "$inside" sh -c "${enter}./traction emulate --test"
