@@ -30,14 +30,17 @@ void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t pow
     ensures -12582912 <= *sum <= 12582912; */
 void doppler_line_take(doppler_line_t *line, const doppler_line_span_t *span, int16_t *sample, int32_t *sum);
 
-// What no interval holds, and who holds it instead:
+// What no interval holds, and who holds it instead. By runs of their own:
 //   sense.step        |step| <= encoder_step_max, from a quotient         prove_step
-//   doppler.made      a block holds no more than came, at most 64         prove_block
+//   made, railed      a block holds no more than came, at most 64         prove_block
 //   safety.radar_sum  32 numbers of 10 bits                               prove_radar_dead
 //   log2_ticks        of at most 2^14                                     prove_lean
-//   rest_q8, lean_mean_q8: a mean lies between the least and the largest of what it is of: fuzz_invariants_test, control_fuzz
-static void relations(const control_config_t *config, control_state_t *state)
-{
+// By proof_assumptions_test in every tick of arbitrary frames, because each is a relation between two numbers:
+//   rest_q8, lean_mean_q8, a gap's samples   a mean, and a point of a line, lie between their ends
+//   gyro_q8                                  x - x/10 is nearer to 0 than x
+//   clean, late_samples                      no more than is in the window; what came since a window that waits, for two ticks at most
+//   gyro_alone_ticks, rolls_ticks, rolls_wait, unheard_ticks, still_ticks, beyond, relief   counts that stop at their ends
+static void relations(const control_config_t *config, control_state_t *state) {
     const int most = config->sense.encoder_step_max;
     //@ loop unroll 4;
     for (int n = 0; n < WHEEL_COUNT; n++) {
@@ -54,6 +57,17 @@ static void relations(const control_config_t *config, control_state_t *state)
     }
     state->sense.lean.log2_ticks = Frama_C_interval(0, 14);
     state->ground_speed.lean_mean_q8 = Frama_C_interval(-66977792, 66977792);
+    state->ground_speed.gyro_q8 = Frama_C_interval(-4194304, 4194304);
+    state->sense.gyro_q8 = Frama_C_interval(-4194304, 4194304);
+    state->doppler.clean = Frama_C_interval(0, 256);
+    state->doppler.late_samples = Frama_C_interval(-64, 191);
+    state->ground_speed.gyro_alone_ticks = Frama_C_interval(0, 1099);
+    state->ground_speed.rolls_ticks = Frama_C_interval(0, 60);
+    state->ground_speed.rolls_wait = Frama_C_interval(0, 100);
+    state->ground_speed.unheard_ticks = Frama_C_interval(0, 1000);
+    state->ground_speed.still_ticks = Frama_C_interval(0, 1000);
+    state->beyond = Frama_C_interval(0, 3);
+    state->doppler.relief = Frama_C_interval(0, 6);
 }
 
 #endif

@@ -1,14 +1,12 @@
-// prove_doppler.c - doppler.c, and what is asked of take alone: of a block no more is made than has come.
+// prove_doppler.c - doppler.c, and what is asked of its parts alone: of a block no more is made than has come; a sample of a gap lies
+// between those at its ends; a spectrum without lines is a whole one.
 #include "prove.h"
 
-#ifdef PROVE_BLOCK
-#define OF_A_BLOCK requires
-#else
-#define OF_A_BLOCK admit requires // as prove_block has it
-#endif
-/*@ OF_A_BLOCK made: 0 <= state->made[0] <= 64 && 0 <= state->made[1] <= 64 && 0 <= state->made[2] <= 64 && 0 <= state->made[3] <= 64 &&
+// prove_block keeps the first and the last of these; a gap's samples are in prove.h.
+/*@ admit requires made: 0 <= state->made[0] <= 64 && 0 <= state->made[1] <= 64 && 0 <= state->made[2] <= 64 && 0 <= state->made[3] <= 64 &&
       0 <= state->made[4] <= 64;
-    OF_A_BLOCK railed: 0 <= state->railed[0] <= 64 && 0 <= state->railed[1] <= 64 && 0 <= state->railed[2] <= 64 &&
+    admit requires between: -16384 <= value <= 16352;
+    admit requires railed: 0 <= state->railed[0] <= 64 && 0 <= state->railed[1] <= 64 && 0 <= state->railed[2] <= 64 &&
       0 <= state->railed[3] <= 64 && 0 <= state->railed[4] <= 64; */
 static void take(const doppler_config_t *config, doppler_state_t *state, int16_t value, bool made, bool railed, int32_t late_samples);
 
@@ -26,7 +24,29 @@ static bool take_line(uint32_t *left, int32_t from, int32_t peak, uint32_t *sum,
     ensures state->outside_lines == 0 || state->outside_lines == 1; */
 static void watch_outside(const doppler_template_t *beam, doppler_state_t *state);
 
+// Proved by prove_without_lines: where it is the copy, all of it is set.
+/*@ assigns copy[0 .. 127] \from state->power[0 .. 127], state->line[0 .. 3], *beam;
+    assigns \result \from state, copy, state->line[0 .. 3];
+    ensures \result == copy || \result == (const uint64_t *)state->power; */
+static const uint64_t *without_lines(const doppler_template_t *beam, const doppler_state_t *state, uint64_t *copy);
+
 #include "firmware/core/doppler.c"
+
+int prove_without_lines(void) {
+    const control_config_t config = rover_config_default();
+    control_state_t all;
+    uint64_t copy[FFT_BINS];
+    Frama_C_make_unknown((char *)&all, sizeof all);
+    all.doppler.line[0] = 1u << 9; // lines there are
+    const uint64_t *const power = without_lines(config.doppler.beam, &all.doppler, copy);
+    //@ check power == &copy[0] && \initialized(power + (0 .. 127));
+    for (int i = 0; i < 4; i++) {
+        all.doppler.line[i] = 0; // and there are none
+    }
+    const uint64_t *const same = without_lines(config.doppler.beam, &all.doppler, copy);
+    //@ check same == &all.doppler.power[0];
+    return power[3] > same[3];
+}
 
 int prove_outside(void) {
     const control_config_t config = rover_config_default();
@@ -56,7 +76,6 @@ int prove_take_line(void) {
     return taken;
 }
 
-#ifdef PROVE_BLOCK
 int prove_block(void) {
     const control_config_t config = rover_config_default();
     control_state_t all;
@@ -75,12 +94,11 @@ int prove_block(void) {
             state->filled = 0; // no window is full: what follows then writes none of these
             state->full = true;
             state->sum = 0;
-            take(&config.doppler, state, (int16_t)Frama_C_interval(-16384, 16352), Frama_C_interval(0, 1) != 0,
-                 Frama_C_interval(0, 1) != 0, 0);
+            take(&config.doppler, state, (int16_t)Frama_C_interval(-16384, 16352), Frama_C_interval(0, 1) != 0, Frama_C_interval(0, 1) != 0,
+                 0);
             const int now = came == DOPPLER_BLOCK ? (block + 1) % DOPPLER_BLOCKS : block;
             //@ check state->block == now && 0 <= state->made[now] <= state->in_block && 0 <= state->railed[now] <= state->in_block <= 64;
         }
     }
     return 0;
 }
-#endif

@@ -32,12 +32,15 @@ int prove_railed_radar(void) {
     //@ loop unroll 64;
     for (int first = 0; first < RADAR_SAMPLES_PER_TICK_MAX; first++) {
         Frama_C_make_unknown((char *)&frame, sizeof frame);
-        frame.radar_samples = (uint8_t)Frama_C_interval(first + 1, 255);
+        frame.radar_samples = (uint8_t)Frama_C_interval(first + 1, 64);
         frame.radar_count[first] = (uint16_t)Frama_C_interval(1024, 65535);
         out.usable = 0;
         out.absurd = 0;
         check_radar(&config.sense, &frame, &out);
-        //@ check (out.usable & 32) == 0 && out.usable == 0;
+        //@ check out.usable == 0;
     }
+    frame.radar_samples = (uint8_t)Frama_C_interval(65, 255);
+    check_radar(&config.sense, &frame, &out);
+    //@ check out.usable == 0;
     return 0;
 }

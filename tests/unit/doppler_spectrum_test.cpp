@@ -50,7 +50,8 @@ TEST(DopplerSpectrum, the_templates_own_spectrum_reads_its_speed_at_any_power) {
         for (const double mean : {600.0, 1e4, 1e7}) {
             const doppler_output_t out = hear(echo(speed, mean, 0));
             EXPECT_FALSE(out.quiet || out.beyond || out.spoilt || out.rest || out.strange) << speed;
-            EXPECT_NEAR(std::log(out.speed_m_s / beam().speed_m_s[speed]), 0, 1.0 * static_cast<double>(beam().log_step)) << speed << " " << mean;
+            EXPECT_NEAR(std::log(out.speed_m_s / beam().speed_m_s[speed]), 0, 1.0 * static_cast<double>(beam().log_step))
+                << speed << " " << mean;
             EXPECT_EQ(out.trust, 1.0f);
         }
 }
@@ -110,7 +111,8 @@ TEST(DopplerSpectrum, a_spectrum_that_no_speed_fits_widens_the_claim_and_is_refu
                 double least = 1e300, fit = 0;
                 for (int i = 0; i < beam().speeds; i++) {
                     double J = 0;
-                    for (int k = 0; k < beam().bins; k++) J += powers[static_cast<std::size_t>(beam().first_bin + k)] / total * beam().inverse[i * beam().bins + k];
+                    for (int k = 0; k < beam().bins; k++)
+                        J += powers[static_cast<std::size_t>(beam().first_bin + k)] / total * beam().inverse[i * beam().bins + k];
                     if (J + beam().volume[i] < least) least = J + beam().volume[i], fit = J / beam().exact;
                 }
                 const doppler_output_t out = hear(powers);
@@ -144,7 +146,7 @@ TEST(DopplerSpectrum, an_echo_beyond_the_band_is_told_from_noise_and_from_an_ech
     for (const double level : {1e4, 1e6}) {
         EXPECT_TRUE(outside(level, 0.22 * level, 0));
         EXPECT_TRUE(outside(level, 0.3 * level, 0.07 * level));
-        EXPECT_FALSE(outside(level, 0.3 * level, 0.08 * level)); // not four times what lies beyond: it is noise
+        EXPECT_FALSE(outside(level, 0.3 * level, 0.08 * level));  // not four times what lies beyond: it is noise
         EXPECT_FALSE(outside(level, 0.22 * level, 0.04 * level)); // 0.18 above it: an echo's skirt
         EXPECT_TRUE(outside(level, 0.6 * level, 3.2 * level));    // an alias
         EXPECT_FALSE(outside(level, 1.2 * level, 2.8 * level));
@@ -217,9 +219,9 @@ TEST(DopplerSpectrum, a_line_is_what_stands_out_and_does_not_sway) {
     for (int value = 0; value < 60; value++) {
         for (int k = 0; k < FFT_BINS; k++) {
             random = random * 1664525u + 1013904223u;
-            const double chance = -std::log((random + 1.0) / 4294967297.0);              // exponential, as an echo's powers
-            const double steady = (random >> 8) % 100 / 100.0 - 0.5;                    // of a line
-            const bool constant = k == 20 || k == 40 || k == 10 || k == 30 || k == 4;   // 30 stands out too little, 4 lies too low
+            const double chance = -std::log((random + 1.0) / 4294967297.0);           // exponential, as an echo's powers
+            const double steady = (random >> 8) % 100 / 100.0 - 0.5;                  // of a line
+            const bool constant = k == 20 || k == 40 || k == 10 || k == 30 || k == 4; // 30 stands out too little, 4 lies too low
             const double level = k == 20 ? 1e5 : k == 40 ? 3e3 : k == 10 ? 1e4 : k == 30 ? 150 : k == 4 ? 1e5 : 100;
             const double power = constant ? level * std::pow(2.0, 0.6 * steady) : level * chance;
             state.power[k] = static_cast<std::uint64_t>(power * unit);
@@ -258,7 +260,8 @@ TEST(DopplerSpectrum, a_known_line_within_the_band_is_left_out) {
     for (const int bin : {8, 12, 20, 31, 32, 40}) {
         Powers powers = echo(60, 2e4, 0), plain = powers;
         for (int j = -2; j <= 2; j++)
-            plain[static_cast<std::size_t>(bin + j)] = (plain[static_cast<std::size_t>(bin - 3)] + plain[static_cast<std::size_t>(bin + 3)]) / 2;
+            plain[static_cast<std::size_t>(bin + j)] =
+                (plain[static_cast<std::size_t>(bin - 3)] + plain[static_cast<std::size_t>(bin + 3)]) / 2;
         add_line(powers, bin, 3e6);
         doppler_state_t state = with(powers);
         state.line[bin / 32] = 1u << (bin % 32);

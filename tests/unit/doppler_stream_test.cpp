@@ -41,7 +41,8 @@ TEST(DopplerStream, without_numbers_the_clock_tells_what_is_more_than_two_and_a_
         int told = 0;
         for (int tick = 1; tick <= 3000; tick++) {
             const int came = by_clock(tick) - by_clock(tick - 1);
-            const int less = tick >= 1000 && tick < 1000 + (lost + 3) / 4 ? (tick == 1000 + (lost + 3) / 4 - 1 && lost % 4 != 0 ? lost % 4 : 4) : 0;
+            const int less =
+                tick >= 1000 && tick < 1000 + (lost + 3) / 4 ? (tick == 1000 + (lost + 3) / 4 - 1 && lost % 4 != 0 ? lost % 4 : 4) : 0;
             const doppler_arrival_t arrival = {0, 1, came - (lost > 0 ? less : 0)};
             const int now = doppler_missing(&config, &state, &arrival);
             if (tick < 1000) { // a converter of the stated rate owes nothing
@@ -77,7 +78,8 @@ TEST(DopplerStream, a_rate_more_than_a_hundredth_and_a_quarter_off_is_refused) {
             const int count = static_cast<int>(due);
             due -= count;
             std::uint16_t sample[8];
-            for (int k = 0; k < count; k++) sample[k] = static_cast<std::uint16_t>(512 + ((sequence + static_cast<std::uint32_t>(k)) * 2654435761u >> 25) - 64);
+            for (int k = 0; k < count; k++)
+                sample[k] = static_cast<std::uint16_t>(512 + ((sequence + static_cast<std::uint32_t>(k)) * 2654435761u >> 25) - 64);
             const doppler_arrival_t arrival = {sequence, 1, count};
             EXPECT_EQ(doppler_missing(&config, &state, &arrival), 0);
             sequence += static_cast<std::uint32_t>(count);
@@ -111,7 +113,8 @@ TEST(DopplerStream, a_gap_is_filled_along_a_straight_line) {
             doppler_gap(&config, &state, missing, next);
             EXPECT_EQ(state.filled, 40 + missing);
             for (int j = 1; j <= missing; j++)
-                EXPECT_NEAR(state.window.sample[39 + j], from + static_cast<double>(to - from) * j / (missing + 1), 1.0) << missing << " " << j;
+                EXPECT_NEAR(state.window.sample[39 + j], from + static_cast<double>(to - from) * j / (missing + 1), 1.0)
+                    << missing << " " << j;
         }
     }
     doppler_state_t state = with_samples(config, 40, 500);
@@ -152,8 +155,8 @@ TEST(DopplerStream, filled_and_railed_samples_cost_trust_for_as_long_as_they_are
         std::uint16_t rail;
         bool spoilt;
     };
-    for (const Case &c : {Case{0, 0, 0, false}, Case{1, 0, 0, false}, Case{80, 0, 0, false}, Case{81, 0, 0, true}, Case{0, 1, 0, false}, Case{0, 128, 1023, false},
-                          Case{0, 129, 1023, true}, Case{0, 129, 0, true}, Case{10, 20, 0, false}}) {
+    for (const Case &c : {Case{0, 0, 0, false}, Case{1, 0, 0, false}, Case{80, 0, 0, false}, Case{81, 0, 0, true}, Case{0, 1, 0, false},
+                          Case{0, 128, 1023, false}, Case{0, 129, 1023, true}, Case{0, 129, 0, true}, Case{10, 20, 0, false}}) {
         doppler_state_t state = {};
         enum { BEFORE, MARKING, AFTER } stage = BEFORE;
         int stream = 0, values = 0, checked = 0, first = 0, last = 0;

@@ -16,7 +16,10 @@ std::uint64_t next(std::uint64_t &random) {
 
 std::int16_t count16(std::uint64_t &random, int how) {
     const auto any = static_cast<std::int16_t>(next(random));
-    return how == 0 ? INT16_MIN + 1 : how == 1 ? INT16_MAX - 1 : how == 2 ? static_cast<std::int16_t>(any > 0 ? INT16_MAX - 1 : INT16_MIN + 1) : any;
+    return how == 0   ? INT16_MIN + 1
+           : how == 1 ? INT16_MAX - 1
+           : how == 2 ? static_cast<std::int16_t>(any > 0 ? INT16_MAX - 1 : INT16_MIN + 1)
+                      : any;
 }
 
 void hold(const control_config_t &config, const control_state_t &state, int tick) {
@@ -38,6 +41,24 @@ void hold(const control_config_t &config, const control_state_t &state, int tick
     ASSERT_GE(state.sense.lean.log2_ticks, 0) << tick;
     ASSERT_LE(std::abs(state.ground_speed.lean_mean_q8), (1 << 26) - (1 << 17)) << tick;
     ASSERT_LE(state.safety.radar_samples, 31u) << tick;
+    for (int i = 0; i < FFT_LENGTH; i++) {
+        ASSERT_LE(state.doppler.window.sample[i], 16352) << tick;
+        ASSERT_GE(state.doppler.window.sample[i], -16384) << tick;
+    }
+    const auto within = [tick](const char *what, std::int32_t value, std::int32_t low, std::int32_t high) {
+        EXPECT_TRUE(value >= low && value <= high) << what << " " << value << " in tick " << tick;
+    };
+    within("gyro_q8", state.ground_speed.gyro_q8, -4194304, 4194304);
+    within("sense.gyro_q8", state.sense.gyro_q8, -4194304, 4194304);
+    within("clean", state.doppler.clean, 0, 256);
+    within("late_samples", state.doppler.late_samples, -64, 191);
+    within("gyro_alone_ticks", state.ground_speed.gyro_alone_ticks, 0, 1099);
+    within("rolls_ticks", state.ground_speed.rolls_ticks, 0, 60);
+    within("rolls_wait", state.ground_speed.rolls_wait, 0, 100);
+    within("unheard_ticks", state.ground_speed.unheard_ticks, 0, 1000);
+    within("still_ticks", state.ground_speed.still_ticks, 0, 1000);
+    within("beyond", state.beyond, 0, 3);
+    within("relief", state.doppler.relief, 0, 6);
     if (state.safety.radar_samples > 0) { // else it begins anew
         ASSERT_LE(std::abs(state.safety.radar_sum), 1023 * static_cast<int>(state.safety.radar_samples)) << tick;
     }

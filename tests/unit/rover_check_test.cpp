@@ -1,5 +1,5 @@
-// Each rule of control_config_check at its bound, from both sides; the bounds are computed here from what the rule says. And what the builder
-// makes of radars and converters unlike the reference's.
+// Each rule of control_config_check at its bound, from both sides; the bounds are computed here from what the rule says. And what the
+// builder makes of radars and converters unlike the reference's.
 #include "firmware/core/doppler_template.h"
 #include "firmware/core/rover_config.h"
 
@@ -70,7 +70,8 @@ TEST(RoverCheck, speeds_hold_at_their_bounds) {
     // four pulses a tick at 60 rad/s, rounded to the nearest: 3.5 * 2 pi/(60 * 0.01)
     expect_bound("encoder_counts_per_turn", ROVER_encoder_counts_per_turn, 3.5 * two_pi / 0.6, -0.1,
                  {{ROVER_still_m_s, 0.1}, {ROVER_dry_speed_rad_s, 1}});
-    expect_bound("encoder_counts_per_turn", ROVER_encoder_counts_per_turn, 65535 * two_pi / (900 * 0.01), 20, {{ROVER_encoder_absurd_rad_s, 900}});
+    expect_bound("encoder_counts_per_turn", ROVER_encoder_counts_per_turn, 65535 * two_pi / (900 * 0.01), 20,
+                 {{ROVER_encoder_absurd_rad_s, 900}});
 }
 
 TEST(RoverCheck, currents_hold_at_their_bounds) {
@@ -130,8 +131,9 @@ TEST(RoverCheck, signs_and_masks_are_whole) {
 
 // A range ends where it says: its ends are within it, but for what another rule asks of them.
 TEST(RoverCheck, the_ends_of_a_range_are_within_it) {
-    for (const rover_parameter_t key : {ROVER_stall_s, ROVER_battery_low_s, ROVER_disagree_s, ROVER_disagree_ratio, ROVER_slip_valid_m_s,
-                                        ROVER_sweep_zero_s, ROVER_sweep_duration_s, ROVER_slip_gain_speed_m_s, ROVER_half_wheelbase_m, ROVER_gyro_offset_count}) {
+    for (const rover_parameter_t key :
+         {ROVER_stall_s, ROVER_battery_low_s, ROVER_disagree_s, ROVER_disagree_ratio, ROVER_slip_valid_m_s, ROVER_sweep_zero_s,
+          ROVER_sweep_duration_s, ROVER_slip_gain_speed_m_s, ROVER_half_wheelbase_m, ROVER_gyro_offset_count}) {
         EXPECT_EQ(refused({{key, static_cast<double>(rover_parameter_low(key))}}), "accepted") << rover_parameter_name(key);
         EXPECT_EQ(refused({{key, static_cast<double>(rover_parameter_high(key))}}), "accepted") << rover_parameter_name(key);
     }
@@ -209,13 +211,20 @@ TEST(RoverCheck, a_lean_that_whole_numbers_cannot_hold_is_left_out) {
 
 TEST(RoverCheck, counts_are_rounded_to_the_nearest_on_both_sides) {
     control_config_t config{};
-    check({{ROVER_accel_offset_count, 2.4}, {ROVER_gyro_offset_count, -2.6}, {ROVER_battery_offset_count, -2.4}, {ROVER_current_offset_count_1, 2047.6}},
+    check({{ROVER_accel_offset_count, 2.4},
+           {ROVER_gyro_offset_count, -2.6},
+           {ROVER_battery_offset_count, -2.4},
+           {ROVER_current_offset_count_1, 2047.6}},
           ROVER_RADAR_MDU1130, nullptr, &config);
     EXPECT_EQ(config.sense.accel_offset_count, 2);
     EXPECT_EQ(config.sense.gyro_offset_count, -3);
     EXPECT_EQ(config.sense.battery_offset_count, -2);
     EXPECT_EQ(config.sense.current_offset_count[1], 2048);
-    check({{ROVER_accel_offset_count, 1e9}, {ROVER_gyro_offset_count, -1e9}, {ROVER_battery_offset_count, NAN}, {ROVER_radar_quiet_count2, 1e9}, {ROVER_sweep_duration_s, 1e9}},
+    check({{ROVER_accel_offset_count, 1e9},
+           {ROVER_gyro_offset_count, -1e9},
+           {ROVER_battery_offset_count, NAN},
+           {ROVER_radar_quiet_count2, 1e9},
+           {ROVER_sweep_duration_s, 1e9}},
           ROVER_RADAR_MDU1130, nullptr, &config); // refused, and held all the same
     EXPECT_EQ(config.sense.accel_offset_count, 65535);
     EXPECT_EQ(config.sense.gyro_offset_count, -65535);

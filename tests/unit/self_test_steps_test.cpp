@@ -35,13 +35,14 @@ struct Bench {
         for (auto &count : frame.encoder_count) count = 1000;
         frame.radar_samples = 4;
         radar(0, 1.2);
-        frame.accel_z_count = static_cast<std::int16_t>(std::lround(9.81 / config.accel_m_s2_per_count));
+        frame.accel_z_count = static_cast<std::int16_t>(std::lround(9.81 / static_cast<double>(config.accel_m_s2_per_count)));
         trace.battery_voltage_V = 7.2f;
     }
     // counts of mean `offset` beside the description's and of standard deviation `noise`, four samples a tick: mean -+ noise
     void radar(double offset, double noise) {
         for (int k = 0; k < 4; k++)
-            frame.radar_count[k] = static_cast<std::uint16_t>(std::lround(config.radar_rest_count + offset + (k % 2 == 0 ? noise : -noise)));
+            frame.radar_count[k] =
+                static_cast<std::uint16_t>(std::lround(config.radar_rest_count + offset + (k % 2 == 0 ? noise : -noise)));
     }
     float expected_A(float duty) const { return duty * trace.battery_voltage_V * config.winding_1_ohm; }
 
@@ -49,9 +50,10 @@ struct Bench {
         command_t command{};
         for (int tick = 0; tick < most && !result.done; tick++) {
             for (int i = 0; i < 4; i++) {
-                turned[static_cast<std::size_t>(i)] += count_per_duty[static_cast<std::size_t>(i)] * command.duty[i];
-                frame.encoder_count[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(start[static_cast<std::size_t>(i)]) +
-                                                                   static_cast<std::uint32_t>(std::lround(turned[static_cast<std::size_t>(i)])));
+                turned[static_cast<std::size_t>(i)] += count_per_duty[static_cast<std::size_t>(i)] * static_cast<double>(command.duty[i]);
+                frame.encoder_count[i] =
+                    static_cast<std::int32_t>(static_cast<std::uint32_t>(start[static_cast<std::size_t>(i)]) +
+                                              static_cast<std::uint32_t>(std::lround(turned[static_cast<std::size_t>(i)])));
                 trace.wheel[i].current_A = static_cast<float>(flows[static_cast<std::size_t>(i)]) * expected_A(command.duty[i]);
             }
             if (also) also(*this, tick);
@@ -104,7 +106,7 @@ TEST(SelfTestSteps, a_whole_rover_passes_and_one_motor_at_a_time_gets_a_small_pu
     EXPECT_EQ(bench.commands.back().mode, MODE_STOP);
     for (const double turned : bench.turned) { // it ends at `enough`, and not before: one tick's duty later at most
         EXPECT_GE(turned, bench.config.enough_count - 0.5);
-        EXPECT_LE(turned, bench.config.enough_count + 40 * bench.config.duty_max);
+        EXPECT_LE(turned, bench.config.enough_count + 40 * static_cast<double>(bench.config.duty_max));
     }
     const command_t later = self_test_step(&bench.config, &bench.sense, &bench.state, &bench.frame, &bench.trace, &bench.result);
     EXPECT_EQ(later.mode, MODE_STOP);
@@ -124,8 +126,7 @@ TEST(SelfTestSteps, a_pulse_that_turns_nothing_is_a_ramp_of_a_fifth_of_a_second)
     for (std::size_t i = 0; i < 4; i++) {
         ASSERT_EQ(when[i].size(), 20u); // 0.2 s of 10 ms
         EXPECT_EQ(when[i].back() - when[i].front(), 19u);
-        for (std::size_t k = 0; k < 20; k++)
-            EXPECT_FLOAT_EQ(bench.commands[when[i][k]].duty[i], 0.5f * static_cast<float>(k + 1) / 20.0f);
+        for (std::size_t k = 0; k < 20; k++) EXPECT_FLOAT_EQ(bench.commands[when[i][k]].duty[i], 0.5f * static_cast<float>(k + 1) / 20.0f);
         if (i > 0) {
             EXPECT_EQ(when[i].front() - when[i - 1].front(), when[1].front() - when[0].front());
         }
@@ -146,7 +147,7 @@ TEST(SelfTestSteps, what_it_measured_at_rest_is_what_was_there) {
     EXPECT_NEAR(bench.result.radar_offset_count, 3.0f, 1e-4f);
     EXPECT_NEAR(bench.result.radar_noise_count, 2.0f, 1e-4f);
     EXPECT_NEAR(bench.result.accel_m_s2[0], 0.4f, 1e-4f);
-    EXPECT_NEAR(bench.result.accel_m_s2[1], 100 * bench.config.accel_m_s2_per_count, 1e-4f);
+    EXPECT_NEAR(bench.result.accel_m_s2[1], 100 * static_cast<double>(bench.config.accel_m_s2_per_count), 1e-4f);
     EXPECT_NEAR(bench.result.accel_m_s2[2], 9.81f, bench.config.accel_m_s2_per_count);
     EXPECT_NEAR(bench.result.battery_V, 7.2f, 1e-4f);
 }
@@ -157,12 +158,15 @@ TEST(SelfTestSteps, rest_is_judged_by_limits_that_hold_from_both_sides) {
         EXPECT_EQ(of([&](Bench &b) { b.radar(sign * 10, 2); }), 0u);
         EXPECT_EQ(of([&](Bench &b) { b.radar(sign * 11, 2); }), static_cast<std::uint32_t>(SELF_TEST_RADAR_OFFSET));
         EXPECT_EQ(of([&](Bench &b) { b.trace.gyro_z_rad_s = static_cast<float>(sign * 0.049); }), 0u);
-        EXPECT_EQ(of([&](Bench &b) { b.trace.gyro_z_rad_s = static_cast<float>(sign * 0.051); }), static_cast<std::uint32_t>(SELF_TEST_GYRO));
+        EXPECT_EQ(of([&](Bench &b) { b.trace.gyro_z_rad_s = static_cast<float>(sign * 0.051); }),
+                  static_cast<std::uint32_t>(SELF_TEST_GYRO));
         const auto lean = [&](double along, double length) { // gravity of `length`, `along` of it along x
             return of([&](Bench &b) {
                 b.trace.accel_x_m_s2 = static_cast<float>(sign * along);
-                b.frame.accel_y_count = static_cast<std::int16_t>(std::lround(0.6 * std::sqrt(length * length - along * along) / b.config.accel_m_s2_per_count));
-                b.frame.accel_z_count = static_cast<std::int16_t>(std::lround(0.8 * std::sqrt(length * length - along * along) / b.config.accel_m_s2_per_count));
+                b.frame.accel_y_count = static_cast<std::int16_t>(
+                    std::lround(0.6 * std::sqrt(length * length - along * along) / static_cast<double>(b.config.accel_m_s2_per_count)));
+                b.frame.accel_z_count = static_cast<std::int16_t>(
+                    std::lround(0.8 * std::sqrt(length * length - along * along) / static_cast<double>(b.config.accel_m_s2_per_count)));
             });
         };
         EXPECT_EQ(lean(2.05, 9.81), 0u); // 12 deg are 2.04 m/s^2
@@ -252,7 +256,10 @@ TEST(SelfTestSteps, a_device_silent_in_more_than_half_of_the_ticks_is_named_with
         EXPECT_EQ(most.failures, required ? static_cast<std::uint32_t>(SELF_TEST_SILENT) : 0u) << bit;
         std::uint32_t wheels = 0;
         for (std::uint32_t i = 0; i < 4; i++)
-            wheels |= 1u << bit == static_cast<std::uint32_t>(FRAME_ENCODER_0) << i || 1u << bit == static_cast<std::uint32_t>(FRAME_CURRENT_0) << i ? 1u << i : 0u;
+            wheels |= 1u << bit == static_cast<std::uint32_t>(FRAME_ENCODER_0) << i ||
+                              1u << bit == static_cast<std::uint32_t>(FRAME_CURRENT_0) << i
+                          ? 1u << i
+                          : 0u;
         EXPECT_EQ(most.wheels, wheels) << bit;
     }
     Bench bridge; // where a description asks for one
