@@ -1,5 +1,5 @@
-// What control_step does with what it doubts: the platform's speed is steered by less of an error that is not sure, slip's standard deviation
-// is one wheel's a tick. Both held to closed forms of the trace's own numbers.
+// What control_step does with what it doubts: the platform's speed is steered by less of an error that is not sure, slip's standard
+// deviation is one wheel's a tick. Both held to closed forms of the trace's own numbers.
 #include "firmware/core/rover_config.h"
 #include "firmware/core/slip.h"
 #include "tests/unit/clutter.h"
