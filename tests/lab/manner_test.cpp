@@ -35,8 +35,7 @@ Dataset steady(int other) {
     Dataset data;
     data.wheel.resize(2);
     for (int k = 0; k < 110; ++k)
-        for (std::size_t i = 0; i < 2; ++i)
-            data.wheel[i].speed_rad_s.push_back(k < 10 ? 0 : (i == 0 ? 3 : -2) * (k < 10 + other ? 2 : 1));
+        for (std::size_t i = 0; i < 2; ++i) data.wheel[i].speed_rad_s.push_back(k < 10 ? 0 : (i == 0 ? 3 : -2) * (k < 10 + other ? 2 : 1));
     return data;
 }
 
@@ -61,7 +60,8 @@ TEST(Manner, a_table_an_imposed_speed_and_a_rover_at_rest_are_no_drives_of_one_m
 
 TEST(Manner, a_cruise_is_one_and_the_plan_that_the_lab_is_judged_by_is_none) {
     EXPECT_TRUE(is_of_one_manner(data_of("cruise")));
-    for (const char *drive : {"full", "stairs", "stop_and_go", "shuttle", "curves"}) EXPECT_FALSE(is_of_one_manner(data_of(drive))) << drive;
+    for (const char *drive : {"full", "stairs", "stop_and_go", "shuttle", "curves"})
+        EXPECT_FALSE(is_of_one_manner(data_of(drive))) << drive;
 }
 
 Candidate on(const std::string &effect, int wheel, unsigned touched) {
@@ -78,7 +78,7 @@ TEST(Manner, one_wheel_alone_and_numbers_at_their_limits_are_not_believed_of_a_c
         EXPECT_FALSE(conflict(problem, on("rolling_resistance", -1, stage_motion)));
         EXPECT_EQ(conflict(problem, on("rolling_resistance", 1, stage_motion)).has_value(), cruise);
         EXPECT_FALSE(conflict(problem, on("coulomb_friction", 1, 0))); // seen in that wheel's current alone: the other wheels tell
-        for (std::size_t i = 0; i < problem.parameters.size(); ++i) { // every number of the model in turn; a sensor's is no machine's
+        for (std::size_t i = 0; i < problem.parameters.size(); ++i) {  // every number of the model in turn; a sensor's is no machine's
             const FreeParameter &p = problem.parameters[i];
             if (p.prior <= 0) continue;
             Problem leans = problem;

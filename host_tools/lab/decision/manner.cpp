@@ -53,8 +53,6 @@ std::optional<std::string> conflict(const Problem &fitted, const Candidate &cand
     return std::nullopt;
 }
 
-bool changes_stated_number(const Candidate &candidate) {
-    return candidate.wheel < 0 && candidate.effect == "rolling_resistance";
-}
+bool changes_stated_number(const Candidate &candidate) { return candidate.wheel < 0 && candidate.effect == "rolling_resistance"; }
 
 } // namespace traction::lab

@@ -21,8 +21,8 @@ namespace traction::lab {
 bool is_of_one_manner(const Dataset &data);
 
 // `fitted`: the joint fit with the candidate, at its optimum. Limits that count: of the machine's data and of the candidate's size; of one
-// velocity the ground leans on its limits for want of slip, and a sensor's numbers are its own matter. Why it cannot be believed of a drive of one manner, in words that go on
-// from "only with"; nothing where it can.
+// velocity the ground leans on its limits for want of slip, and a sensor's numbers are its own matter. Why it cannot be believed of a drive
+// of one manner, in words that go on from "only with"; nothing where it can.
 std::optional<std::string> conflict(const Problem &fitted, const Candidate &candidate);
 
 // More rolling resistance, of all wheels: every model states one, and it asks nothing of the ground's grip, as a drag or a slope does.
