@@ -11,7 +11,7 @@ using sim::CanFaultKind;
 using sim::CanNode;
 
 namespace {
-constexpr std::int64_t tick_ms = TICK_US / 1000;
+constexpr std::int64_t bus_tick_ms = TICK_US / 1000;
 CanNode of_wheel(unsigned wheel) { return static_cast<CanNode>(wheel); }
 } // namespace
 
@@ -115,7 +115,7 @@ void CanNodes::send(CanNode from, can_frame_t frame, Frames &out) {
         if (!late)
             out.push_back(frame);
         else if (sending_order_)
-            push({now_ms_ + config_.latency_ms + tick_ms + 1, frame});
+            push({now_ms_ + config_.latency_ms + bus_tick_ms + 1, frame});
         else if (from != CanNode::computer) // a late SYNC has no answer worth anything: it is lost
             later_answers_.push_back(frame);
     }

@@ -73,7 +73,7 @@ double processor_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-std::string number(double value) {
+std::string number_word(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%g", value);
     return text;
@@ -94,7 +94,7 @@ void make_independent(const CampaignOptions &options, const std::string &seed, S
     if (options.generator == "fleet" || options.generator == "strange")
         command.push_back("--" + options.generator);
     else
-        command.insert(command.end(), {"--blind", "--duration", number(options.duration_s)});
+        command.insert(command.end(), {"--blind", "--duration", number_word(options.duration_s)});
     if (options.generator == "apart") command.push_back("--apart");
     if (!options.category.empty()) command.insert(command.end(), {"--category", options.category});
     if (options.generator != "independent") {

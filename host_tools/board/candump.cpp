@@ -104,9 +104,9 @@ std::optional<Frame> frame_of(std::string_view line) {
     return frame;
 }
 
-class Reader {
+class CandumpReader {
   public:
-    Reader(const std::string &path, const std::string &dbc_path) : path_(path), dbc_(read_dbc(dbc_path)) {}
+    CandumpReader(const std::string &path, const std::string &dbc_path) : path_(path), dbc_(read_dbc(dbc_path)) {}
 
     log::Log read() {
         std::ifstream file(path_);
@@ -221,6 +221,6 @@ bool is_candump(const std::string &path) {
     return false;
 }
 
-log::Log read_candump(const std::string &path, const std::string &dbc_path) { return Reader(path, dbc_path).read(); }
+log::Log read_candump(const std::string &path, const std::string &dbc_path) { return CandumpReader(path, dbc_path).read(); }
 
 } // namespace traction::board

@@ -29,9 +29,9 @@ int place_of(const DbcSignal &signal, int i) {
     return at / 8 * 8 + 7 - at % 8;
 }
 
-class Reader {
+class DbcReader {
   public:
-    explicit Reader(const std::string &path) : path_(path) {}
+    explicit DbcReader(const std::string &path) : path_(path) {}
 
     Dbc read() {
         std::ifstream file(path_);
@@ -124,7 +124,7 @@ class Reader {
 
 } // namespace
 
-Dbc read_dbc(const std::string &path) { return Reader(path).read(); }
+Dbc read_dbc(const std::string &path) { return DbcReader(path).read(); }
 
 bool dbc_fits(const DbcSignal &signal, std::string_view data) {
     const int bits = static_cast<int>(data.size()) * 8, first = place_of(signal, 0), last = place_of(signal, signal.length - 1);

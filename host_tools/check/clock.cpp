@@ -22,15 +22,6 @@ struct Witness {
     double factor; // c
 };
 
-void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
-    findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
-}
-
-bool has_error(const Findings &findings, const std::string &start) {
-    return std::any_of(findings.begin(), findings.end(),
-                       [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
-}
-
 double number_of(const log::Log &log, const std::string &key) {
     const auto found = log.header.find(key);
     return found == log.header.end() ? not_known : std::atof(found->second.c_str());
@@ -48,10 +39,10 @@ bool header_rates(const log::Log &log, Findings &findings) {
         if (std::fabs(factor - std::round(factor)) < header_tolerance && factor > 0.5)
             continue;               // as it says, or every second, third ... kept
         if (factor > 1.5) continue; // thinned
-        add(findings, "clock_rate", "t_s",
-            say("'%s' comes every %.6g s, but the header states %.6g Hz: the clock runs %.4g times as fast as it should",
-                signal.name.c_str(), quantile(steps, 0.5), rate, factor),
-            say("divide all times by %.4g (map: time.scale)", factor), factor);
+        add_error(findings, "clock_rate", "t_s",
+                  say("'%s' comes every %.6g s, but the header states %.6g Hz: the clock runs %.4g times as fast as it should",
+                      signal.name.c_str(), quantile(steps, 0.5), rate, factor),
+                  say("divide all times by %.4g (map: time.scale)", factor), factor);
         return true;
     }
     return false;
@@ -109,18 +100,19 @@ void rate_of_clock(const Grid &grid, const Machine &machine, Findings &findings)
             const double factor = std::exp(0.5 * (a + b));
             if (std::any_of(witnesses.begin(), witnesses.end(), [&](const Witness &w) { return std::fabs(std::log(w.factor)) < 0.02; }))
                 continue; // another sees the clock run as it should: two sensors off alike
-            add(findings, "clock_rate", "t_s",
-                say("the clock runs %.3g times as fast as the sensors see: %s is %.3g, %s %.3g", factor, witnesses[i].what,
-                    witnesses[i].factor, witnesses[j].what, witnesses[j].factor),
-                say("divide all times by %.4g (map: time.scale), or find out which clock stamped them", factor), factor);
+            add_error(findings, "clock_rate", "t_s",
+                      say("the clock runs %.3g times as fast as the sensors see: %s is %.3g, %s %.3g", factor, witnesses[i].what,
+                          witnesses[i].factor, witnesses[j].what, witnesses[j].factor),
+                      say("divide all times by %.4g (map: time.scale), or find out which clock stamped them", factor), factor);
             return;
         }
     }
     for (const Witness &w : witnesses) { // one wheel, measured twice in one log: whatever the machine, these agree
         if (std::string(w.what) != "wheel speed over the encoder's rate" || std::fabs(std::log(w.factor)) < 0.06) continue;
         if (has_error(findings, "wheel")) continue;
-        add(findings, "scale", "wheel.speed_rad_s", say("the wheel speeds are %.3g times the rate of the wheels' own encoders", w.factor),
-            "check the unit of the speed, encoder.counts_per_turn, and the clock", w.factor);
+        add_error(findings, "scale", "wheel.speed_rad_s",
+                  say("the wheel speeds are %.3g times the rate of the wheels' own encoders", w.factor),
+                  "check the unit of the speed, encoder.counts_per_turn, and the clock", w.factor);
     }
 }
 
@@ -151,10 +143,10 @@ Lag lag_of(const std::vector<double> &reference, const std::vector<double> &late
 }
 
 void tell_late(const std::string &column, double seconds, const char *beside, double gain, Findings &findings) {
-    add(findings, "late", column,
-        say("'%s' tells of what was %.2f s %s (beside %s, which it then fits %.1f times better)", column.c_str(), std::fabs(seconds),
-            seconds > 0 ? "before" : "after", beside, gain),
-        say("shift it (map: delay_s = %.2f), or stamp it where it is measured", seconds), seconds);
+    add_error(findings, "late", column,
+              say("'%s' tells of what was %.2f s %s (beside %s, which it then fits %.1f times better)", column.c_str(), std::fabs(seconds),
+                  seconds > 0 ? "before" : "after", beside, gain),
+              say("shift it (map: delay_s = %.2f), or stamp it where it is measured", seconds), seconds);
 }
 
 // Signals that see one motion; `widest_s`: what windows, filters and delays of the catalogue account for.
@@ -196,8 +188,8 @@ void one_motor(const Wheel &wheel, Findings &findings) {
 // Two sensors of the ground's speed, or of its change, that have nothing in common although it changes.
 void unrelated(const Grid &grid, const Machine &machine, Findings &findings) {
     const auto tell = [&](const char *column, const char *beside, double alike) {
-        add(findings, "unrelated", column, say("'%s' has nothing to do with %s (correlation %.2f)", column, beside, alike),
-            "check that it is of this run and of this time", alike);
+        add_error(findings, "unrelated", column, say("'%s' has nothing to do with %s (correlation %.2f)", column, beside, alike),
+                  "check that it is of this run and of this time", alike);
     };
     const auto spread = [](const std::vector<double> &x) { return quantile(x, 0.95) - quantile(x, 0.05); };
     if (!grid.radar.empty() && !grid.camera_speed.empty() && !has_error(findings, "radar") && !has_error(findings, "camera")) {

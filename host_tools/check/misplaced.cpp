@@ -11,15 +11,6 @@ namespace traction::check {
 
 namespace {
 
-void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
-    findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
-}
-
-bool has_error(const Findings &findings, const std::string &start) {
-    return std::any_of(findings.begin(), findings.end(),
-                       [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
-}
-
 // Share of the samples of two columns that are the same number, where enough of them change.
 bool same(const log::Signal *a, const log::Signal *b) {
     constexpr std::size_t least_changes = 200; // of a coarse speed held by two equal loops some dozen may coincide
@@ -57,10 +48,10 @@ void copies(const log::Log &log, const Grid &grid, Findings &findings) {
             if (!have_currents || currents == motion || a.speed.empty() || b.speed.empty()) continue;
             const std::string &name = currents ? current : b.speed_column, &other = currents ? column(a, "current_A") : a.speed_column;
             if (has_error(findings, name) || (motion && differ_by_noise_alone(a.current, b.current))) continue;
-            add(findings, "copied", name,
-                say("'%s' is '%s' to the last digit, while the %s of the two wheels differ", name.c_str(), other.c_str(),
-                    currents ? "speeds" : "currents"),
-                "give the column of this wheel's own sensor; or take it out of the log", 1);
+            add_error(findings, "copied", name,
+                      say("'%s' is '%s' to the last digit, while the %s of the two wheels differ", name.c_str(), other.c_str(),
+                          currents ? "speeds" : "currents"),
+                      "give the column of this wheel's own sensor; or take it out of the log", 1);
         }
     }
 }
@@ -79,7 +70,8 @@ void buffers(const log::Log &log, Findings &findings) {
         const auto pauses = static_cast<std::size_t>(
             std::count_if(steps.begin(), steps.end(), [&](double step) { return step > std::fmax(pause_s, 20 * usual); }));
         if (pauses < least_pauses || steps.size() < least_burst * pauses || 5 * usual > mean) continue;
-        add(findings, "stamps", signal.name,
+        add_error(
+            findings, "stamps", signal.name,
             say("the samples of '%s' come in %zu bursts, %.3g s apart within and %.3g s on the mean: they carry the time at which a buffer "
                 "was written",
                 signal.name.c_str(), pauses + 1, usual, mean),
@@ -101,8 +93,8 @@ void gyro(const Grid &grid, Findings &findings) {
     double back_s = 0;
     for (const double v : seen) back_s += v < -0.3 * quantile(size, 0.98) ? step_s : 0;
     if (quantile(rate, 0.005) > -0.05 * widest && back_s > 1 && folded > alike + 0.2) {
-        add(findings, "magnitude", "imu.gyro_z_rad_s", "the gyro never reads a turn to the right, but the camera sees them",
-            "log the rate with its sign: a turn to the left is positive", alike);
+        add_error(findings, "magnitude", "imu.gyro_z_rad_s", "the gyro never reads a turn to the right, but the camera sees them",
+                  "log the rate with its sign: a turn to the left is positive", alike);
         return;
     }
     double best = 0;
@@ -114,9 +106,9 @@ void gyro(const Grid &grid, Findings &findings) {
         best = std::max(best, std::fabs(correlation(moved, seen)));
     }
     if (best < 0.75)
-        add(findings, "unrelated", "imu.gyro_z_rad_s",
-            say("the gyro has nothing to do with the turns that the camera sees (correlation %.2f at best)", best),
-            "check that it is the rate about the vertical axis, of this run and of this time", best);
+        add_error(findings, "unrelated", "imu.gyro_z_rad_s",
+                  say("the gyro has nothing to do with the turns that the camera sees (correlation %.2f at best)", best),
+                  "check that it is the rate about the vertical axis, of this run and of this time", best);
 }
 
 // Left wheels against right wheels: the ground, or the gyro, tells whether the machine drives straight or spins.
@@ -140,12 +132,12 @@ void sides(const Grid &grid, const Machine &machine, Findings &findings) {
     sum = smooth(sum, 5), difference = smooth(difference, 5), ground = smooth(ground, 5);
     const double straight = correlation(ground, sum), spinning = correlation(ground, difference);
     if (!(spinning > 0.8) || straight > spinning - 0.5) return;
-    add(findings, "sign", grid.wheel.front().speed_column,
-        say("the ground passes as fast as left and right wheels turn against each other (correlation %.2f; with their sum %.2f): the "
-            "motors of one "
-            "side are mounted the other way round",
-            spinning, straight),
-        "turn the signs of that side's speeds, currents and duties round (map: sign = -1)", spinning);
+    add_error(findings, "sign", grid.wheel.front().speed_column,
+              say("the ground passes as fast as left and right wheels turn against each other (correlation %.2f; with their sum %.2f): the "
+                  "motors of one "
+                  "side are mounted the other way round",
+                  spinning, straight),
+              "turn the signs of that side's speeds, currents and duties round (map: sign = -1)", spinning);
 }
 
 double size_of(const std::vector<double> &x) {
@@ -174,10 +166,10 @@ void coupled(const Grid &grid, const Machine &machine, Findings &findings) {
         for (std::size_t k = 0; k < grid.count; ++k) apart[k] = wheel.speed[k] - own->speed[k];
         const double share = size_of(smooth(apart, 5)) / std::max(size_of(smooth(own->speed, 5)), 1e-9);
         if (!(share > most_apart)) continue;
-        add(findings, "coupled", wheel.speed_column,
-            say("'%s' and '%s' differ by %.0f %% of the speed (root mean square), and in the model one motor turns both",
-                wheel.speed_column.c_str(), own->speed_column.c_str(), 100 * share),
-            "mend drives in the model's [rover], or the wheels' order, sign or counts per turn in the log's map", share);
+        add_error(findings, "coupled", wheel.speed_column,
+                  say("'%s' and '%s' differ by %.0f %% of the speed (root mean square), and in the model one motor turns both",
+                      wheel.speed_column.c_str(), own->speed_column.c_str(), 100 * share),
+                  "mend drives in the model's [rover], or the wheels' order, sign or counts per turn in the log's map", share);
     }
 }
 

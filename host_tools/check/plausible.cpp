@@ -19,15 +19,6 @@ constexpr double widest_back_emf = 1.4; // of the back-EMF alone, downwards: vol
 constexpr double widest_winding = 4;    // wiring_resistance may nearly double Ra, noise of the current may halve what a fit finds of it
 constexpr double most_slip = 0.5;       // [1] through a whole drive, where slip is least: beyond, the radius is wrong
 
-void add(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
-    findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
-}
-
-bool has_error(const Findings &findings, const std::string &start) {
-    return std::any_of(findings.begin(), findings.end(),
-                       [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
-}
-
 bool beyond(double ratio, double limit) { return std::isfinite(ratio) && (ratio > limit || ratio < 1 / limit); }
 
 double middle(const std::vector<double> &values) { return quantile(values, 0.5); }
@@ -53,19 +44,19 @@ void motor_scale(const Grid &grid, const Machine &machine, Findings &findings) {
     const bool both = std::isfinite(b) && !beyond(a / b, 1.25);
     if (beyond(a, widest_scale) || (a < 1 / widest_back_emf && std::isfinite(b) && !both && b > 0.8)) {
         if (both) {
-            add(findings, "scale", grid.battery.empty() ? "wheel.duty" : "battery.voltage_V",
-                say("the motors' voltage is %.3g times what their back-EMF and winding together need (medians of %zu wheels)", a,
-                    ke.size()),
-                say("find the factor %.3g in battery voltage or duty; or mend back-EMF and resistance in the model", a), a);
+            add_error(findings, "scale", grid.battery.empty() ? "wheel.duty" : "battery.voltage_V",
+                      say("the motors' voltage is %.3g times what their back-EMF and winding together need (medians of %zu wheels)", a,
+                          ke.size()),
+                      say("find the factor %.3g in battery voltage or duty; or mend back-EMF and resistance in the model", a), a);
         } else {
-            add(findings, "scale", speed,
-                say("the wheels turn %.3g times as fast as their motors' back-EMF allows (median of %zu wheels)", 1 / a, ke.size()),
-                "check encoder.counts_per_turn, the gear ratio and the unit of the wheel speed; or the model's back-EMF", 1 / a);
+            add_error(findings, "scale", speed,
+                      say("the wheels turn %.3g times as fast as their motors' back-EMF allows (median of %zu wheels)", 1 / a, ke.size()),
+                      "check encoder.counts_per_turn, the gear ratio and the unit of the wheel speed; or the model's back-EMF", 1 / a);
         }
     } else if (beyond(b, widest_winding)) {
-        add(findings, "scale", current,
-            say("the currents are %.3g times what the motors' winding lets through (median of the wheels)", 1 / b),
-            "check the gain of the current sensors; or the model's resistance", 1 / b);
+        add_error(findings, "scale", current,
+                  say("the currents are %.3g times what the motors' winding lets through (median of the wheels)", 1 / b),
+                  "check the gain of the current sensors; or the model's resistance", 1 / b);
     }
 }
 
@@ -90,14 +81,14 @@ void odd_motor(const Grid &grid, Findings &findings) {
         if (ke.size() < 2 || has_error(findings, "wheel" + std::to_string(one.wheel->index) + ".")) continue;
         const double a = middle(ke) / one.law.a, b = middle(Ra) / one.law.b;
         if (beyond(a, 1.8)) // a wheel that a sweep drags was seen at 1.64; every second count is 2
-            add(findings, "scale", one.wheel->speed_column,
-                say("'%s' is %.3g times as large as its motor's back-EMF allows beside those of the other wheels",
-                    one.wheel->speed_column.c_str(), a),
-                "check this encoder's counts per turn, its unit and its gear", a);
+            add_error(findings, "scale", one.wheel->speed_column,
+                      say("'%s' is %.3g times as large as its motor's back-EMF allows beside those of the other wheels",
+                          one.wheel->speed_column.c_str(), a),
+                      "check this encoder's counts per turn, its unit and its gear", a);
         else if (beyond(b, 2.5)) // wiring_resistance and heat reach 2
-            add(findings, "scale", current,
-                say("'%s' is %.3g times as large as its winding lets through beside those of the other wheels", current.c_str(), b),
-                "check the gain and the unit of this current sensor", b);
+            add_error(findings, "scale", current,
+                      say("'%s' is %.3g times as large as its winding lets through beside those of the other wheels", current.c_str(), b),
+                      "check the gain and the unit of this current sensor", b);
     }
 }
 
@@ -111,17 +102,17 @@ void stray_current(const Grid &grid, const Machine &machine, Findings &findings)
         if (has_error(findings, start) || has_error(findings, "battery")) continue;
         const Fit law = fit(wheel.voltage, wheel.speed, wheel.current);
         if (law.good && std::isfinite(machine.back_emf_Vs) && law.a + 4 * law.error_a < machine.back_emf_Vs / widest_winding) {
-            add(findings, "unrelated", wheel.speed_column,
-                say("'%s' does not go with the voltage of its motor: a back-EMF of %.3g V s is left of %.3g", wheel.speed_column.c_str(),
-                    law.a, machine.back_emf_Vs),
-                "check that it is this wheel's speed, of this run and this time; or the model's back-EMF", law.a);
+            add_error(findings, "unrelated", wheel.speed_column,
+                      say("'%s' does not go with the voltage of its motor: a back-EMF of %.3g V s is left of %.3g",
+                          wheel.speed_column.c_str(), law.a, machine.back_emf_Vs),
+                      "check that it is this wheel's speed, of this run and this time; or the model's back-EMF", law.a);
             continue;
         }
         if (!law.good || !(law.b + 4 * law.error_b < machine.resistance_ohm / widest_winding)) continue;
-        add(findings, "unrelated", name,
-            say("'%s' does not go with the voltage of its motor: a winding of %.3g ohm is left of %.3g", name.c_str(), law.b,
-                machine.resistance_ohm),
-            "check that it is this wheel's current, of this run and this time; or the model's resistance", law.b);
+        add_error(findings, "unrelated", name,
+                  say("'%s' does not go with the voltage of its motor: a winding of %.3g ohm is left of %.3g", name.c_str(), law.b,
+                      machine.resistance_ohm),
+                  "check that it is this wheel's current, of this run and this time; or the model's resistance", law.b);
     }
 }
 
@@ -152,9 +143,9 @@ void odd_wheel(const Grid &grid, const Machine &machine, Findings &findings) {
             }
         }
         if (!against || !together) continue;
-        add(findings, "sign", odd->speed_column,
-            say("'%s' turns against all other wheels while the machine drives straight", odd->speed_column.c_str()),
-            "its motor is mounted the other way round: turn the signs of its speed, current and duty round (map: sign = -1)", -1);
+        add_error(findings, "sign", odd->speed_column,
+                  say("'%s' turns against all other wheels while the machine drives straight", odd->speed_column.c_str()),
+                  "its motor is mounted the other way round: turn the signs of its speed, current and duty round (map: sign = -1)", -1);
         return;
     }
 }
@@ -168,9 +159,9 @@ void wheels_of_model(const Grid &grid, const Machine &machine, Findings &finding
     };
     for (const Wheel &wheel : grid.wheel) {
         if (wheel.index < static_cast<int>(machine.wheel_y_m.size()) || !drives(wheel.index)) continue;
-        add(findings, "wheels", wheel.speed_column,
-            say("the log has a driven wheel %d, the model has %zu wheels from 0", wheel.index, machine.wheel_y_m.size()),
-            "give the model all wheels that push, or map the log's wheels to the model's", wheel.index);
+        add_error(findings, "wheels", wheel.speed_column,
+                  say("the log has a driven wheel %d, the model has %zu wheels from 0", wheel.index, machine.wheel_y_m.size()),
+                  "give the model all wheels that push, or map the log's wheels to the model's", wheel.index);
         return;
     }
 }
@@ -183,12 +174,12 @@ void radius_scale(const Grid &grid, const Machine &machine, Findings &findings) 
     // wheels that are locked now and then are left behind: then half of the drive does not see it
     const bool too_far = ratio > widest_scale && grid.middle_radius_m > 1.3 * machine.wheel_radius_m;
     if (!too_far && ratio > most_slip) return;
-    add(findings, "scale", grid.wheel.front().speed_column,
-        say("over ground the machine moves %.3g times as far as its wheels roll with the known radius of %.4g m ('%s')", ratio,
-            machine.wheel_radius_m, grid.ground_source.c_str()),
-        say("check encoder.counts_per_turn and gear ratio (a factor %.3g), the radius in the model, and the unit of '%s'", 1 / ratio,
-            grid.ground_source.c_str()),
-        ratio);
+    add_error(findings, "scale", grid.wheel.front().speed_column,
+              say("over ground the machine moves %.3g times as far as its wheels roll with the known radius of %.4g m ('%s')", ratio,
+                  machine.wheel_radius_m, grid.ground_source.c_str()),
+              say("check encoder.counts_per_turn and gear ratio (a factor %.3g), the radius in the model, and the unit of '%s'", 1 / ratio,
+                  grid.ground_source.c_str()),
+              ratio);
 }
 
 // The accelerometer against the wheels' acceleration times the known radius, where nothing else sees the ground.
@@ -201,7 +192,8 @@ void accel_scale(const Grid &grid, const Machine &machine, Findings &findings) {
     for (double &v : measured) v -= offset;
     const Fit line = fit(measured, reference);
     if (!line.good || correlation(measured, reference) < 0.9 || (line.a > 0.4 && line.a < 2)) return;
-    add(findings, "scale", "imu.accel_x_m_s2",
+    add_error(
+        findings, "scale", "imu.accel_x_m_s2",
         say("the accelerometer reads %.3g of the acceleration of the wheels' rims (known radius %.4g m)", line.a, machine.wheel_radius_m),
         "check the accelerometer's scale, encoder.counts_per_turn, and the radius in the model", line.a);
 }
@@ -216,8 +208,8 @@ void magnitude(const Wheel &wheel, Findings &findings) {
     const double largest = quantile(size, 0.98), least = quantile(wheel.current, 0.005), fastest = quantile(turn, 0.98);
     if (!(largest > 0) || least < -0.05 * largest) return;
     const auto tell = [&](const char *evidence, double value) {
-        add(findings, "magnitude", name, say("'%s' is never negative, but %s", name.c_str(), evidence),
-            "declare it a magnitude: unsigned = true in the map, or '# unsigned." + name + ": 1' in the header", value);
+        add_error(findings, "magnitude", name, say("'%s' is never negative, but %s", name.c_str(), evidence),
+                  "declare it a magnitude: unsigned = true in the map, or '# unsigned." + name + ": 1' in the header", value);
     };
     double back = 0, backwards = 0, forward = 0, forwards = 0;
     for (std::size_t k = 0; k < wheel.speed.size(); ++k) {
@@ -257,12 +249,12 @@ void sign_without_voltage(const Wheel &wheel, Findings &findings) {
         if (std::isfinite(wheel.speed[k])) way[k] = wheel.speed[k] > still ? 1 : wheel.speed[k] < -still ? -1 : 0;
     const Fit law = fit(wheel.current, slope(smooth(wheel.speed, 2), 2), way);
     if (!law.good || !(law.a < -4 * law.error_a) || !(law.b < -4 * law.error_b)) return;
-    add(findings, "sign", start + "current_A",
-        say("'%scurrent_A' is negative when the wheel drives forward and when it speeds up", start.c_str()),
-        "turn the sign of current or speed round (map: sign = -1)", law.b);
+    add_error(findings, "sign", start + "current_A",
+              say("'%scurrent_A' is negative when the wheel drives forward and when it speeds up", start.c_str()),
+              "turn the sign of current or speed round (map: sign = -1)", law.b);
 }
 
-bool stands(const std::vector<double> &x, double tolerance) {
+bool is_constant(const std::vector<double> &x, double tolerance) {
     const double low = quantile(x, 0), high = quantile(x, 1);
     return !std::isfinite(low) || high - low <= tolerance * std::fmax(std::fabs(low), std::fabs(high));
 }
@@ -275,10 +267,10 @@ void frozen_speed(const Wheel &wheel, const Grid &grid, Findings &findings) {
     const double value = quantile(wheel.speed, 0.5);
     const auto samples = std::count_if(wheel.speed.begin(), wheel.speed.end(), [](double w) { return std::isfinite(w); });
     const double spread = quantile(wheel.current, 0.95) - quantile(wheel.current, 0.05), largest = quantile(wheel.current, 0.99);
-    if (static_cast<double>(samples) * step_s < 5 || value == 0 || !stands(wheel.speed, 1e-9) || !(spread > 0.3 * std::fabs(largest)))
+    if (static_cast<double>(samples) * step_s < 5 || value == 0 || !is_constant(wheel.speed, 1e-9) || !(spread > 0.3 * std::fabs(largest)))
         return;
-    bool witness = !stands(grid.ground_speed, 0.3);
-    for (const Wheel &other : grid.wheel) witness = witness || !stands(other.speed, 1e-9) || !stands(other.voltage, 0.3);
+    bool witness = !is_constant(grid.ground_speed, 0.3);
+    for (const Wheel &other : grid.wheel) witness = witness || !is_constant(other.speed, 1e-9) || !is_constant(other.voltage, 0.3);
     findings.push_back(
         {"dead_sensor", witness ? Severity::error : Severity::warning, wheel.speed_column,
          say("'%s' stands at %.5g through the whole drive while the current varies over %.3g A%s", wheel.speed_column.c_str(), value,
@@ -297,8 +289,8 @@ void negated_radar(const Grid &grid, Findings &findings) {
         turning += 1, forward += w > 0;
     }
     if (!(forward > 0.2 * turning) || turning < 40) return;
-    add(findings, "sign", "radar.speed_m_s", "'radar.speed_m_s' is never positive, but the wheels drive forward",
-        "turn its sign round (map: sign = -1)", quantile(grid.radar, 0.02));
+    add_error(findings, "sign", "radar.speed_m_s", "'radar.speed_m_s' is never positive, but the wheels drive forward",
+              "turn its sign round (map: sign = -1)", quantile(grid.radar, 0.02));
 }
 
 } // namespace

@@ -332,4 +332,13 @@ Grid make_grid(const log::Log &log, const Machine &machine) {
     return grid;
 }
 
+void add_error(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value) {
+    findings.push_back({id, Severity::error, signal, std::move(text), std::move(mend), value});
+}
+
+bool has_error(const Findings &findings, const std::string &start) {
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const Finding &f) { return f.severity == Severity::error && f.signal.rfind(start, 0) == 0; });
+}
+
 } // namespace traction::check

@@ -85,6 +85,8 @@ const UnitSlip *unit_slip(char kind, double factor);
 std::string say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 using Findings = std::vector<Finding>;
+void add_error(Findings &findings, const char *id, const std::string &signal, std::string text, std::string mend, double value);
+bool has_error(const Findings &findings, const std::string &start); // of a signal whose name begins so
 void check_quality(const log::Log &log, const std::vector<log::Repair> &repairs, const Grid &grid, Findings &findings,
                    std::vector<Rate> &rates);
 void check_clipping(const log::Signal &signal, const Grid &grid, Findings &findings); // the end of a sensor's range

@@ -36,12 +36,6 @@ std::string row(const std::string &words, const std::string &help) {
     return out + wrapped(help, indent);
 }
 
-std::string number_text(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    return std::string(text, end);
-}
-
 std::string joined(const std::vector<std::string> &words, const char *between) {
     std::string all;
     for (const std::string &word : words) all += (all.empty() ? "" : between) + word;
@@ -73,6 +67,12 @@ std::vector<Option> with_common(const Verb &verb) {
 }
 
 } // namespace
+
+std::string number_text(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return std::string(text, end);
+}
 
 std::vector<Option> common_options(std::string &json_file, bool &quiet) {
     return {{.name = "--json",

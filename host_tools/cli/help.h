@@ -13,6 +13,9 @@ std::string help_text(const Verb &);  // traction VERB --help
 std::string help_text(const Group &); // traction GROUP --help
 std::string version_text();           // traction --version: version, commit, licence
 
+// The shortest text that reads back to the same double.
+std::string number_text(double value);
+
 // The options that every verb has beside its own, with their targets.
 std::vector<Option> common_options(std::string &json_file, bool &quiet);
 

@@ -167,8 +167,13 @@ int run(Parsed parsed) {
 int close_stdout(int code) {
     errno = 0;
     const bool bad = std::ferror(stdout) != 0;
+    int error = 0;
+    if (bad) { // the system's reason is forgotten where more was printed since: asked again
+        std::clearerr(stdout);
+        if (std::fputc('\n', stdout) == EOF || std::fflush(stdout) != 0) error = errno;
+    }
     if (std::fclose(stdout) == 0 && !bad) return code;
-    const int error = errno;
+    if (error == 0) error = errno;
     if (error != EPIPE) // `| head` has what it wanted
         std::fprintf(stderr, "traction: standard output: cannot be written: %s\n",
                      error != 0 ? std::strerror(error) : "an earlier write failed");

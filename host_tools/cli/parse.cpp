@@ -20,12 +20,6 @@ using Words = std::vector<std::string>;
 
 std::string told_as(const Option &option) { return option.name.empty() ? option.argument : option.name; }
 
-std::string number_text(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    return std::string(text, end);
-}
-
 void in_range(const Option &option, const std::string &word, double value) {
     if (!option.range || (value >= option.range->low && value <= option.range->high)) return;
     const Range &r = *option.range;

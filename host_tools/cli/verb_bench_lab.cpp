@@ -14,7 +14,7 @@ namespace traction::cli {
 
 namespace {
 
-struct Request {
+struct BenchRequest {
     int logs = 250, jobs = 2;
     std::uint64_t seed = 1000;
     double duration_s = 120;
@@ -22,7 +22,7 @@ struct Request {
     bool time = false, peers = false;
 };
 
-std::vector<std::string> arguments(const Request &request) {
+std::vector<std::string> arguments(const BenchRequest &request) {
     std::vector<std::string> out = {"--traction",  own_program(),
                                     "--logs",      std::to_string(request.logs),
                                     "--jobs",      std::to_string(request.jobs),
@@ -37,7 +37,7 @@ std::vector<std::string> arguments(const Request &request) {
 }
 
 // The same logs as a campaign (docs/campaign.md): a row a log, which goes on where it was stopped.
-void run_as_campaign(const Request &request, Outcome &outcome) {
+void run_as_campaign(const BenchRequest &request, Outcome &outcome) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("traction_bench_lab_" + std::to_string(getpid()) + ".toml");
     std::string text = "title = \"bench lab, " + request.generator + "\"\nkind = \"lab_bench\"\ngenerator = \"" + request.generator +
@@ -57,7 +57,7 @@ void run_as_campaign(const Request &request, Outcome &outcome) {
 } // namespace
 
 Verb verb_bench_lab() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<BenchRequest>();
     return {
         .name = "bench lab",
         .summary = "a blind campaign: sealed logs, the lab's answers, the seals opened, the table",

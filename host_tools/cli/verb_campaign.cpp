@@ -10,18 +10,18 @@ namespace traction::cli {
 
 namespace {
 
-struct Request {
+struct CampaignRequest {
     std::string file, out, scheduler, plot;
     int workers = 0;
     bool status = false, dry_run = false, workers_given = false;
 };
 
-std::string check_ending(const std::string &path) {
+std::string figure_ending(const std::string &path) {
     const std::string ending = std::filesystem::path(path).extension().string();
     return ending == ".svg" || ending == ".png" ? "" : "must end in .svg or .png";
 }
 
-void run(const Request &request, Outcome &outcome) {
+void run_campaign(const CampaignRequest &request, Outcome &outcome) {
     if (request.file.empty() && !request.status && request.plot.empty()) throw UsageError("FILE is missing");
     if (request.out.empty() && !request.dry_run) throw UsageError("--out is missing: the folder where results go");
     std::vector<std::string> arguments;
@@ -38,7 +38,7 @@ void run(const Request &request, Outcome &outcome) {
 } // namespace
 
 Verb verb_campaign() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<CampaignRequest>();
     return {.name = "campaign",
             .summary = "many drives from one file - grids, samples, lists - into one table of Parquet; goes on where it was stopped",
             .options = {{.argument = "FILE",
@@ -67,7 +67,7 @@ Verb verb_campaign() {
                                  "indices; without FILE it drives nothing",
                          .value = "FILE.svg|png",
                          .kind = Kind::output,
-                         .check = check_ending},
+                         .check = figure_ending},
                         {.name = "--status",
                          .into = &request->status,
                          .help = "how far the campaign in FOLDER is; drives nothing",
@@ -76,7 +76,7 @@ Verb verb_campaign() {
                          .into = &request->dry_run,
                          .help = "how many drives, and the first rows; drives nothing",
                          .excludes = {"--plot"}}},
-            .run = [request](Outcome &outcome) { run(*request, outcome); }};
+            .run = [request](Outcome &outcome) { run_campaign(*request, outcome); }};
 }
 
 } // namespace traction::cli

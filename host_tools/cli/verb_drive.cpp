@@ -84,7 +84,7 @@ nlohmann::json status_json(const drive::Operator &link) {
 }
 
 // One line a second.
-void tell(drive::Operator &link, double &due_s) {
+void tell_link(drive::Operator &link, double &due_s) {
     for (const std::string &text : link.take_texts()) std::printf("rover: %s\n", text.c_str());
     if (link.now_s() < due_s) return;
     std::printf("%s\n", drive::line_of(link).c_str());
@@ -96,7 +96,7 @@ void drive_scripted(const DriveOptions &o, drive::Operator &link, Outcome &outco
     double due_s = 0;
     const drive::Order order = order_of(o);
     const drive::Drive result = drive::drive_for(
-        link, order, o.for_s, [&] { tell(link, due_s); }, [] { return StopSignal::asked() != 0; });
+        link, order, o.for_s, [&] { tell_link(link, due_s); }, [] { return StopSignal::asked() != 0; });
     for (const std::string &text : link.take_texts()) std::printf("rover: %s\n", text.c_str());
     std::printf("%.2f s driven, %zu statuses, mean speed of the second half %.3f m/s; %s\n", result.seconds, result.statuses,
                 result.mean_speed_m_s, result.stopped ? "stopped" : "the rover did not confirm the stop: it stops by itself");
@@ -254,7 +254,7 @@ void run_drive(const DriveOptions &o, Outcome &outcome) {
             link, o.for_s, 1,
             [&] {
                 double due_s = 0;
-                tell(link, due_s);
+                tell_link(link, due_s);
             },
             stopped);
     }

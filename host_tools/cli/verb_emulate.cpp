@@ -27,7 +27,7 @@ namespace traction::cli {
 
 namespace {
 
-struct Arguments {
+struct EmulateArguments {
     std::string scenario, out, keep, seal, rover, parameters, sensors = "can", board, flash;
     std::int64_t seed = -1, hide = -1;
     std::vector<std::string> effects;
@@ -57,7 +57,7 @@ class RunFolder {
     bool temporary_;
 };
 
-std::string board_folder(const Arguments &arguments) {
+std::string board_folder(const EmulateArguments &arguments) {
     const char *const named = std::getenv("TRACTION_BOARD"); // set by ./traction, which builds it
     const std::string folder = !arguments.board.empty() ? arguments.board : named != nullptr ? named : "";
     if (folder.empty())
@@ -66,7 +66,7 @@ std::string board_folder(const Arguments &arguments) {
     return folder;
 }
 
-Options options_of(const Arguments &arguments, const sim::Scenario &scenario, const std::string &folder) {
+Options emulate_options(const EmulateArguments &arguments, const sim::Scenario &scenario, const std::string &folder) {
     Options options;
     options.board = board_folder(arguments);
     options.folder = folder;
@@ -86,13 +86,13 @@ Options options_of(const Arguments &arguments, const sim::Scenario &scenario, co
 }
 
 // The board's log as one of ours.
-void keep_log(const Arguments &arguments, const sim::Scenario &scenario, const Run &run) {
+void keep_log(const EmulateArguments &arguments, const sim::Scenario &scenario, const Run &run) {
     if (arguments.out.empty()) return;
     if (run.logs.empty()) throw std::runtime_error("the board wrote no log; tractiond said: " + run.said);
     log::write_csv(board::to_log(board::read_board_log(run.logs.front()), believed(scenario)), arguments.out);
 }
 
-void tell(const Run &run, const Difference &difference) {
+void tell_run(const Run &run, const Difference &difference) {
     std::printf("tractiond: %s",
                 run.said.substr(run.said.rfind("tractiond: ") == std::string::npos ? 0 : run.said.rfind("tractiond: ") + 11).c_str());
     const double share = run.ran_s > 0 ? 100 * run.cpu_s / run.ran_s : 0;
@@ -109,7 +109,7 @@ void tell(const Run &run, const Difference &difference) {
             difference.tick, difference.here.c_str(), difference.there.c_str());
 }
 
-nlohmann::json summary(const sim::Scenario &scenario, const Options &options, const Run &run, const Difference &difference) {
+nlohmann::json run_json(const sim::Scenario &scenario, const Options &options, const Run &run, const Difference &difference) {
     return {{"schema", "traction.emulate/1"},
             {"scenario", scenario.name},
             {"seed", options.seed},
@@ -133,12 +133,12 @@ nlohmann::json summary(const sim::Scenario &scenario, const Options &options, co
             {"memory_kB", run.memory_kB}};
 }
 
-void run(const Arguments &arguments, Outcome &outcome) {
+void run_emulate(const EmulateArguments &arguments, Outcome &outcome) {
     for (const std::string &text : arguments.effects) need_effect("--effect", text, ":");
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
     if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
     const RunFolder folder(arguments.keep);
-    Options options = options_of(arguments, scenario, folder.path);
+    Options options = emulate_options(arguments, scenario, folder.path);
     const StopSignal stop;
     Run done;
     {
@@ -150,8 +150,8 @@ void run(const Arguments &arguments, Outcome &outcome) {
     keep_log(arguments, scenario, done);
     const Difference difference = compare_in_process(scenario, options, done);
     std::printf("%s: %.1f s on the emulated board\n", scenario.name.c_str(), static_cast<double>(done.ticks) / 100);
-    tell(done, difference);
-    outcome.json = summary(scenario, options, done, difference);
+    tell_run(done, difference);
+    outcome.json = run_json(scenario, options, done, difference);
     if (!arguments.keep.empty()) std::printf("trace, log and records of the lockstep: %s\n", arguments.keep.c_str());
     if (const std::string names = fault_names(done.faults); !names.empty())
         std::printf("ended with a latched fault: %s (docs/firmware.md, faults)\n", names.c_str());
@@ -159,7 +159,7 @@ void run(const Arguments &arguments, Outcome &outcome) {
     if (const int signal = StopSignal::asked(); signal != 0) outcome.exit_code = 128 + signal;
 }
 #else
-void run(const Arguments &, Outcome &) {
+void run_emulate(const EmulateArguments &, Outcome &) {
     throw UsageError("this build has no CAN bus (cantools was not there); `./traction emulate` of the source tree brings it");
 }
 #endif
@@ -167,7 +167,7 @@ void run(const Arguments &, Outcome &) {
 } // namespace
 
 Verb verb_emulate() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<EmulateArguments>();
     return {
         .name = "emulate",
         .summary = "drive a scenario with the rover's own program on an emulated ARM board, in lockstep with the plant",
@@ -229,7 +229,7 @@ Verb verb_emulate() {
                      .value = "FILE",
                      .kind = Kind::input,
                      .excludes = {"--parameters"}}},
-        .run = [arguments](Outcome &outcome) { run(*arguments, outcome); },
+        .run = [arguments](Outcome &outcome) { run_emulate(*arguments, outcome); },
         .details =
             "The program is the very file that goes onto the rover: ARMv5TE, SocketCAN, GPIO lines, IIO. QEMU counts its instructions, "
             "and while the world computes the whole board stands still, so a run repeats bit for bit on a loaded machine too.\n\n"

@@ -41,7 +41,7 @@ nlohmann::json package_json(const flash::Summary &s) {
             {"bytes", s.bytes},     {"files", files}};
 }
 
-void tell(const flash::Summary &s) {
+void tell_package(const flash::Summary &s) {
     std::printf("number %u of key %.8s, for %s (%s), version %s, commit %s\n", s.number, s.key.c_str(), s.rover.c_str(),
                 s.architecture.c_str(), s.version.c_str(), s.commit.c_str());
     for (const auto &[name, size] : s.files) std::printf("  %-14s %8u bytes\n", name.c_str(), size);
@@ -94,7 +94,7 @@ void pack(const FlashArguments &a, Outcome &outcome) {
     const std::string bytes = flash::pack(contents, signer, summary);
     log::write_file(bytes, a.pack);
     std::printf("%s: %zu bytes, ", a.pack.c_str(), bytes.size());
-    tell(summary);
+    tell_package(summary);
     if (signer.left() < 50) std::printf("%s: %u signatures are left\n", a.key.c_str(), signer.left());
     outcome.json = {{"schema", "traction.flash/1"},
                     {"action", "pack"},
@@ -131,7 +131,7 @@ void image(const FlashArguments &a, Outcome &outcome) {
     log::write_file(made.flash.bytes, a.image);
     std::printf("%s: JFFS2, %zu bytes, %u erase blocks of %d kB, %u of them used; %zu files and folders\nSHA-256 %s\n", a.image.c_str(),
                 made.flash.bytes.size(), made.flash.blocks, a.erase_kB, made.flash.used_blocks, made.entries, made.sha.c_str());
-    tell(summary);
+    tell_package(summary);
     std::printf("for the NOR flash partition that the board mounts at %s: its boot loader erases it and writes this file there, or, on the "
                 "board, flashcp %s /dev/mtdN\n",
                 a.mount.c_str(), a.image.c_str());
@@ -150,7 +150,7 @@ void image(const FlashArguments &a, Outcome &outcome) {
                       {"folder", a.folder}}}};
 }
 
-flash::FlashOptions options_of(const FlashArguments &a, nlohmann::json &steps) {
+flash::FlashOptions flash_options(const FlashArguments &a, nlohmann::json &steps) {
     flash::FlashOptions options;
     try {
         options.board = {.host = flash::plain_word("--host", a.host),
@@ -197,7 +197,7 @@ int exit_code_of(flash::Outcome outcome) {
     return exit_io;
 }
 
-const char *words_of(const flash::Result &result) {
+const char *result_words(const flash::Result &result) {
     switch (result.outcome) {
     case flash::Outcome::confirmed:
         return "the new version runs";
@@ -224,7 +224,7 @@ const char *words_of(const flash::Result &result) {
 
 void onto_board(const FlashArguments &a, Outcome &outcome) {
     nlohmann::json steps = nlohmann::json::array();
-    const flash::FlashOptions options = options_of(a, steps);
+    const flash::FlashOptions options = flash_options(a, steps);
     outcome.json = {{"schema", "traction.flash/1"}, {"action", a.status ? "status" : "flash"}, {"host", a.host}};
     const StopSignal signals("\ntraction: the board goes on by itself; traction flash --host ADDR --status asks it\n");
     try {
@@ -239,11 +239,11 @@ void onto_board(const FlashArguments &a, Outcome &outcome) {
         }
         const std::string bytes = flash::bytes_of(a.package);
         const flash::Summary summary = look(a, bytes);
-        tell(summary);
+        tell_package(summary);
         outcome.json["package"] = package_json(summary);
         const flash::Result result = flash::flash(options, bytes);
         std::fflush(stdout);
-        const std::string text = a.host + ": " + words_of(result) + (result.reason.empty() ? "" : ": " + result.reason);
+        const std::string text = a.host + ": " + result_words(result) + (result.reason.empty() ? "" : ": " + result.reason);
         outcome.exit_code = exit_code_of(result.outcome);
         std::fprintf(outcome.exit_code == exit_done ? stdout : stderr, "%s%s\n",
                      outcome.exit_code == exit_done ? "" : "traction: ", text.c_str());
@@ -268,7 +268,7 @@ void run_flash(const FlashArguments &a, Outcome &outcome) {
     if (!a.host.empty()) return onto_board(a, outcome);
     const std::string bytes = flash::bytes_of(a.package);
     const flash::Summary summary = look(a, bytes);
-    tell(summary);
+    tell_package(summary);
     std::printf("%s\n", a.key.empty() ? "whether its signature holds: give --key FILE (the public half is enough)"
                                       : "signed by this key, and whole");
     outcome.json = {{"schema", "traction.flash/1"}, {"action", "look"}, {"package", package_json(summary)}, {"verified", !a.key.empty()}};

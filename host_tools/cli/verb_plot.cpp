@@ -43,7 +43,7 @@ void plot(const PlotOptions &options, Outcome &outcome) {
     outcome.json = {{"schema", "traction.plot/1"}, {"figure", options.out}, {"panels", panels}, {"repairs", log.repairs}};
 }
 
-std::string check_ending(const std::string &path) {
+std::string plot_ending(const std::string &path) {
     const std::string ending = std::filesystem::path(path).extension().string();
     return path == "-" || ending == ".svg" || ending == ".png" ? "" : "must end in .svg or .png, or be - for SVG on standard output";
 }
@@ -71,7 +71,7 @@ Verb verb_plot() {
                   .value = "FILE.svg|png",
                   .kind = Kind::output,
                   .required = true,
-                  .check = check_ending}},
+                  .check = plot_ending}},
             .run = [options](Outcome &outcome) { plot(*options, outcome); }};
 }
 

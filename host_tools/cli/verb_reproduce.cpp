@@ -14,12 +14,12 @@ namespace traction::cli {
 
 namespace {
 
-struct Arguments {
+struct ReproduceArguments {
     std::string out, data;
     ReproduceSettings settings;
 };
 
-void run(Arguments arguments, Outcome &outcome) {
+void run_reproduce(ReproduceArguments arguments, Outcome &outcome) {
     if (arguments.settings.scenarios.empty()) arguments.settings.scenarios = (need_data_root() / "scenarios").string();
     if (arguments.data.empty()) arguments.data = (need_data_root() / "../shared/data").string();
     const std::filesystem::path bench = std::filesystem::path(arguments.data) / "cmu_single_wheel/cmu_wheel_smooth_steady_state.csv";
@@ -49,7 +49,7 @@ void run(Arguments arguments, Outcome &outcome) {
 } // namespace
 
 Verb verb_reproduce() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ReproduceArguments>();
     arguments->settings.scenarios.clear();
     return {
         .name = "reproduce",
@@ -68,7 +68,7 @@ Verb verb_reproduce() {
               .kind = Kind::folder},
              {.name = "--seeds", .into = &arguments->settings.seeds, .help = "runs per ground for table III", .range = Range{2, 1000}},
              {.name = "--jobs", .into = &arguments->settings.jobs, .help = "runs side by side", .range = Range{1, 256}}},
-        .run = [arguments](Outcome &outcome) { run(*arguments, outcome); }};
+        .run = [arguments](Outcome &outcome) { run_reproduce(*arguments, outcome); }};
 }
 
 } // namespace traction::cli

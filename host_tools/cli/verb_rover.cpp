@@ -17,7 +17,7 @@ struct RoverOptions {
     std::string rover, firmware, model, soil = "sand";
 };
 
-nlohmann::json to_json(const parameters_t &parameters) {
+nlohmann::json parameters_json(const parameters_t &parameters) {
     nlohmann::json out = nlohmann::json::object();
     for (int32_t i = 0; i < ROVER_PARAMETER_COUNT; i++)
         out[rover_parameter_name(i)] = {{"value", parameters.rover.value[i]}, {"given", parameters.given[i] || !rover_parameter_scaled(i)}};
@@ -44,7 +44,8 @@ void run_rover(const RoverOptions &options, Outcome &outcome) {
                 static_cast<double>(config.speed_control.speed_max_m_s), static_cast<double>(config.speed_control.wheel_max_rad_s),
                 static_cast<double>(config.safety.current_continuous_A), static_cast<double>(config.wheel_pid.kp_s),
                 static_cast<double>(parameters.rover.value[ROVER_wheel_ki_1]));
-    outcome.json = {{"schema", "traction.rover/1"}, {"name", rover.name}, {"radar", rover.radar}, {"firmware", to_json(parameters)}};
+    outcome.json = {
+        {"schema", "traction.rover/1"}, {"name", rover.name}, {"radar", rover.radar}, {"firmware", parameters_json(parameters)}};
     if (!options.firmware.empty()) {
         report::write_text(firmware_text(rover), options.firmware);
         std::printf("wrote %s\n", options.firmware.c_str());

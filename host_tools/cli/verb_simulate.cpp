@@ -28,7 +28,7 @@ namespace traction::cli {
 
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
     std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes, live;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
@@ -53,7 +53,8 @@ bool parse_range(const std::string &text, std::uint64_t &first, std::uint64_t &l
 }
 
 // The options of one run of several: files and hidden effects of its own.
-SimulateOptions options_of(const Arguments &arguments, SimulateOptions options, std::uint64_t seed, std::uint64_t first, bool batch) {
+SimulateOptions options_of(const SimulateArguments &arguments, SimulateOptions options, std::uint64_t seed, std::uint64_t first,
+                           bool batch) {
     const auto name = [&](const std::string &path) { return batch && !path.empty() ? with_seed(path, seed) : path; };
     options.log_path = name(arguments.out);
     options.truth_path = name(arguments.truth);
@@ -149,7 +150,7 @@ void tell_faults(Outcome &outcome) {
     }
 }
 
-void run(const Arguments &arguments, Outcome &outcome) {
+void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     for (const std::string &text : arguments.effects) need_effect("--effect", text, ":");
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
     if (!arguments.rover.empty()) sim::set_rover(scenario, sim::read_rover_file(arguments.rover));
@@ -211,7 +212,7 @@ void run(const Arguments &arguments, Outcome &outcome) {
 } // namespace
 
 Verb verb_simulate() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SimulateArguments>();
     return {.name = "simulate",
             .summary = "drive the simulated rover through a scenario and write the log",
             .options =
@@ -292,7 +293,7 @@ Verb verb_simulate() {
                   .help = "the firmware's self-test before the drive; what fails is named and ends the run"},
                  {.name = "--seeds", .into = &arguments->seeds, .help = "run seeds FIRST..LAST; file names get the seed", .value = "A..B"},
                  {.name = "--jobs", .into = &arguments->jobs, .help = "runs side by side", .range = Range{1, 256}}},
-            .run = [arguments](Outcome &outcome) { run(*arguments, outcome); }};
+            .run = [arguments](Outcome &outcome) { run_simulate(*arguments, outcome); }};
 }
 
 } // namespace traction::cli

@@ -75,12 +75,12 @@ report::Figure figure_of(const speed::Result &result, const log::Signal &referen
             .panels = {upper, {.title = "What the estimator claims", .y_label = "std [m/s]", .series = {wide}, .log_y = true}}};
 }
 
-nlohmann::json to_json(const speed::Judgement &j) {
+nlohmann::json judgement_json(const speed::Judgement &j) {
     return {{"reference", j.reference}, {"ticks", j.ticks}, {"rmse_m_s", j.rmse_m_s},     {"bias_m_s", j.bias_m_s},
             {"worst_m_s", j.worst_m_s}, {"nees", j.nees},   {"within_1_std", j.within_1}, {"within_2_std", j.within_2}};
 }
 
-std::string words_of(const speed::Recording &recording, const speed::Counts &counts) {
+std::string counts_words(const speed::Recording &recording, const speed::Counts &counts) {
     char text[200];
     std::snprintf(text, sizeof text, "%zu samples at %.6g Hz", recording.value.size(), recording.rate_Hz);
     std::string out = text;
@@ -153,13 +153,13 @@ void run_speed(const SpeedOptions &options, Outcome &outcome) {
     const speed::Helpers helpers =
         wav ? speed::Helpers{} : speed::helpers_of(log, options.accel, !options.no_wheels, settings.wheel_radius_m);
     const speed::Result result = speed::measure(counts, helpers, settings, options.log);
-    const std::string samples = words_of(recording, counts);
+    const std::string samples = counts_words(recording, counts);
     say(result, settings, samples);
     const log::Signal reference = reference_of(options, from);
     nlohmann::json judged;
     if (!reference.t_s.empty() && !std::isnan(result.first_s)) {
         const speed::Judgement j = speed::judge(result, reference, options.log);
-        judged = to_json(j);
+        judged = judgement_json(j);
         std::printf(
             "against %s at %zu ticks: RMSE %.4f m/s, mean error %+.4f, worst %.3f; NEES %.2f, %.0f %% within one and %.0f %% within "
             "two standard deviations\n",

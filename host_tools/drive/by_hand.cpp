@@ -19,7 +19,7 @@ namespace traction::drive {
 
 namespace {
 
-constexpr double period_s = 0.02, paint_s = 0.1;
+constexpr double hand_period_s = 0.02, paint_s = 0.1;
 constexpr double first_held_s = 0.7; // X11 repeats a key after 0.66 s, others sooner
 constexpr double held_s = 0.25;      // assumed: repeats come 10 times a second or faster
 constexpr double speed_step_m_s = 0.05, yaw_step_rad_s = 0.1, slip_step = 0.05;
@@ -110,7 +110,7 @@ void by_hand(Operator &link, bool may_command, const std::function<bool()> &stop
     Hand hand;
     double painted_s = -1;
     while (!hand.quit && !stopped()) {
-        link.listen(period_s);
+        link.listen(hand_period_s);
         const double now_s = link.now_s();
         take(hand, terminal.keys(), now_s);
         const bool was = hand.driving;

@@ -12,7 +12,7 @@ namespace traction::drive {
 
 namespace {
 
-constexpr double period_s = 0.02, between_rows_s = 0.1, between_silent_rows_s = 0.5;
+constexpr double listen_period_s = 0.02, between_rows_s = 0.1, between_silent_rows_s = 0.5;
 constexpr std::uint32_t backwards = 1u << 31; // a difference of the rover's clock, which wraps
 
 std::string wheel_name(std::size_t wheel, const char *quantity) { return "wheel" + std::to_string(wheel) + quantity; }
@@ -119,9 +119,9 @@ Received record(Operator &link, Telemetry &log, double seconds, const std::funct
     double told_s = -1, shown_s = -1;
     while (link.now_s() < until_s && !stopped()) {
         try {
-            link.listen(period_s);
+            link.listen(listen_period_s);
         } catch (const log::FileError &) { // the network is gone; it may come back
-            std::this_thread::sleep_for(std::chrono::duration<double>(period_s));
+            std::this_thread::sleep_for(std::chrono::duration<double>(listen_period_s));
         }
         const Hearing hearing = hearing_of(link);
         const bool heard = hearing == Hearing::heard;

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 namespace {
 
-json read_json(const std::string &path) {
+json read_envelope(const std::string &path) {
     std::ifstream file(path);
     if (!file.is_open())
         throw GameError(path + ": cannot be read; a game without it cannot be scored, start again with --new SEED --replace");
@@ -73,7 +73,7 @@ Turn open(const std::string &folder) {
     if (state["opened"].get<bool>())
         throw GameError(folder + ": the seal is open already: " + state.value("hidden", "") + ", " +
                         std::to_string(state.value("points", 0)) + " points");
-    const json seal = read_json(path("sealed.json"));
+    const json seal = read_envelope(path("sealed.json"));
     if (!seal.contains("effects") || seal["effects"].empty())
         throw GameError(path("sealed.json") + ": is no seal; start again with --new SEED --replace");
     const lab::EffectUse truth = use_of(seal["effects"].at(0), path("sealed.json"));

@@ -7,7 +7,7 @@ namespace traction::lab {
 
 namespace {
 
-double value_of(const Parameters &parameters, const char *key) {
+double positive_value(const Parameters &parameters, const char *key) {
     const auto found = parameters.find(key);
     return found != parameters.end() && found->second.value > 0 ? found->second.value : std::nan("");
 }
@@ -19,11 +19,11 @@ bool is_in(const std::vector<std::string> &list, const std::string &id) { return
 check::Machine machine_of(const Model &model) {
     check::Machine machine;
     if (model.wheel.empty()) return machine;
-    machine.wheel_radius_m = value_of(model.wheel[0].geometry, "radius_m");
-    machine.back_emf_Vs = value_of(model.wheel[0].motor, "back_emf_Vs_rad");
-    if (std::isnan(machine.back_emf_Vs)) machine.back_emf_Vs = value_of(model.wheel[0].motor, "torque_constant_Nm_A");
-    machine.resistance_ohm = value_of(model.wheel[0].motor, "resistance_ohm");
-    machine.battery_V = value_of(model.rover, "battery_voltage_V");
+    machine.wheel_radius_m = positive_value(model.wheel[0].geometry, "radius_m");
+    machine.back_emf_Vs = positive_value(model.wheel[0].motor, "back_emf_Vs_rad");
+    if (std::isnan(machine.back_emf_Vs)) machine.back_emf_Vs = positive_value(model.wheel[0].motor, "torque_constant_Nm_A");
+    machine.resistance_ohm = positive_value(model.wheel[0].motor, "resistance_ohm");
+    machine.battery_V = positive_value(model.rover, "battery_voltage_V");
     if (const auto counts = model.sensors.find("encoder.counts_per_turn"); counts != model.sensors.end() && counts->second.given)
         machine.counts_per_turn = counts->second.value;
     machine.wheels_point_forward = model.motion != BodyMotion::none;

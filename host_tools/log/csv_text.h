@@ -1,11 +1,14 @@
 // csv_text.h - how a log's head and numbers are written as text; shared by whoever writes rows.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace traction::log {
+
+constexpr double never = std::numeric_limits<double>::infinity(); // the time of a sample that is not there
 
 // The shortest text that reads back to the same double.
 void append_number(std::string &text, double value);

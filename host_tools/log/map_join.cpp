@@ -13,7 +13,7 @@ namespace {
 constexpr double step_s = 0.02;         // of the search
 constexpr double least_agreement = 0.5; // of the correlation: below it the two signals do not see one motion
 
-std::string folder_of(const std::string &path) {
+std::string folder_before(const std::string &path) {
     const auto slash = path.find_last_of('/');
     return slash == std::string::npos ? "" : path.substr(0, slash + 1);
 }
@@ -75,14 +75,14 @@ double offset_of(const Log &first, const Log &second, const Map &map) {
 
 void join_second_file(Log &log, const Map &map, std::vector<Repair> &repairs, const ReadLimits &limits) {
     if (map.join.line == 0) return;
-    const std::string folder = folder_of(log.source), name = log.source.substr(folder.size());
+    const std::string folder = folder_before(log.source), name = log.source.substr(folder.size());
     const auto at = name.find(map.join.replace);
     if (at == std::string::npos)
         throw LogError(log.source, 0, 0, "its name has no '" + map.join.replace + "', which the map replaces to find the second file",
                        "correct 'replace' of [join] in " + map.path);
     std::string second_name = name;
     second_name.replace(at, map.join.replace.size(), map.join.with);
-    const Map second_map = read_map(folder_of(map.path) + map.join.map);
+    const Map second_map = read_map(folder_before(map.path) + map.join.map);
     if (second_map.join.line != 0)
         throw LogError(second_map.path, second_map.join.line, 0, "the map of a second file joins a third", "take [join] out of it");
     const FileBytes bytes(folder + second_name, limits.bytes);

@@ -30,7 +30,7 @@ struct Slot {
     std::size_t signal = 0;
 };
 
-struct Topic {
+struct ReadTopic {
     std::vector<UlogField> fields;
     std::vector<Slot> slots; // those that are signals
     std::size_t bytes = 0, stamp_at = 0, t_s_at = 0;
@@ -76,7 +76,7 @@ class Reader {
     }
 
     void define(const std::string &name, const std::vector<UlogField> &fields) {
-        Topic topic;
+        ReadTopic topic;
         for (const UlogField &field : fields) {
             if (field.name == "timestamp" && field.type == "uint64_t") {
                 topic.stamped = true;
@@ -99,7 +99,7 @@ class Reader {
             ++broken;
             return;
         }
-        const Topic &topic = found->second;
+        const ReadTopic &topic = found->second;
         const double t_s = topic.has_t_s ? std::bit_cast<double>(little_endian(payload.substr(topic.t_s_at, 8)))
                                          : static_cast<double>(little_endian(payload.substr(topic.stamp_at, 8))) / 1e6;
         samples_ += topic.slots.size();
@@ -115,7 +115,7 @@ class Reader {
     const std::string &file_;
     const ReadLimits &limits_;
     std::size_t samples_ = 0;
-    std::map<std::string, Topic> topics_;
+    std::map<std::string, ReadTopic> topics_;
     std::map<std::uint64_t, std::string> ids_;
     std::map<std::string, std::size_t> place_; // "topic field"
 };

@@ -20,8 +20,6 @@ namespace traction::log {
 
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
-
 // The folder in which the log will stand, when it will be a file there.
 std::string folder_of(const std::string &path) {
     struct stat there {};

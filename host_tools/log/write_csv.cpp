@@ -63,8 +63,6 @@ bool one_clean_line(const std::string &text) {
     return !padded && text.find_first_of("\r\n") == std::string::npos && text.find('\0') == std::string::npos;
 }
 
-constexpr double never = std::numeric_limits<double>::infinity();
-
 // Walks through the merged times. Signals that share their times share one clock, and most do.
 class Clocks {
   public:

@@ -112,29 +112,29 @@ std::string type_name(const std::string &topic) {
     return "traction_msgs/msg/" + name;
 }
 
-struct Topic {
+struct Channel {
     std::string name, object;
     std::vector<const Signal *> signals; // of one clock
     std::size_t next = 0;                // sample
 };
 
-std::vector<Topic> topics_of(const Log &log) {
-    std::vector<Topic> topics;
+std::vector<Channel> topics_of(const Log &log) {
+    std::vector<Channel> topics;
     std::map<std::string, int> clocks; // of an object
     for (const Signal &signal : log.signals) {
         if (signal.t_s.empty()) continue;
         const std::size_t dot = signal.name.find('.');
         const std::string object = dot == std::string::npos ? "log" : signal.name.substr(0, dot);
         auto found = std::find_if(topics.begin(), topics.end(),
-                                  [&](const Topic &t) { return t.object == object && t.signals.front()->t_s == signal.t_s; });
+                                  [&](const Channel &t) { return t.object == object && t.signals.front()->t_s == signal.t_s; });
         if (found == topics.end()) {
-            found = topics.insert(topics.end(), Topic{.name = {}, .object = object, .signals = {}, .next = 0});
+            found = topics.insert(topics.end(), Channel{.name = {}, .object = object, .signals = {}, .next = 0});
             ++clocks[object];
         }
         found->signals.push_back(&signal);
     }
     std::set<std::string> taken;
-    for (Topic &topic : topics) {
+    for (Channel &topic : topics) {
         const std::string &first = topic.signals.front()->name;
         topic.name = "/" + ros_name(topic.object);
         if (clocks[topic.object] > 1) topic.name += "/" + ros_name(first.substr(first.find('.') + 1));
@@ -143,7 +143,7 @@ std::vector<Topic> topics_of(const Log &log) {
     return topics;
 }
 
-std::string schema_text(const Topic &topic) {
+std::string schema_text(const Channel &topic) {
     std::string text;
     std::set<std::string> taken;
     for (const Signal *signal : topic.signals) {
@@ -302,11 +302,11 @@ class Writer {
 } // namespace
 
 void write_mcap(const Log &log, const std::string &path) {
-    std::vector<Topic> topics = topics_of(log);
+    std::vector<Channel> topics = topics_of(log);
     if (topics.size() > std::numeric_limits<std::uint16_t>::max())
         throw LogError(path, 0, 0, "more than 65535 topics cannot be written", "leave objects out");
     double begin_s = 0;
-    for (const Topic &topic : topics) {
+    for (const Channel &topic : topics) {
         for (const Signal *signal : topic.signals)
             for (std::size_t i = 0; i < signal->t_s.size(); ++i)
                 check_sample(signal->name, i, i == 0 ? -std::numeric_limits<double>::infinity() : signal->t_s[i - 1], signal->t_s[i],
@@ -339,13 +339,13 @@ void write_mcap(const Log &log, const std::string &path) {
     if (begin_s < 0) header["moved_s"] = std::to_string(-begin_s);
     writer.metadata("traction-log", header);
     writer.put_bytes(schemas + channels);
-    const auto next_s = [](const Topic &topic) {
+    const auto next_s = [](const Channel &topic) {
         const std::vector<double> &t_s = topic.signals.front()->t_s;
         return topic.next < t_s.size() ? t_s[topic.next] : std::numeric_limits<double>::infinity();
     };
     for (;;) {
         const auto due =
-            std::min_element(topics.begin(), topics.end(), [&](const Topic &a, const Topic &b) { return next_s(a) < next_s(b); });
+            std::min_element(topics.begin(), topics.end(), [&](const Channel &a, const Channel &b) { return next_s(a) < next_s(b); });
         if (due == topics.end() || std::isinf(next_s(*due))) break;
         std::string data{0, 1, 0, 0}; // CDR, little endian
         for (const Signal *signal : due->signals) put(data, std::bit_cast<std::uint64_t>(signal->value[due->next]), 8);

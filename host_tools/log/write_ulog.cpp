@@ -20,17 +20,17 @@ namespace traction::log {
 
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double no_time_s = std::numeric_limits<double>::infinity();
 constexpr std::size_t fields_of_a_topic = 400; // a message has at most 65535 bytes, and so has its definition
 constexpr std::size_t name_letters = 100, text_letters = 60000, topics_most = 65535;
 
-void put(std::string &out, std::uint64_t value, std::size_t bytes) {
+void put_field(std::string &out, std::uint64_t value, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i, value >>= 8u) out += static_cast<char>(value & 0xffu);
 }
 
 std::string message(char kind, std::string_view payload) {
     std::string out;
-    put(out, payload.size(), 2);
+    put_field(out, payload.size(), 2);
     out += kind;
     out += payload;
     return out;
@@ -95,19 +95,19 @@ struct Facts {
 void put_value(std::string &out, double value, char type) {
     switch (type) {
     case '1':
-        put(out, static_cast<std::uint8_t>(static_cast<std::int8_t>(value)), 1);
+        put_field(out, static_cast<std::uint8_t>(static_cast<std::int8_t>(value)), 1);
         break;
     case '2':
-        put(out, static_cast<std::uint16_t>(static_cast<std::int16_t>(value)), 2);
+        put_field(out, static_cast<std::uint16_t>(static_cast<std::int16_t>(value)), 2);
         break;
     case '4':
-        put(out, static_cast<std::uint32_t>(static_cast<std::int32_t>(value)), 4);
+        put_field(out, static_cast<std::uint32_t>(static_cast<std::int32_t>(value)), 4);
         break;
     case 'f':
-        put(out, std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4);
+        put_field(out, std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4);
         break;
     default:
-        put(out, std::bit_cast<std::uint64_t>(value), 8);
+        put_field(out, std::bit_cast<std::uint64_t>(value), 8);
     }
 }
 
@@ -145,8 +145,8 @@ constexpr std::size_t no_topic = static_cast<std::size_t>(-1);
 
 Facts facts_of(UlogColumn &column, const std::string &path) {
     Facts facts;
-    double previous_s = -never;
-    for (column.rewind(); column.t_s() != never; column.next()) {
+    double previous_s = -no_time_s;
+    for (column.rewind(); column.t_s() != no_time_s; column.next()) {
         check_sample(column.name(), facts.count, previous_s, column.t_s(), column.value(), path);
         previous_s = column.t_s();
         facts.time(previous_s);
@@ -205,7 +205,7 @@ std::string head_of(const std::map<std::string, std::string> &header, const std:
                     const std::string &path) {
     std::string text(ulog_magic);
     text += '\1';
-    put(text, 0, 8);
+    put_field(text, 0, 8);
     text += message('B', std::string(40, '\0')) + information("sys_name", "traction-log", path, false);
     if (plan.begin_s < 0) text += information("traction_moved_s", std::to_string(-plan.begin_s), path, false);
     for (const auto &[key, value] : header) text += information("traction_header", key + ": " + value, path, true);
@@ -219,7 +219,7 @@ std::string head_of(const std::map<std::string, std::string> &header, const std:
     for (const Topic &topic : plan.topics) text += message('F', topic.definition);
     for (std::size_t i = 0; i < plan.topics.size(); ++i) {
         std::string payload(1, '\0');
-        put(payload, i, 2);
+        put_field(payload, i, 2);
         text += message('A', payload + plan.topics[i].name);
     }
     return text;
@@ -230,7 +230,7 @@ class SignalColumn : public UlogColumn {
     explicit SignalColumn(const Signal &signal) : signal_(signal) {}
     const std::string &name() const override { return signal_.name; }
     void rewind() override { next_ = 0; }
-    double t_s() const override { return next_ < signal_.t_s.size() ? signal_.t_s[next_] : never; }
+    double t_s() const override { return next_ < signal_.t_s.size() ? signal_.t_s[next_] : no_time_s; }
     double value() const override { return signal_.value[next_]; }
     void next() override { ++next_; }
 
@@ -253,12 +253,12 @@ void write_ulog(const std::map<std::string, std::string> &header, const std::vec
     for (;;) {
         const auto due =
             std::min_element(plan.topics.begin(), plan.topics.end(), [](const Topic &a, const Topic &b) { return a.due_s() < b.due_s(); });
-        if (due == plan.topics.end() || due->due_s() == never) break;
+        if (due == plan.topics.end() || due->due_s() == no_time_s) break;
         const double t_s = due->due_s();
         payload.clear();
-        put(payload, static_cast<std::uint64_t>(due - plan.topics.begin()), 2);
-        put(payload, stamp_us(t_s, plan.begin_s), 8);
-        if (due->with_t_s) put(payload, std::bit_cast<std::uint64_t>(t_s), 8);
+        put_field(payload, static_cast<std::uint64_t>(due - plan.topics.begin()), 2);
+        put_field(payload, stamp_us(t_s, plan.begin_s), 8);
+        if (due->with_t_s) put_field(payload, std::bit_cast<std::uint64_t>(t_s), 8);
         for (std::size_t i = 0; i < due->columns.size(); ++i) {
             UlogColumn &column = *due->columns[i];
             put_value(payload, column.value(), due->types[i]);

@@ -188,7 +188,7 @@ const char *acting_words(const sim::Effect &effect) {
     return "";
 }
 
-std::string number(double value) {
+std::string curve_number(double value) {
     char text[24];
     std::snprintf(text, sizeof text, "%.2g", value);
     return text;
@@ -210,7 +210,8 @@ std::string plotted(const EffectCurve &curve) {
         return format("<text x=\"%\" y=\"%\" text-anchor=\"", {x, y}) + anchor + "\">" + text + "</text>";
     };
     return out + words((left + right) / 2, 68, "middle", curve.over) +
-           words((left + right) / 2, 78, "middle", curve.what + " to " + number(*high_at >= -*low_at * (1 - 1e-9) ? *high_at : *low_at));
+           words((left + right) / 2, 78, "middle",
+                 curve.what + " to " + curve_number(*high_at >= -*low_at * (1 - 1e-9) ? *high_at : *low_at));
 }
 
 constexpr const char *own_colours = "<style>svg{color:#1a1d21}.force{stroke:#c44e00}.mark,.curve{stroke:#0067a3}.soil{stroke:#8a5a00}.body,"

@@ -87,7 +87,7 @@ Given on_soft(const Soil &soil, const SoilConstants &constants, ContactLaw conta
     return out;
 }
 
-void mix(Given &a, const Given &b, double share) {
+void blend(Given &a, const Given &b, double share) {
     const auto blend = [share](double &x, double y) { x += share * (y - x); };
     blend(a.soil.normal_N, b.soil.normal_N), blend(a.soil.largest_N, b.soil.largest_N), blend(a.soil.shear_slip, b.soil.shear_slip);
     blend(a.soil.resistance_N, b.soil.resistance_N), blend(a.soil.free_traction_N, b.soil.free_traction_N);
@@ -141,7 +141,7 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Foot
     };
     Given given = given_by(*foot.front, out.sinkage_m);
     if (foot.front != foot.behind) {
-        mix(given, given_by(*foot.behind, out.sinkage_m), 1 - foot.share_front);
+        blend(given, given_by(*foot.behind, out.sinkage_m), 1 - foot.share_front);
         // the wheel is lifted by what it enters and let down by what it leaves: -dU/dx of the mixture, so that an edge gives no energy
         const auto work_J = [&](const Soil &soil) {
             return work_to_sink_J(out.sinkage_m, [&](double z) { return given_by(soil, z).soil.normal_N; });

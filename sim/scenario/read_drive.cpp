@@ -32,7 +32,7 @@ Reference read_reference(Keys &keys, std::string_view key, Range range) {
 }
 
 // One reference for all wheels, or a list of four.
-std::array<Reference, wheel_count> read_wheels(Keys &keys, std::string_view key, Range range) {
+std::array<Reference, wheel_count> read_references(Keys &keys, std::string_view key, Range range) {
     std::array<Reference, wheel_count> all{};
     const toml::node *node = keys.node(key);
     if (node == nullptr) return all;
@@ -59,11 +59,11 @@ void read_mode(Keys &keys, DriveSegment &segment) {
         break;
     case DriveMode::open_loop:
         need("duty", "give one number or four, -1 to 1");
-        segment.duty = read_wheels(keys, "duty", {-1, 1});
+        segment.duty = read_references(keys, "duty", {-1, 1});
         break;
     case DriveMode::wheel_speed:
         need("wheel_speed_rad_s", "give one number or four");
-        segment.wheel_speed_rad_s = read_wheels(keys, "wheel_speed_rad_s", {-40, 40});
+        segment.wheel_speed_rad_s = read_references(keys, "wheel_speed_rad_s", {-40, 40});
         break;
     case DriveMode::slip: {
         need("slip", "give a slip, -1 to 1");

@@ -95,6 +95,10 @@ grep -q "simulated in" words.txt || bad "the words are lost when the log goes to
 if [ -c /dev/full ]; then
     "$cli" effects >/dev/full 2>stderr.txt
     [ $? -eq 4 ] && grep -q "No space left" stderr.txt || bad "a full disk on standard output is no error"
+    for words in man "man simulate" "completion bash" "--help"; do # longer than a buffer, and shorter
+        "$cli" $words >/dev/full 2>stderr.txt
+        [ $? -eq 4 ] && grep -q "standard output: cannot be written: No space left" stderr.txt || bad "$words on a full disk says $(cat stderr.txt)"
+    done
     "$cli" simulate cruise --out /dev/full >/dev/null 2>stderr.txt
     [ $? -eq 4 ] && grep -q "/dev/full: cannot be written: No space left" stderr.txt || bad "--out /dev/full is no error"
     [ -c /dev/full ] || bad "/dev/full was replaced"

@@ -213,7 +213,7 @@ std::vector<const Datum *> promising_data(const Model &stated, const Problem &fi
 }
 
 // What no model goes below: the scatter of the residuals from row to row, which a prediction has no part in, for it follows the wheels.
-double scatter_of(const Problem &fitted) {
+double fit_scatter(const Problem &fitted) {
     const Eigen::VectorXd e = fitted.residual.cwiseQuotient(fitted.noise_rows());
     double sum = 0;
     Eigen::Index row = 0;
@@ -336,7 +336,7 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
     if (before > never_nothing)
         found = freed(stated, data, all_data());
-    else if (data.independent_rows || scatter_of(first) < need * before)
+    else if (data.independent_rows || fit_scatter(first) < need * before)
         found = freed(stated, data, promising_data(stated, first, need));
     for (Freed &f : found) {
         const Suspect &s = f.suspect;

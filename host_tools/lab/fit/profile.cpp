@@ -187,7 +187,7 @@ Side walk(Held &held, double best_cost, const FreeParameter &p, double increment
     return {p.base + x, !bounded || x != far, bounded && x == far};
 }
 
-std::string verdict_of(const Profile &p) {
+std::string profile_verdict(const Profile &p) {
     const bool low_free = p.low_open || p.low_at_bound, high_free = p.high_open || p.high_at_bound;
     if (low_free && high_free) return "not_identifiable";
     if (p.low_open || p.high_open) return "one_sided";
@@ -218,7 +218,7 @@ Profile profile_one(Problem &best, const Model &model, Eigen::Index i, double er
     for (std::size_t k = 0; k < out.x.size(); ++k) points.emplace_back(out.x[k], out.rise[k]);
     std::sort(points.begin(), points.end());
     for (std::size_t k = 0; k < points.size(); ++k) out.x[k] = points[k].first, out.rise[k] = points[k].second;
-    out.verdict = verdict_of(out);
+    out.verdict = profile_verdict(out);
     return out;
 }
 

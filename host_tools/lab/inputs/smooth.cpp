@@ -44,7 +44,7 @@ void solve_local(const double (&s)[7], const double (&r)[4], int degree, double 
 
 // What is white in the samples while the wheel turns, by the covariance -sigma^2 of neighbouring deviations from the straight line
 // through a sample's neighbours; an acceleration makes that covariance positive. `speed`: its median.
-double scatter_of(const std::vector<double> &t, const std::vector<double> &angle, double period, double still, double &speed) {
+double angle_scatter(const std::vector<double> &t, const std::vector<double> &angle, double period, double still, double &speed) {
     std::vector<double> deviation, size, moving;
     for (std::size_t j = 1; j + 1 < angle.size(); ++j) {
         const double span = t[j + 1] - t[j - 1], mean = (angle[j + 1] - angle[j - 1]) / span;
@@ -70,7 +70,7 @@ double scatter_of(const std::vector<double> &t, const std::vector<double> &angle
 double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s,
                       double still_rad_s, double slope_noise) {
     double speed = 0;
-    const double scatter = scatter_of(t_s, angle_rad, period_s, still_rad_s, speed);
+    const double scatter = angle_scatter(t_s, angle_rad, period_s, still_rad_s, speed);
     if (!(scatter > 0)) return half_s;
     // tricube weights: a scatter sigma leaves 1.85 sigma sqrt(period) / half^1.5 in the slope
     return std::clamp(std::pow(1.85 * scatter * std::sqrt(period_s) / (slope_noise * speed), 2.0 / 3), half_s,

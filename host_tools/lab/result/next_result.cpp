@@ -13,7 +13,7 @@ namespace traction::lab {
 
 namespace {
 
-std::string joined(const std::vector<std::string> &members) {
+std::string either_of(const std::vector<std::string> &members) {
     std::string text;
     for (const std::string &m : members) text += (text.empty() ? "" : " or ") + m;
     return members.size() == 1 ? text + ", is it there" : text;
@@ -57,7 +57,7 @@ nlohmann::json next_json(const NextExperiment &next) {
 namespace {
 
 // Every manoeuvre alone, and what each question's d' was and becomes.
-std::string statistics(const NextExperiment &next) {
+std::string next_statistics(const NextExperiment &next) {
     std::string text;
     std::vector<Tried> order = next.tried;
     std::stable_sort(order.begin(), order.end(), [](const Tried &a, const Tried &b) {
@@ -67,7 +67,7 @@ std::string statistics(const NextExperiment &next) {
     for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i)
         append(text, "%-66s %7.0f %9d %9.2f\n", order[i].title.c_str(), order[i].duration_s, order[i].answered, order[i].least);
     append(text, "%-58s %9s %9s\n", "question", "d' before", "d' after");
-    for (const Question &q : next.questions) append(text, "%-58s %9.2f %9.2f\n", joined(q.members).c_str(), q.before, q.after);
+    for (const Question &q : next.questions) append(text, "%-58s %9.2f %9.2f\n", either_of(q.members).c_str(), q.before, q.after);
     return text;
 }
 
@@ -79,25 +79,25 @@ std::string next_text(const NextExperiment &next, bool details) {
     for (const std::string &n : next.notes) text += wrapped("note: " + n, 6);
     if (!next.predicted) {
         text += wrapped("no numbers: the simulated rover cannot stand in for this machine (" + next.why_not + ").");
-        for (const Question &q : next.questions) text += wrapped("open: " + joined(q.members), 6);
+        for (const Question &q : next.questions) text += wrapped("open: " + either_of(q.members), 6);
         text += next.tried.empty() ? "no manoeuvre of the library is known for these\n" : "manoeuvres known to help:\n";
         for (const Tried &t : next.tried) text += wrapped("  " + t.title, 4);
         return text;
     }
     text += "what this log leaves open:\n";
     for (const Question &q : next.questions) {
-        const std::string question = "  " + padded(joined(q.members), 52) + " ", words = status_words(q);
+        const std::string question = "  " + padded(either_of(q.members), 52) + " ", words = status_words(q);
         text += question.size() + words.size() <= terminal_columns ? question + words + "\n"
-                                                                   : wrapped("  " + joined(q.members) + ": " + words, 4);
+                                                                   : wrapped("  " + either_of(q.members) + ": " + words, 4);
     }
     for (const Question &q : next.questions)
         if (q.status == "never") {
             std::string spread;
-            append(spread, "%s: cannot be separated by driving (d' stays %.2f); %s", joined(q.members).c_str(), std::max(q.best, q.after),
-                   q.measure.c_str());
+            append(spread, "%s: cannot be separated by driving (d' stays %.2f); %s", either_of(q.members).c_str(),
+                   std::max(q.best, q.after), q.measure.c_str());
             text += wrapped(spread, 2);
         }
-    if (details) text += statistics(next);
+    if (details) text += next_statistics(next);
     if (next.scenario_toml.empty()) return text + "no drive is proposed\n";
     std::string drive;
     append(drive, "next: %s (%.0f s)", next.title.c_str(), next.duration_s);

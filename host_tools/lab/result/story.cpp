@@ -100,7 +100,7 @@ std::string evidence_words(const Comparison &c) {
            times(most->nrmse_after) + " times its noise. ";
 }
 
-std::string sure(const Comparison &c, const Diagnosis &d) {
+std::string how_sure(const Comparison &c, const Diagnosis &d) {
     std::string text;
     if (d.kind == "wrong_model") return "No effect is named: the numbers of the model come first.";
     if (!d.accepted.empty()) {
@@ -150,7 +150,7 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
 
 Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) {
     Story story;
-    story.good_enough = good_enough(c, d), story.missing = missing(d), story.sure = sure(c, d);
+    story.good_enough = good_enough(c, d), story.missing = missing(d), story.sure = how_sure(c, d);
     story.where = worst_regime_words(c);
     story.left = d.kind == "wrong_model" ? "" : left_words(remainder(c, d), settled(d)) + ".";
     story.next = what_next(c, d, next);

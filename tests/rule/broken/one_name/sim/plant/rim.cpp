@@ -1,0 +1,14 @@
+namespace traction::sim {
+
+namespace {
+
+struct Edge {
+    int at = 0;
+};
+float radius(float size_m) { return size_m; }
+
+} // namespace
+
+double rim(int size_m) { return radius(static_cast<float>(size_m + Edge{}.at)); }
+
+} // namespace traction::sim
