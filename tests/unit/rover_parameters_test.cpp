@@ -234,6 +234,7 @@ control_config_t written_out() {
                           .speed_max_m_s = speed_max_m_s,
                           .yaw_rate_max_rad_s = 4.0f,                 // [rad/s] assumed
                           .wheel_max_rad_s = 25.0f},                  // [rad/s] below the no-load speed of 27
+        .steering = {},
         .soil_sweep = {.ramp_1_m = tick_s / (wheel_radius_m * 10.0f), // t_zero = 10 s, section 6
                        .duration_ticks = 2000,
                        .wheel_max_rad_s = 25.0f},
