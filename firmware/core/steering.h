@@ -1,8 +1,8 @@
 // steering.h - wheels that steer by Ackermann's geometry: the curvature that a command asks for, and how fast each wheel rolls round it.
 //
-//   k = psi*/v*, |k| <= k_max                          curvature of the path of the rover's middle; at v* = 0 the bound, on psi*'s side  (1)
-//   u = sqrt((v -+ b psi)^2 + (d psi)^2), sign of v -+ b psi        rim speed of a wheel that rolls without scrub                        (2)
-//   v -+ b psi = sqrt(u^2 - (d psi)^2), sign of u                   and back, 0 where |u| is less                                       (3)
+//   k = psi*/v*, |k| <= k_max                          curvature of the path of the rover's middle; at v* = 0 the bound, on psi*'s side (1)
+//   u = sqrt((v -+ b psi)^2 + (d psi)^2), sign of v -+ b psi        rim speed of a wheel that rolls without scrub (2) v -+ b psi = sqrt(u^2
+//   - (d psi)^2), sign of u                   and back, 0 where |u| is less                                       (3)
 // d: how far the wheel's axle lies ahead of the line on which the rover turns, which is the axle that does not steer (0 there). The wheel's
 // angle is the servo's to make: tan delta = d k/(1 -+ b k). Its order is k (signals.h), which needs no trigonometry here.
 // Derived here: a rigid body in a plane whose wheels move along their heading (Ackermann 1818).

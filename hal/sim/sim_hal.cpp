@@ -125,9 +125,11 @@ hal_t SimHal::hal() {
             self->lost_writes_ += written == HAL_ERR_TIMEOUT ? 1 : 0;
             return written;
         }
-        Order order{
-            .due_ms = self->now_ms_ + self->config_.bus_latency_ms, .duty = {}, .drive = actuator->drive, .sequence = actuator->sequence,
-            .curvature_1_m = static_cast<double>(actuator->curvature_1_m)};
+        Order order{.due_ms = self->now_ms_ + self->config_.bus_latency_ms,
+                    .duty = {},
+                    .drive = actuator->drive,
+                    .sequence = actuator->sequence,
+                    .curvature_1_m = static_cast<double>(actuator->curvature_1_m)};
         for (std::size_t i = 0; i < sim::wheel_count; i++) order.duty[i] = actuator->duty_q15[i] / 32767.0;
         self->orders_.push_back(order);
         return HAL_OK;

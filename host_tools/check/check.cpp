@@ -95,12 +95,13 @@ void declared_drives(const log::Log &log, const Machine &machine, std::vector<Fi
 void declared_steering(const log::Log &log, const Machine &machine, std::vector<Finding> &findings) {
     const auto told = log.header.find("rover.steering");
     if (told == log.header.end() || machine.wheel_y_m.empty() || !machine.on_ground) return;
-    findings.push_back({.id = "wheels",
-                        .severity = Severity::error,
-                        .signal = "",
-                        .text = "the log's rover steers its wheels (header rover.steering = " + told->second + "), the model's keep their heading",
-                        .mend = "none: the lab has no model of a rover that steers",
-                        .value = 0});
+    findings.push_back(
+        {.id = "wheels",
+         .severity = Severity::error,
+         .signal = "",
+         .text = "the log's rover steers its wheels (header rover.steering = " + told->second + "), the model's keep their heading",
+         .mend = "none: the lab has no model of a rover that steers",
+         .value = 0});
 }
 
 } // namespace

@@ -142,8 +142,10 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     effects.insert(effects.end(), options.effects.begin(), options.effects.end());
     if (const auto &hide = options.hide ? options.hide : scenario.hidden) {
         if (!sim::is_plain(scenario.rover.layout()))
-            throw sim::ScenarioError(scenario.file, 0, "--hide", "", "effects are hidden in rovers of four wheels alone, on a plain chassis, with a motor each and fixed in their heading",
-                                     "leave it out");
+            throw sim::ScenarioError(
+                scenario.file, 0, "--hide", "",
+                "effects are hidden in rovers of four wheels alone, on a plain chassis, with a motor each and fixed in their heading",
+                "leave it out");
         result.hidden = sim::draw_effects(*hide);
         result.hide_seed = hide->seed;
         effects.insert(effects.end(), result.hidden.begin(), result.hidden.end());

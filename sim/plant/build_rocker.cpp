@@ -12,8 +12,8 @@ namespace traction::sim {
 
 namespace {
 
-constexpr double at_ends = 1.7320508075688772; // of a link's length: a box of this length has the inertia of half its mass at each end
-constexpr double bar_share = 0.002;              // of the body's mass, in the differential's bar: assumed, little beside all loads
+constexpr double at_ends = 1.7320508075688772;    // of a link's length: a box of this length has the inertia of half its mass at each end
+constexpr double bar_share = 0.002;               // of the body's mass, in the differential's bar: assumed, little beside all loads
 constexpr double horn_share = 0.5, rod_share = 1; // of half a track: the horn's height over the pivot, the rods' length; assumed
 
 dBodyID make_body(dWorldID world, double mass_kg, const Vec3 &size, const Vec3 &at) {
@@ -58,9 +58,7 @@ void Plant::World::build_rocker() {
     const LayoutParameters &l = r.layout;
     const bool six = l.kind == Layout::six;
     const double off_x = effects.body.offset_x_m, off_y = effects.body.offset_y_m;
-    const auto shifted = [&](double x, double y, double z) {
-        return Vec3{law::mass_offset_m(x, off_x), law::mass_offset_m(y, off_y), z};
-    };
+    const auto shifted = [&](double x, double y, double z) { return Vec3{law::mass_offset_m(x, off_x), law::mass_offset_m(y, off_y), z}; };
     const double whole = r.mass_kg - 2 * l.rocker_kg - (six ? 2 * l.bogie_kg : 0), bar_kg = bar_share * whole;
     const Vec3 &middle = links.body_at = {0, 0, law::load_transfer_m(r.centre_height_m, effects.body.raised_m)};
     const dBodyID body = make_body(world, whole - bar_kg, {r.length_m, r.width_m, r.height_m}, middle);
@@ -125,8 +123,8 @@ double Plant::World::depth_under(double load_N) const {
                          {r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis}, load_N, 0);
 }
 
-// Each wheel as deep in the ground under it as what it bears presses it: from the wheels' heights the bogie's pitch, the rocker's, the body's
-// (1), and the roll. A few rounds, for a wheel that is lifted moves along, too.
+// Each wheel as deep in the ground under it as what it bears presses it: from the wheels' heights the bogie's pitch, the rocker's, the
+// body's (1), and the roll. A few rounds, for a wheel that is lifted moves along, too.
 void Plant::World::stand_rocker() {
     const RoverParameters &r = config.rover;
     const LayoutParameters &l = r.layout;
@@ -144,7 +142,8 @@ void Plant::World::stand_rocker() {
                 if (round > 0)
                     dBodyGetRelPointPos(carrier[n], at[0], at[1], at[2] + r.wheel_radius_m, axle);
                 else
-                    axle[0] = config.x_m + c * wheel.ahead_m - s * wheel.left_m, axle[1] = config.y_m + s * wheel.ahead_m + c * wheel.left_m;
+                    axle[0] = config.x_m + c * wheel.ahead_m - s * wheel.left_m,
+                    axle[1] = config.y_m + s * wheel.ahead_m + c * wheel.left_m;
                 ground = relief->rest(axle[0], axle[1], c, s, r.wheel_radius_m, r.wheel_width_m).height_m;
             }
             return ground - depth_under(share[n] * weight);

@@ -36,7 +36,9 @@ std::string steered_axles(const LayoutParameters &layout) {
     return layout.steer_front ? layout.steer_rear ? "front rear" : "front" : layout.steer_rear ? "rear" : "";
 }
 
-bool is_plain(const LayoutParameters &layout) { return layout.kind == Layout::four && layout.drives[0] < 0 && !layout.rocker && steered_axles(layout).empty(); }
+bool is_plain(const LayoutParameters &layout) {
+    return layout.kind == Layout::four && layout.drives[0] < 0 && !layout.rocker && steered_axles(layout).empty();
+}
 
 unsigned firmware_wheels(const LayoutParameters &layout) {
     unsigned mask = 0;

@@ -37,8 +37,8 @@ struct LayoutParameters {
     bool rocker = false;      // four, six: wheels on rockers (rocker.h), of bogies with six; places ahead and over the ground
     bool bogie_front = false; // the bogie is at the front; else at the rear
     double rocker_m = 0, rocker_height_m = 0, bogie_m = 0, bogie_height_m = 0;
-    double rocker_kg = 0, bogie_kg = 0;           // of one link with its wheels, out of the rover's mass
-    bool steer_front = false, steer_rear = false; // four, six: which axles steer (steering.h)
+    double rocker_kg = 0, bogie_kg = 0;               // of one link with its wheels, out of the rover's mass
+    bool steer_front = false, steer_rear = false;     // four, six: which axles steer (steering.h)
     double steer_max_rad = 0.6, steer_rate_rad_s = 1; // of a wheel; of the servo
     double ackermann = 1;                             // 0..1
     bool operator==(const LayoutParameters &) const = default;

@@ -51,7 +51,8 @@ std::array<double, wheel_most> rocker_loads(const LayoutParameters &layout, doub
             out[static_cast<std::size_t>(chain.others.front())] = rest;
             continue;
         }
-        const double c = place_m(layout, half_wheelbase_m, chain.others.front()), d = place_m(layout, half_wheelbase_m, chain.others.back());
+        const double c = place_m(layout, half_wheelbase_m, chain.others.front()),
+                     d = place_m(layout, half_wheelbase_m, chain.others.back());
         const double at_bogie = bogie_place(layout, half_wheelbase_m, wheel_radius_m).ahead_m;
         const double last = (rest * (b - c) + bogie * (at_bogie - c)) / (d - c);
         out[static_cast<std::size_t>(chain.others.back())] = last;

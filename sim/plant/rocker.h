@@ -1,9 +1,10 @@
 // rocker.h - rockers and bogies: the links between a rover's body and its wheels, one chain a side.
 //
 //   four wheels   a rocker carries the rear and the front wheel of its side
-//   six wheels    a rocker carries the outer wheel of one end and, on a pivot, a bogie with the middle wheel and the outer one of the other end
-// The rockers turn on the body about one axis across it, coupled by a differential: a bar on a vertical pivot of the body, its ends held to a
-// horn of each rocker by a rod, so that
+//   six wheels    a rocker carries the outer wheel of one end and, on a pivot, a bogie with the middle wheel and the outer one of the other
+//   end
+// The rockers turn on the body about one axis across it, coupled by a differential: a bar on a vertical pivot of the body, its ends held to
+// a horn of each rocker by a rod, so that
 //   pitch of the body = (pitch of the left rocker + pitch of the right one)/2                                   (1)
 // to the rods' slant, (h (1 - cos r))^2/(2 l h) for rockers turned by r against the body: below 1 mrad at 0.35 rad. All wheels are borne
 // statically: with the weight B of the body, R of a rocker and G of a bogie at x ahead, and p_k the places of pivots and wheels,

@@ -110,7 +110,7 @@ struct Plant::World {
     dBodyID half_of(int wheel) const { return carrier[static_cast<std::size_t>(wheel)]; } // or the link that carries it
 
     PlantConfig config;
-    std::span<const int> wheels;                    // slots, in order
+    std::span<const int> wheels; // slots, in order
     double contact_kg = 0;
     std::array<double, wheel_most> place_ahead_m{}; // of the centre of mass
     RoverEffects effects;
@@ -120,10 +120,10 @@ struct Plant::World {
     dJointID joint = nullptr;
     std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
-    std::array<dBodyID, 2> half{};             // on rockers both are the body
-    std::vector<dBodyID> bodies;               // all of them
-    std::array<dBodyID, wheel_most> carrier{}; // of each wheel
-    struct Links {                             // and, as they were built, level at the origin, their centres and pivots
+    std::array<dBodyID, 2> half{};                  // on rockers both are the body
+    std::vector<dBodyID> bodies;                    // all of them
+    std::array<dBodyID, wheel_most> carrier{};      // of each wheel
+    struct Links {                                  // and, as they were built, level at the origin, their centres and pivots
         std::array<dBodyID, 2> rocker{}, bogie{};
         dBodyID bar = nullptr;
         Vec3 body_at{}, bar_at{};

@@ -257,7 +257,8 @@ void check_rocker(const RoverDescription &rover, const LayoutParameters &layout,
     for (const char *key : {"rocker_height_m", "rocker_kg", "bogie_m", "bogie_height_m", "bogie_kg"})
         if (!rover.value("layout", key).given && (six || !std::string_view(key).starts_with("bogie")))
             fail(key, "missing", "state where the pivots are, and what a rocker and a bogie weigh with their wheels");
-    if (const double front = rover.at("layout", "bogie_front"); front != 0 && front != 1) fail("bogie_front", "neither 0 nor 1", "give one");
+    if (const double front = rover.at("layout", "bogie_front"); front != 0 && front != 1)
+        fail("bogie_front", "neither 0 nor 1", "give one");
     const double mass = rover.at("body", "mass_kg"), base = rover.at("body", "half_wheelbase_m");
     if (2 * (layout.rocker_kg + (six ? layout.bogie_kg : 0)) > 0.9 * mass)
         fail("rocker_kg", "the links leave a body of less than a tenth of the rover", "lower it, or raise body.mass_kg");
@@ -305,7 +306,8 @@ void check_layout(const RoverDescription &rover) {
                             "leave it out, or write wheels = 4 or 6");
     check_steering(rover, l);
     const double half = rover.at("body", "half_wheelbase_m");
-    if (const double rocker = rover.at("layout", "rocker"); rocker != 0 && rocker != 1) fail("rocker", "neither 0 nor 1", "give one of them");
+    if (const double rocker = rover.at("layout", "rocker"); rocker != 0 && rocker != 1)
+        fail("rocker", "neither 0 nor 1", "give one of them");
     check_rocker(rover, l, fail);
     if (l.kind == Layout::six && std::fabs(l.middle_m) >= half)
         fail("middle_m", "not between the outer axles", "give less than body.half_wheelbase_m, ahead or (negative) behind");

@@ -20,7 +20,8 @@ using namespace traction::sim;
 namespace {
 
 constexpr double g = 9.81, R = 0.057;
-constexpr double mass_kg = 4.32, half_m = 0.15, rocker_kg = 0.35, bogie_kg = 0.4, rocker_x = 0.02, rocker_z = 0.14, bogie_x = -0.08, bogie_z = 0.09;
+constexpr double mass_kg = 4.32, half_m = 0.15, rocker_kg = 0.35, bogie_kg = 0.4, rocker_x = 0.02, rocker_z = 0.14, bogie_x = -0.08,
+                 bogie_z = 0.09;
 
 PlantConfig rover(Layout kind = Layout::six, const char *soil = "concrete", ContactLaw contact = ContactLaw::aggregated) {
     PlantConfig config;
@@ -56,12 +57,13 @@ TEST(rocker, all_wheels_bear_by_the_levers) {
                         const WheelTruth &w = plant.truth().slot(slot + side);
                         return w.traction_N - w.rolling_share * w.rolling_N;
                     };
-                    const double front = (g * body * (0 - bogie_x) + g * rocker_kg * ((half_m + bogie_x) / 2 - bogie_x) - bogie_z * push(2)) /
-                                         (half_m - bogie_x);
+                    const double front =
+                        (g * body * (0 - bogie_x) + g * rocker_kg * ((half_m + bogie_x) / 2 - bogie_x) - bogie_z * push(2)) /
+                        (half_m - bogie_x);
                     const double rest = g * mass_kg / 2 - front;
-                    const double middle = (rest * (bogie_x + half_m) + g * bogie_kg * ((0.01 - half_m) / 2 - bogie_x) -
-                                           bogie_z * (push(0) + push(4))) /
-                                          (0.01 + half_m);
+                    const double middle =
+                        (rest * (bogie_x + half_m) + g * bogie_kg * ((0.01 - half_m) / 2 - bogie_x) - bogie_z * (push(0) + push(4))) /
+                        (0.01 + half_m);
                     // the links lean by 1 mm on 0.15 m: places move by that times the pivots' height, 1 mm of 0.1 m
                     EXPECT_NEAR(plant.truth().slot(2 + side).normal_N, front, 0.01 * front) << soil << ' ' << steps;
                     EXPECT_NEAR(plant.truth().slot(4 + side).normal_N, middle, 0.01 * middle) << soil << ' ' << steps;
@@ -88,7 +90,9 @@ TEST(rocker, four_wheels_on_rockers_share_as_their_places_ask) {
 // The height of the centre of mass over the wheels' heights, by geometry alone: each link turned so that its ends stand where they must.
 // Virtual work: what wheel i bears is dV/dz_i.
 double potential_J(const std::array<double, 6> &lift) {
-    const auto turned = [](double x, double z, double p) { return std::array{x * std::cos(p) + z * std::sin(p), -x * std::sin(p) + z * std::cos(p)}; };
+    const auto turned = [](double x, double z, double p) {
+        return std::array{x * std::cos(p) + z * std::sin(p), -x * std::sin(p) + z * std::cos(p)};
+    };
     double V = 0;
     std::array<double, 2> pitch{}, stands{};
     for (std::size_t side = 0; side < 2; ++side) {
@@ -105,7 +109,8 @@ double potential_J(const std::array<double, 6> &lift) {
         pitch[side] = r, stands[side] = front + turned(rocker_x - half_m, rocker_z - R, r)[1];
     }
     const double body_kg = mass_kg - 2 * rocker_kg - 2 * bogie_kg, mean = 0.5 * (pitch[0] + pitch[1]);
-    const double roll = std::asin((stands[0] - stands[1]) / (2 * 0.12)); // the centre is in the middle: it sinks by the cosine of its height
+    const double roll =
+        std::asin((stands[0] - stands[1]) / (2 * 0.12)); // the centre is in the middle: it sinks by the cosine of its height
     return V + g * body_kg * (0.5 * (stands[0] + stands[1]) + turned(0 - rocker_x, (0.16 - rocker_z), mean)[1] * std::cos(roll));
 }
 
@@ -187,7 +192,8 @@ TEST(rocker, links_give_no_energy) {
             }
             const Energy &e = plant.energy();
             const double rest = e.motor - (e.friction + e.slip + e.rolling + e.body + e.kinetic + e.potential - start);
-            EXPECT_LT(std::fabs(rest), (rough ? 0.02 : 0.001) * throughput) << left << (rough ? " rough" : " level"); // as terrain_test, plant_numerics_test
+            EXPECT_LT(std::fabs(rest), (rough ? 0.02 : 0.001) * throughput)
+                << left << (rough ? " rough" : " level"); // as terrain_test, plant_numerics_test
         }
         EXPECT_GT(throughput, 1);
     }
@@ -197,8 +203,8 @@ TEST(rocker, links_give_no_energy) {
 
 constexpr double step_m = 0.6 * R; // its edge touches a wheel at acos(0.4), 66 degrees from below
 
-// Statics of the front wheels at the step's edge, all wheels sliding at grip mu: the mu at which the front just lifts. Unknown are the loads
-// and the force at the bogie's pivot; balances of rocker with body, and of bogie, about the pivot.
+// Statics of the front wheels at the step's edge, all wheels sliding at grip mu: the mu at which the front just lifts. Unknown are the
+// loads and the force at the bogie's pivot; balances of rocker with body, and of bogie, about the pivot.
 double grip_on_rockers() {
     const double sine = std::sqrt(1 - 0.16), cosine = 0.4;
     const double body = mass_kg - 2 * rocker_kg - 2 * bogie_kg;
@@ -242,7 +248,7 @@ TEST(rocker, a_step_that_stops_fixed_axles_is_climbed_at_the_grip_that_statics_a
     config.rover.centre_height_m = 0.08;
     const double rockers = grip_on_rockers(), fixed = grip_on_fixed_axles(config);
     std::printf("grip that a step of %.0f mm asks for: rockers %.3f, fixed axles %.3f\n", 1000 * step_m, rockers, fixed);
-    ASSERT_LT(1.15 * rockers, 0.9 * fixed);
+    ASSERT_LT(1.1 * rockers, 0.9 * fixed);
     config.ground.terrain.profile = {{0.5, 0}, {0.5, step_m}};
     config.ground.soil.adhesion_N = 0, config.ground.soil.rolling_coefficient = 0;
     config.x_m = 0.5 - half_m - R * std::sqrt(1 - 0.16) - 0.001;
@@ -257,9 +263,9 @@ TEST(rocker, a_step_that_stops_fixed_axles_is_climbed_at_the_grip_that_statics_a
         }
         return plant.truth().position_m[0] + half_m - 0.5;
     };
-    EXPECT_LT(front_at(0.85 * rockers, true), 0) << "it climbed with too little grip";
-    EXPECT_GT(front_at(1.15 * rockers, true), 0) << "it did not climb";
-    EXPECT_LT(front_at(1.15 * rockers, false), 0) << "fixed axles climbed with less grip than they need";
+    EXPECT_LT(front_at(0.9 * rockers, true), 0) << "it climbed with too little grip";
+    EXPECT_GT(front_at(1.1 * rockers, true), 0) << "it did not climb";
+    EXPECT_LT(front_at(1.1 * rockers, false), 0) << "fixed axles climbed with less grip than they need";
 }
 
 } // namespace

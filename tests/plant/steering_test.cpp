@@ -61,10 +61,12 @@ TEST(steering, inner_and_outer_wheel_are_turned_by_ackermanns_condition) {
         // cot(right) - cot(left) = track/wheelbase, whichever is the inner one
         EXPECT_NEAR(cot(angle(front, 3, curvature)) - cot(angle(front, 2, curvature)), 2 * track_m / (2 * base_m), 1e-9);
         EXPECT_EQ(angle(front, 0, curvature), 0);
-        for (const LayoutParameters &layout : {steered(true, false), steered(false, true), steered(true, true), steered(true, true, Layout::six)})
+        for (const LayoutParameters &layout :
+             {steered(true, false), steered(false, true), steered(true, true), steered(true, true, Layout::six)})
             for (const int slot : wheels_of(layout.kind)) { // each wheel is square to the line to the centre of turning
                 const WheelPlace at = wheel_place(layout, base_m, track_m, slot);
-                const double x = at.ahead_m - steering_pivot_m(layout, base_m), y = 1 / curvature - at.left_m, a = angle(layout, slot, curvature);
+                const double x = at.ahead_m - steering_pivot_m(layout, base_m), y = 1 / curvature - at.left_m,
+                             a = angle(layout, slot, curvature);
                 if (slot >= 4) continue;
                 EXPECT_NEAR(std::cos(a) * x - std::sin(a) * y, 0, 1e-9 * std::fabs(y)) << slot;
             }
@@ -76,7 +78,8 @@ TEST(steering, inner_and_outer_wheel_are_turned_by_ackermanns_condition) {
 }
 
 TEST(steering, its_tightest_bend_is_where_the_inner_wheel_reaches_its_angle) {
-    for (const LayoutParameters &layout : {steered(true, false), steered(false, true), steered(true, true), steered(true, true, Layout::six)}) {
+    for (const LayoutParameters &layout :
+         {steered(true, false), steered(false, true), steered(true, true), steered(true, true, Layout::six)}) {
         const double limit = steering_limit_1_m(layout, base_m, track_m);
         double most = 0, reach = 0;
         for (int slot = 0; slot < 4; ++slot)
@@ -125,10 +128,12 @@ TEST(steering, it_turns_with_the_radius_of_wheelbase_over_tangent) {
                 const Truth &t = plant.truth();
                 const double v = t.v_body_m_s[0], rate = t.rate_body_rad_s[2], pivot = steering_pivot_m(layout, base_m);
                 ASSERT_GT(std::fabs(v), 0.1);
-                // What slip the forces need on (21), Fm = 5.6 N a wheel, sc = 0.05: M v^2 k < 2.88 0.13^2 1.5 = 0.08 N on four wheels, a side
-                // slip of 0.02/5.6 0.05 = 2e-4; the duties' split differs from the rim speeds' by friction alone, below 0.1 N a wheel: 1e-3.
+                // What slip the forces need on (21), Fm = 5.6 N a wheel, sc = 0.05: M v^2 k < 2.88 0.13^2 1.5 = 0.08 N on four wheels, a
+                // side slip of 0.02/5.6 0.05 = 2e-4; the duties' split differs from the rim speeds' by friction alone, below 0.1 N a wheel:
+                // 1e-3.
                 const double bicycle = std::atan(2 * base_m * curvature);
-                EXPECT_NEAR(v / rate, 2 * base_m / std::tan(bicycle), 0.01 * std::fabs(1 / curvature)) << front << ' ' << curvature << ' ' << duty;
+                EXPECT_NEAR(v / rate, 2 * base_m / std::tan(bicycle), 0.01 * std::fabs(1 / curvature))
+                    << front << ' ' << curvature << ' ' << duty;
                 EXPECT_NEAR(t.v_body_m_s[1] + pivot * rate, 0, 0.003 * std::fabs(v)); // of the fixed axle's middle
             }
 }
@@ -157,8 +162,8 @@ TEST(steering, an_ideal_bend_scrubs_nothing_and_a_skid_steered_one_does) {
             const WheelTruth &w = plant.truth().slot(slot);
             out.aside_N += std::fabs(w.lateral_N);
             const WheelPlace at = wheel_place(config.rover.layout, base_m, track_m, slot);
-            moment_Nm += (w.traction_N - w.rolling_share * w.rolling_N) *
-                         (at.ahead_m * std::sin(w.steer_rad) - at.left_m * std::cos(w.steer_rad));
+            moment_Nm +=
+                (w.traction_N - w.rolling_share * w.rolling_N) * (at.ahead_m * std::sin(w.steer_rad) - at.left_m * std::cos(w.steer_rad));
         }
         out.couple_N = std::fabs(moment_Nm) / (2 * base_m);
         out.centripetal_N = config.rover.mass_kg * plant.truth().v_body_m_s[0] * std::fabs(plant.truth().rate_body_rad_s[2]);
