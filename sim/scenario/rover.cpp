@@ -177,14 +177,19 @@ LayoutParameters RoverDescription::layout() const {
     out.caster_radius_m = at("layout", "caster_radius_m"), out.caster_rolling = at("layout", "caster_rolling");
     out.drawbar_N = at("layout", "drawbar_N");
     out.drives = drives;
-    out.rocker = at("layout", "rocker") > 0.5, out.bogie_front = at("layout", "bogie_front") > 0.5;
-    out.rocker_m = at("layout", "rocker_m"), out.rocker_height_m = at("layout", "rocker_height_m");
-    out.bogie_m = at("layout", "bogie_m"), out.bogie_height_m = at("layout", "bogie_height_m");
-    out.rocker_kg = at("layout", "rocker_kg"), out.bogie_kg = at("layout", "bogie_kg");
+    out.rocker = at("layout", "rocker") > 0.5;
+    if (out.rocker) {
+        out.bogie_front = at("layout", "bogie_front") > 0.5;
+        out.rocker_m = at("layout", "rocker_m"), out.rocker_height_m = at("layout", "rocker_height_m");
+        out.bogie_m = at("layout", "bogie_m"), out.bogie_height_m = at("layout", "bogie_height_m");
+        out.rocker_kg = at("layout", "rocker_kg"), out.bogie_kg = at("layout", "bogie_kg");
+    }
     out.steer_front = at("steering", "front") > 0.5, out.steer_rear = at("steering", "rear") > 0.5;
-    constexpr double degree = math::pi / 180;
-    out.steer_max_rad = at("steering", "angle_max_deg") * degree, out.steer_rate_rad_s = at("steering", "rate_deg_s") * degree;
-    out.ackermann = at("steering", "ackermann");
+    if (out.steer_front || out.steer_rear) {
+        constexpr double degree = math::pi / 180;
+        out.steer_max_rad = at("steering", "angle_max_deg") * degree, out.steer_rate_rad_s = at("steering", "rate_deg_s") * degree;
+        out.ackermann = at("steering", "ackermann");
+    }
     return out;
 }
 
