@@ -1,5 +1,5 @@
 #!/bin/sh
-# Mutation run over firmware/core with the unit tests as judge. usage: mutate.sh [MUTANTS] [SEED] [BUILD_FOLDER]; Run: ./traction mutate
+# Mutation run over firmware/core with the unit tests as judge. usage: mutate.sh [MUTANTS] [SEED] [BUILD_FOLDER [OPTION]...]; Run: ./traction mutate
 # The mutants are universalmutator's (PyPI, pinned, in an environment of its own in the build folder).
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -13,4 +13,6 @@ if [ ! -x "$out/venv/bin/mutate" ]; then
     exit 0
   }
 fi
-exec "$out/venv/bin/python" "$root/tests/fuzz/mutate.py" --root "$root" --out "$out" --mutants "${1:-300}" --seed "${2:-1}"
+mutants=${1:-300} seed=${2:-1}
+[ $# -le 3 ] && set -- || shift 3
+exec "$out/venv/bin/python" "$root/tests/fuzz/mutate.py" --root "$root" --out "$out" --mutants "$mutants" --seed "$seed" "$@"

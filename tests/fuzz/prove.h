@@ -1,0 +1,73 @@
+// prove.h - what one run of prove.c and its parts takes from another one.
+#ifndef TRACTION_TESTS_FUZZ_PROVE_H
+#define TRACTION_TESTS_FUZZ_PROVE_H
+
+#include "firmware/core/rover_config.h"
+
+#include <__fc_builtin.h>
+
+// Proved by prove_transform for any (int16_t)(sample - mean); that no difference wraps is checked where it is called.
+/*@ requires fits: \forall integer n; 0 <= n < 256 ==> -32768 <= sample[n] - mean <= 32767;
+    assigns power[0 .. 127] \from sample[0 .. 255], mean;
+    ensures \initialized(power + (0 .. 127)); */
+void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS]);
+/*@ requires fits: \forall integer n; 0 <= n < 256 ==> -32768 <= sample[n] - mean <= 32767;
+    assigns power[0 .. 127] \from sample[0 .. 255], mean;
+    ensures \initialized(power + (0 .. 127)); */
+void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS]);
+
+// Proved by prove_line for every count.
+/*@ requires 0 <= span->count <= 64 && span->low == -16384 && span->high == 16352 && -32768 <= span->mean <= 32767;
+    requires line->bin <= 127 && -32767 <= line->a_re <= 32767 && -32767 <= line->a_im <= 32767 && 0 <= line->blocks <= 32 &&
+      line->thinks <= 37 && -8453888 <= line->re <= 8453888 && -8453888 <= line->im <= 8453888;
+    requires -8388352 <= *sum <= 8388352;
+    assigns line->next, line->re, line->im, line->past_re[0 .. 31], line->past_im[0 .. 31], line->blocks, line->thinks
+      \from *line, *span, sample[0 .. 63];
+    assigns sample[0 .. span->count - 1] \from *line, *span, sample[0 .. 63];
+    assigns *sum \from *line, *span, sample[0 .. 63], *sum;
+    ensures \forall integer n; 0 <= n < span->count ==> -16384 <= sample[n] <= 16352;
+    ensures 0 <= line->blocks <= 32 && line->thinks <= 37 && -8453888 <= line->re <= 8453888 && -8453888 <= line->im <= 8453888;
+    ensures -12582912 <= *sum <= 12582912; */
+void doppler_line_take(doppler_line_t *line, const doppler_line_span_t *span, int16_t *sample, int32_t *sum);
+
+// What no interval holds, and who holds it instead. By runs of their own:
+//   sense.step        |step| <= encoder_step_max, from a quotient         prove_step
+//   made, railed      a block holds no more than came, at most 64         prove_block
+//   safety.radar_sum  32 numbers of 10 bits                               prove_radar_dead
+//   log2_ticks        of at most 2^14                                     prove_lean
+// By proof_assumptions_test in every tick of arbitrary frames, because each is a relation between two numbers:
+//   rest_q8, lean_mean_q8, a gap's samples   a mean, and a point of a line, lie between their ends
+//   gyro_q8                                  x - x/10 is nearer to 0 than x
+//   clean, late_samples                      no more than is in the window; what came since a window that waits, for two ticks at most
+//   gyro_alone_ticks, rolls_ticks, rolls_wait, unheard_ticks, still_ticks, beyond, relief   counts that stop at their ends
+static void relations(const control_config_t *config, control_state_t *state) {
+    const int most = config->sense.encoder_step_max;
+    //@ loop unroll 4;
+    for (int n = 0; n < WHEEL_COUNT; n++) {
+        state->sense.step[n] = Frama_C_interval(-most, most);
+    }
+    //@ loop unroll 5;
+    for (int n = 0; n < DOPPLER_BLOCKS; n++) {
+        state->doppler.made[n] = Frama_C_interval(0, 64);
+        state->doppler.railed[n] = Frama_C_interval(0, 64);
+    }
+    //@ loop unroll 3;
+    for (int n = 0; n < 3; n++) {
+        state->sense.lean.rest_q8[n] = Frama_C_interval(-32768 * 256, 32767 * 256);
+    }
+    state->sense.lean.log2_ticks = Frama_C_interval(0, 14);
+    state->ground_speed.lean_mean_q8 = Frama_C_interval(-66977792, 66977792);
+    state->ground_speed.gyro_q8 = Frama_C_interval(-4194304, 4194304);
+    state->sense.gyro_q8 = Frama_C_interval(-4194304, 4194304);
+    state->doppler.clean = Frama_C_interval(0, 256);
+    state->doppler.late_samples = Frama_C_interval(-64, 191);
+    state->ground_speed.gyro_alone_ticks = Frama_C_interval(0, 1099);
+    state->ground_speed.rolls_ticks = Frama_C_interval(0, 60);
+    state->ground_speed.rolls_wait = Frama_C_interval(0, 100);
+    state->ground_speed.unheard_ticks = Frama_C_interval(0, 1000);
+    state->ground_speed.still_ticks = Frama_C_interval(0, 1000);
+    state->beyond = Frama_C_interval(0, 3);
+    state->doppler.relief = Frama_C_interval(0, 6);
+}
+
+#endif

@@ -1,0 +1,276 @@
+// What doppler makes of a spectrum: powers are put into the state as the transform would have left them, and the verdict is held to closed
+// forms in double. Units as doppler.c has them: 100 * 2^28 of a bin are one count^2 of white noise.
+#include "firmware/core/doppler_template.h"
+#include "firmware/core/rover_config.h"
+
+#include <cstdint>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace {
+
+constexpr double unit = 268435456.0; // 2^28
+using Powers = std::array<double, FFT_BINS>;
+
+const doppler_template_t &beam() { return *rover_config_default().doppler.beam; }
+int end_of_band() { return beam().first_bin + beam().bins; }
+
+doppler_state_t with(const Powers &powers) {
+    doppler_state_t state = {};
+    state.full = true;
+    for (std::size_t k = 0; k < FFT_BINS; k++) state.power[k] = static_cast<std::uint64_t>(powers[k] * unit);
+    return state;
+}
+
+doppler_output_t hear(const Powers &powers) {
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = with(powers);
+    state.pending = true;
+    const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+    EXPECT_TRUE(out.fresh);
+    return out;
+}
+
+// The template's own spectrum of a grid speed with `mean` per bin of the band, and white noise in all bins.
+Powers echo(int speed, double mean, double noise) {
+    Powers out{};
+    double sum = 0;
+    for (int k = 0; k < beam().bins; k++) sum += 1.0 / beam().inverse[speed * beam().bins + k];
+    for (std::size_t k = 0; k < FFT_BINS; k++) out[k] = noise;
+    for (int k = 0; k < beam().bins; k++)
+        out[static_cast<std::size_t>(beam().first_bin + k)] += mean * beam().bins / sum / beam().inverse[speed * beam().bins + k];
+    return out;
+}
+
+TEST(DopplerSpectrum, the_templates_own_spectrum_reads_its_speed_at_any_power) {
+    for (int speed = 10; speed < 90; speed++)
+        for (const double mean : {600.0, 1e4, 1e7}) {
+            const doppler_output_t out = hear(echo(speed, mean, 0));
+            EXPECT_FALSE(out.quiet || out.beyond || out.spoilt || out.rest || out.strange) << speed;
+            EXPECT_NEAR(std::log(out.speed_m_s / beam().speed_m_s[speed]), 0, 1.0 * static_cast<double>(beam().log_step))
+                << speed << " " << mean;
+            EXPECT_EQ(out.trust, 1.0f);
+        }
+}
+
+// Twice the noise is taken off each bin, and R grows with noise over echo: 1 + 4 N/E; below E = N there is no echo.
+TEST(DopplerSpectrum, noise_is_told_by_the_bins_above_the_band_and_costs_trust) {
+    for (const double noise : {300.0, 3000.0, 1e6})
+        for (const double ratio : {0.5, 0.9, 1.1, 2.0, 5.0, 50.0}) {
+            const doppler_output_t out = hear(echo(60, ratio * noise, noise));
+            EXPECT_EQ(out.quiet, ratio < 1) << noise << " " << ratio;
+            EXPECT_FALSE(out.beyond);
+            if (ratio < 1) continue;
+            EXPECT_NEAR(out.trust, 1 + 4 / ratio, 0.05 / ratio + 0.01) << noise << " " << ratio;
+            if (ratio > 4) {
+                EXPECT_NEAR(std::log(out.speed_m_s / beam().speed_m_s[60]), 0, 3 * static_cast<double>(beam().log_step));
+            }
+        }
+}
+
+// An echo of which more than half of the band's power is white is none, whatever stands outside.
+TEST(DopplerSpectrum, more_than_half_white_within_the_band_is_quiet) {
+    for (const int speed : {20, 40, 60, 80})
+        for (const double white : {0.3, 0.42, 0.58, 0.8}) {
+            Powers powers = echo(speed, 1e5 * (1 - white), 0);
+            for (int k = 0; k < beam().bins; k++) powers[static_cast<std::size_t>(beam().first_bin + k)] += 1e5 * white;
+            EXPECT_EQ(hear(powers).quiet, white > 0.5) << speed << " " << white;
+        }
+}
+
+TEST(DopplerSpectrum, the_stated_power_is_the_least) {
+    doppler_config_t config = rover_config_default().doppler;
+    for (const std::uint32_t least : {2u, 50u})
+        for (const double share : {0.97, 1.03}) { // sum over 2^22 is 12288 * 64 a count^2, 2^28 * 100 a bin of white noise
+            config.quiet_power_count2 = least;
+            doppler_state_t state = with(echo(60, share * least * 12288.0 / beam().bins, 0));
+            state.pending = true;
+            EXPECT_EQ(doppler_step(&config, &state, nullptr, 0).quiet, share < 1) << least;
+            config.method = DOPPLER_ARGMAX;
+            state.pending = true;
+            EXPECT_EQ(doppler_step(&config, &state, nullptr, 0).quiet, share < 1) << least;
+            config.method = DOPPLER_LIKELIHOOD;
+        }
+}
+
+// What no speed's spectrum fits: mean of P/S over its own mean is 1 for an echo; beyond 0.8 it widens the claim by 0.3 of it, beyond 2.5 it
+// is no ground's echo.
+TEST(DopplerSpectrum, a_spectrum_that_no_speed_fits_widens_the_claim_and_is_refused_beyond_two_and_a_half) {
+    int strange = 0, calm = 0;
+    for (const int low : {20, 35})
+        for (const int high : {75, 88})
+            for (double share = 0; share <= 1; share += 0.05) { // of the faster of two echoes
+                Powers powers = echo(low, 1e5 * (1 - share), 0);
+                const Powers other = echo(high, 1e5 * share, 0);
+                double total = 0;
+                for (std::size_t k = 0; k < FFT_BINS; k++) powers[k] += other[k];
+                for (int k = 0; k < beam().bins; k++) total += powers[static_cast<std::size_t>(beam().first_bin + k)];
+                double least = 1e300, fit = 0;
+                for (int i = 0; i < beam().speeds; i++) {
+                    double J = 0;
+                    for (int k = 0; k < beam().bins; k++)
+                        J += powers[static_cast<std::size_t>(beam().first_bin + k)] / total * beam().inverse[i * beam().bins + k];
+                    if (J + beam().volume[i] < least) least = J + beam().volume[i], fit = J / beam().exact;
+                }
+                const doppler_output_t out = hear(powers);
+                if (std::fabs(fit - 2.5) > 0.1) {
+                    EXPECT_EQ(out.strange, fit > 2.5) << fit;
+                }
+                EXPECT_NEAR(out.misfit, 0.3 * std::fmax(0, fit - 0.8), 0.02) << fit;
+                EXPECT_TRUE(!out.strange || out.spoilt);
+                strange += fit > 2.5 ? 1 : 0;
+                calm += fit < 2.5 ? 1 : 0;
+            }
+    EXPECT_GT(calm, 5);
+    EXPECT_GT(strange, 0);
+}
+
+// White noise is none at any level; what stands beyond the band alone, or a fifth as loud as the band, is an echo too fast for it. Less
+// than 4 count^2 tell nothing.
+TEST(DopplerSpectrum, an_echo_beyond_the_band_is_told_from_noise_and_from_an_echos_skirt) {
+    const auto outside = [](double in, double beside, double spare) {
+        Powers powers = echo(60, in, 0);
+        for (int k = end_of_band(); k < FFT_BINS; k++) powers[static_cast<std::size_t>(k)] = k < 96 ? beside : spare;
+        return hear(powers).beyond;
+    };
+    for (const double level : {500.0, 5e4, 5e6}) {
+        EXPECT_FALSE(outside(level, level, level));       // as loud everywhere
+        EXPECT_FALSE(outside(level / 2.5, level, level)); // noise, of which the band-pass takes some
+        EXPECT_TRUE(outside(level / 3.5, level, level));
+        EXPECT_TRUE(outside(level / 3.5, level, 0));
+        EXPECT_FALSE(outside(level, 0.18 * level, 0));
+    }
+    for (const double level : {1e4, 1e6}) {
+        EXPECT_TRUE(outside(level, 0.22 * level, 0));
+        EXPECT_TRUE(outside(level, 0.3 * level, 0.07 * level));
+        EXPECT_FALSE(outside(level, 0.3 * level, 0.08 * level));  // not four times what lies beyond: it is noise
+        EXPECT_FALSE(outside(level, 0.22 * level, 0.04 * level)); // 0.18 above it: an echo's skirt
+        EXPECT_TRUE(outside(level, 0.6 * level, 3.2 * level));    // an alias
+        EXPECT_FALSE(outside(level, 1.2 * level, 2.8 * level));
+    }
+    EXPECT_FALSE(outside(10, 395, 0));
+    EXPECT_TRUE(outside(10, 405, 0));
+}
+
+// A line is 5 bins of a Hann window wide: 1, 1/4 beside it.
+void add_line(Powers &powers, int bin, double power) {
+    const double shape[5] = {0.003, 0.25, 1, 0.25, 0.003};
+    for (int j = -2; j <= 2; j++)
+        if (bin + j < FFT_BINS) powers[static_cast<std::size_t>(bin + j)] += power * shape[j + 2];
+}
+
+doppler_state_t look_outside(const Powers &powers) {
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = with(powers);
+    state.weigh_outside = true;
+    doppler_step(&config, &state, nullptr, 0); // a call that has time
+    EXPECT_FALSE(state.weigh_outside);
+    return state;
+}
+
+TEST(DopplerSpectrum, up_to_three_lines_beyond_the_band_are_no_echo_and_the_noise_is_what_they_leave) {
+    for (const std::vector<int> &bins : {std::vector<int>{60}, {50, 100}, {60, 80, 120}, {49, 75, 127}}) {
+        const Powers plain = echo(20, 2e4, 500);
+        Powers powers = plain;
+        for (std::size_t i = 0; i < bins.size(); i++) add_line(powers, bins[i], 4e5 / static_cast<double>(i + 1));
+        const doppler_state_t state = look_outside(powers);
+        EXPECT_TRUE(state.outside_lines) << bins.size() << " " << bins[0];
+        double sum = 0, count = 0; // of what is no line's, from eight bins below the band's end on
+        for (int k = end_of_band() - 8; k < FFT_BINS; k++) {
+            bool line = false;
+            for (const int bin : bins) {
+                line = line || std::abs(k - bin) <= 2;
+            }
+            sum += line ? 0 : plain[static_cast<std::size_t>(k)];
+            count += line ? 0 : 1;
+        }
+        EXPECT_NEAR(state.outside_noise, sum / count, 2) << bins.size() << " " << bins[0];
+        const doppler_config_t config = rover_config_default().doppler;
+        doppler_state_t next = state;
+        next.pending = true;
+        const doppler_output_t out = doppler_step(&config, &next, nullptr, 0);
+        EXPECT_FALSE(out.beyond);
+        EXPECT_NEAR(out.trust, 1 + 4 * sum / count / 2e4, 0.05);
+        EXPECT_NEAR(std::log(out.speed_m_s / beam().speed_m_s[20]), 0, 2 * static_cast<double>(beam().log_step));
+    }
+    Powers four = echo(50, 2e4, 500);
+    for (const int bin : {55, 70, 85, 110}) add_line(four, bin, 4e5);
+    EXPECT_TRUE(look_outside(four).outside_noise > 1000); // the fourth stays
+    Powers fast = echo(50, 1e3, 500);                     // an echo is as wide as it is fast
+    for (std::size_t k = 58; k < 90; k++) fast[k] += 4e4;
+    EXPECT_FALSE(look_outside(fast).outside_lines);
+    Powers noise = echo(50, 1e4, 500);
+    EXPECT_FALSE(look_outside(noise).outside_lines);
+    add_line(noise, 70, 500 * 4); // no louder than noise may be: eight times the others
+    EXPECT_FALSE(look_outside(noise).outside_lines);
+}
+
+// (3) in double: l = log2 P;  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35, and m 2 above that of k - 4 and k + 4.
+TEST(DopplerSpectrum, a_line_is_what_stands_out_and_does_not_sway) {
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = {};
+    state.full = true;
+    std::array<double, FFT_BINS> mean{}, sway{};
+    std::uint32_t random = 1;
+    int checked = 0, lines = 0;
+    for (int value = 0; value < 60; value++) {
+        for (int k = 0; k < FFT_BINS; k++) {
+            random = random * 1664525u + 1013904223u;
+            const double chance = -std::log((random + 1.0) / 4294967297.0);           // exponential, as an echo's powers
+            const double steady = (random >> 8) % 100 / 100.0 - 0.5;                  // of a line
+            const bool constant = k == 20 || k == 40 || k == 10 || k == 30 || k == 4; // 30 stands out too little, 4 lies too low
+            const double level = k == 20 ? 1e5 : k == 40 ? 3e3 : k == 10 ? 1e4 : k == 30 ? 150 : k == 4 ? 1e5 : 100;
+            const double power = constant ? level * std::pow(2.0, 0.6 * steady) : level * chance;
+            state.power[k] = static_cast<std::uint64_t>(power * unit);
+            const double l = std::log2(static_cast<double>(state.power[k] | 1u));
+            const double away = value == 0 ? 0 : l - mean[static_cast<std::size_t>(k)];
+            if (value == 0) mean[static_cast<std::size_t>(k)] = l, sway[static_cast<std::size_t>(k)] = 2;
+            sway[static_cast<std::size_t>(k)] += (std::fabs(away) - sway[static_cast<std::size_t>(k)]) / 8;
+            mean[static_cast<std::size_t>(k)] += away / 8;
+        }
+        state.due = 1;
+        doppler_step(&config, &state, nullptr, 0);
+        for (int k = 4; k < end_of_band(); k++) {
+            const auto at = static_cast<std::size_t>(k);
+            EXPECT_NEAR(state.level_q8[k] / 256.0, mean[at], 0.13) << k; // 0.09 of log2_q8, and rounding
+            EXPECT_NEAR(state.sway_q8[k] / 256.0, sway[at], 0.16) << k;
+            const bool told = (state.line[k / 32] >> (k % 32) & 1u) != 0u;
+            if (k < 8 || k >= end_of_band() - 4) {
+                EXPECT_FALSE(told) << k;
+                continue;
+            }
+            const double above = mean[at] - std::fmax(mean[at - 4], mean[at + 4]);
+            const bool line = sway[at] < 0.35 && above > 2;
+            if (std::fabs(sway[at] - 0.35) < 0.17 || std::fabs(above - 2) < 0.26) continue; // within what whole numbers cost
+            EXPECT_EQ(told, line) << k << " sway " << sway[at] << " above " << above;
+            checked++;
+            lines += line ? 1 : 0;
+        }
+    }
+    EXPECT_GT(checked, 1500);
+    EXPECT_GT(lines, 30);
+}
+
+// The five bins around a line are replaced by the mean of the bins beside them; so the echo reads its speed, and is as loud as it is.
+TEST(DopplerSpectrum, a_known_line_within_the_band_is_left_out) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int bin : {8, 12, 20, 31, 32, 40}) {
+        Powers powers = echo(60, 2e4, 0), plain = powers;
+        for (int j = -2; j <= 2; j++)
+            plain[static_cast<std::size_t>(bin + j)] =
+                (plain[static_cast<std::size_t>(bin - 3)] + plain[static_cast<std::size_t>(bin + 3)]) / 2;
+        add_line(powers, bin, 3e6);
+        doppler_state_t state = with(powers);
+        state.line[bin / 32] = 1u << (bin % 32);
+        state.pending = true;
+        const doppler_output_t without = doppler_step(&config, &state, nullptr, 0), expected = hear(plain);
+        EXPECT_EQ(without.speed_m_s, expected.speed_m_s) << bin;
+        EXPECT_EQ(without.misfit, expected.misfit) << bin;
+        EXPECT_NE(hear(powers).speed_m_s, expected.speed_m_s) << bin; // it would have been heard
+    }
+}
+
+} // namespace
