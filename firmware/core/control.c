@@ -36,6 +36,14 @@ enum { BEYOND_VALUES = 3 }; // in a row: a quarter of a second
 
 static float rim_hint_m_s(const control_config_t *config, const sense_output_t *sense)
 {
+    if (steering_there(&config->steering)) { // what the body has of it
+        float ahead_m_s = 0.0f;
+        for (int32_t i = 0; i < WHEEL_COUNT; i++) {
+            const float rim_m_s = sense->speed_rad_s[i] * config->slip.wheel_radius_m;
+            ahead_m_s += steering_forward(&config->steering, i, rim_m_s, sense->gyro_z_rad_s);
+        }
+        return config->geometry.wheel_share * ahead_m_s;
+    }
     const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
     return config->geometry.wheel_share * sum * config->slip.wheel_radius_m; // a wheel that is not there has speed 0
 }
@@ -123,20 +131,21 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
 }
 
 typedef struct {
-    float left_m_s, right_m_s;
+    float wheel_m_s[WHEEL_COUNT];
 } ground_t;
 
-// Ground speed of the wheels' centres along their heading: the body's, and what the yaw rate adds at half a track to the side.
+// Ground speed of the wheels' centres along their heading: the body's, and what the yaw rate adds at half a track to the side; of a wheel
+// that steers, what it rolls.
 static ground_t wheels_ground(const control_config_t *config, float speed_m_s, float yaw_rate_rad_s)
 {
     const float offset = config->geometry.half_track_m * yaw_rate_rad_s;
-    const ground_t out = {speed_m_s - offset, speed_m_s + offset};
+    const float left_m_s = speed_m_s - offset;
+    const float right_m_s = speed_m_s + offset;
+    ground_t out = {{left_m_s, right_m_s, left_m_s, right_m_s}};
+    for (int32_t i = 0; i < WHEEL_COUNT && steering_there(&config->steering); i++) {
+        out.wheel_m_s[i] = steering_rim(&config->steering, i, out.wheel_m_s[i], yaw_rate_rad_s);
+    }
     return out;
-}
-
-static float of_wheel(const ground_t *ground, int wheel)
-{
-    return wheel == WHEEL_REAR_LEFT || wheel == WHEEL_FRONT_LEFT ? ground->left_m_s : ground->right_m_s;
 }
 
 // A root and a division: of one wheel, in ticks without a transform or a search.
@@ -146,7 +155,7 @@ static void doubt_slip(const control_config_t *config, control_state_t *state, c
         return;
     }
     const int32_t i = state->slip_turn & (WHEEL_COUNT - 1);
-    state->slip_std[i] = slip_std(&config->slip, estimate->sense->speed_rad_s[i], of_wheel(ground, i), estimate->speed_std_m_s);
+    state->slip_std[i] = slip_std(&config->slip, estimate->sense->speed_rad_s[i], ground->wheel_m_s[i], estimate->speed_std_m_s);
     state->slip_turn = (i + 1) & (WHEEL_COUNT - 1);
 }
 
@@ -161,7 +170,7 @@ static void estimate_wheels(const control_config_t *config, control_state_t *sta
         wheel_trace_t *wheel = &trace->wheel[i];
         const sense_output_t *sense = estimate->sense;
         const motor_output_t motor = motor_measure(&config->motor, sense->current_A[i], sense->speed_rad_s[i], sense->accel_rad_s2[i]);
-        estimate->slip[i] = slip_measure(&config->slip, sense->speed_rad_s[i], of_wheel(&ground, i));
+        estimate->slip[i] = slip_measure(&config->slip, sense->speed_rad_s[i], ground.wheel_m_s[i]);
         wheel->speed_rad_s = sense->speed_rad_s[i];
         wheel->accel_rad_s2 = sense->accel_rad_s2[i];
         wheel->current_A = sense->current_A[i];
@@ -234,6 +243,24 @@ static float speed_to_steer_by(control_state_t *state, const estimate_t *estimat
     return reference_m_s + state->steer_share * (estimate->speed_m_s - reference_m_s);
 }
 
+// The curvature that is steered, and the yaw rate that goes with it at the speed that is asked for: a rover that steers cannot turn more.
+static float steer(const control_config_t *config, control_state_t *state, const command_t *command)
+{
+    const speed_control_config_t *most = &config->speed_control;
+    const float speed_m_s = fixed_clamp(fixed_finite(command->platform_speed_m_s), -most->speed_max_m_s, most->speed_max_m_s);
+    const float yaw = fixed_clamp(fixed_finite(command->yaw_rate_rad_s), -most->yaw_rate_max_rad_s, most->yaw_rate_max_rad_s);
+    state->curvature_1_m = steering_curvature(&config->steering, speed_m_s, yaw);
+    return state->curvature_1_m * speed_m_s;
+}
+
+// The reference of a wheel that rolls round the bend, from that of its side.
+static float steered_rad_s(const control_config_t *config, int32_t wheel, float side_rad_s, float yaw_rate_rad_s)
+{
+    const float limit = config->speed_control.wheel_max_rad_s;
+    const float rim_m_s = steering_rim(&config->steering, wheel, side_rad_s * config->geometry.wheel_radius_m, yaw_rate_rad_s);
+    return fixed_clamp(rim_m_s * config->speed_control.per_radius_1_m, -limit, limit);
+}
+
 static void drive_mode(const control_config_t *config, control_state_t *state, const estimate_t *estimate, control_mode_t mode,
                        trace_t *trace)
 {
@@ -242,6 +269,13 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
     uint8_t slip_active = 0;
     speed_control_output_t platform = {0.0f, 0.0f};
     float front_rad_s = 0.0f;
+    float yaw_rate_rad_s = command->yaw_rate_rad_s;
+    const bool steers = steering_there(&config->steering) && (mode == MODE_PLATFORM_SPEED || mode == MODE_SLIP);
+    if (steers) {
+        yaw_rate_rad_s = steer(config, state, command);
+    } else if (mode != MODE_STOP) {
+        state->curvature_1_m = 0.0f; // the other modes ask for no bend
+    }
     if (new_mode) {
         state->speed_control.integral_rad_s = 0.0f;
         state->soil_sweep.elapsed_ticks = 0;
@@ -249,7 +283,7 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
     if (mode == MODE_PLATFORM_SPEED || mode == MODE_SLIP || mode == MODE_SOIL_SWEEP) {
         const speed_control_input_t input = {
             .speed_ref_m_s = command->platform_speed_m_s,
-            .yaw_rate_ref_rad_s = mode == MODE_SOIL_SWEEP ? 0.0f : command->yaw_rate_rad_s,
+            .yaw_rate_ref_rad_s = mode == MODE_SOIL_SWEEP ? 0.0f : yaw_rate_rad_s,
             .speed_m_s = speed_to_steer_by(state, estimate, fixed_finite(command->platform_speed_m_s)),
             .saturated = state->saturated,
         };
@@ -269,7 +303,10 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
         const bool left = i == WHEEL_REAR_LEFT || i == WHEEL_FRONT_LEFT;
         const bool front = i == WHEEL_FRONT_LEFT || i == WHEEL_FRONT_RIGHT;
         const bool had_slip = !new_mode && (state->slip_active & bit) != 0u;
-        const float side_rad_s = left ? platform.left_rad_s : platform.right_rad_s;
+        float side_rad_s = left ? platform.left_rad_s : platform.right_rad_s;
+        if (steers) {
+            side_rad_s = steered_rad_s(config, i, side_rad_s, yaw_rate_rad_s);
+        }
         if (mode == MODE_OPEN_LOOP) {
             wheel->duty = fixed_clamp(fixed_finite(command->duty[i]), -1.0f, 1.0f);
         } else if (mode == MODE_WHEEL_SPEED) {
@@ -361,6 +398,7 @@ static void actuate(const control_config_t *config, control_state_t *state, cons
     state->driven = mode != MODE_STOP || state->braking;
     trace->actuator.sequence = ++state->sequence;
     trace->actuator.status_led = safety->faults != 0u;
+    trace->actuator.curvature_1_m = state->curvature_1_m;
     trace->mode = mode;
     trace->faults = safety->faults;
     trace->fault_wheels = safety->wheels;

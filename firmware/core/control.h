@@ -17,6 +17,7 @@
 #include "slip_pi.h"
 #include "soil_sweep.h"
 #include "speed_control.h"
+#include "steering.h"
 #include "wheel_pid.h"
 
 #ifdef __cplusplus
@@ -49,6 +50,7 @@ typedef struct {
     wheel_pid_config_t wheel_pid;
     slip_pi_config_t slip_pi;
     speed_control_config_t speed_control;
+    steering_config_t steering;
     soil_sweep_config_t soil_sweep;
     safety_config_t safety;
     self_test_config_t self_test; // of whoever runs it; control_step does not
@@ -77,6 +79,7 @@ typedef struct {
     int32_t slip_turn;           // the wheel whose turn it is
     float steer_std_m_s;         // standard deviation of the speed for which the next was made
     float steer_share;           // of an error of the platform's speed that counts [1]
+    float curvature_1_m;         // the steering servo's order of the last tick; a rover that stops keeps it
     doppler_output_t heard;      // by the tick before: no tick pays for a search and a correction
     int32_t beyond;              // Doppler values in a row that told of more speed than the radar's band holds
 } control_state_t;

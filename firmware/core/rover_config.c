@@ -241,6 +241,9 @@ static void build_control(const float *v, control_config_t *config)
     config->wheel_pid = wheel_pid;
     config->slip_pi = slip_pi;
     config->speed_control = speed_control;
+    config->steering.front_m = v[ROVER_steer_front_m];
+    config->steering.rear_m = v[ROVER_steer_rear_m];
+    config->steering.limit_1_m = v[ROVER_steer_limit_1_m];
     config->soil_sweep.ramp_1_m = tick_s / (v[ROVER_wheel_radius_m] * v[ROVER_sweep_zero_s]); // (15)
     config->soil_sweep.duration_ticks =
         (uint32_t)(fixed_clamp(fixed_finite(v[ROVER_sweep_duration_s]), 0.0f, 36000.0f) * ticks_per_s + 0.5f);
@@ -380,6 +383,11 @@ static control_refusal_t check_ranges(const rover_parameters_t *parameters)
     const float mask = parameters->value[ROVER_wheel_mask];
     if (mask > (float)whole(mask) || mask < (float)whole(mask)) {
         return refuse(rover_parameter_name(ROVER_wheel_mask), "not a sum of 1, 2, 4, 8 for the wheels 0 to 3; give 15 for all four");
+    }
+    const bool axle = parameters->value[ROVER_steer_front_m] > 0.0f || parameters->value[ROVER_steer_rear_m] < 0.0f;
+    if (axle != (parameters->value[ROVER_steer_limit_1_m] > 0.0f)) {
+        return refuse(rover_parameter_name(ROVER_steer_limit_1_m),
+                      "an axle that steers (steer_front_m, steer_rear_m) and how far belong together; give both, or none");
     }
     return refuse(0, 0);
 }

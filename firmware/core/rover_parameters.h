@@ -96,7 +96,10 @@ extern "C" {
     X(speed_integral_max_rad_s, SCALED, 6.0f, 0.0f, 500.0f)                                                                                \
     X(sweep_zero_s, OWN, 10.0f, 1.0f, 600.0f)                                                                                              \
     X(sweep_duration_s, OWN, 20.0f, 1.0f, 3600.0f)                                                                                         \
-    X(wheel_mask, OWN, 15.0f, 1.0f, 15.0f) /* bit i: the rover has wheel i */
+    X(wheel_mask, OWN, 15.0f, 1.0f, 15.0f)  /* bit i: the rover has wheel i */                                                             \
+    X(steer_front_m, OWN, 0.0f, 0.0f, 4.0f) /* these three: steering.h; 0: nothing steers */                                               \
+    X(steer_rear_m, OWN, 0.0f, -4.0f, 0.0f)                                                                                                \
+    X(steer_limit_1_m, OWN, 0.0f, 0.0f, 50.0f)
 
 typedef enum {
 #define ROVER_PARAMETER_INDEX(key, kind, value, low, high) ROVER_##key,

@@ -82,6 +82,7 @@ typedef struct {
     drive_state_t drive;           // of all bridges
     int16_t duty_q15[WHEEL_COUNT]; // PWM rate with DRIVE_ON, Q15: -32767..32767 is -1..1; 0 otherwise
     bool status_led;
+    float curvature_1_m; // of the path of the rover's middle, to the left positive: the order of the steering servo; 0 without one
 } actuator_frame_t;
 
 typedef enum {

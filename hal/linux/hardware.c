@@ -144,6 +144,9 @@ static bool read_line(reading_t *reading, char *line) {
     cut_comment(line);
     line = trim(line);
     if (*line == '[') {
+        if (strcmp(line, "[steering]") == 0) {
+            return fail(reading, "steering", line, "these devices have no steering servo: a rover that steers is simulated alone");
+        }
         reading->inside = strcmp(line, "[hardware]") == 0;
         if (reading->inside && reading->section_line != 0) {
             return fail(reading, "section", line, "given twice; keep one");

@@ -26,6 +26,7 @@ void SimHal::obey(const Order &order) {
             const auto rear = static_cast<std::size_t>(side), front = rear + 2;
             plant_.set_duty(4 + side, order.drive == DRIVE_ON ? 0.5 * (order.duty[rear] + order.duty[front]) : 0);
         }
+    plant_.set_curvature(order.curvature_1_m); // the servo has a supply of its own: it holds while the motors are released
     plant_.set_enabled(order.drive == DRIVE_ON || order.drive == DRIVE_BRAKE);
 }
 
@@ -124,8 +125,11 @@ hal_t SimHal::hal() {
             self->lost_writes_ += written == HAL_ERR_TIMEOUT ? 1 : 0;
             return written;
         }
-        Order order{
-            .due_ms = self->now_ms_ + self->config_.bus_latency_ms, .duty = {}, .drive = actuator->drive, .sequence = actuator->sequence};
+        Order order{.due_ms = self->now_ms_ + self->config_.bus_latency_ms,
+                    .duty = {},
+                    .drive = actuator->drive,
+                    .sequence = actuator->sequence,
+                    .curvature_1_m = static_cast<double>(actuator->curvature_1_m)};
         for (std::size_t i = 0; i < sim::wheel_count; i++) order.duty[i] = actuator->duty_q15[i] / 32767.0;
         self->orders_.push_back(order);
         return HAL_OK;

@@ -69,6 +69,7 @@ class SimHal {
         std::array<double, sim::wheel_count> duty;
         drive_state_t drive;
         std::uint32_t sequence;
+        double curvature_1_m;
     };
     void obey(const Order &order);
     void obey_nodes();

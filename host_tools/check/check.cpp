@@ -91,6 +91,19 @@ void declared_drives(const log::Log &log, const Machine &machine, std::vector<Fi
                         .value = 2});
 }
 
+// Its wheels that steer (header `rover.steering`): the models' wheels keep the body's heading, and a bend would look like slip.
+void declared_steering(const log::Log &log, const Machine &machine, std::vector<Finding> &findings) {
+    const auto told = log.header.find("rover.steering");
+    if (told == log.header.end() || machine.wheel_y_m.empty() || !machine.on_ground) return;
+    findings.push_back(
+        {.id = "wheels",
+         .severity = Severity::error,
+         .signal = "",
+         .text = "the log's rover steers its wheels (header rover.steering = " + told->second + "), the model's keep their heading",
+         .mend = "none: the lab has no model of a rover that steers",
+         .value = 0});
+}
+
 } // namespace
 
 Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const Machine &machine) {
@@ -99,6 +112,7 @@ Report check(const log::Log &log, const std::vector<log::Repair> &repairs, const
     check_quality(log, repairs, grid, report.findings, report.rates);
     declared_wheels(log, machine, report.findings);
     declared_drives(log, machine, report.findings);
+    declared_steering(log, machine, report.findings);
     if (grid.count >= 50) { // 2.5 s
         check_magnitudes(grid, report.findings);
         check_drives(grid, machine, report.findings);

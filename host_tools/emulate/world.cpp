@@ -43,6 +43,9 @@ void check(const sim::Scenario &scenario, Sensors sensors) {
         throw sim::ScenarioError(scenario.file, scenario.rover.drives_line, "layout.drives", "",
                                  "the emulated board has four wheel nodes on its bus",
                                  "use `traction simulate`, where the wheels are wired");
+    if (!sim::steered_axles(scenario.rover.layout()).empty())
+        throw sim::ScenarioError(scenario.file, 0, "steering", "", "the emulated board has no steering servo",
+                                 "use `traction simulate`, whose rover has one");
     if (!scenario.missed_ticks.empty()) refuse(scenario, "missed_ticks", "the board misses its own ticks; leave it out");
     for (const sim::CanFault &fault : scenario.can_faults)
         if (fault.kind == sim::CanFaultKind::bus_off && (fault.node == sim::CanNode::computer || fault.node == sim::CanNode::all))

@@ -75,6 +75,7 @@ constexpr std::array table{
     Quantity{"frame", "emergency_stop", "", Kind::raw, "1 while the emergency-stop line is active"},
     Quantity{"actuator", "drive", "", Kind::command,
              "what the bridges were told, number of drive_state_t: 0 off, 1 coast, 2 brake, 3 drive"},
+    Quantity{"actuator", "curvature", "1_m", Kind::command, "order of the steering servo: curvature of the path, left turn positive"},
     Quantity{"control", "fault_wheels", "", Kind::estimate, "bit i: a latched fault is wheel i's"},
     Quantity{"actuator", "motor_enable", "", Kind::command,
              "1 while the bridges drive or brake the motors, 0 while they are released and no current flows"},

@@ -174,6 +174,7 @@ class Compare : public Link {
         watch("estimate.speed_m_s", [](const trace_t &t, std::size_t) { return t.speed_m_s; });
         watch("estimate.speed_std_m_s", [](const trace_t &t, std::size_t) { return t.speed_std_m_s; });
         watch("estimate.accel_bias_m_s2", [](const trace_t &t, std::size_t) { return t.accel_bias_m_s2; });
+        watch("actuator.curvature_1_m", [](const trace_t &t, std::size_t) { return t.actuator.curvature_1_m; });
         watch("control.faults", [](const trace_t &t, std::size_t) { return static_cast<float>(t.faults); }); // 20 bits: exact
     }
     void command(const sensor_frame_t &, command_t &command) override { command = replay_.command; }

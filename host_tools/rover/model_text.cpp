@@ -74,6 +74,9 @@ std::string model_text(const sim::RoverDescription &rover, const std::string &so
     if (rover.layout().kind != sim::Layout::four)
         throw std::invalid_argument("--model: the lab's models have four wheels on two axles, " + rover.name +
                                     " has not; leave --model out");
+    if (!sim::steered_axles(rover.layout()).empty())
+        throw std::invalid_argument("--model: the wheels of \"" + rover.name +
+                                    "\" steer, and the lab's models have wheels that keep the body's heading; leave --model out");
     const double mass = rover.at("body", "mass_kg"), length = rover.at("body", "length_m"), width = rover.at("body", "width_m");
     std::string text = "# Made by traction rover from " + rover.name +
                        ".\nformat = \"traction.model/1\"\nname = " + quoted(rover.name + " on " + soil_name) +

@@ -2,6 +2,8 @@
 
 #include "radar_geometry.h"
 
+#include "sim/plant/steering.h"
+
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -57,6 +59,11 @@ parameters_t firmware_parameters(const sim::RoverDescription &rover) {
     }
     const sim::LayoutParameters layout = rover.layout();
     set(out, "wheel_mask", sim::firmware_wheels(layout), true);
+    const double base_m = rover.at("body", "half_wheelbase_m"), track_m = rover.at("body", "half_track_m");
+    const double pivot_m = sim::steering_pivot_m(layout, base_m);
+    set(out, "steer_front_m", base_m - pivot_m, layout.steer_front);
+    set(out, "steer_rear_m", -base_m - pivot_m, layout.steer_rear);
+    set(out, "steer_limit_1_m", sim::steering_limit_1_m(layout, base_m, track_m), layout.steer_front || layout.steer_rear);
     // the firmware takes a quarter of its mass for a wheel's load; told so that this is the heaviest's
     if (!sim::is_plain(layout)) set(out, "mass_kg", 4 * rover.heaviest_kg(), true);
     rover_parameters_scale(&out.rover, out.given);

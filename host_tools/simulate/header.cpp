@@ -49,6 +49,7 @@ void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &l
     }
     if (rover.layout().kind != sim::Layout::four) log.header["rover.wheels"] = number(rover.at("layout", "wheels"));
     if (rover.drives[0] >= 0) log.header["rover.drives"] = std::to_string(rover.drives[0]) + ' ' + std::to_string(rover.drives[1]);
+    if (const std::string axles = sim::steered_axles(rover.layout()); !axles.empty()) log.header["rover.steering"] = axles;
     log.header["encoder.rad_per_count"] = number(rad_per_count);
     log.header["noise.battery.voltage_V"] = number(sensors.battery.noise);
     log.header["quantum.battery.voltage_V"] = number(scale.battery_V);

@@ -1,5 +1,7 @@
 #include "recorder.h"
 
+#include "sim/plant/steering.h"
+
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -72,7 +74,8 @@ Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std
            .accel_z = column("imu.accel_z_count"),
            .gyro_x = column("imu.gyro_x_count"),
            .gyro_y = column("imu.gyro_y_count"),
-           .fault_wheels = column("control.fault_wheels", true)};
+           .fault_wheels = column("control.fault_wheels", true),
+           .curvature = column("actuator.curvature_1_m", true)};
 }
 
 // A double whose shortest text reads back to this very float.
@@ -161,6 +164,7 @@ void Recorder::add_estimates(double t_s, const trace_t &trace) {
     put(at_.mode, t_s, trace.mode);
     put(at_.faults, t_s, trace.faults);
     put(at_.fault_wheels, t_s, trace.fault_wheels);
+    put(at_.curvature, t_s, tidy(trace.actuator.curvature_1_m));
     put(at_.drive, t_s, trace.actuator.drive);
     put(at_.motor_enable, t_s, trace.actuator.drive == DRIVE_ON || trace.actuator.drive == DRIVE_BRAKE ? 1 : 0);
 }
@@ -182,17 +186,21 @@ void Recorder::add_camera(std::span<const sim::Pose> poses) {
     }
 }
 
-TruthRecorder::TruthRecorder(const std::string &path, bool on_terrain, sim::Layout layout)
+TruthRecorder::TruthRecorder(const std::string &path, bool on_terrain, const sim::LayoutParameters &layout)
     : spool_(path), on_terrain_(on_terrain), layout_(layout) {
     for (const char *name : {"truth.x_m", "truth.y_m", "truth.yaw_rad", "truth.pitch_rad", "truth.speed_m_s", "truth.path_m",
                              "truth.accel_x_m_s2", "truth.battery_voltage_V"})
         spool_.add(name);
-    for (const int i : sim::wheels_of(layout_))
+    for (const int i : sim::wheels_of(layout_.kind))
         for (const char *name : {"speed_rad_s", "current_A", "duty", "slip", "traction_N", "rolling_N", "lateral_N", "normal_N",
                                  "sinkage_m", "ground_speed_m_s", "temperature_degC"})
             spool_.add("truth.wheel" + std::to_string(i) + '.' + name);
     if (on_terrain_)
         for (const char *name : {"truth.z_m", "truth.roll_rad", "truth.joint_rad"}) spool_.add(name);
+    for (const int i : sim::wheels_of(layout_.kind))
+        if (sim::steers(layout_, i)) spool_.add("truth.wheel" + std::to_string(i) + ".steer_rad");
+    if (layout_.rocker)
+        for (const char *name : {"truth.rocker0_rad", "truth.rocker1_rad", "truth.bogie0_rad", "truth.bogie1_rad"}) spool_.add(name);
 }
 
 void TruthRecorder::add(const sim::Truth &truth) {
@@ -210,7 +218,7 @@ void TruthRecorder::add(const sim::Truth &truth) {
     put(truth.path_m);
     put(truth.specific_force_m_s2[0]);
     put(truth.battery_voltage_V);
-    for (const int i : sim::wheels_of(layout_)) {
+    for (const int i : sim::wheels_of(layout_.kind)) {
         const sim::WheelTruth &wheel = truth.slot(i);
         for (const double value : {wheel.speed_rad_s, wheel.current_A, wheel.duty, wheel.slip, wheel.traction_N, wheel.rolling_N,
                                    wheel.lateral_N, wheel.normal_N, wheel.sinkage_m, wheel.ground_speed_m_s, wheel.winding_temperature_C})
@@ -218,6 +226,10 @@ void TruthRecorder::add(const sim::Truth &truth) {
     }
     if (on_terrain_)
         for (const double value : {truth.position_m[2], truth.roll_rad, truth.joint_rad}) put(value);
+    for (const int i : sim::wheels_of(layout_.kind))
+        if (sim::steers(layout_, i)) put(truth.slot(i).steer_rad);
+    if (layout_.rocker)
+        for (const double value : {truth.rocker_rad[0], truth.rocker_rad[1], truth.bogie_rad[0], truth.bogie_rad[1]}) put(value);
 }
 
 } // namespace traction

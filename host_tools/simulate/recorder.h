@@ -54,15 +54,16 @@ class Recorder {
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,
             speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate, command_slip,
             command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable, drive, time, elapsed, sequence, accel_y,
-            accel_z, gyro_x, gyro_y, fault_wheels;
+            accel_z, gyro_x, gyro_y, fault_wheels, curvature;
     } at_{};
 };
 
 // The truth of one run, in columns of its own, one row per tick. Only ever written to a separate file.
 class TruthRecorder {
   public:
-    // path as Recorder's; on terrain height, roll and joint too; the wheels of `layout` (sim/plant/layout.h)
-    explicit TruthRecorder(const std::string &path = "", bool on_terrain = false, sim::Layout layout = sim::Layout::four);
+    // path as Recorder's; on terrain height, roll and joint too; the wheels of `layout` (sim/plant/layout.h), and how those that
+    // steer stand
+    explicit TruthRecorder(const std::string &path = "", bool on_terrain = false, const sim::LayoutParameters &layout = {});
     void add(const sim::Truth &truth);
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
@@ -70,7 +71,7 @@ class TruthRecorder {
   private:
     log::Spool spool_;
     bool on_terrain_;
-    sim::Layout layout_;
+    sim::LayoutParameters layout_;
 };
 
 } // namespace traction

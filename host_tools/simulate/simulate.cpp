@@ -84,7 +84,7 @@ class Session : public Link {
         : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
           recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path,
                     sim::firmware_wheels(believed(scenario).layout())),
-          truth_(options.truth_path, !scenario.plant.ground.terrain.flat(), scenario.plant.rover.layout.kind) {
+          truth_(options.truth_path, !scenario.plant.ground.terrain.flat(), scenario.plant.rover.layout) {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
     }
@@ -142,8 +142,10 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     effects.insert(effects.end(), options.effects.begin(), options.effects.end());
     if (const auto &hide = options.hide ? options.hide : scenario.hidden) {
         if (!sim::is_plain(scenario.rover.layout()))
-            throw sim::ScenarioError(scenario.file, 0, "--hide", "", "effects are hidden in rovers of four wheels alone, with a motor each",
-                                     "leave it out");
+            throw sim::ScenarioError(
+                scenario.file, 0, "--hide", "",
+                "effects are hidden in rovers of four wheels alone, on a plain chassis, with a motor each and fixed in their heading",
+                "leave it out");
         result.hidden = sim::draw_effects(*hide);
         result.hide_seed = hide->seed;
         effects.insert(effects.end(), result.hidden.begin(), result.hidden.end());

@@ -8,9 +8,6 @@
 
 namespace traction::sim {
 
-namespace {
-
-// Yaw (by its cosine and sine), then roll, then pitch (nose down).
 void turn_of(double c, double s, double roll_rad, double pitch_rad, dMatrix3 turn) {
     const double cp = math::cos(pitch_rad), sp = math::sin(pitch_rad), cr = math::cos(roll_rad), sr = math::sin(roll_rad);
     turn[0] = c * cp - s * sr * sp, turn[1] = -s * cr, turn[2] = c * sp + s * sr * cp, turn[3] = 0;
@@ -18,9 +15,8 @@ void turn_of(double c, double s, double roll_rad, double pitch_rad, dMatrix3 tur
     turn[8] = -cr * sp, turn[9] = sr, turn[10] = cr * cp, turn[11] = 0;
 }
 
-} // namespace
-
 void Plant::World::build_bodies() {
+    if (config.rover.layout.rocker) return build_rocker();
     const RoverParameters &r = config.rover;
     const double height = law::load_transfer_m(r.centre_height_m, effects.body.raised_m);
     const double load = r.mass_kg * std::fabs(gravity[2]) / 4;
@@ -41,8 +37,10 @@ void Plant::World::build_bodies() {
         dBodySetRotation(body, turn);
         dBodySetPosition(body, config.x_m - sin_yaw * aside, config.y_m + cos_yaw * aside, height - sunk);
         dBodySetLinearVel(body, config.speed_m_s * cos_yaw, config.speed_m_s * sin_yaw, 0);
+        bodies.push_back(body);
         for (const int i : wheels)
             if (is_left(i) == (h == 0))
+                carrier[static_cast<std::size_t>(i)] = body,
                 contact_at[static_cast<std::size_t>(i)] = {law::mass_offset_m(place(i).ahead_m, effects.body.offset_x_m),
                                                            law::mass_offset_m(place(i).left_m - aside, effects.body.offset_y_m), -height};
     }

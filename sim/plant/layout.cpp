@@ -32,7 +32,13 @@ int motor_of(const LayoutParameters &layout, int slot) {
     return layout.drives[0] < 0 ? slot : layout.drives[static_cast<std::size_t>(slot % 2)];
 }
 
-bool is_plain(const LayoutParameters &layout) { return layout.kind == Layout::four && layout.drives[0] < 0; }
+std::string steered_axles(const LayoutParameters &layout) {
+    return layout.steer_front ? layout.steer_rear ? "front rear" : "front" : layout.steer_rear ? "rear" : "";
+}
+
+bool is_plain(const LayoutParameters &layout) {
+    return layout.kind == Layout::four && layout.drives[0] < 0 && !layout.rocker && steered_axles(layout).empty();
+}
 
 unsigned firmware_wheels(const LayoutParameters &layout) {
     unsigned mask = 0;

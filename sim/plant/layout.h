@@ -15,6 +15,7 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <string>
 
 namespace traction::sim {
 
@@ -33,6 +34,13 @@ struct LayoutParameters {
     // four, six: the slots of the left and of the right motor, each of which turns all wheels of its side by a chain, one to one. -1: every
     // wheel has a motor of its own.
     std::array<int, 2> drives{-1, -1};
+    bool rocker = false;      // four, six: wheels on rockers (rocker.h), of bogies with six; places ahead and over the ground
+    bool bogie_front = false; // the bogie is at the front; else at the rear
+    double rocker_m = 0, rocker_height_m = 0, bogie_m = 0, bogie_height_m = 0;
+    double rocker_kg = 0, bogie_kg = 0;               // of one link with its wheels, out of the rover's mass
+    bool steer_front = false, steer_rear = false;     // four, six: which axles steer (steering.h)
+    double steer_max_rad = 0.6, steer_rate_rad_s = 1; // of a wheel; of the servo
+    double ackermann = 1;                             // 0..1
     bool operator==(const LayoutParameters &) const = default;
 };
 
@@ -42,8 +50,10 @@ bool has_wheel(Layout layout, int slot);
 bool is_caster(Layout layout, int slot);
 // The slot whose motor turns this one.
 int motor_of(const LayoutParameters &layout, int slot);
-// Four wheels, a motor each.
+// Four wheels, a motor each, fixed in their heading, on two halves or one chassis.
 bool is_plain(const LayoutParameters &layout);
+// "front", "rear" or "front rear"; empty where no wheel steers.
+std::string steered_axles(const LayoutParameters &layout);
 // Bit i: the firmware has wheel i (0..3): one with a motor.
 unsigned firmware_wheels(const LayoutParameters &layout);
 

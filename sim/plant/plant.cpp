@@ -39,8 +39,10 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g, 
 } // namespace
 
 Plant::World::World(const PlantConfig &c)
-    : config(c), wheels(wheels_of(c.rover.layout.kind)), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
+    : config(c), wheels(wheels_of(c.rover.layout.kind)), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m),
+      steering(c.rover.layout, c.rover.half_wheelbase_m, c.rover.half_track_m) {
     start_ode();
+    contact_kg = config.rover.mass_kg / static_cast<double>(wheels.size());
     for (const int i : wheels) place_ahead_m[static_cast<std::size_t>(i)] = place(i).ahead_m;
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, 0);
     rise_rad = config.ground.slope_here_rad(0);
@@ -58,7 +60,7 @@ Plant::World::World(const PlantConfig &c)
     }
     if (!config.ground.terrain.flat()) relief.emplace(config.ground.terrain, config.ground.seed);
     build_bodies();
-    if (relief) place_on_terrain();
+    if (relief && !config.rover.layout.rocker) place_on_terrain();
     for (const int i : wheels) {
         if (is_caster(config.rover.layout.kind, i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
@@ -108,7 +110,7 @@ void Plant::World::contact_velocity(int i, Vec3 &out) const {
 
 double Plant::World::kinetic() const {
     double sum = 0;
-    for (const dBodyID body : half) {
+    for (const dBodyID body : bodies) {
         dMass mass;
         dBodyGetMass(body, &mass);
         const dReal *v = dBodyGetLinearVel(body);
@@ -131,9 +133,11 @@ double Plant::World::kinetic() const {
 
 double Plant::World::potential() const {
     double sum = 0;
-    for (const dBodyID body : half) {
+    for (const dBodyID body : bodies) {
         const dReal *at = dBodyGetPosition(body);
-        sum -= 0.5 * config.rover.mass_kg * dot(gravity, {at[0], at[1], at[2]});
+        dMass mass;
+        dBodyGetMass(body, &mass);
+        sum -= mass.mass * dot(gravity, {at[0], at[1], at[2]});
     }
     return sum;
 }
@@ -171,6 +175,7 @@ void Plant::World::step() {
         gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, truth.path_m);
         dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     }
+    steering.step(dt);
     const Vec3 before = mean_velocity();
     for (const int i : wheels) {
         if (is_caster(config.rover.layout.kind, i)) {
@@ -228,6 +233,7 @@ void Plant::World::observe(const Vec3 &velocity_before) {
         for (std::size_t k = 0; k < 3; ++k) rate_world[k] = 0.5 * (rate_world[k] + other_rate[k]);
         truth.joint_rad = math::asin(dBodyGetRotation(half[0])[8]) - math::asin(dBodyGetRotation(half[1])[8]);
     }
+    if (config.rover.layout.rocker) observe_links();
     const Vec3 ex = axis(0), ey = axis(1), ez = axis(2), v = mean_velocity();
     truth.v_body_m_s = {dot(v, ex), dot(v, ey), dot(v, ez)};
     truth.rate_body_rad_s = {dot(rate_world, ex), dot(rate_world, ey), dot(rate_world, ez)};
@@ -253,6 +259,7 @@ void Plant::World::observe(const Vec3 &velocity_before) {
         w.motor_speed_rad_s = drive[i].motor_speed_rad_s;
         w.current_A = drive[i].current_A;
         w.duty = enabled && motor_of(slot) == slot ? duty[i] : 0;
+        w.steer_rad = steering.wheel(slot).angle_rad;
         w.winding_temperature_C = 25 + drive[i].heat_K; // ambient 25 C, assumed
     }
 }
@@ -263,6 +270,8 @@ Plant::~Plant() = default;
 void Plant::set_duty(int wheel, double duty) {
     world_->duty.at(static_cast<std::size_t>(wheel)) = std::isnan(duty) ? 0 : std::clamp(duty, -1.0, 1.0);
 }
+
+void Plant::set_curvature(double curvature_1_m) { world_->steering.order(curvature_1_m); }
 
 void Plant::set_enabled(bool enabled) { world_->enabled = enabled; }
 
@@ -284,7 +293,7 @@ std::uint64_t Plant::state_hash() const {
         const auto bits = std::bit_cast<std::uint64_t>(value);
         for (unsigned byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 0xff)) * 1099511628211ull;
     };
-    for (const dBodyID body : world_->half)
+    for (const dBodyID body : world_->bodies)
         for (std::size_t k = 0; k < 4; ++k) {
             mix(dBodyGetQuaternion(body)[k]);
             if (k < 3) mix(dBodyGetPosition(body)[k]), mix(dBodyGetLinearVel(body)[k]), mix(dBodyGetAngularVel(body)[k]);
@@ -298,6 +307,7 @@ std::uint64_t Plant::state_hash() const {
             mix(value);
     }
     if (world_->config.rover.layout.kind == Layout::caster) mix(world_->contact[4].rolling_aside);
+    if (world_->steering.there()) mix(world_->steering.servo_rad());
     for (const int slot : world_->wheels) {
         const RutTrace &trace = world_->trace[static_cast<std::size_t>(slot)];
         mix(trace.found_m()), mix(trace.deepest_m());

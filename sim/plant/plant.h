@@ -69,8 +69,9 @@ class Plant {
     Plant(const Plant &) = delete;
     Plant &operator=(const Plant &) = delete;
 
-    void set_duty(int wheel, double duty); // of a slot of layout.h; clamped to -1..1; NaN counts as 0
-    void set_enabled(bool enabled);        // false releases all bridges: no current
+    void set_duty(int wheel, double duty);    // of a slot of layout.h; clamped to -1..1; NaN counts as 0
+    void set_curvature(double curvature_1_m); // the steering servo's order: steering.h; nothing where no wheel steers
+    void set_enabled(bool enabled);           // false releases all bridges: no current
     void block_wheel(int wheel, bool blocked);
     void open_motor(int wheel, bool open); // a broken wire, or a bridge that let go: no current in this winding
     void sag_supply(double sag_V);         // the battery gives so much less than it should

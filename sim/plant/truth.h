@@ -22,7 +22,8 @@ struct WheelTruth {
     double traction_N = 0;        // Ft of (2), along the wheel's heading, on the rover
     double rolling_N = 0;         // Rr of (2), >= 0
     double rolling_share = 0;     // how much of it acts: 1 rolling ahead, -1 back, between at rest, where it holds
-    double lateral_N = 0;         // on the rover, along body y
+    double lateral_N = 0;         // on the rover, along the wheel's axle, to the left
+    double steer_rad = 0;         // the wheel's heading against the body's, to the left positive: steering.h
     double normal_N = 0;          // Fn, >= 0
     double slip = 0;              // slip state, (1) extended
     double sinkage_m = 0;
@@ -40,7 +41,8 @@ struct Truth {
     double yaw_rad = 0;                                      // continuous, not wrapped
     double pitch_rad = 0;                                    // nose down positive (rotation about +y)
     double roll_rad = 0;                                     // right side down positive (rotation about +x)
-    double joint_rad = 0;                                    // right half against the left one, nose down positive
+    double joint_rad = 0;                                    // right half (or rocker) against the left one, nose down positive
+    std::array<double, 2> rocker_rad{}, bogie_rad{};         // left and right, against the body and against the rocker, nose down positive
     double rise_rate_rad_s = 0;                              // how fast the ground's own rise changes under the rover: nose up positive
     double path_m = 0;                                       // arc length travelled by the body, signed along x
     double battery_voltage_V = 0;                            // at the terminals, under load

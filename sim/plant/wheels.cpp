@@ -176,7 +176,13 @@ Plant::World::Stand Plant::World::stand_on_plane(int i) const {
     contact_velocity(i, at.velocity);
     const dReal *rotation = dBodyGetRotation(body);
     const double flat = std::sqrt(rotation[0] * rotation[0] + rotation[4] * rotation[4]);
-    at.heading = at.ahead = {rotation[0] / flat, rotation[4] / flat, 0};
+    at.heading = {rotation[0] / flat, rotation[4] / flat, 0};
+    if (steering.there()) {
+        const Steering::Wheel &turned = steering.wheel(i);
+        at.heading = {turned.cosine * at.heading[0] - turned.sine * at.heading[1],
+                      turned.sine * at.heading[0] + turned.cosine * at.heading[1], 0};
+    }
+    at.ahead = at.heading;
     at.left = {-at.heading[1], at.heading[0], 0};
     at.up = {0, 0, 1};
     at.depth_m = -point[2];
@@ -313,7 +319,10 @@ void Plant::World::turn(int motor, double supply_V) {
         // the wheel's own spin-up turns the chassis the other way about y
         const double radius = law::wheel_radius_m(r.wheel_radius_m, effects.wheel[j].radius_change);
         const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
-        if (law::load_transfer_m(r.centre_height_m, effects.body.raised_m) > 0) dBodyAddRelTorque(half_of(i), 0, -spin, 0);
+        if (law::load_transfer_m(r.centre_height_m, effects.body.raised_m) > 0) {
+            const Steering::Wheel &turned = steering.wheel(i); // its axle, of the body
+            dBodyAddRelTorque(half_of(i), turned.sine * spin, -turned.cosine * spin, 0);
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 #include "layout.h"
 #include "plant.h"
 #include "rut.h"
+#include "steering.h"
 
 #include "sim/physics/effects/acting.h"
 #include "sim/physics/terramechanics.h"
@@ -36,11 +37,18 @@ constexpr bool is_left(int slot) { return slot % 2 == 0; }
 constexpr bool is_front(int slot) { return slot == 2 || slot == 3; }
 constexpr bool is_middle(int slot) { return slot >= 4; }
 
+// Yaw (by its cosine and sine), then roll, then pitch (nose down).
+void turn_of(double c, double s, double roll_rad, double pitch_rad, dMatrix3 turn);
+
 struct Plant::World {
     explicit World(const PlantConfig &c);
     ~World();
     void build_bodies();
     void build_joints(const Vec3 &anchor);
+    void build_rocker();
+    void stand_rocker();
+    void observe_links();
+    double depth_under(double load_N) const;
     Stance stance() const;
     void pose(const Vec3 &middle, double roll_rad, double pitch_rad);
     void stand_up(double height_m);
@@ -98,11 +106,12 @@ struct Plant::World {
     double radius_m(int slot) const { // as the ground feels it
         return is_caster(config.rover.layout.kind, slot) ? config.rover.layout.caster_radius_m : config.rover.wheel_radius_m;
     }
-    double load_kg() const { return config.rover.mass_kg / static_cast<double>(wheels.size()); } // of a wheel, on the mean
-    dBodyID half_of(int wheel) const { return half[is_left(wheel) ? 0 : 1]; }
+    double load_kg() const { return contact_kg; } // of a wheel, on the mean; of a light link's what it can hold
+    dBodyID half_of(int wheel) const { return carrier[static_cast<std::size_t>(wheel)]; } // or the link that carries it
 
     PlantConfig config;
-    std::span<const int> wheels;                    // slots, in order
+    std::span<const int> wheels; // slots, in order
+    double contact_kg = 0;
     std::array<double, wheel_most> place_ahead_m{}; // of the centre of mass
     RoverEffects effects;
     Vec3 gravity{};
@@ -111,7 +120,15 @@ struct Plant::World {
     dJointID joint = nullptr;
     std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
-    std::array<dBodyID, 2> half{};
+    std::array<dBodyID, 2> half{};                  // on rockers both are the body
+    std::vector<dBodyID> bodies;                    // all of them
+    std::array<dBodyID, wheel_most> carrier{};      // of each wheel
+    struct Links {                                  // and, as they were built, level at the origin, their centres and pivots
+        std::array<dBodyID, 2> rocker{}, bogie{};
+        dBodyID bar = nullptr;
+        Vec3 body_at{}, bar_at{};
+        std::array<Vec3, 2> rocker_at{}, bogie_at{}, pivot_at{}, joint_at{};
+    } links;
     std::array<Vec3, wheel_most> contact_at{}; // contact point in its half's frame
     std::array<DriveState, wheel_most> drive{};
     std::array<ContactState, wheel_most> contact{};
@@ -121,6 +138,7 @@ struct Plant::World {
     double rise_rad = 0;                  // of the ground where the rover is
     std::vector<SoilConstants> constants; // of the base soil and of each patch, soft contact only
     RutMemory ruts;
+    Steering steering;
     std::array<RutTrace, wheel_most> trace;
     struct Applied {
         Vec3 force{};                                                                    // at the contact point, world

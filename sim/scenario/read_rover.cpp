@@ -257,10 +257,14 @@ void check_wheels(const Scenario &scenario, std::span<const ActiveEffect> effect
                                 "this wheel has no motor: it turns with wheel " + std::to_string(own), "write " + std::to_string(own));
     };
     if (scenario.can_bus)
-        throw ScenarioError(scenario.file, 0, "bus", "can", "only a rover of four wheels has its wheels on a bus", "leave bus out");
+        throw ScenarioError(scenario.file, 0, "bus", "can",
+                            "only a rover of four wheels on a plain chassis, none of them steered, has its wheels on a bus",
+                            "leave bus out");
     if (scenario.hidden)
-        throw ScenarioError(scenario.file, 0, "hidden", "", "effects are hidden in rovers of four wheels alone, with a motor each",
-                            "leave [hidden] out");
+        throw ScenarioError(
+            scenario.file, 0, "hidden", "",
+            "effects are hidden in rovers of four wheels alone, on a plain chassis, with a motor each and fixed in their heading",
+            "leave [hidden] out");
     for (const SensorFault &fault : scenario.sensor_faults) need("fault.wheel", fault.wheel);
     for (const WheelBlockSpan &span : scenario.wheel_blocks) need("fault.wheel", span.wheel, false);
     for (const WheelBlockSpan &span : scenario.open_motors) need("fault.wheel", span.wheel);

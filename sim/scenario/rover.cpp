@@ -3,9 +3,12 @@
 #include "scenario_error.h"
 
 #include "sim/physics/effects/catalogue.h"
+#include "sim/physics/math.h"
+#include "sim/plant/rocker.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 namespace traction::sim {
@@ -113,6 +116,19 @@ constexpr RoverKey keys[] = {
     {"layout", "caster_radius_m", "m", 0.02, 0.005, 0.5, choice, ""},
     {"layout", "caster_rolling", "1", 0, 0, 1, choice, ""},
     {"layout", "drawbar_N", "N", 0, -1000, 1000, choice, ""},
+    {"layout", "rocker", "1", 0, 0, 1, choice, ""}, // these eight: rocker.h
+    {"layout", "rocker_m", "m", 0, -2, 2, choice, ""},
+    {"layout", "rocker_height_m", "m", 0.1, 0.01, 2, choice, ""},
+    {"layout", "rocker_kg", "kg", 0.3, 0.001, 100, choice, ""},
+    {"layout", "bogie_front", "1", 0, 0, 1, choice, ""},
+    {"layout", "bogie_m", "m", 0, -2, 2, choice, ""},
+    {"layout", "bogie_height_m", "m", 0.1, 0.01, 2, choice, ""},
+    {"layout", "bogie_kg", "kg", 0.3, 0.001, 100, choice, ""},
+    {"steering", "front", "1", 0, 0, 1, choice, ""}, // these five: which axles steer
+    {"steering", "rear", "1", 0, 0, 1, choice, ""},
+    {"steering", "angle_max_deg", "deg", 35, 1, 80, choice, ""},
+    {"steering", "rate_deg_s", "deg/s", 60, 1, 2000, choice, ""},
+    {"steering", "ackermann", "1", 1, 0, 1, choice, ""},
 };
 
 std::size_t index_of(std::string_view section, std::string_view name) {
@@ -161,12 +177,35 @@ LayoutParameters RoverDescription::layout() const {
     out.caster_radius_m = at("layout", "caster_radius_m"), out.caster_rolling = at("layout", "caster_rolling");
     out.drawbar_N = at("layout", "drawbar_N");
     out.drives = drives;
+    out.rocker = at("layout", "rocker") > 0.5;
+    if (out.rocker) {
+        out.bogie_front = at("layout", "bogie_front") > 0.5;
+        out.rocker_m = at("layout", "rocker_m"), out.rocker_height_m = at("layout", "rocker_height_m");
+        out.bogie_m = at("layout", "bogie_m"), out.bogie_height_m = at("layout", "bogie_height_m");
+        out.rocker_kg = at("layout", "rocker_kg"), out.bogie_kg = at("layout", "bogie_kg");
+    }
+    out.steer_front = at("steering", "front") > 0.5, out.steer_rear = at("steering", "rear") > 0.5;
+    if (out.steer_front || out.steer_rear) {
+        constexpr double degree = math::pi / 180;
+        out.steer_max_rad = at("steering", "angle_max_deg") * degree, out.steer_rate_rad_s = at("steering", "rate_deg_s") * degree;
+        out.ackermann = at("steering", "ackermann");
+    }
     return out;
 }
 
 double RoverDescription::heaviest_kg() const {
     const LayoutParameters l = layout();
     const double mass = at("body", "mass_kg"), stiffness = at("wheels", "contact_stiffness_N_m");
+    if (l.rocker) {
+        const auto shares = rocker_loads(l, mass, at("body", "half_wheelbase_m"), at("wheels", "radius_m"));
+        double most = 0;
+        for (std::size_t side = 0; side < 2; ++side) {
+            double all = 0;
+            for (std::size_t slot = side; slot < wheel_most; slot += 2) all += shares[slot], most = std::max(most, shares[slot]);
+            if (l.drives[0] >= 0) most = std::max(most, all);
+        }
+        return mass * most;
+    }
     if (l.drives[0] >= 0) return mass / 2; // all that one side's motor carries, at every track
     if (l.kind == Layout::four) return mass / 4;
     std::vector<double> ahead_m;
@@ -179,6 +218,70 @@ double RoverDescription::heaviest_kg() const {
         if (!is_caster(l.kind, wheels_of(l.kind)[k])) most = std::max(most, load(k, stance.depth_m + stance.pitch_rad * ahead_m[k]));
     return most;
 }
+
+namespace {
+
+// [steering]: whole axles, of a rover that has them and turns no wheel by another axle's motor.
+void check_steering(const RoverDescription &rover, const LayoutParameters &layout) {
+    const auto fail = [&rover](const char *key, const std::string &what, const std::string &mend) {
+        const RoverValue &value = rover.value("steering", key);
+        std::string text = std::to_string(value.value);
+        text.erase(text.find_last_not_of('0') + 1);
+        throw ScenarioError(rover.file, value.line, std::string("steering.") + key, text + (text.back() == '.' ? "0" : ""), what, mend);
+    };
+    for (const char *key : {"front", "rear"})
+        if (const double value = rover.at("steering", key); value != 0 && value != 1) fail(key, "neither 0 nor 1", "give one of them");
+    const char *named = layout.steer_front ? "front" : "rear";
+    if (!layout.steer_front && !layout.steer_rear) {
+        for (const char *key : {"angle_max_deg", "rate_deg_s", "ackermann"})
+            if (rover.value("steering", key).given) fail(key, "no axle steers", "leave it out, or write front = 1 or rear = 1");
+        return;
+    }
+    if (layout.kind != Layout::four && layout.kind != Layout::six)
+        fail(named, "only a rover of four or six wheels has an axle to steer", "leave [steering] out, or write layout.wheels = 4 or 6");
+    if (layout.kind == Layout::six && layout.steer_front != layout.steer_rear)
+        fail(named, "two fixed axles have no common centre of turning", "steer both outer axles: front = 1 and rear = 1");
+    if (layout.drives[0] >= 0)
+        fail(named, "a chain turns the wheels of both axles alike, but round a bend they roll different ways", "leave layout.drives out");
+    if (rover.hardware_line != 0)
+        throw ScenarioError(rover.file, rover.hardware_line, "hardware", "", "its devices have no steering servo",
+                            "leave [hardware] or [steering] out");
+}
+
+using Fail = std::function<void(const char *, const std::string &, const std::string &)>;
+
+// Rockers: what they need, and that the centre of mass lies where every wheel bears something.
+void check_rocker(const RoverDescription &rover, const LayoutParameters &layout, const Fail &fail) {
+    const bool six = layout.kind == Layout::six;
+    for (const char *key : {"rocker_m", "rocker_height_m", "rocker_kg", "bogie_front", "bogie_m", "bogie_height_m", "bogie_kg"})
+        if (rover.value("layout", key).given && (!layout.rocker || (!six && std::string_view(key).starts_with("bogie"))))
+            fail(key, layout.rocker ? "four wheels have no bogie" : "means nothing without rockers", "leave it out, or write rocker = 1");
+    if (!layout.rocker) return;
+    if (layout.kind != Layout::four && !six) fail("rocker", "only four or six wheels hang on rockers", "leave it out, or write wheels = 6");
+    if (layout.rigid) fail("rigid", "rockers turn on the body", "leave out rigid or rocker");
+    for (const char *key : {"rocker_height_m", "rocker_kg", "bogie_m", "bogie_height_m", "bogie_kg"})
+        if (!rover.value("layout", key).given && (six || !std::string_view(key).starts_with("bogie")))
+            fail(key, "missing", "state where the pivots are, and what a rocker and a bogie weigh with their wheels");
+    if (const double front = rover.at("layout", "bogie_front"); front != 0 && front != 1)
+        fail("bogie_front", "neither 0 nor 1", "give one");
+    const double mass = rover.at("body", "mass_kg"), base = rover.at("body", "half_wheelbase_m");
+    if (2 * (layout.rocker_kg + (six ? layout.bogie_kg : 0)) > 0.9 * mass)
+        fail("rocker_kg", "the links leave a body of less than a tenth of the rover", "lower it, or raise body.mass_kg");
+    const RockerSide chain = rocker_side(layout, 0);
+    const auto between = [&](double x, double a, double b) { return (x - a) * (x - b) < 0; };
+    const auto ahead = [&](int slot) { return wheel_place(layout, base, 0, slot).ahead_m; };
+    if (six && !between(layout.bogie_m, ahead(chain.others.front()), ahead(chain.others.back())))
+        fail("bogie_m", "not between the bogie's wheels", "give a place between the middle axle and the outer one of the bogie");
+    if (!between(layout.rocker_m, ahead(chain.rocker_wheel), six ? layout.bogie_m : ahead(chain.others.front())))
+        fail("rocker_m", "not between the rocker's ends", "give a place between its wheel and its other end");
+    const auto loads = rocker_loads(layout, mass, base, rover.at("wheels", "radius_m"));
+    for (const int slot : wheels_of(layout.kind))
+        if (loads[static_cast<std::size_t>(slot)] <= 0)
+            fail(six ? "bogie_m" : "rocker_m", "wheel " + std::to_string(slot) + " bears nothing: the rover tips over",
+                 "move the pivot, or the axles, until the centre of mass lies between them");
+}
+
+} // namespace
 
 void check_layout(const RoverDescription &rover) {
     const auto fail = [&rover](const char *key, const std::string &what, const std::string &mend) {
@@ -206,7 +309,11 @@ void check_layout(const RoverDescription &rover) {
                             "means nothing for a rover of " + std::to_string(static_cast<int>(wheels)) +
                                 (wheels == 1 ? " wheel" : " wheels"),
                             "leave it out, or write wheels = 4 or 6");
+    check_steering(rover, l);
     const double half = rover.at("body", "half_wheelbase_m");
+    if (const double rocker = rover.at("layout", "rocker"); rocker != 0 && rocker != 1)
+        fail("rocker", "neither 0 nor 1", "give one of them");
+    check_rocker(rover, l, fail);
     if (l.kind == Layout::six && std::fabs(l.middle_m) >= half)
         fail("middle_m", "not between the outer axles", "give less than body.half_wheelbase_m, ahead or (negative) behind");
     if (l.kind != Layout::caster) return;

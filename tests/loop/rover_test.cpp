@@ -130,6 +130,7 @@ TEST(RoverDescription, every_parameter_of_the_firmware_comes_from_it) {
         if (name.starts_with("encoder_") && name != "encoder_absurd_rad_s") continue;         // gear times encoder, and [[wheel]]
         if (name.starts_with("current_offset_count_") || name == "back_emf_Vs_rad") continue; // [[wheel]]; equal to KG in SI
         if (name == "wheel_mask") continue;                                                   // bits of layout.wheels: wheels_test
+        if (name.starts_with("steer_")) continue; // of [steering] and the wheelbase: wheels_test
         int found = 0;
         for (const sim::RoverKey &key : sim::rover_keys()) {
             if (key.firmware != name) continue;

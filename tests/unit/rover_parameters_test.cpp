@@ -232,8 +232,9 @@ control_config_t written_out() {
                           .ki_T_rad_m = 0.35f, // 35 rad/s per m/s per s
                           .integral_max_rad_s = 6.0f,
                           .speed_max_m_s = speed_max_m_s,
-                          .yaw_rate_max_rad_s = 4.0f,                 // [rad/s] assumed
-                          .wheel_max_rad_s = 25.0f},                  // [rad/s] below the no-load speed of 27
+                          .yaw_rate_max_rad_s = 4.0f, // [rad/s] assumed
+                          .wheel_max_rad_s = 25.0f},  // [rad/s] below the no-load speed of 27
+        .steering = {},
         .soil_sweep = {.ramp_1_m = tick_s / (wheel_radius_m * 10.0f), // t_zero = 10 s, section 6
                        .duration_ticks = 2000,
                        .wheel_max_rad_s = 25.0f},
