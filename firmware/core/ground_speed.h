@@ -165,6 +165,7 @@ typedef struct {
     float p_vv, p_vb, p_bb;                     // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
     float std_m_s;                              // of the speed
     float accel_noise_m2_s2;                    // mean of (6) per tick
+    float slow_noise_m2_s2;                     // the same of four ticks at a time
     float speed_noise_m2_s2;                    // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
@@ -196,6 +197,8 @@ typedef struct {
     int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again
     int32_t rolls_wait;
     int32_t refused;
+    float held_sign, held_level_m_s; // of (17): 0 where no sign is sure; the mean of the last values
+    int32_t held_values;             // for which it was the same
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;

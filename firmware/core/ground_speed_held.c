@@ -1,0 +1,73 @@
+#include "ground_speed_parts.h"
+
+#include "fixed.h"
+
+#include <math.h>
+
+static const float falls = 0.7f;        // [1] of its mean: below, it may be on its way through zero; assumed
+static const float level_share = 0.25f; // [1] of a value that enters its mean: half a second
+static const float sharp_m_s2 = 1.2f;   // what turns a body within a window, unheard: 7 deg of slope or a stop, assumed
+static const float sure_sigmas2 = 9.0f;
+static const float rolls_least = 0.5f; // [1] of the rim's speed
+static const float rolls_most = 1.1f;  // as overtaken_share of (12)
+static const float beyond = 0.25f;     // [1] of the value, by which the estimate has passed zero
+
+enum { HELD_VALUES = 6 }; // as many as (15) looks at
+
+static void release(ground_speed_state_t *state)
+{
+    state->held_sign = 0.0f;
+    state->held_values = 0;
+}
+
+// The value's window, with the sign that is held; the bias may have jumped.
+static void take_held(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    ground_speed_track_t track = ground_speed_best_of(state);
+    const float tau = state->value_tau_s;
+    track.speed_m_s = state->held_sign * state->value_m_s - tau * track.bias_m_s2 + state->value_change_m_s;
+    track.p_bb += config->agile_m2_s4;
+    track.p_vb = -tau * track.p_bb;
+    track.p_vv = state->value_noise_m2_s2 + tau * tau * track.p_bb;
+    ground_speed_hold(config, &track);
+    ground_speed_keep_best(state, &track);
+    state->other_alive = false;
+    state->rolls_ticks = 0;
+    state->one_sided = 0.0f;
+    ground_speed_forget_agile(state);
+}
+
+float ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    const float heard = state->value_heard_m_s;
+    const float rim = fabsf(state->value_wheel_m_s);
+    const float wheel_sign = state->value_wheel_m_s < 0.0f ? -1.0f : 1.0f;
+    const bool first = state->held_values == 0;
+    if (!fixed_greater(heard, config->slow_m_s) || fixed_greater(falls * state->held_level_m_s, heard) ||
+        fixed_greater(fabsf(state->value_accel_m_s2 - state->bias_m_s2), sharp_m_s2)) {
+        release(state);
+    }
+    state->held_level_m_s = first ? heard : state->held_level_m_s + level_share * (heard - state->held_level_m_s);
+    const float sign = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
+    const bool rolls =
+        fixed_greater(state->held_level_m_s, rolls_least * rim) && fixed_greater(rolls_most * rim, state->held_level_m_s);
+    if (!rolls) {
+        release(state);
+        return 0.0f;
+    }
+    if (fixed_bits(state->held_sign) == 0u) {
+        const bool sure = !state->other_alive && state->refused == 0 && sign * wheel_sign > 0.0f &&
+                          fixed_greater(ground_speed_square(state->speed_m_s), sure_sigmas2 * state->p_vv);
+        state->held_values = sure ? state->held_values + 1 : 0;
+        state->held_sign = state->held_values >= HELD_VALUES ? sign : 0.0f;
+        return 0.0f;
+    }
+    if (state->held_sign * wheel_sign < 0.0f) {
+        release(state);
+        return 0.0f;
+    }
+    if (fixed_greater(-beyond * heard, state->held_sign * state->speed_m_s)) {
+        take_held(config, state);
+    }
+    return state->held_sign;
+}
