@@ -199,6 +199,8 @@ typedef struct {
     int32_t refused;
     float held_sign, held_level_m_s; // of (17): 0 where no sign is sure; the mean of the last values
     int32_t held_values;             // for which it was the same
+    int32_t parted_values;           // of (18): until which it is not forgotten that radar and wheels have parted
+    bool rolls;                      // of (18)
     uint32_t chore; // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;

@@ -37,8 +37,33 @@ static void take_held(const ground_speed_config_t *config, ground_speed_state_t 
     ground_speed_forget_agile(state);
 }
 
+static const float close_share = 0.12f; // of its rim speed, and beside it, what the body's may be less by: assumed
+static const float close_m_s = 0.02f;
+static const float ahead_share = 0.06f; // and more
+static const float ahead_m_s = 0.01f;
+static const float parts_sigmas2 = 16.0f;
+static const float parts_m2_s2 = 4e-4f; // (2 cm/s)^2
+
+enum { PARTED_VALUES = 24 }; // 3 s, assumed
+
+static bool is_close(float beside_m_s, float rim)
+{
+    return fixed_greater(beside_m_s, -close_m_s - close_share * rim) && fixed_greater(ahead_m_s + ahead_share * rim, beside_m_s);
+}
+
+// (18)
+static void watch_rolling(ground_speed_state_t *state)
+{
+    const float rim = fabsf(state->wheel_mean_m_s);
+    const float left = state->value_beside_m_s - state->beside_mean_m_s;
+    const bool parts = fixed_greater(ground_speed_square(left), parts_sigmas2 * state->value_noise_m2_s2 + parts_m2_s2);
+    state->parted_values = parts ? PARTED_VALUES : state->parted_values > 0 ? state->parted_values - 1 : 0;
+    state->rolls = state->parted_values == 0 && is_close(state->value_beside_m_s, rim) && is_close(state->beside_mean_m_s, rim);
+}
+
 float ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
+    watch_rolling(state);
     const float heard = state->value_heard_m_s;
     const float rim = fabsf(state->value_wheel_m_s);
     const float wheel_sign = state->value_wheel_m_s < 0.0f ? -1.0f : 1.0f;
