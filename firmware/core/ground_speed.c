@@ -108,7 +108,7 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         count_values(config, state, input);
     } else if (state->waits > 1) {
         state->waits = 1;
-        (void)ground_speed_watch_held(config, state);
+        ground_speed_watch_held(config, state);
         if (state->other_alive) {
             ground_speed_update_other(config, state);
         } else if (state->refused == 0) {

@@ -33,6 +33,7 @@ static void take_held(const ground_speed_config_t *config, ground_speed_state_t 
     ground_speed_keep_best(state, &track);
     state->other_alive = false;
     state->rolls_ticks = 0;
+    state->gyro_tried = false;
     state->one_sided = 0.0f;
     ground_speed_forget_agile(state);
 }
@@ -61,7 +62,8 @@ static void watch_rolling(ground_speed_state_t *state)
     state->rolls = state->parted_values == 0 && is_close(state->value_beside_m_s, rim) && is_close(state->beside_mean_m_s, rim);
 }
 
-float ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state)
+// (17), of the value that came a tick ago.
+void ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     watch_rolling(state);
     const float heard = state->value_heard_m_s;
@@ -74,25 +76,19 @@ float ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_
     }
     state->held_level_m_s = first ? heard : state->held_level_m_s + level_share * (heard - state->held_level_m_s);
     const float sign = state->speed_m_s < 0.0f ? -1.0f : 1.0f;
-    const bool rolls =
-        fixed_greater(state->held_level_m_s, rolls_least * rim) && fixed_greater(rolls_most * rim, state->held_level_m_s);
+    const bool rolls = fixed_greater(state->held_level_m_s, rolls_least * rim) && fixed_greater(rolls_most * rim, state->held_level_m_s);
     if (!rolls) {
         release(state);
-        return 0.0f;
+        return;
     }
     if (fixed_bits(state->held_sign) == 0u) {
         const bool sure = !state->other_alive && state->refused == 0 && sign * wheel_sign > 0.0f &&
                           fixed_greater(ground_speed_square(state->speed_m_s), sure_sigmas2 * state->p_vv);
         state->held_values = sure ? state->held_values + 1 : 0;
         state->held_sign = state->held_values >= HELD_VALUES ? sign : 0.0f;
-        return 0.0f;
-    }
-    if (state->held_sign * wheel_sign < 0.0f) {
+    } else if (state->held_sign * wheel_sign < 0.0f) {
         release(state);
-        return 0.0f;
-    }
-    if (fixed_greater(-beyond * heard, state->held_sign * state->speed_m_s)) {
+    } else if (fixed_greater(-beyond * heard, state->held_sign * state->speed_m_s)) {
         take_held(config, state);
     }
-    return state->held_sign;
 }

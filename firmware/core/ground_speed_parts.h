@@ -105,8 +105,8 @@ void ground_speed_watch_slide(const ground_speed_config_t *config, ground_speed_
 
 // --- ground_speed_held.c
 
-// At every value, a tick later: (17). The sign that is held, or 0.
-float ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state);
+// At every value, a tick later: (17), (18).
+void ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state);
 
 // --- ground_speed_jump.c
 

@@ -175,9 +175,12 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const bool sure = fabsf(expected.told) >= config->sign_sure;
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const float cost = see(config, state, &state->other, &expected, sign);
+    const int32_t with = with_wheels(config, state, state->value_m_s, state->value_wheel_m_s);
+    if (state->rolls && with < 0 && fixed_greater(state->odds, config->against_odds)) {
+        state->odds = config->against_odds; // (18) asks anew
+    }
     state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
-                   (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) *
-                       (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) +
+                   (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) * (float)with +
                    config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
     const bool won = state->odds < 0.0f;
     if (won) {

@@ -134,9 +134,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 const double z = shakes * now.heave_m * std::sin(2 * pi * now.heave_Hz * t),
                              pitch = shakes * now.pitch_rad * std::sin(2 * pi * 5 * t);
                 const bool dead = now.radar_dead && now.radar_dead(t);
-                const double heard = now.scatterers
-                                         ? front.filtered(ground->echo(path + 0.3 * pitch, z))
-                                         : low.step(high.step(now.echo_count * echo->at(path + 0.3 * pitch, z)));
+                const double heard = now.scatterers ? front.filtered(ground->echo(path + 0.3 * pitch, z))
+                                                    : low.step(high.step(now.echo_count * echo->at(path + 0.3 * pitch, z)));
                 const double own = dead ? 0.3 : now.scatterers ? 0 : white; // noise of the converter
                 const double count = 512 + now.offset_count + own * noise.normal() +
                                      (dead ? 0 : heard + now.tone_count * std::sin(2 * pi * now.tone_Hz * t));
@@ -170,8 +169,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         frame.elapsed_ticks = static_cast<std::uint32_t>(since);
         frame.time_us = 1000000u + tick * 10000u;
         for (int i = 0; i < WHEEL_COUNT; ++i) {
-            frame.encoder_count[i] =
-                static_cast<std::int32_t>(std::floor((now.scatterers ? rattle.angle(i) : angle) * 6000 / (2 * pi)));
+            frame.encoder_count[i] = static_cast<std::int32_t>(std::floor((now.scatterers ? rattle.angle(i) : angle) * 6000 / (2 * pi)));
             const double current = now.closed ? rover.current : 0.3;
             frame.current_count[i] = static_cast<std::uint16_t>(std::clamp(2048 + current / 0.002 + 5 * accel_noise.normal(), 1.0, 4094.0));
         }
