@@ -50,10 +50,10 @@
 // comes, nothing tells of a lean that runs off: the bias is known the less the longer that lasts.
 //   |d| > 0.12 m/s,  |d| > 0.7 m,  |a - b| < 1.2 m/s^2,  0.5 |Rw| < m < 1.1 |Rw|         (17)  m: mean of |d| since the sign was sure
 // A body that turns round passes through zero, and the radar hears it slow down, but for a turn within a window, which the accelerometer
-// feels. A sign that was alone and sure (3 sigma) for six values, and is the wheels', is held while (17) holds: an estimate that has
-// passed zero by |d|/4 all the same takes the value with that sign, and its bias is free to jump.
-// (18): wheels whose rim has stayed with the radar's value for half a second (12 % and 2 cm/s slower, 6 % and 1 cm/s faster), and never
-// parted from it within the last three, roll: their sign is a witness of exp(3/2) per value, and asks twice as soon.
+// feels (0.5 m/s^2 where gyros tell what of it is a slope). A sign that was alone and sure (3 sigma) for six values, and is the wheels', is
+// held while (17) holds: an estimate that has passed zero by |d|/4 all the same takes the value with that sign, and its bias is free to
+// jump. (18): wheels whose rim has stayed with the radar's value for half a second (12 % and 2 cm/s slower, 6 % and 1 cm/s faster), and
+// never parted from it within the last three, roll: their sign is a witness of exp(3/2) per value, and asks twice as soon.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 

@@ -4,9 +4,10 @@
 
 #include <math.h>
 
-static const float falls = 0.7f;        // [1] of its mean: below, it may be on its way through zero; assumed
-static const float level_share = 0.25f; // [1] of a value that enters its mean: half a second
-static const float sharp_m_s2 = 1.2f;   // what turns a body within a window, unheard: 7 deg of slope or a stop, assumed
+static const float falls = 0.7f;           // [1] of its mean: below, it may be on its way through zero; assumed
+static const float level_share = 0.25f;    // [1] of a value that enters its mean: half a second
+static const float sharp_m_s2 = 1.2f;      // what turns a body within a window, unheard: 7 deg of slope or a stop, assumed
+static const float sharp_told_m_s2 = 0.5f; // where gyros tell the slope, an acceleration is one; assumed
 static const float sure_sigmas2 = 9.0f;
 static const float rolls_least = 0.5f; // [1] of the rim's speed
 static const float rolls_most = 1.1f;  // as overtaken_share of (12)
@@ -71,7 +72,7 @@ void ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_s
     const float wheel_sign = state->value_wheel_m_s < 0.0f ? -1.0f : 1.0f;
     const bool first = state->held_values == 0;
     if (!fixed_greater(heard, config->slow_m_s) || fixed_greater(falls * state->held_level_m_s, heard) ||
-        fixed_greater(fabsf(state->value_accel_m_s2 - state->bias_m_s2), sharp_m_s2)) {
+        fixed_greater(fabsf(state->value_accel_m_s2 - state->bias_m_s2), state->lean_q8 == 0 ? sharp_m_s2 : sharp_told_m_s2)) {
         release(state);
     }
     state->held_level_m_s = first ? heard : state->held_level_m_s + level_share * (heard - state->held_level_m_s);

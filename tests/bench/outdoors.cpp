@@ -236,7 +236,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
 
 Score score(const Case &now, const Run &run) {
     Score out;
-    double spell = 0;
+    int spell = 0; // ticks
     int ok = 0;
     for (const Step &step : run.steps) {
         const double error = step.estimate - step.speed;
@@ -249,8 +249,8 @@ Score score(const Case &now, const Run &run) {
         }
         out.faults |= step.faults;
         const bool wrong = step.estimate * step.speed < 0 && std::fabs(step.speed) > 0.05 && std::fabs(step.estimate) > 0.05;
-        spell = wrong ? spell + tick_s : 0;
-        out.wrong_sign_s = std::max(out.wrong_sign_s, spell);
+        spell = wrong ? spell + 1 : 0;
+        out.wrong_sign_s = std::max(out.wrong_sign_s, spell / 100.0);
         out.last_true = step.speed;
         if (step.t > now.settle_s) {
             out.square += error * error;
