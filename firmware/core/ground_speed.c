@@ -87,6 +87,8 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
     state->chore = (state->chore + 1u) % (2u * CHORES);
     if (state->chore == 0u && config->speed_noise_max_m2_s2 > config->speed_noise_m2_s2) {
         ground_speed_watch_noise(config, state);
+    } else if (state->chore == CHORES) {
+        ground_speed_watch_slow_noise(state);
     } else if (state->chore % CHORES == 1u) {
         ground_speed_watch_gyro(config, state);
     } else if (state->chore % CHORES == 3u) {
@@ -106,6 +108,7 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         count_values(config, state, input);
     } else if (state->waits > 1) {
         state->waits = 1;
+        ground_speed_watch_held(config, state);
         if (state->other_alive) {
             ground_speed_update_other(config, state);
         } else if (state->refused == 0) {

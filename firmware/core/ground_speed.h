@@ -6,7 +6,7 @@
 //
 //   m[k] = m[k-1] + c (e |e|/S - m[k-1]), e the innovation of (3), S its variance      (4)
 //   |m| > limit: P_bb += jump, m = 0                                                   (5)  the bias has drifted: a gentle slope
-//   Qv = max(stated, T^2 mean_j (a[j] - a[j-1])^2 / 2)                                  (6)  the accelerometer's white noise
+//   Qv = max(stated, q1, min(q4, 3 q1)),  q_n = mean (V[j] - 2 V[j-n] + V[j-2n])^2/(2 n)  (6)  the accelerometer's noise
 //   L = max(0, L + min(c_best - c_agile, most) - drift),  c = e^2/S + ln S              (7)
 //   R = f R0,  f *= 1 + share (min(e^2/S, gate^2) - 1)                                  (8)
 //   odds of + over - = exp(((z + m)^2 - (z - m)^2)/2S) = exp(2 z m/S)                   (9)  m: the speed that (3) expects
@@ -16,7 +16,9 @@
 //
 // (3): a Doppler value is the mean of the speed over its window; V is the running integral of the raw accelerometer, w the
 // window's weight. So the window's delay is exact without a longer state (derived in docs/firmware.md).
-// (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here).
+// (6): a rover's own acceleration hardly changes from tick to tick, white noise changes by sqrt(2) of itself (derived here): q1 = q4. Noise
+// that lasts longer, as of a sensor's filter or of a body that rattles, walks further than its steps tell, and q4 is more; beyond three
+// times it is the rover's own motion (assumed).
 // (7): Page's cumulative sum for a change from one model to another. The other is a second filter whose bias may jump, as it does where a
 // slope begins; when L passes its limit, it is taken.
 // (8): values that scatter more than they should are trusted less.
@@ -46,6 +48,12 @@
 // Where (13) has an accuser in the lean itself, but value after value the radar stays with the wheels, the wheels' word is tried as well:
 // if it stands, the gyro lies, and what it turned last is its offset. So it is where b nears its limit against the lean. While no value
 // comes, nothing tells of a lean that runs off: the bias is known the less the longer that lasts.
+//   |d| > 0.12 m/s,  |d| > 0.7 m,  |a - b| < 1.2 m/s^2,  0.5 |Rw| < m < 1.1 |Rw|         (17)  m: mean of |d| since the sign was sure
+// A body that turns round passes through zero, and the radar hears it slow down, but for a turn within a window, which the accelerometer
+// feels (0.5 m/s^2 where gyros tell what of it is a slope). A sign that was alone and sure (3 sigma) for six values, and is the wheels', is
+// held while (17) holds: an estimate that has passed zero by |d|/4 all the same takes the value with that sign, and its bias is free to
+// jump. (18): wheels whose rim has stayed with the radar's value for half a second (12 % and 2 cm/s slower, 6 % and 1 cm/s faster), and
+// never parted from it within the last three, roll: their sign is a witness of exp(3/2) per value, and asks twice as soon.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -165,6 +173,7 @@ typedef struct {
     float p_vv, p_vb, p_bb;                     // of the speed as (3) sees it: without the accelerometer's noise since the window's middle
     float std_m_s;                              // of the speed
     float accel_noise_m2_s2;                    // mean of (6) per tick
+    float slow_noise_m2_s2;                     // the same of four ticks at a time
     float speed_noise_m2_s2;                    // Qv in force
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
@@ -196,7 +205,11 @@ typedef struct {
     int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again
     int32_t rolls_wait;
     int32_t refused;
-    uint32_t chore; // of a turn of CHORES, one a tick that has time
+    float held_sign, held_level_m_s; // of (17): 0 where no sign is sure; the mean of the last values
+    int32_t held_values;             // for which it was the same
+    int32_t parted_values;           // of (18): until which it is not forgotten that radar and wheels have parted
+    bool rolls;                      // of (18)
+    uint32_t chore;                  // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
     int32_t unheard_ticks; // since the last Doppler value, quiet or not

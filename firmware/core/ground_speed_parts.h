@@ -4,6 +4,7 @@
 //   ground_speed_track.c  one track [v, b]: prediction (2), correction, bounds; V and what a window remembers (3); noise (6)
 //   ground_speed_value.c  a Doppler value on the best track: (1), (3), (4), (5), (8), (11); a quiet one
 //   ground_speed_sign.c   the other sign, (9)
+//   ground_speed_held.c   a sign that is sure as long as the radar hears no turn, (17)
 //   ground_speed_slide.c  a turn through zero that the last values tell of, (15)
 //   ground_speed_jump.c   the track whose bias may jump, (7)
 //   ground_speed_gyro.c   a gyro whose offset has moved, (16)
@@ -55,6 +56,7 @@ void ground_speed_correct(const ground_speed_config_t *config, ground_speed_trac
 // Variance of what (3) expects.
 float ground_speed_spread_of(const ground_speed_track_t *track, float tau);
 void ground_speed_integrate(const ground_speed_config_t *config, ground_speed_state_t *state, float accel_m_s2);
+void ground_speed_watch_slow_noise(ground_speed_state_t *state);
 void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_state_t *state);
 
 // What (3) needs of the past: the speed in the window's middle is v + tau b - change.
@@ -100,6 +102,11 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
 // At every value that tells of a full window.
 void ground_speed_remember(ground_speed_state_t *state);
 void ground_speed_watch_slide(const ground_speed_config_t *config, ground_speed_state_t *state);
+
+// --- ground_speed_held.c
+
+// At every value, a tick later: (17), (18).
+void ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state);
 
 // --- ground_speed_jump.c
 

@@ -80,6 +80,8 @@ static int32_t with_wheels(const ground_speed_config_t *config, const ground_spe
     return !match ? 0 : (wheel_m_s < 0.0f) == (state->speed_m_s < 0.0f) ? 1 : -1;
 }
 
+static const float rolls_pull = 6.0f; // [1] of (18), times wheel_pull, assumed
+
 static const float force_against = 1.0f; // 2 ln of the odds of (12), assumed
 
 // A sign that was lost at a restart or in a slide is the same at constant speed as the right one; wheels that turn against it all the time,
@@ -89,7 +91,7 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
     const float force = ground_speed_force_odds(config, state);
     const bool dragged = fixed_greater(state->speed_m_s < 0.0f ? force : -force, force_against);
     const bool against = dragged || with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) < 0;
-    state->against = !against ? 0 : state->against + (state->against < 1000 ? 1 : 0);
+    state->against = !against ? 0 : state->against + (state->against >= 1000 ? 0 : state->rolls ? 2 : 1);
     if (state->against >= config->against_values) {
         const ground_speed_track_t best = ground_speed_best_of(state);
         ground_speed_split(state, &state->other, &best);
@@ -173,8 +175,12 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const bool sure = fabsf(expected.told) >= config->sign_sure;
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
     const float cost = see(config, state, &state->other, &expected, sign);
+    const int32_t with = with_wheels(config, state, state->value_m_s, state->value_wheel_m_s);
+    if (state->rolls && with < 0 && fixed_greater(state->odds, config->against_odds)) {
+        state->odds = config->against_odds; // (18) asks anew
+    }
     state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
-                   config->wheel_pull * (float)with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) +
+                   (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) * (float)with +
                    config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
     const bool won = state->odds < 0.0f;
     if (won) {

@@ -129,6 +129,8 @@ static void propose(const ground_speed_config_t *config, ground_speed_state_t *s
     ground_speed_split(state, &state->other, &track);
     state->other_alive = true;
     state->odds = odds;
+    state->held_sign = 0.0f;
+    state->held_values = 0;
 }
 
 // A magnitude that passes through zero falls, and rises again, once.

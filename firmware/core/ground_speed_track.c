@@ -76,6 +76,29 @@ enum { NOISE_TICKS = 32, NOISE_LOST_BITS = 4, NOISE_LIMIT = 8191 };
 static const float noise_share = 0.125f; // [1] of a mean that enters the running one: 1.3 s of memory, 10 % of spread (assumed)
 
 // (6) from the second differences of V, each limited to 0.125 m/s per tick: the sum stays below 2^31.
+static const float slow_most = 3.0f; // [1] times the white noise: beyond, it is the rover's own motion, assumed
+
+enum { SLOW_TICKS = 4, SLOW_BENDS = 6, SLOW_LIMIT = 16383 };
+
+// (6'), of sums over four ticks
+void ground_speed_watch_slow_noise(ground_speed_state_t *state)
+{
+    uint32_t sum = 0;
+    int32_t newer = state->integral_q20[state->head];
+    int32_t middle = state->integral_q20[((uint32_t)state->head - SLOW_TICKS) % GROUND_SPEED_HISTORY];
+    for (uint32_t j = 2; j < SLOW_BENDS + 2; j++) {
+        const int32_t older = state->integral_q20[((uint32_t)state->head - SLOW_TICKS * j) % GROUND_SPEED_HISTORY];
+        const int32_t bend =
+            fixed_wrap_difference(fixed_wrap_difference(newer, middle), fixed_wrap_difference(middle, older)) >> NOISE_LOST_BITS;
+        const int32_t limited = bend < -SLOW_LIMIT ? -SLOW_LIMIT : bend > SLOW_LIMIT ? SLOW_LIMIT : bend;
+        sum += (uint32_t)(limited * limited);
+        newer = middle;
+        middle = older;
+    }
+    const float mean = (float)sum * (1.0f / (2.0f * SLOW_TICKS * SLOW_BENDS * 65536.0f * 65536.0f));
+    state->slow_noise_m2_s2 += noise_share * (mean - state->slow_noise_m2_s2);
+}
+
 void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     uint32_t sum = 0;
@@ -92,7 +115,10 @@ void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_
     }
     const float mean = (float)sum * (1.0f / (2.0f * NOISE_TICKS * 65536.0f * 65536.0f)); // units of 2^-16 m/s
     state->accel_noise_m2_s2 += noise_share * (mean - state->accel_noise_m2_s2);
-    state->speed_noise_m2_s2 = fixed_clamp(state->accel_noise_m2_s2, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
+    const float most = slow_most * state->accel_noise_m2_s2;
+    const float slow = fixed_greater(state->slow_noise_m2_s2, most) ? most : state->slow_noise_m2_s2;
+    const float noise = fixed_greater(slow, state->accel_noise_m2_s2) ? slow : state->accel_noise_m2_s2;
+    state->speed_noise_m2_s2 = fixed_clamp(noise, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
     ground_speed_weigh_wheels(config, state);
 }
 

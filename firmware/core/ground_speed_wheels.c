@@ -52,8 +52,9 @@ void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_
                             fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f) &&
                             !radar_departs(config, state, 0.0f);
         state->gyro_denied = !denied ? 0 : state->gyro_denied + (state->gyro_denied < DENIED_VALUES ? 1 : 0);
-        state->beside_mean_m_s =
-            state->accepted ? state->beside_mean_m_s + beside_share * (before - state->beside_mean_m_s) : state->value_beside_m_s;
+        state->beside_mean_m_s = state->accepted && state->slide.held > 0
+                                     ? state->beside_mean_m_s + beside_share * (before - state->beside_mean_m_s)
+                                     : state->value_beside_m_s;
     }
 }
 

@@ -1,4 +1,5 @@
 #include "tests/bench/outdoors.h"
+#include "tests/bench/scatterers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +86,10 @@ struct Rover { // four like wheels on soil, one body
 } // namespace
 
 Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
-    const Echo &echo = echo_of(seed);
+    const Echo *const echo = now.scatterers ? nullptr : &echo_of(seed);
+    Scatterers *const ground = now.scatterers ? &scatterers_of(seed) : nullptr;
+    FrontEnd front(now.echo_count, now.snr_dB, seed);
+    Rattle rattle(seed);
     Random noise{seed * 77 + 5}, accel_noise{seed * 131 + 9}, luck{seed * 991 + 1};
     clutter::Biquad high = clutter::butterworth(3, radar_Hz, true), low = clutter::butterworth(80, radar_Hz, false);
     const double white = now.echo_count * std::pow(10, -now.snr_dB / 20);
@@ -103,6 +107,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
     };
     double path = 0.4 * static_cast<double>(seed), angle = 0, duty = 0, t = 0, last_speed = now.closed ? 0 : now.speed(0);
     std::uint32_t sequence = 0;
+    const double rate_Hz = now.scatterers ? radar_Hz * 1.0003 : radar_Hz;
     std::vector<std::uint16_t> waiting;
     std::vector<std::uint32_t> number;
     std::uint32_t tick = 0;
@@ -112,6 +117,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
     for (int k = 0; k < static_cast<int>(now.duration_s / tick_s); ++k, ++tick) {
         const double before = now.closed ? rover.speed : last_speed, shakes = t < now.still_s ? 0 : 1;
         double speed = before, wheel = 0;
+        rattle.waver();
         for (int j = 0; j < substeps; ++j) {
             const double dt = tick_s / substeps;
             t += dt;
@@ -122,26 +128,30 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 speed = now.speed(t), wheel = now.wheel ? now.wheel(t) : 1.1 * speed;
             }
             path += speed * dt, angle += wheel / radius_m * dt;
-            if (t * radar_Hz >= samples + 1) {
+            if (now.scatterers) rattle.turn(wheel / radius_m, dt, !now.closed);
+            if (t * rate_Hz >= samples + 1) {
                 ++samples;
                 const double z = shakes * now.heave_m * std::sin(2 * pi * now.heave_Hz * t),
                              pitch = shakes * now.pitch_rad * std::sin(2 * pi * 5 * t);
                 const bool dead = now.radar_dead && now.radar_dead(t);
-                const double filtered = low.step(high.step(now.echo_count * echo.at(path + 0.3 * pitch, z)));
-                const double count =
-                    dead ? 512 + now.offset_count + 0.3 * noise.normal()
-                         : 512 + now.offset_count + filtered + white * noise.normal() + now.tone_count * std::sin(2 * pi * now.tone_Hz * t);
+                const double heard = now.scatterers ? front.filtered(ground->echo(path + 0.3 * pitch, z))
+                                                    : low.step(high.step(now.echo_count * echo->at(path + 0.3 * pitch, z)));
+                const double own = dead ? 0.3 : now.scatterers ? 0 : white; // noise of the converter
+                const double count = 512 + now.offset_count + own * noise.normal() +
+                                     (dead ? 0 : heard + now.tone_count * std::sin(2 * pi * now.tone_Hz * t));
                 ++sequence;
                 const bool lost = luck.uniform() < now.lost_share;
                 if (!lost && !(now.radar_silent && now.radar_silent(t))) {
-                    waiting.push_back(static_cast<std::uint16_t>(std::clamp(std::floor(count + 0.5), 0.0, 1023.0)));
+                    waiting.push_back(static_cast<std::uint16_t>(now.scatterers ? front.convert(count)
+                                                                                : std::clamp(std::floor(count + 0.5), 0.0, 1023.0)));
                     number.push_back(sequence);
                 }
             }
         }
         heave_accel = -now.heave_m * std::pow(2 * pi * now.heave_Hz, 2) * std::sin(2 * pi * now.heave_Hz * t);
-        const double accel = (speed - before) / tick_s + gravity * std::sin(slope_at(t)) + now.accel_bias +
-                             now.accel_noise * accel_noise.normal() +
+        const double moves = (speed - before) / tick_s + gravity * std::sin(slope_at(t));
+        const double accel = (now.scatterers ? rattle.accel(moves, now.accel_bias, now.accel_noise, wheel / radius_m / (2 * pi))
+                                             : moves + now.accel_bias + now.accel_noise * accel_noise.normal()) +
                              shakes * 0.3 * now.pitch_rad * std::pow(2 * pi * 5, 2) * -std::sin(2 * pi * 5 * t) -
                              (now.gyros ? shakes * gravity * now.pitch_rad * std::sin(2 * pi * 5 * t) : 0);
         last_speed = speed;
@@ -159,7 +169,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         frame.elapsed_ticks = static_cast<std::uint32_t>(since);
         frame.time_us = 1000000u + tick * 10000u;
         for (int i = 0; i < WHEEL_COUNT; ++i) {
-            frame.encoder_count[i] = static_cast<std::int32_t>(std::floor(angle * 6000 / (2 * pi)));
+            frame.encoder_count[i] = static_cast<std::int32_t>(std::floor((now.scatterers ? rattle.angle(i) : angle) * 6000 / (2 * pi)));
             const double current = now.closed ? rover.current : 0.3;
             frame.current_count[i] = static_cast<std::uint16_t>(std::clamp(2048 + current / 0.002 + 5 * accel_noise.normal(), 1.0, 4094.0));
         }
@@ -226,7 +236,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
 
 Score score(const Case &now, const Run &run) {
     Score out;
-    double spell = 0;
+    int spell = 0; // ticks
     int ok = 0;
     for (const Step &step : run.steps) {
         const double error = step.estimate - step.speed;
@@ -239,8 +249,8 @@ Score score(const Case &now, const Run &run) {
         }
         out.faults |= step.faults;
         const bool wrong = step.estimate * step.speed < 0 && std::fabs(step.speed) > 0.05 && std::fabs(step.estimate) > 0.05;
-        spell = wrong ? spell + tick_s : 0;
-        out.wrong_sign_s = std::max(out.wrong_sign_s, spell);
+        spell = wrong ? spell + 1 : 0;
+        out.wrong_sign_s = std::max(out.wrong_sign_s, spell / 100.0);
         out.last_true = step.speed;
         if (step.t > now.settle_s) {
             out.square += error * error;

@@ -58,6 +58,7 @@ struct Case {
     std::function<bool(double)> radar_dead, radar_silent;  // noise of 0.3 counts alone; no samples at all
     double missed_share = 0;                               // ticks missed at random
     bool sequence = true;                                  // the frame numbers its samples
+    bool scatterers = false;                               // the second generator's echo, accelerometer and wheels, scatterers.h
     bool gyros = false; // all three, with offset and noise; a slope then comes within 0.1 s, as far as a body can pitch
     std::function<double(double)> gyro_y_more, gyro_x_more; // what they read too much [rad/s]
     // closed loop

@@ -1,6 +1,7 @@
 // outdoors_bench - the whole control_step on echoes and frames of outdoors.h: one row per thing that the first hour outdoors brings.
 //
-// usage: outdoors_bench [--gyros] [--stood S] [--seeds N] [--first N] [--only WORD]. --gyros: the frames have all three; --stood: every row
+// usage: outdoors_bench [--gyros] [--stood S] [--seeds N] [--first N] [--only WORD]
+// [--echo scatterers]. --gyros: the frames have all three; --stood: every row
 // begins after S seconds of standing, so that the gyros' offsets are known, and half a second of setting off. Exit 1 when a row misses its
 // goal: error <= 4 cm/s, or NEES <= 2, or a fault within 0.5 s; never a wrong sign for more than 0.5 s; closed loops within 0.1 m/s of
 // their command from 1.5 s on, without a fault.
@@ -291,7 +292,7 @@ std::string names_of(std::uint32_t faults) {
 int main(int argc, char **argv) {
     int seeds = 4, first = 1;
     std::string only;
-    bool gyros = false;
+    bool gyros = false, scatterers = false;
     double stood = 0;
     for (int i = 1; i < argc; ++i) {
         gyros = gyros || std::strcmp(argv[i], "--gyros") == 0;
@@ -300,6 +301,7 @@ int main(int argc, char **argv) {
         if (std::strcmp(argv[i], "--stood") == 0) stood = std::atof(argv[i + 1]);
         if (std::strcmp(argv[i], "--seeds") == 0) seeds = std::atoi(argv[i + 1]);
         if (std::strcmp(argv[i], "--first") == 0) first = std::atoi(argv[i + 1]);
+        if (std::strcmp(argv[i], "--echo") == 0) scatterers = std::strcmp(argv[i + 1], "scatterers") == 0;
         if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
     }
     const control_config_t config = rover_config_default();
@@ -309,6 +311,7 @@ int main(int argc, char **argv) {
     int calm_rows = 0, nees_rows = 0;
     std::vector<Row> every = rows();
     for (Row &row : every) {
+        row.what.scatterers = scatterers;
         row.what.gyros = gyros || row.group == "gyro";
         if (stood > 0 && row.group != "gyro" && row.group != "closed") stand_first(row, stood);
         if (!only.empty() && row.group.find(only) == std::string::npos && row.what.name.find(only) == std::string::npos) {
