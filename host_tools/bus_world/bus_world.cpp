@@ -5,7 +5,9 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <net/if.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -22,6 +24,13 @@ std::int64_t clock_ns() {
 
 [[noreturn]] void refuse(const std::string &interface, const std::string &what) {
     throw std::runtime_error("--can " + interface + ": " + what);
+}
+
+// A socket is bound to an interface that is down, too, and hears nothing there.
+bool is_up(int fd, const std::string &interface) {
+    ifreq asked{};
+    interface.copy(asked.ifr_name, IFNAMSIZ - 1);
+    return ioctl(fd, SIOCGIFFLAGS, &asked) == 0 && (asked.ifr_flags & IFF_UP) != 0;
 }
 
 } // namespace
@@ -61,6 +70,10 @@ can_socket_t open_bus(const std::string &interface) {
         refuse(interface, "is no CAN interface of this machine; make one: modprobe vcan; ip link add " + interface +
                               " type vcan; ip link set " + interface + " up");
     if (result != 0) refuse(interface, std::string("cannot be opened: ") + std::strerror(-result));
+    if (!is_up(bus.fd, interface)) {
+        can_socket_close(&bus);
+        refuse(interface, "is down; ip link set " + interface + " up");
+    }
     return bus;
 }
 
@@ -71,7 +84,7 @@ Run answer(BusWorld &world, can_socket_t &bus, const std::string &interface, con
         for (const can_frame_t &frame : frames) {
             const can_socket_result_t result = can_socket_send(&bus, &frame, clock_ns());
             run.lost += result == CAN_SOCKET_FULL || result == CAN_SOCKET_OFF ? 1u : 0u;
-            if (result == CAN_SOCKET_GONE) refuse(interface, "has gone, or is down; `ip link set " + interface + " up`");
+            if (result == CAN_SOCKET_GONE) refuse(interface, "has gone, or is down; ip link set " + interface + " up");
         }
     };
     while (!world.over() && !run.interrupted) {
@@ -81,7 +94,7 @@ Run answer(BusWorld &world, can_socket_t &bus, const std::string &interface, con
         can_frame_t frame;
         can_socket_result_t got = CAN_SOCKET_NOTHING;
         while (!world.over() && (got = can_socket_receive(&bus, &frame)) == CAN_SOCKET_OK) say(world.hear(clock_ns(), &frame));
-        if (got == CAN_SOCKET_GONE) refuse(interface, "has gone, or is down; `ip link set " + interface + " up`");
+        if (got == CAN_SOCKET_GONE) refuse(interface, "has gone, or is down; ip link set " + interface + " up");
         say(world.hear(clock_ns(), nullptr));
         if (waited && world.begun() && hooks.begun) hooks.begun();
         for (; world.counts().ticks / 100 > seconds; seconds++)

@@ -1,5 +1,5 @@
-// `traction simulate --can`: the rover's nodes on a bus, for a computer whose clock is its own. The bus is a socket pair here; on a kernel's
-// vcan, with the real programs at both ends, tests/emulate/vcan.sh drives it.
+// `traction simulate --can`: the rover's nodes on a bus, for a computer whose clock is its own. The bus is a socket pair here; on a
+// kernel's vcan, with the real programs at both ends, tests/emulate/vcan.sh drives it.
 #include "hal/can/can_master.h"
 #include "hal/linux/linux_hal.h"
 #include "host_tools/bus_world/bus_world.h"
@@ -28,7 +28,8 @@ namespace {
 constexpr std::int64_t tick_ns = std::int64_t{TICK_US} * 1000, ms = 1000000;
 
 sim::Scenario scenario_of(const std::string &more = "") {
-    return sim::parse_scenario("duration_s = 60\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 60\nmode = \"stop\"\n" + more, "bus.toml");
+    return sim::parse_scenario("duration_s = 60\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 60\nmode = \"stop\"\n" + more,
+                               "bus.toml");
 }
 
 // -most to most, the same each time.
@@ -74,7 +75,8 @@ TEST(sync_clock, counts_ticks_under_jitter_and_another_clocks_drift) {
         SyncClock clock;
         Jitter jitter;
         for (std::int64_t k = 0; k < 20000; k++) {
-            const std::int64_t now_ns = 123456789 + static_cast<std::int64_t>(static_cast<double>(k * tick_ns) * (1 + drift)) + jitter(2 * ms);
+            const std::int64_t now_ns =
+                123456789 + static_cast<std::int64_t>(static_cast<double>(k * tick_ns) * (1 + drift)) + jitter(2 * ms);
             ASSERT_EQ(clock.sync(now_ns), k * tick_ns) << "drift " << drift;
             ASSERT_EQ(clock.at(now_ns + 3 * ms), k * tick_ns + 3 * ms);
         }
