@@ -10,7 +10,10 @@
 #include "hal/linux/can_socket.h"
 #include "host_tools/emulate/world.h"
 
+#include <cstdint>
 #include <functional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 

@@ -6,7 +6,9 @@
 #include "sim/scenario/scenario.h"
 #include "sim/scenario/scenario_error.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 #include <array>
 #include <atomic>
