@@ -85,7 +85,7 @@ grep mean_speed /drive.json
 kill -TERM $daemon
 wait $daemon
 echo "daemon: $?: $(cat /linked.txt)"
-kill -INT $nodes
+kill -TERM $nodes
 code=0
 wait $nodes || code=$?
 echo "nodes: $code: $(cat /bus.txt)"
@@ -121,7 +121,7 @@ says '^down: 3: .*ip link set vcan0 up'
 says '^recorded: 0: .*asked to stop.*faults seen 00000000'
 says '^linked: 0: '
 says '^daemon: 0: '
-says '^nodes: 130: '
+says '^nodes: 143: '
 says '"lost_frames": 0'
 says '^check: 0'
 # the middle of each drive: 0.3 m/s were asked for, a tenth off is a platform that does not follow (concrete, 2 s after its start)
