@@ -1,7 +1,7 @@
 #!/bin/sh
 # vcan.sh ROOT TRACTION TRACTIOND WORK [--fetch] - the rover's own program on x86 against `traction simulate --can vcan0`, on a kernel that has
 # CAN: Debian's own, in QEMU, whose clock is its count of instructions (nobody outside is waited for), so that a loaded machine does not show. Drives recorded commands, then an
-# operator's over the link; the log is checked. Exit 77, in words, where QEMU for x86 or the kernel is not there; --fetch: fetches the kernel
+# operator's over the link; the log is converted. Exit 77, in words, where QEMU for x86 or the kernel is not there; --fetch: fetches the kernel
 # (apt, unpacked beside the emulated board's, never into this system).
 set -eu
 root=$1 traction=$2 tractiond=$3 work=$4 fetch=${5-}
@@ -91,9 +91,8 @@ wait $nodes || code=$?
 echo "nodes: $code: $(cat /bus.txt)"
 grep -E 'ticks|lost|frames' /bus.json
 code=0
-$traction convert /log/log_000001.ulg --out /run.csv && $traction check /run.csv >/check.txt 2>&1 || code=$?
-echo "check: $code"
-sed -n 's/^/check.txt: /p' /check.txt
+$traction convert /log/log_000001.ulg --out /run.csv || code=$?
+echo "convert: $code"
 awk -F , '/^t_s,/ { for (i = 1; i <= NF; i++) if ($i == "estimate.speed_m_s") column = i; next } $1 + 0 >= 5 && $column != "" { print "speed: " $column; exit }' /run.csv
 end whole
 INIT
@@ -123,7 +122,7 @@ says '^linked: 0: '
 says '^daemon: 0: '
 says '^nodes: 143: '
 says '"lost_frames": 0'
-says '^check: 0'
+says '^convert: 0'
 # the middle of each drive: 0.3 m/s were asked for, a tenth off is a platform that does not follow (concrete, 2 s after its start)
 awk -F '[:,]' '/mean_speed_m_s/ { v = $2; found = 1 } END { exit !(found && v > 0.27 && v < 0.33) }' said.txt || fail "the operator's drive: $(grep mean_speed said.txt)"
 awk '$1 == "speed:" { v = $2; found = 1 } END { exit !(found && v > 0.27 && v < 0.33) }' said.txt || fail "the recorded drive: $(grep '^speed' said.txt)"
