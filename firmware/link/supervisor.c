@@ -91,22 +91,27 @@ static bool from_before(const supervisor_t *link, const mavlink_message_t *packe
     return channel_packet_time(packet) < link->config.started_10us;
 }
 
+// The number of the parameter that has this name on the wire; as many as there are: none has.
+static uint32_t parameter_named(const supervisor_t *link, const char *name)
+{
+    char id[SUPERVISOR_ID + 1];
+    float value = 0;
+    uint32_t i = 0;
+    while (supervisor_parameter(link, i, id, &value) && strncmp(id, name, SUPERVISOR_ID) != 0) {
+        i++;
+    }
+    return i;
+}
+
 static void take_parameter_set(supervisor_t *link, int peer, const mavlink_message_t *packet)
 {
     mavlink_param_set_t set;
     mavlink_msg_param_set_decode(packet, &set);
-    char id[SUPERVISOR_ID + 1];
-    float value = 0;
-    for (uint32_t i = 0; supervisor_parameter(link, i, id, &value); i++) {
-        if (strncmp(id, set.param_id, SUPERVISOR_ID) == 0) {
-            const bool done = supervisor_set(link, i, set.param_value);
-            link->counts.accepted += done ? 1u : 0u;
-            link->counts.refused_other += done ? 0u : 1u;
-            (void)supervisor_tell_parameter(link, peer, i); // as it is now: a refusal shows itself
-            return;
-        }
-    }
-    link->counts.refused_other++;
+    const uint32_t index = parameter_named(link, set.param_id);
+    const bool done = supervisor_set(link, index, set.param_value);
+    link->counts.accepted += done ? 1u : 0u;
+    link->counts.refused_other += done ? 0u : 1u;
+    (void)supervisor_tell_parameter(link, peer, index); // as it is now: a refusal shows itself
 }
 
 static void acknowledge(supervisor_t *link, int peer, const mavlink_message_t *packet, uint16_t command, uint8_t result)
@@ -165,18 +170,8 @@ static void take_parameter_read(supervisor_t *link, int peer, const mavlink_mess
 {
     mavlink_param_request_read_t asked;
     mavlink_msg_param_request_read_decode(packet, &asked);
-    char id[SUPERVISOR_ID + 1];
-    float value = 0;
-    if (asked.param_index >= 0) {
-        (void)supervisor_tell_parameter(link, peer, (uint32_t)asked.param_index);
-        return;
-    }
-    for (uint32_t i = 0; supervisor_parameter(link, i, id, &value); i++) {
-        if (strncmp(id, asked.param_id, SUPERVISOR_ID) == 0) {
-            (void)supervisor_tell_parameter(link, peer, i);
-            return;
-        }
-    }
+    const uint32_t index = asked.param_index >= 0 ? (uint32_t)asked.param_index : parameter_named(link, asked.param_id);
+    (void)supervisor_tell_parameter(link, peer, index);
 }
 
 static void take_mission_request(supervisor_t *link, int peer, const mavlink_message_t *packet)
@@ -282,6 +277,28 @@ static bool acts(uint32_t id)
     return false;
 }
 
+// A no in the words of the question's own protocol: a ground station that hears nothing asks again and again.
+static void tell_refused(supervisor_t *link, int peer, const mavlink_message_t *packet)
+{
+    if (packet->msgid == MAVLINK_MSG_ID_COMMAND_INT) {
+        acknowledge(link, peer, packet, mavlink_msg_command_int_get_command(packet), MAV_RESULT_DENIED);
+    } else if (packet->msgid == MAVLINK_MSG_ID_PARAM_SET) {
+        mavlink_param_set_t set;
+        mavlink_msg_param_set_decode(packet, &set);
+        (void)supervisor_tell_parameter(link, peer, parameter_named(link, set.param_id)); // as it was
+    } else if (packet->msgid == MAVLINK_MSG_ID_MISSION_COUNT || packet->msgid == MAVLINK_MSG_ID_MISSION_CLEAR_ALL) {
+        mavlink_message_t answer;
+        const mavlink_mission_ack_t no = {.target_system = packet->sysid,
+                                          .target_component = packet->compid,
+                                          .type = MAV_MISSION_DENIED,
+                                          .mission_type = packet->msgid == MAVLINK_MSG_ID_MISSION_COUNT
+                                                              ? mavlink_msg_mission_count_get_mission_type(packet)
+                                                              : mavlink_msg_mission_clear_all_get_mission_type(packet)};
+        (void)mavlink_msg_mission_ack_encode_status(link->config.system, SUPERVISOR_COMPONENT, &link->channel.status, &answer, &no);
+        (void)supervisor_send(link, peer, &answer);
+    }
+}
+
 static void take_packet(supervisor_t *link, int peer, const mavlink_message_t *packet, bool key)
 {
     if ((packet->sysid == link->config.system && packet->compid == SUPERVISOR_COMPONENT) || !channel_for_us(&link->channel, packet)) {
@@ -296,6 +313,7 @@ static void take_packet(supervisor_t *link, int peer, const mavlink_message_t *p
     }
     if (!key) {
         link->counts.refused_unsigned++;
+        tell_refused(link, peer, packet);
     } else if (packet->msgid == MAVLINK_MSG_ID_TRACTION_COMMAND) {
         take_command(link, peer, packet);
     } else if (from_before(link, packet)) {
@@ -304,6 +322,7 @@ static void take_packet(supervisor_t *link, int peer, const mavlink_message_t *p
         take_parameter_set(link, peer, packet);
     } else {
         link->counts.refused_other++; // a key is never set, a log never erased from afar; nothing else drives
+        tell_refused(link, peer, packet);
     }
 }
 

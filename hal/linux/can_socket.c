@@ -17,22 +17,26 @@ static const int64_t restart_every_ns = 100000000;
 
 void can_socket_adopt(can_socket_t *bus, int fd) { *bus = (can_socket_t){.fd = fd}; }
 
-// Standard frames with data, of answers alone: the computer has no use for SYNC and orders.
-static int set_up(int fd) {
-    const canid_t kind = CAN_EFF_FLAG | CAN_RTR_FLAG;
-    const struct can_filter filter[] = {{CAN_WHEEL, (CAN_SFF_MASK & ~0x3u) | kind},
-                                        {CAN_ACCEL, (CAN_SFF_MASK & ~0x3u) | kind},
-                                        {CAN_DIAGNOSIS, (CAN_SFF_MASK & ~0x3u) | kind}};
+// Standard frames with data. The computer has no use for SYNC and orders, nor the nodes for anything else.
+enum { FILTERS = 3 };
+
+// The identifiers from id on, as many as wheels, or id alone.
+static struct can_filter filter_of(canid_t id, bool wheels) {
+    const canid_t kind = CAN_EFF_FLAG | CAN_RTR_FLAG, spare = wheels ? 0x3u : 0x0u;
+    return (struct can_filter){.can_id = id, .can_mask = (CAN_SFF_MASK & ~spare) | kind};
+}
+
+static int set_up(int fd, const struct can_filter filter[FILTERS]) {
     const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_CRTL | CAN_ERR_ACK | CAN_ERR_PROT | CAN_ERR_TX_TIMEOUT;
     const int own = 0;
-    return setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filter, sizeof filter) != 0 ||
+    return setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filter, FILTERS * sizeof *filter) != 0 ||
                    setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
                    setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &own, sizeof own) != 0
                ? -errno
                : 0;
 }
 
-int can_socket_open(can_socket_t *bus, const char *interface) {
+static int open_with(can_socket_t *bus, const char *interface, const struct can_filter filter[FILTERS]) {
     const unsigned index = if_nametoindex(interface);
     const int fd = index != 0 ? socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW) : -1;
     *bus = (can_socket_t){.fd = -1};
@@ -43,7 +47,7 @@ int can_socket_open(can_socket_t *bus, const char *interface) {
     memset(&address, 0, sizeof address);
     address.can_family = AF_CAN;
     address.can_ifindex = (int)index;
-    int result = set_up(fd);
+    int result = set_up(fd, filter);
     if (result == 0 && bind(fd, (const struct sockaddr *)&address, sizeof address) != 0) {
         result = -errno;
     }
@@ -54,6 +58,16 @@ int can_socket_open(can_socket_t *bus, const char *interface) {
     can_socket_adopt(bus, fd);
     bus->interface = index;
     return 0;
+}
+
+int can_socket_open(can_socket_t *bus, const char *interface) {
+    const struct can_filter answers[FILTERS] = {filter_of(CAN_WHEEL, true), filter_of(CAN_ACCEL, true), filter_of(CAN_DIAGNOSIS, true)};
+    return open_with(bus, interface, answers);
+}
+
+int can_socket_open_nodes(can_socket_t *bus, const char *interface) {
+    const struct can_filter orders[FILTERS] = {filter_of(CAN_SYNC, false), filter_of(CAN_ORDER, true), filter_of(CAN_ORDER, true)};
+    return open_with(bus, interface, orders);
 }
 
 static void take_error(can_socket_t *bus, const struct can_frame *frame) {

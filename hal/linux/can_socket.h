@@ -26,6 +26,9 @@ typedef struct {
 // Opens and binds; -errno, or 0.
 int can_socket_open(can_socket_t *bus, const char *interface);
 
+// The same at the nodes' end of the bus: it hears SYNC and orders (traction simulate --can).
+int can_socket_open_nodes(can_socket_t *bus, const char *interface);
+
 // The same socket from a descriptor of the caller's, which is then owned.
 void can_socket_adopt(can_socket_t *bus, int fd);
 

@@ -5,6 +5,9 @@
 #include "stop_signal.h"
 #include "verbs.h"
 
+#if TRACTION_WITH_BUS
+#include "host_tools/bus_world/bus_world.h"
+#endif
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/log/log.h"
 #include "host_tools/log/write_file.h"
@@ -29,7 +32,7 @@ namespace traction::cli {
 namespace {
 
 struct SimulateArguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes, live;
+    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes, live, can;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     double seconds = 0; // 0: the scenario's own
@@ -150,6 +153,67 @@ void tell_faults(Outcome &outcome) {
     }
 }
 
+#if TRACTION_WITH_BUS
+// What is hidden in this run, sealed, after the effects that are asked for.
+std::vector<sim::ActiveEffect> effects_of(const SimulateArguments &arguments, const sim::Scenario &scenario) {
+    std::vector<sim::ActiveEffect> effects = scenario.effects;
+    for (const std::string &text : arguments.effects) effects.push_back(sim::parse_effect(text));
+    std::optional<sim::HiddenDraw> hide = scenario.hidden;
+    if (arguments.hide >= 0)
+        hide = sim::HiddenDraw{.seed = static_cast<std::uint64_t>(arguments.hide), .count = arguments.hide_count, .among = {}};
+    if (!hide) return effects;
+    const std::vector<sim::ActiveEffect> hidden = sim::draw_effects(*hide);
+    if (!arguments.seal.empty()) report::write_text(sim::seal_text(hidden, scenario.name, hide->seed), arguments.seal);
+    effects.insert(effects.end(), hidden.begin(), hidden.end());
+    return effects;
+}
+
+// The rover's nodes on a CAN bus of this machine, for a computer at its other end.
+void answer_on_bus(const SimulateArguments &arguments, const sim::Scenario &scenario, Outcome &outcome) {
+    const std::uint64_t seed = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed;
+    can_socket_t bus = bus_world::open_bus(arguments.can);
+    bus_world::BusWorld world(scenario, effects_of(arguments, scenario), seed);
+    std::printf("%s: the rover's nodes are on %s; waiting for the SYNC of a computer (tractiond --hal linux)\n", scenario.name.c_str(),
+                arguments.can.c_str());
+    (void)std::fflush(stdout); // a script waits for it
+    const auto start = std::chrono::steady_clock::now();
+    const StopSignal stop("\ntraction: the nodes leave the bus. Once more ends it without a word\n");
+    bus_world::Run done;
+    {
+        Progress progress("simulate " + scenario.name, static_cast<long>(scenario.duration_s + 0.5));
+        done = bus_world::answer(
+            world, bus, arguments.can,
+            {.stopped = [] { return StopSignal::asked() != 0; }, .begun = {}, .after_second = [&progress] { progress.step(); }});
+    }
+    can_socket_close(&bus);
+    const emulate::Counts &counts = done.counts;
+    std::printf(
+        "%.1f s: %u ticks, %u of them without a SYNC; %llu frames from the computer, %llu to it, %llu lost; orders out up to %.1f ms "
+        "after their SYNC\n",
+        static_cast<double>(counts.ticks) / 100, counts.ticks, counts.unread, static_cast<unsigned long long>(counts.frames_from),
+        static_cast<unsigned long long>(counts.frames_to), static_cast<unsigned long long>(done.lost),
+        counts.ticks > 0 && counts.order.most > 0 ? counts.order.most * 1e-3 : 0.0);
+    outcome.json = {{"schema", "traction.simulate/1"},
+                    {"scenario", scenario.name},
+                    {"runs", nlohmann::json::array()},
+                    {"spent_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()},
+                    {"bus",
+                     {{"interface", arguments.can},
+                      {"seed", seed},
+                      {"ticks", counts.ticks},
+                      {"unread_ticks", counts.unread},
+                      {"frames_from_computer", counts.frames_from},
+                      {"frames_to_computer", counts.frames_to},
+                      {"lost_frames", done.lost},
+                      {"interrupted", done.interrupted}}}};
+    if (const int signal = StopSignal::asked(); signal != 0) outcome.exit_code = 128 + signal;
+}
+#else
+void answer_on_bus(const SimulateArguments &, const sim::Scenario &, Outcome &) {
+    throw UsageError("--can: this build has no CAN bus (cantools was not there); `./traction build` of the source tree brings it");
+}
+#endif
+
 void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     for (const std::string &text : arguments.effects) need_effect("--effect", text, ":");
     sim::Scenario scenario = sim::read_scenario(arguments.scenario);
@@ -159,6 +223,11 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     if (!arguments.frames.empty() && !parameter_lines(firmware_parameters(believed(scenario))).empty())
         throw UsageError(
             "--frames: replays the reference rover's firmware; for another rover keep the log (--out), which `traction replay` reads");
+    if (arguments.seconds > 0) scenario.duration_s = std::min(scenario.duration_s, arguments.seconds);
+    if (!arguments.can.empty()) {
+        answer_on_bus(arguments, scenario, outcome);
+        return;
+    }
     SimulateOptions options;
     options.record = false;
     options.realtime = arguments.realtime;
@@ -166,7 +235,6 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     options.frames_path = arguments.frames;
     if (!arguments.firmware.empty()) options.firmware = arguments.firmware;
     for (const std::string &text : arguments.effects) options.effects.push_back(sim::parse_effect(text));
-    if (arguments.seconds > 0) scenario.duration_s = std::min(scenario.duration_s, arguments.seconds);
 
     std::uint64_t first = arguments.seed >= 0 ? static_cast<std::uint64_t>(arguments.seed) : scenario.seed, last = first;
     const bool batch = !arguments.seeds.empty();
@@ -213,6 +281,8 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
 
 Verb verb_simulate() {
     const auto arguments = std::make_shared<SimulateArguments>();
+    const std::vector<std::string> of_firmware = {"--out",  "--truth",    "--frames",    "--firmware", "--believes",
+                                                  "--live", "--realtime", "--self-test", "--seeds"};
     return {.name = "simulate",
             .summary = "drive the simulated rover through a scenario and write the log",
             .options =
@@ -292,6 +362,11 @@ Verb verb_simulate() {
                   .into = &arguments->self_test,
                   .help = "the firmware's self-test before the drive; what fails is named and ends the run"},
                  {.name = "--seeds", .into = &arguments->seeds, .help = "run seeds FIRST..LAST; file names get the seed", .value = "A..B"},
+                 {.name = "--can",
+                  .into = &arguments->can,
+                  .help = "no firmware here: the rover's nodes, on this CAN interface, for a computer at its other end (docs/can.md)",
+                  .value = "INTERFACE",
+                  .excludes = of_firmware},
                  {.name = "--jobs", .into = &arguments->jobs, .help = "runs side by side", .range = Range{1, 256}}},
             .run = [arguments](Outcome &outcome) { run_simulate(*arguments, outcome); }};
 }

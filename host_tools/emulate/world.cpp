@@ -29,27 +29,24 @@ lockstep_frame_t to_board(const can_frame_t &frame) {
 
 bool of_sensor_node(const can_frame_t &frame) { return frame.id >= CAN_ACCEL && frame.id <= CAN_RADAR; }
 
-[[noreturn]] void refuse(const sim::Scenario &scenario, const std::string &what, const std::string &mend) {
-    throw sim::ScenarioError(scenario.file, 0, "fault", what, "the emulated board cannot have it", mend);
-}
-
 // What happens inside the rover's computer in the simulator has no wire to come by.
-void check(const sim::Scenario &scenario, Sensors sensors) {
+void check(const sim::Scenario &scenario, Sensors sensors, const std::string &where) {
+    const auto refuse = [&](const std::string &what, const std::string &mend) {
+        throw sim::ScenarioError(scenario.file, 0, "fault", what, where + " cannot have it", mend);
+    };
     if (scenario.rover.layout().kind != sim::Layout::four)
         throw sim::ScenarioError(scenario.file, 0, "layout.wheels", std::to_string(static_cast<int>(scenario.rover.at("layout", "wheels"))),
-                                 "the emulated board has four wheel nodes on its bus",
-                                 "use `traction simulate`, where the wheels are wired");
+                                 where + " has four wheel nodes", "use `traction simulate`, where the wheels are wired");
     if (scenario.rover.drives[0] >= 0)
-        throw sim::ScenarioError(scenario.file, scenario.rover.drives_line, "layout.drives", "",
-                                 "the emulated board has four wheel nodes on its bus",
+        throw sim::ScenarioError(scenario.file, scenario.rover.drives_line, "layout.drives", "", where + " has four wheel nodes",
                                  "use `traction simulate`, where the wheels are wired");
     if (!sim::steered_axles(scenario.rover.layout()).empty())
-        throw sim::ScenarioError(scenario.file, 0, "steering", "", "the emulated board has no steering servo",
+        throw sim::ScenarioError(scenario.file, 0, "steering", "", where + " has no steering servo",
                                  "use `traction simulate`, whose rover has one");
-    if (!scenario.missed_ticks.empty()) refuse(scenario, "missed_ticks", "the board misses its own ticks; leave it out");
+    if (!scenario.missed_ticks.empty()) refuse("missed_ticks", "the computer at its end misses its own ticks; leave it out");
     for (const sim::CanFault &fault : scenario.can_faults)
         if (fault.kind == sim::CanFaultKind::bus_off && (fault.node == sim::CanNode::computer || fault.node == sim::CanNode::all))
-            refuse(scenario, "bus_off of the computer", "vcan has no controller that leaves the bus; use how = \"silent\"");
+            refuse("bus_off of the computer", "vcan has no controller that leaves the bus; use how = \"silent\"");
     for (const sim::SensorFault &fault : scenario.sensor_faults) {
         const bool silent = fault.kind == sim::FaultKind::dropped || fault.kind == sim::FaultKind::timeout;
         const bool wheel = fault.sensor == sim::FaultySensor::encoder || fault.sensor == sim::FaultySensor::current ||
@@ -57,9 +54,9 @@ void check(const sim::Scenario &scenario, Sensors sensors) {
         const bool other = fault.sensor != sim::FaultySensor::camera && fault.sensor != sim::FaultySensor::emergency_stop &&
                            fault.sensor != sim::FaultySensor::radar;
         if (silent && wheel)
-            refuse(scenario, "a wheel's sensor that is dropped", "a node sends all it has or nothing: what = \"can\", how = \"silent\"");
+            refuse("a wheel's sensor that is dropped", "a node sends all it has or nothing: what = \"can\", how = \"silent\"");
         if (silent && sensors == Sensors::iio && other)
-            refuse(scenario, "a converter that is dropped", "a converter's channel always reads; use --sensors can");
+            refuse("a converter that is dropped", "a converter's channel always reads; use --sensors can");
     }
 }
 
@@ -89,9 +86,10 @@ class World::Wires final : public hal::Bus {
     bool supply = false; // the motor enable line
 };
 
-World::World(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed, Sensors sensors)
+World::World(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed, Sensors sensors,
+             const std::string &where)
     : sensors_(sensors), radar_rate_Hz_(static_cast<int>(scenario.sensors.radar.rate_Hz + 0.5)), lines_(1u << LOCKSTEP_LINE_STOP_PRESENT) {
-    check(scenario, sensors);
+    check(scenario, sensors, where);
     auto wires = std::make_unique<Wires>(
         hal::BusConfig{.faults = scenario.can_faults, .latency_ms = static_cast<int>(hal::actuation_delay_ms(effects)), .seed = seed});
     wires_ = wires.get();

@@ -54,7 +54,8 @@ struct Counts {
 class World {
   public:
     // Throws sim::ScenarioError for a fault that wires or the board's clock cannot carry. `scenario` must outlive this object.
-    World(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed, Sensors sensors);
+    World(const sim::Scenario &scenario, std::span<const sim::ActiveEffect> effects, std::uint64_t seed, Sensors sensors,
+          const std::string &where = "the emulated board"); // for messages
     World(const World &) = delete;
     World &operator=(const World &) = delete;
     ~World();

@@ -32,6 +32,18 @@ if [ "$only" != --if-built ]; then
     good=1
 fi
 
+# --- pieces of every length, so that some of them are one word at an edge of the flash memory's buffer (emulate/kernel/build.sh)
+memory_is_well() {
+    say_ssh 'busybox dmesg' >dmesg.txt || fail "no words of the kernel"
+    ! grep -i 'write error\|status timeout\|not ready' dmesg.txt || fail "the driver of the flash memory complains"
+}
+say_ssh 'i=0; text=; while [ $i -lt 1500 ]; do text=x$text; [ ${#text} -lt 24 ] || text=x; echo $text >>/flash/pieces; i=$((i + 1)); done; sync' || fail "pieces cannot be written"
+pieces=$(awk 'BEGIN { n = 0; for (i = 0; i < 1500; i++) { if (++n == 24) n = 1; sum += n + 1 } print sum }')
+[ "$(say_ssh 'cat /flash/pieces' | wc -c)" -eq "$pieces" ] || fail "of the pieces' $pieces bytes not all are there"
+say_ssh 'rm /flash/pieces'
+memory_is_well
+echo '1500 pieces of 2 to 24 bytes were written, and read back'
+
 # --- what is refused changes nothing
 over --status >before.txt 2>err || fail "no status"
 unchanged() { over --status >after.txt 2>err || fail "no status"; cmp -s before.txt after.txt || fail "$1 changed the board"; }
@@ -143,9 +155,11 @@ if [ "$only" != --if-built ]; then
 fi
 echo "$cuts cuts: $kept times the old version, $on_trial times the new one on trial, $changed times the new one for good"
 flash 0 "the new version runs: confirmed $next" next.tar
+memory_is_well
 power_off
 power_on
 runs "$next"
+memory_is_well
 
 # --- and every log that a cut ended is read up to it
 logs=$(say_ssh ls /flash/state/log | grep '[.]ulg')

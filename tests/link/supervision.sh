@@ -155,6 +155,9 @@ if [ -x "$source/.venv/bin/python" ] && "$source/.venv/bin/python" -c 'import py
         "$source/.venv/bin/python" "$source/tests/link/peer.py" "$work/dialect" "$port" key peer.ulg
     }
     three peer with_peer
+    station() { "$source/.venv/bin/python" "$source/tests/link/ground_station.py" "$work/dialect" "$port" "$@"; }
+    three station station
+    three station_signed station key
     end
     bytes=$(wc -c <peer.ulg)
     head -c "$bytes" peer_logs/log_000001.ulg | cmp - peer.ulg || fail 'what pymavlink fetched is not what the rover has written'

@@ -423,6 +423,59 @@ TEST(Supervisor, answers_a_ground_stations_first_questions) {
     EXPECT_EQ(mavlink_msg_heartbeat_get_type(heartbeat), MAV_TYPE_GROUND_ROVER);
 }
 
+// What a ground station sends when somebody presses its buttons, each refused in the words of its own protocol, with a key and without.
+TEST(Supervisor, refuses_in_words_what_a_ground_station_would_do) {
+    for (const bool keyed : {false, true}) {
+        Rover rover(our_key.data());
+        Operator who(keyed ? our_key.data() : nullptr, 255);
+        mavlink_command_int_t reposition{};
+        reposition.target_system = 1;
+        reposition.command = MAV_CMD_DO_REPOSITION;
+        rover.receive(who.packet(mavlink_msg_command_int_encode_status, reposition));
+        ASSERT_EQ(rover.count(MAVLINK_MSG_ID_COMMAND_ACK), 1);
+        EXPECT_EQ(mavlink_msg_command_ack_get_command(rover.last(MAVLINK_MSG_ID_COMMAND_ACK)), MAV_CMD_DO_REPOSITION);
+        EXPECT_EQ(mavlink_msg_command_ack_get_result(rover.last(MAVLINK_MSG_ID_COMMAND_ACK)), MAV_RESULT_DENIED);
+        mavlink_mission_count_t upload{};
+        upload.target_system = 1;
+        upload.count = 5;
+        upload.mission_type = MAV_MISSION_TYPE_FENCE;
+        rover.receive(who.packet(mavlink_msg_mission_count_encode_status, upload));
+        ASSERT_EQ(rover.count(MAVLINK_MSG_ID_MISSION_ACK), 1);
+        EXPECT_EQ(mavlink_msg_mission_ack_get_type(rover.last(MAVLINK_MSG_ID_MISSION_ACK)), MAV_MISSION_DENIED);
+        EXPECT_EQ(mavlink_msg_mission_ack_get_mission_type(rover.last(MAVLINK_MSG_ID_MISSION_ACK)), MAV_MISSION_TYPE_FENCE);
+        mavlink_mission_clear_all_t clear{};
+        clear.target_system = 1;
+        clear.mission_type = MAV_MISSION_TYPE_RALLY;
+        rover.receive(who.packet(mavlink_msg_mission_clear_all_encode_status, clear));
+        ASSERT_EQ(rover.count(MAVLINK_MSG_ID_MISSION_ACK), 2);
+        EXPECT_EQ(mavlink_msg_mission_ack_get_mission_type(rover.last(MAVLINK_MSG_ID_MISSION_ACK)), MAV_MISSION_TYPE_RALLY);
+        mavlink_param_set_t set{}; // the rover's own number: nobody's to set over the link
+        set.target_system = 1;
+        set.param_value = 99;
+        std::memcpy(set.param_id, "wheel_radius_m", 14);
+        rover.receive(who.packet(mavlink_msg_param_set_encode_status, set));
+        ASSERT_EQ(rover.count(MAVLINK_MSG_ID_PARAM_VALUE), 1);
+        EXPECT_EQ(mavlink_msg_param_value_get_param_value(rover.last(MAVLINK_MSG_ID_PARAM_VALUE)),
+                  rover.parameters.value[ROVER_wheel_radius_m]);
+        std::memcpy(set.param_id, "LINK_SPEED_MAX", 14); // the link's: with the key, within its range
+        set.param_value = 0.5f;
+        rover.receive(who.packet(mavlink_msg_param_set_encode_status, set));
+        EXPECT_EQ(mavlink_msg_param_value_get_param_value(rover.last(MAVLINK_MSG_ID_PARAM_VALUE)), keyed ? 0.5f : 1.0f);
+        EXPECT_EQ(rover.refused(), keyed ? 4u : 5u);
+        EXPECT_EQ(rover.link.order.number, 0u);
+        const int said = static_cast<int>(rover.heard.size());
+        mavlink_param_set_t none{};
+        none.target_system = 1;
+        std::memcpy(none.param_id, "NO_SUCH", 7);
+        rover.receive(who.packet(mavlink_msg_param_set_encode_status, none));
+        mavlink_manual_control_t stick{}; // it has no answer
+        stick.target = 1;
+        rover.receive(who.packet(mavlink_msg_manual_control_encode_status, stick));
+        EXPECT_EQ(static_cast<int>(rover.heard.size()), said);
+        EXPECT_EQ(rover.refused(), keyed ? 6u : 7u);
+    }
+}
+
 TEST(Supervisor, sets_its_own_parameters_within_their_range_and_no_other) {
     Rover rover(our_key.data());
     Operator who(our_key.data());
