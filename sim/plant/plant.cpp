@@ -59,6 +59,7 @@ Plant::World::World(const PlantConfig &c)
     if (!config.ground.terrain.flat()) relief.emplace(config.ground.terrain, config.ground.seed);
     build_bodies();
     if (relief) place_on_terrain();
+    take_hinge();
     for (const int i : wheels) {
         if (is_caster(config.rover.layout.kind, i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
@@ -104,6 +105,51 @@ void Plant::World::contact_velocity(int i, Vec3 &out) const {
     else
         dBodyGetRelPointVel(half_of(i), at[0], at[1], at[2], velocity);
     out = {velocity[0], velocity[1], velocity[2]};
+}
+
+// Where the halves hang on their hinge and on nothing else, ODE steps them as free bodies and hinge.h says what the joint does to them. A
+// joint that asks for nothing keeps them one island, which is less work than two.
+void Plant::World::take_hinge() {
+    const bool alone = dBodyGetNumJoints(half[0]) == 1 && dBodyGetNumJoints(half[1]) == 1 && dJointGetType(joint) == dJointTypeHinge;
+    if (!alone || dJointGetHingeParam(joint, dParamLoStop) > -dInfinity || dJointGetHingeParam(joint, dParamHiStop) < dInfinity) return;
+    dVector3 anchor, axis_now;
+    dJointGetHingeAnchor(joint, anchor);
+    dJointGetHingeAxis(joint, axis_now);
+    Hinge &taken = hinge.emplace();
+    taken.erp = dWorldGetERP(world), taken.cfm = dWorldGetCFM(world);
+    for (std::size_t n = 0; n < 2; ++n) {
+        dMass mass;
+        dBodyGetMass(half[n], &mass);
+        dVector3 place, along, lies, stands;
+        dBodyGetPosRelPoint(half[n], anchor[0], anchor[1], anchor[2], place);
+        dBodyVectorFromWorld(half[n], axis_now[0], axis_now[1], axis_now[2], along);
+        dPlaneSpace(along, lies, stands);
+        const auto vector_of = [](const dReal *v) { return Vec3{v[0], v[1], v[2]}; };
+        taken.body[n] = {.mass_kg = mass.mass,
+                         .inertia_kg_m2 = {mass.I[0], mass.I[5], mass.I[10]}, // a box's: diagonal
+                         .anchor_m = vector_of(place),
+                         .axis = vector_of(along),
+                         .normal_1 = vector_of(lies),
+                         .normal_2 = vector_of(stands)};
+        dBodySetGyroscopicMode(half[n], 0);
+    }
+    dJointDisable(joint);
+    dJointAttach(dJointCreateNull(world, nullptr), half[0], half[1]);
+}
+
+void Plant::World::hold_halves() {
+    std::array<HingeMotion, 2> now{};
+    for (std::size_t n = 0; n < 2; ++n) {
+        const dReal *force = dBodyGetForce(half[n]), *torque = dBodyGetTorque(half[n]);
+        now[n] = {dBodyGetRotation(half[n]),        dBodyGetPosition(half[n]), dBodyGetLinearVel(half[n]), dBodyGetAngularVel(half[n]), {},
+                  {torque[0], torque[1], torque[2]}};
+        for (std::size_t k = 0; k < 3; ++k) now[n].force_N[k] = force[k] + hinge->body[n].mass_kg * gravity[k]; // ODE adds it itself
+    }
+    const auto loads = hinge->loads(now, config.dt_s);
+    for (std::size_t n = 0; n < 2; ++n) {
+        dBodyAddForce(half[n], loads[n].force_N[0], loads[n].force_N[1], loads[n].force_N[2]);
+        dBodyAddTorque(half[n], loads[n].torque_Nm[0], loads[n].torque_Nm[1], loads[n].torque_Nm[2]);
+    }
 }
 
 double Plant::World::kinetic() const {
@@ -181,6 +227,7 @@ void Plant::World::step() {
         if (is_last_of(motor_of(i), i)) turn(motor_of(i), supply_V);
     }
     push_body();
+    if (hinge) hold_halves();
     dWorldStep(world, dt);
     ++steps;
 

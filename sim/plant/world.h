@@ -3,6 +3,7 @@
 #pragma once
 
 #include "contact.h"
+#include "hinge.h"
 #include "layout.h"
 #include "plant.h"
 #include "rut.h"
@@ -81,6 +82,8 @@ struct Plant::World {
     Meeting meet_soft(int i, ContactInput in, const Footing &foot, double factor, const Stand &at);
     const SoilConstants &constants_of(const Soil &soil) const;
     void push_body();
+    void take_hinge();
+    void hold_halves();
     void keep_energy();
     void observe(const Vec3 &velocity_before);
     Vec3 mean_velocity() const;
@@ -109,6 +112,7 @@ struct Plant::World {
     std::optional<Relief> relief; // none: a plane
     dWorldID world = nullptr;
     dJointID joint = nullptr;
+    std::optional<Hinge> hinge;                     // the joint, where it is all that holds the halves: solved here, not by ODE
     std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
     std::array<dBodyID, 2> half{};
