@@ -41,7 +41,7 @@ Vec3 gravity_vector(const Ground &ground, const BodyEffects &effects, double g, 
 Plant::World::World(const PlantConfig &c)
     : config(c), wheels(wheels_of(c.rover.layout.kind)), effects(act_together(c.effects)), ruts(c.rover.wheel_width_m) {
     start_ode();
-    for (const int i : wheels) place_ahead_m[static_cast<std::size_t>(i)] = place(i).ahead_m;
+    know_wheels();
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, 0);
     rise_rad = config.ground.slope_here_rad(0);
     world = dWorldCreate();
@@ -59,9 +59,14 @@ Plant::World::World(const PlantConfig &c)
     if (!config.ground.terrain.flat()) relief.emplace(config.ground.terrain, config.ground.seed);
     build_bodies();
     if (relief) place_on_terrain();
+    for (std::size_t n = 0; n < 2; ++n)
+        now[n] = {.turn = dBodyGetRotation(half[n]),
+                  .at = dBodyGetPosition(half[n]),
+                  .velocity = dBodyGetLinearVel(half[n]),
+                  .spin = dBodyGetAngularVel(half[n])};
     take_hinge();
     for (const int i : wheels) {
-        if (is_caster(config.rover.layout.kind, i)) continue; // a ball has no spin of its own here
+        if (caster(i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
         const auto m = static_cast<std::size_t>(motor_of(i));
         const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[m].radius_change);
@@ -76,6 +81,16 @@ Plant::World::World(const PlantConfig &c)
     energy.kinetic = kinetic();
 }
 
+void Plant::World::know_wheels() {
+    for (const int i : wheels) {
+        const auto n = static_cast<std::size_t>(i);
+        place_ahead_m[n] = place(i).ahead_m;
+        is_ball[n] = is_caster(config.rover.layout.kind, i);
+        motor[n] = sim::motor_of(config.rover.layout, i);
+        if (!is_ball[n]) turned_by[static_cast<std::size_t>(motor[n])].push_back(i);
+    }
+}
+
 Plant::World::~World() {
     if (world != nullptr) dWorldDestroy(world);
     if (threading != nullptr) dThreadingFreeImplementation(threading);
@@ -83,17 +98,15 @@ Plant::World::~World() {
 
 Vec3 Plant::World::axis(int column) const {
     Vec3 sum{};
-    for (const dBodyID body : half) {
-        const dReal *rotation = dBodyGetRotation(body);
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += rotation[4 * k + static_cast<std::size_t>(column)];
-    }
+    for (const HalfNow &half_now : now)
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += half_now.turn[4 * k + static_cast<std::size_t>(column)];
     const double size = std::sqrt(dot(sum, sum));
     for (double &part : sum) part /= size;
     return sum;
 }
 
 Vec3 Plant::World::mean_velocity() const {
-    const dReal *a = dBodyGetLinearVel(half[0]), *b = dBodyGetLinearVel(half[1]);
+    const double *a = now[0].velocity, *b = now[1].velocity;
     return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
 }
 
@@ -138,14 +151,13 @@ void Plant::World::take_hinge() {
 }
 
 void Plant::World::hold_halves() {
-    std::array<HingeMotion, 2> now{};
+    std::array<HingeMotion, 2> moving{};
     for (std::size_t n = 0; n < 2; ++n) {
         const dReal *force = dBodyGetForce(half[n]), *torque = dBodyGetTorque(half[n]);
-        now[n] = {dBodyGetRotation(half[n]),        dBodyGetPosition(half[n]), dBodyGetLinearVel(half[n]), dBodyGetAngularVel(half[n]), {},
-                  {torque[0], torque[1], torque[2]}};
-        for (std::size_t k = 0; k < 3; ++k) now[n].force_N[k] = force[k] + hinge->body[n].mass_kg * gravity[k]; // ODE adds it itself
+        moving[n] = {now[n].turn, now[n].at, now[n].velocity, now[n].spin, {}, {torque[0], torque[1], torque[2]}};
+        for (std::size_t k = 0; k < 3; ++k) moving[n].force_N[k] = force[k] + hinge->body[n].mass_kg * gravity[k]; // ODE adds it itself
     }
-    const auto loads = hinge->loads(now, config.dt_s);
+    const auto loads = hinge->loads(moving, config.dt_s);
     for (std::size_t n = 0; n < 2; ++n) {
         dBodyAddForce(half[n], loads[n].force_N[0], loads[n].force_N[1], loads[n].force_N[2]);
         dBodyAddTorque(half[n], loads[n].torque_Nm[0], loads[n].torque_Nm[1], loads[n].torque_Nm[2]);
@@ -218,14 +230,16 @@ void Plant::World::step() {
         dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     }
     const Vec3 before = mean_velocity();
+    begin_halves();
     for (const int i : wheels) {
-        if (is_caster(config.rover.layout.kind, i)) {
+        if (caster(i)) {
             step_caster(i);
             continue;
         }
         step_wheel(i);
-        if (is_last_of(motor_of(i), i)) turn(motor_of(i), supply_V);
+        if (i == turned_by[static_cast<std::size_t>(motor_of(i))].back()) turn(motor_of(i), supply_V);
     }
+    push_halves();
     push_body();
     if (hinge) hold_halves();
     dWorldStep(world, dt);
@@ -233,6 +247,31 @@ void Plant::World::step() {
 
     if (config.audit) keep_energy();
     observe(before);
+}
+
+void Plant::World::begin_halves() {
+    for (HalfNow &half_now : now) {
+        const double *turn = half_now.turn;
+        const double flat = std::sqrt(turn[0] * turn[0] + turn[4] * turn[4]);
+        half_now.heading = {turn[0] / flat, turn[4] / flat, 0};
+        half_now.force = half_now.torque = {};
+    }
+}
+
+// A wheel's force on its half. What the wheels give is added up here and handed to ODE once.
+void Plant::World::push_at(int wheel, const Vec3 &force, const Vec3 &arm) {
+    HalfNow &to = now_of(wheel);
+    for (std::size_t k = 0; k < 3; ++k) to.force[k] += force[k];
+    to.torque[0] += arm[1] * force[2] - arm[2] * force[1];
+    to.torque[1] += arm[2] * force[0] - arm[0] * force[2];
+    to.torque[2] += arm[0] * force[1] - arm[1] * force[0];
+}
+
+void Plant::World::push_halves() {
+    for (std::size_t n = 0; n < 2; ++n) {
+        dBodyAddForce(half[n], now[n].force[0], now[n].force[1], now[n].force[2]);
+        dBodyAddTorque(half[n], now[n].torque[0], now[n].torque[1], now[n].torque[2]);
+    }
 }
 
 // What the step that was just taken did, by forces at its beginning and speeds at its middle.
@@ -247,7 +286,7 @@ void Plant::World::keep_energy() {
         const double to_body = dot(a.force, after);
         const double vertical = a.load_N * dot(a.stand.up, after);
         const double edge = a.edge_N * along; // a caster only rolls
-        const double rolling = is_caster(config.rover.layout.kind, i) ? vertical + edge - to_body : a.resist_N * along;
+        const double rolling = caster(i) ? vertical + edge - to_body : a.resist_N * along;
         energy.rolling += rolling * dt;
         energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling - edge)) * dt;
         energy.body -= (vertical + edge) * dt;

@@ -47,20 +47,22 @@ struct Plant::World {
     void stand_up(double height_m);
     void place_whole_on_terrain();
     void step();
-    void step_wheel(int i);                // what the ground does to it
-    void turn(int motor, double supply_V); // and the motor's wheels by it
-    int motor_of(int slot) const { return sim::motor_of(config.rover.layout, slot); }
-    bool is_last_of(int motor, int slot) const; // in the order of `wheels`
+    void step_wheel(int i);               // what the ground does to it
+    void turn(int slot, double supply_V); // and its motor's wheels by it
+    int motor_of(int slot) const { return motor[static_cast<std::size_t>(slot)]; }
+    bool caster(int slot) const { return is_ball[static_cast<std::size_t>(slot)]; }
+    void know_wheels();
     void step_caster(int i);
     struct Stand {                        // where a wheel meets the ground: the plane it touches and how far it is pressed in
         Vec3 point{}, velocity{};         // contact point of the body, world
+        Vec3 arm{};                       // from the half's centre to it
         Vec3 heading{};                   // of the wheel, horizontal
         Vec3 ahead{}, left{}, up{};       // of the plane
         double depth_m = 0, sink_m_s = 0; // vertical; sink: how fast it grows
         double steep = 1;                 // depth_m over that along `up`
     };
     Stand stand(int i);
-    Stand stand_on_plane(int i) const;
+    Stand stand_on_plane(int i);
     void place_on_terrain();
     double place_on_path(int i) const;
     double current_of_others(int i);
@@ -99,7 +101,7 @@ struct Plant::World {
         return wheel_place(config.rover.layout, config.rover.half_wheelbase_m, config.rover.half_track_m, slot);
     }
     double radius_m(int slot) const { // as the ground feels it
-        return is_caster(config.rover.layout.kind, slot) ? config.rover.layout.caster_radius_m : config.rover.wheel_radius_m;
+        return caster(slot) ? config.rover.layout.caster_radius_m : config.rover.wheel_radius_m;
     }
     double load_kg() const { return config.rover.mass_kg / static_cast<double>(wheels.size()); } // of a wheel, on the mean
     dBodyID half_of(int wheel) const { return half[is_left(wheel) ? 0 : 1]; }
@@ -107,6 +109,9 @@ struct Plant::World {
     PlantConfig config;
     std::span<const int> wheels;                    // slots, in order
     std::array<double, wheel_most> place_ahead_m{}; // of the centre of mass
+    std::array<int, wheel_most> motor{};            // the slot whose motor turns this one
+    std::array<bool, wheel_most> is_ball{};
+    std::array<std::vector<int>, wheel_most> turned_by; // the slots that this one's motor turns, in order
     RoverEffects effects;
     Vec3 gravity{};
     std::optional<Relief> relief; // none: a plane
@@ -116,6 +121,16 @@ struct Plant::World {
     std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
     std::array<dBodyID, 2> half{};
+    struct HalfNow {
+        const double *turn = nullptr, *at = nullptr, *velocity = nullptr, *spin = nullptr; // ODE's own numbers, which follow the body
+        Vec3 heading{};                                                                    // horizontal, as the step begins
+        Vec3 force{}, torque{};                                                            // of the wheels, in this step
+    };
+    std::array<HalfNow, 2> now;
+    HalfNow &now_of(int wheel) { return now[is_left(wheel) ? 0 : 1]; }
+    void begin_halves();
+    void push_halves();
+    void push_at(int wheel, const Vec3 &force, const Vec3 &arm);
     std::array<Vec3, wheel_most> contact_at{}; // contact point in its half's frame
     std::array<DriveState, wheel_most> drive{};
     std::array<ContactState, wheel_most> contact{};
