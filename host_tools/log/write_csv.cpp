@@ -60,9 +60,10 @@ char *put_small(char *to, std::uint64_t millionths) {
     return to + 2 + places;
 }
 
-// Nearly every value is a whole number of millionths (recorder.h): its digits are those of a whole number. The text is that of
-// std::to_chars all the same; where that would write an exponent, or in doubt, it does the work (null).
-char *put_millionths(char *to, double value) {
+// Nearly every value is a whole number of millionths (recorder.h), and a time of the radar's of billionths: its digits are those of a whole
+// number. No two decimals of 15 digits are the same double, so no shorter text reads back to it: the text is that of std::to_chars. Where
+// that would write an exponent, or in doubt, it does the work (null).
+char *put_decimals(char *to, double value) {
     const double size = std::fabs(value);
     if (size == 0 && !std::signbit(value)) {
         *to = '0';
@@ -70,15 +71,22 @@ char *put_millionths(char *to, double value) {
     }
     if (!(size >= 1e-6 && size < 1e9)) return nullptr;
     const auto whole = static_cast<std::uint64_t>(size * 1e6 + 0.5);
-    if (static_cast<double>(whole) / 1e6 != size) return nullptr;
-    const std::uint64_t above = whole / 1000000, below = whole % 1000000;
-    if (below == 0 && above >= 100000 && above % 10 == 0) return nullptr; // 1e+05 is shorter
+    std::uint64_t above = whole / 1000000, below = whole % 1000000 * 1000; // billionths
+    if (static_cast<double>(whole) / 1e6 != size) {
+        if (!(size >= 1e-3 && size < 1e6)) return nullptr;
+        const auto finer = static_cast<std::uint64_t>(size * 1e9 + 0.5);
+        if (static_cast<double>(finer) / 1e9 != size) return nullptr;
+        above = finer / 1000000000, below = finer % 1000000000;
+    } else if (below == 0 && above >= 100000 && above % 10 == 0) {
+        return nullptr; // 1e+05 is shorter
+    }
     if (value < 0) *to++ = '-';
-    if (whole < 1000) return put_small(to, whole);
+    if (size < 1e-3) return put_small(to, whole);
     to = put_whole(to, above);
     if (below == 0) return to;
     *to++ = '.';
-    to = put_pair(put_pair(put_pair(to, below / 10000), below / 100 % 100), below % 100);
+    to = put_pair(put_pair(put_pair(put_pair(to, below / 10000000), below / 100000 % 100), below / 1000 % 100), below / 10 % 100);
+    *to++ = static_cast<char>('0' + below % 10);
     while (to[-1] == '0') --to;
     return to;
 }
@@ -142,7 +150,7 @@ class Clocks {
 } // namespace
 
 char *put_number(char *to, double value) {
-    if (char *end = put_millionths(to, value)) return end;
+    if (char *end = put_decimals(to, value)) return end;
     return std::to_chars(to, to + number_room, value).ptr;
 }
 

@@ -21,10 +21,19 @@ double slipped_exponent(const Bekker &soil, double s) { return soil.n * (1 + soi
 
 double chord_m(double radius_m, double depth_m) { return std::sqrt(depth_m * (2 * radius_m - depth_m)); }
 
-// k_u of (5).
-double reload_N_m3(const Bekker &soil, double k, double rut_m) {
-    const double own = soil.reload_N_m4 * rut_m, least = 2 * k * math::pow(rut_m, soil.n - 1);
-    return own > least ? own : least;
+// What a rut's depth makes of (5), its logarithm taken once for all the powers.
+struct OldRut {
+    double log_m, power, reload_N_m3, surface_m; // power: rut^n; reload: k_u
+};
+OldRut old_rut(const Bekker &soil, const SoilConstants &constants, double rut_m) {
+    OldRut rut{};
+    if (rut_m <= 0) return rut;
+    rut.log_m = math::log(rut_m);
+    const double own = soil.reload_N_m4 * rut_m, least = 2 * constants.k_wide * math::exp((soil.n - 1) * rut.log_m);
+    rut.power = math::exp(soil.n * rut.log_m);
+    rut.reload_N_m3 = own > least ? own : least;
+    rut.surface_m = rut_m - constants.k_wide * rut.power / rut.reload_N_m3;
+    return rut;
 }
 
 // Bulldozing: only soil that still stands is pushed.
@@ -33,9 +42,10 @@ double bulldozing_N(const Bekker &soil, const SoilConstants &constants, double w
     return 0.5 * width_m * soil.weight_N_m3 * fresh * fresh * constants.passive;
 }
 
-double bekker_normal(double width_m, double radius_m, double k, double n, double z) {
+// power: z^n
+double bekker_normal(double width_m, double radius_m, double k, double n, double z, double power) {
     const double n_fit = n < largest_exponent ? n : largest_exponent;
-    return width_m * k * std::sqrt(2 * radius_m * z) * math::pow(z, n) * (3 - n_fit) / 3;
+    return width_m * k * std::sqrt(2 * radius_m * z) * power * (3 - n_fit) / 3;
 }
 
 } // namespace
@@ -45,31 +55,31 @@ SoilConstants soil_constants(const Bekker &soil, double wheel_width_m) {
     return {soil.kc / wheel_width_m + soil.kphi, math::tan(soil.phi_rad), t * t};
 }
 
-double rut_surface_m(const Bekker &soil, const SoilConstants &constants, double rut_m) {
-    if (rut_m <= 0) return 0;
-    return rut_m - constants.k_wide * math::pow(rut_m, soil.n) / reload_N_m3(soil, constants.k_wide, rut_m);
-}
+double rut_surface_m(const Bekker &soil, const SoilConstants &constants, double rut_m) { return old_rut(soil, constants, rut_m).surface_m; }
 
 SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
     SoilForce out;
     const double z = contact.sinkage_m < 0.9 * wheel.radius_m ? contact.sinkage_m : 0.9 * wheel.radius_m;
-    const double surface = rut_surface_m(soil, constants, contact.rut_m);
+    const OldRut rut = old_rut(soil, constants, contact.rut_m);
+    const double surface = rut.surface_m;
     if (!(z > surface)) return out;
     const double n = slipped_exponent(soil, contact.slip);
     double length = chord_m(wheel.radius_m, z);
     const double k = modulus(soil, constants, wheel.width_m, length);
-    double compaction = wheel.width_m * k * math::pow(z, n) * z / (n + 1);
+    const double power = math::pow(z, n);
+    double compaction = wheel.width_m * k * power * z / (n + 1), rut_power = 0;
     if (contact.rut_m > 0) {
         const double d = z - surface, patch = 2 * std::sqrt(2 * wheel.radius_m * d);
         if (patch < length) length = patch;
-        const double before = contact.rut_m < z ? contact.rut_m : z; // the work up to the old depth is done already
-        compaction -= wheel.width_m * k * math::pow(before, n) * before / (n + 1);
+        rut_power = math::exp(n * rut.log_m);
+        const bool deeper = contact.rut_m < z; // the work up to the old depth is done already
+        compaction -= wheel.width_m * k * (deeper ? rut_power : power) * (deeper ? contact.rut_m : z) / (n + 1);
     }
     if (z >= contact.rut_m) {
-        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z);
+        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z, power);
     } else {
         const double share = (z - surface) / (contact.rut_m - surface);
-        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, contact.rut_m) * share * std::sqrt(share);
+        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, contact.rut_m, rut_power) * share * std::sqrt(share);
     }
     out.largest_N = wheel.strength * (length * wheel.width_m * soil.c_Pa + out.normal_N * constants.tan_phi);
     out.shear_slip = wheel.shear * soil.K_m / length;
@@ -212,7 +222,8 @@ SoilForce arc_force_by(StressFunction stresses, const Bekker &soil, const SoilCo
     SoilForce out;
     const double r = wheel.radius_m, s = contact.slip;
     const double z = contact.sinkage_m < 0.9 * r ? contact.sinkage_m : 0.9 * r;
-    const double surface = rut_surface_m(soil, constants, contact.rut_m);
+    const OldRut rut = old_rut(soil, constants, contact.rut_m);
+    const double surface = rut.surface_m;
     if (!(z > surface)) return out;
     const Arc arc = make_arc(r, z - surface);
     const double length = r * arc.sin_entry, k = modulus(soil, constants, wheel.width_m, length);
@@ -229,9 +240,7 @@ SoilForce arc_force_by(StressFunction stresses, const Bekker &soil, const SoilCo
                .tan_phi = constants.tan_phi,
                .ratio = s >= 0 ? 1 - s : 1 / (1 + (s > -0.99 ? s : -0.99)),
                .inverse_K = 1 / (soil.K_m * wheel.shear)};
-    if (contact.rut_m > 0)
-        p.reload_Pa_m = k * math::pow(contact.rut_m, n) / (constants.k_wide * math::pow(contact.rut_m, soil.n)) *
-                        reload_N_m3(soil, constants.k_wide, contact.rut_m);
+    if (contact.rut_m > 0) p.reload_Pa_m = k * math::exp(n * rut.log_m) / (constants.k_wide * rut.power) * rut.reload_N_m3;
     Stresses at;
     stresses(arc, p, at);
 
