@@ -1,5 +1,5 @@
-// sim_bench_wheel.h - one wheel by our law on another's body: what MuJoCo's halves and those of the plain ODE loop are given. No effects, no
-// terrain, no ruts; the drive is straight along x.
+// sim_bench_wheel.h - one wheel by our law on another's body: what MuJoCo's halves and those of the plain ODE loop are given. No effects,
+// no terrain, no ruts; the drive is straight along x.
 #pragma once
 
 #include "sim_bench_rival.h"
