@@ -1,6 +1,7 @@
 // csv_text.h - how a log's head and numbers are written as text; shared by whoever writes rows.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <string>
@@ -12,6 +13,8 @@ constexpr double never = std::numeric_limits<double>::infinity(); // the time of
 
 // The shortest text that reads back to the same double.
 void append_number(std::string &text, double value);
+inline constexpr std::size_t number_room = 32; // bytes that put_number may use
+char *put_number(char *to, double value);      // the same, written there; its end
 
 // The lines above the rows: names, format, header. Throws LogError with `path` where a key, a value or a name cannot be written.
 std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path);

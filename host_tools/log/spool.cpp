@@ -9,7 +9,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -122,7 +125,10 @@ class Spool::Reader {
         if (++at_ == size_) open_block();
         if (at_ < size_) check(before);
     }
-    void check(double before) const { check_sample(column_.signal.name, seen_, before, t_s(), value(), spool_.path_); }
+    void check(double before) const {
+        if (!(t_s() > before && t_s() < never && std::fabs(value()) < never)) refuse(before);
+    }
+    void refuse(double before) const { check_sample(column_.signal.name, seen_, before, t_s(), value(), spool_.path_); }
 
   private:
     void open_block() {
@@ -164,37 +170,103 @@ void Spool::write(const std::map<std::string, std::string> &header) {
     write_ulog(header, columns, path_);
 }
 
+// The rows of a log, column by column, straight into the file.
+class Spool::Rows {
+  public:
+    Rows(WholeFile &file, std::vector<Reader> readers) : file_(file), readers_(std::move(readers)), shown_(readers_.size()) {
+        for (const Reader &reader : readers_) next_.push_back(reader.t_s());
+        room_ = (readers_.size() + 1) * (number_room + 1) + 1;
+        text_.resize(std::max(2 * room_, std::size_t{1} << 20));
+        to_ = text_.data();
+    }
+    void write() {
+        while (take_due()) {
+            put_row();
+            // one column that is sampled more often than the rest: no search for the next row
+            if (due_.size() != 1) continue;
+            const std::size_t quick = due_.front();
+            double others_s = never;
+            for (std::size_t i = 0; i < next_.size(); ++i)
+                if (i != quick) others_s = std::min(others_s, next_[i]);
+            while (next_[quick] < others_s) now_s_ = next_[quick], put_row();
+        }
+        flush();
+    }
+
+  private:
+    // What was last written in a column: most numbers stay what they were.
+    struct Shown {
+        std::uint64_t bits = 0;
+        std::size_t size = 0;
+        std::array<char, number_room> text{};
+    };
+    bool take_due() {
+        now_s_ = never;
+        for (const double t_s : next_) now_s_ = t_s < now_s_ ? t_s : now_s_;
+        due_.clear();
+        if (now_s_ == never) return false;
+        for (std::size_t i = 0; i < next_.size(); ++i)
+            if (next_[i] == now_s_) due_.push_back(i);
+        return true;
+    }
+    void put_row() {
+        if (static_cast<std::size_t>(text_.data() + text_.size() - to_) < room_) flush();
+        to_ = put_number(to_, now_s_);
+        std::size_t at = 0;
+        for (const std::size_t i : due_) {
+            commas(i + 1 - at);
+            at = i + 1;
+            Reader &reader = readers_[i];
+            Shown &shown = shown_[i];
+            const auto bits = std::bit_cast<std::uint64_t>(reader.value());
+            if (bits != shown.bits || shown.size == 0) {
+                shown.bits = bits;
+                shown.size = static_cast<std::size_t>(put_number(shown.text.data(), reader.value()) - shown.text.data());
+            }
+            std::memcpy(to_, shown.text.data(), number_room); // as many bytes always: quicker, and there is room
+            to_ += shown.size;
+            reader.next();
+            next_[i] = reader.t_s();
+        }
+        commas(readers_.size() - at);
+        *to_++ = '\n';
+    }
+    void commas(std::size_t count) {
+        if (count == 1) {
+            *to_++ = ',';
+            return;
+        }
+        std::memset(to_, ',', count);
+        to_ += count;
+    }
+    void flush() {
+        file_.write({text_.data(), static_cast<std::size_t>(to_ - text_.data())});
+        to_ = text_.data();
+    }
+
+    WholeFile &file_;
+    std::vector<Reader> readers_;
+    std::vector<Shown> shown_;
+    std::vector<double> next_; // time of each reader's next sample
+    std::vector<std::size_t> due_;
+    double now_s_ = never;
+    std::vector<char> text_;
+    std::size_t room_ = 0; // of a row
+    char *to_ = nullptr;
+};
+
 void Spool::write_as_csv(const std::map<std::string, std::string> &header) {
     std::vector<std::string> names;
     std::vector<Reader> readers;
-    std::vector<double> next; // time of each reader's next sample
     for (const Column &column : columns_) {
         if (column.left_out()) continue;
         names.push_back(column.signal.name);
         readers.emplace_back(*this, column);
         readers.back().check(-never);
-        next.push_back(readers.back().t_s());
     }
     WholeFile file(path_);
-    std::string text = csv_head(header, names, path_);
-    for (double t_s = never;; t_s = never) {
-        for (const double due : next) t_s = std::min(t_s, due);
-        if (t_s == never) break;
-        append_number(text, t_s);
-        for (std::size_t i = 0; i < readers.size(); ++i) {
-            text += ',';
-            if (next[i] != t_s) continue;
-            append_number(text, readers[i].value());
-            readers[i].next();
-            next[i] = readers[i].t_s();
-        }
-        text += '\n';
-        if (text.size() > std::size_t{1} << 20) {
-            file.write(text);
-            text.clear();
-        }
-    }
-    file.write(text);
+    file.write(csv_head(header, names, path_));
+    Rows(file, std::move(readers)).write();
     file.keep();
 }
 

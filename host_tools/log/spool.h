@@ -43,6 +43,7 @@ class Spool {
     };
     class Reader;
     class Again;
+    class Rows;
     void write_as_csv(const std::map<std::string, std::string> &header);
     void keep_block(Column &column);
     void load(const Column &column, std::size_t number, std::vector<double> &into) const; // times, then values

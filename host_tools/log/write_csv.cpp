@@ -3,6 +3,7 @@
 #include "write_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -15,31 +16,79 @@ namespace traction::log {
 
 namespace {
 
-// Nearly every value is a whole number of millionths (recorder.h): its digits are those of a whole number. The text is that of
-// std::to_chars all the same; where that would write an exponent, or in doubt, it does the work.
-bool append_millionths(std::string &text, double value) {
+// 00 to 99.
+constexpr auto pairs = [] {
+    std::array<char, 200> out{};
+    for (std::size_t i = 0; i < 100; ++i) out[2 * i] = static_cast<char>('0' + i / 10), out[2 * i + 1] = static_cast<char>('0' + i % 10);
+    return out;
+}();
+
+char *put_pair(char *to, std::uint64_t number) {
+    std::memcpy(to, &pairs[2 * number], 2);
+    return to + 2;
+}
+
+char *put_whole(char *to, std::uint64_t number) {
+    char digits[20], *first = digits + sizeof digits;
+    for (; number >= 100; number /= 100) put_pair(first -= 2, number % 100);
+    if (number >= 10)
+        put_pair(first -= 2, number);
+    else
+        *--first = static_cast<char>('0' + number);
+    const auto size = static_cast<std::size_t>(digits + sizeof digits - first);
+    std::memcpy(to, first, size);
+    return to + size;
+}
+
+// Below a thousandth, 1 to 999 millionths: as std::to_chars, the shorter of 0.000123 and 1.23e-04, the first where they are equal.
+char *put_small(char *to, std::uint64_t millionths) {
+    char digits[3];
+    std::size_t count = 0, places = 6;
+    for (; millionths % 10 == 0; millionths /= 10) --places;
+    for (std::uint64_t by = millionths >= 100 ? 100 : millionths >= 10 ? 10 : 1; by > 0; by /= 10)
+        digits[count++] = static_cast<char>('0' + millionths / by % 10);
+    if ((count == 1 ? 5 : count + 5) < places + 2) {
+        *to++ = digits[0];
+        if (count > 1) *to++ = '.';
+        to = std::copy(digits + 1, digits + count, to);
+        std::memcpy(to, "e-0", 3);
+        to[3] = static_cast<char>('0' + places - count + 1);
+        return to + 4;
+    }
+    std::memcpy(to, "0.000000", 8);
+    std::copy(digits, digits + count, to + 2 + places - count);
+    return to + 2 + places;
+}
+
+// Nearly every value is a whole number of millionths (recorder.h), and a time of the radar's of billionths: its digits are those of a whole
+// number. No two decimals of 15 digits are the same double, so no shorter text reads back to it: the text is that of std::to_chars. Where
+// that would write an exponent, or in doubt, it does the work (null).
+char *put_decimals(char *to, double value) {
     const double size = std::fabs(value);
     if (size == 0 && !std::signbit(value)) {
-        text += '0';
-        return true;
+        *to = '0';
+        return to + 1;
     }
-    if (!(size >= 1e-3 && size < 1e9)) return false;
+    if (!(size >= 1e-6 && size < 1e9)) return nullptr;
     const auto whole = static_cast<std::uint64_t>(size * 1e6 + 0.5);
-    if (static_cast<double>(whole) / 1e6 != size) return false;
-    std::uint64_t above = whole / 1000000, below = whole % 1000000;
-    if (below == 0 && above >= 100000 && above % 10 == 0) return false; // 1e+05 is shorter
-    char buffer[24], *first = buffer + sizeof buffer;
-    if (below != 0) {
-        int places = 6;
-        for (; below % 10 == 0; below /= 10) --places;
-        for (; places > 0; --places, below /= 10) *--first = static_cast<char>('0' + below % 10);
-        *--first = '.';
+    std::uint64_t above = whole / 1000000, below = whole % 1000000 * 1000; // billionths
+    if (static_cast<double>(whole) / 1e6 != size) {
+        if (!(size >= 1e-3 && size < 1e6)) return nullptr;
+        const auto finer = static_cast<std::uint64_t>(size * 1e9 + 0.5);
+        if (static_cast<double>(finer) / 1e9 != size) return nullptr;
+        above = finer / 1000000000, below = finer % 1000000000;
+    } else if (below == 0 && above >= 100000 && above % 10 == 0) {
+        return nullptr; // 1e+05 is shorter
     }
-    do *--first = static_cast<char>('0' + above % 10);
-    while ((above /= 10) != 0);
-    if (value < 0) *--first = '-';
-    text.append(first, buffer + sizeof buffer);
-    return true;
+    if (value < 0) *to++ = '-';
+    if (size < 1e-3) return put_small(to, whole);
+    to = put_whole(to, above);
+    if (below == 0) return to;
+    *to++ = '.';
+    to = put_pair(put_pair(put_pair(put_pair(to, below / 10000000), below / 100000 % 100), below / 1000 % 100), below / 10 % 100);
+    *to++ = static_cast<char>('0' + below % 10);
+    while (to[-1] == '0') --to;
+    return to;
 }
 
 // Quotes where the text would not survive without.
@@ -98,11 +147,14 @@ class Clocks {
 
 } // namespace
 
+char *put_number(char *to, double value) {
+    if (char *end = put_decimals(to, value)) return end;
+    return std::to_chars(to, to + number_room, value).ptr;
+}
+
 void append_number(std::string &text, double value) {
-    if (append_millionths(text, value)) return;
-    char buffer[32];
-    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
-    text.append(buffer, end);
+    char buffer[number_room];
+    text.append(buffer, put_number(buffer, value));
 }
 
 std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path) {

@@ -73,6 +73,17 @@ inline double cosine(double r) {
                               q * (1.0 / 40320 + q * (-1.0 / 3628800 + q * (1.0 / 479001600 +
                                                                             q * (-1.0 / 87178291200.0 + q * (1.0 / 20922789888000.0))))))));
 }
+// (4) over t, q = -t^2. Terms below 2^-80 of the sum are left out: they change no bit but once in 1e8 calls.
+template <int last> inline double atan_terms(double q) {
+    double sum = 1.0 / last;
+#pragma GCC unroll 20
+    for (int n = last - 2; n >= 1; n -= 2) sum = 1.0 / n + q * sum;
+    return sum;
+}
+inline double atan_series(double q) {
+    if (q > -0x1p-20) return atan_terms<7>(q);
+    return q > -0x1p-10 ? atan_terms<15>(q) : atan_terms<39>(q);
+}
 inline double reduce(double x, std::int64_t &quadrant) {
     const double k = std::floor(x * 0.63661977236758134308 + 0.5);
     quadrant = static_cast<std::int64_t>(k) & 3;
@@ -106,10 +117,8 @@ inline double atan2(double y, double x) {
         t = (t - 1) / (t + 1);
         base = pi / 4;
     }
-    const double q = -t * t;
-    double sum = 1.0 / 39;
-    for (int n = 37; n >= 1; n -= 2) sum = 1.0 / n + q * sum;
-    double angle = base + t * sum;
+    const double angle_of_t = t * detail::atan_series(-t * t);
+    double angle = base + angle_of_t;
     if (ay > ax) angle = pi / 2 - angle;
     if (x < 0) angle = pi - angle;
     return y < 0 ? -angle : angle;

@@ -21,10 +21,19 @@ double slipped_exponent(const Bekker &soil, double s) { return soil.n * (1 + soi
 
 double chord_m(double radius_m, double depth_m) { return std::sqrt(depth_m * (2 * radius_m - depth_m)); }
 
-// k_u of (5).
-double reload_N_m3(const Bekker &soil, double k, double rut_m) {
-    const double own = soil.reload_N_m4 * rut_m, least = 2 * k * math::pow(rut_m, soil.n - 1);
-    return own > least ? own : least;
+// What a rut's depth makes of (5), its logarithm taken once for all the powers.
+struct OldRut {
+    double log_m, power, reload_N_m3, surface_m; // power: rut^n; reload: k_u
+};
+OldRut old_rut(const Bekker &soil, const SoilConstants &constants, double rut_m) {
+    OldRut rut{};
+    if (rut_m <= 0) return rut;
+    rut.log_m = math::log(rut_m);
+    const double own = soil.reload_N_m4 * rut_m, least = 2 * constants.k_wide * math::exp((soil.n - 1) * rut.log_m);
+    rut.power = math::exp(soil.n * rut.log_m);
+    rut.reload_N_m3 = own > least ? own : least;
+    rut.surface_m = rut_m - constants.k_wide * rut.power / rut.reload_N_m3;
+    return rut;
 }
 
 // Bulldozing: only soil that still stands is pushed.
@@ -33,9 +42,10 @@ double bulldozing_N(const Bekker &soil, const SoilConstants &constants, double w
     return 0.5 * width_m * soil.weight_N_m3 * fresh * fresh * constants.passive;
 }
 
-double bekker_normal(double width_m, double radius_m, double k, double n, double z) {
+// power: z^n
+double bekker_normal(double width_m, double radius_m, double k, double n, double z, double power) {
     const double n_fit = n < largest_exponent ? n : largest_exponent;
-    return width_m * k * std::sqrt(2 * radius_m * z) * math::pow(z, n) * (3 - n_fit) / 3;
+    return width_m * k * std::sqrt(2 * radius_m * z) * power * (3 - n_fit) / 3;
 }
 
 } // namespace
@@ -45,31 +55,31 @@ SoilConstants soil_constants(const Bekker &soil, double wheel_width_m) {
     return {soil.kc / wheel_width_m + soil.kphi, math::tan(soil.phi_rad), t * t};
 }
 
-double rut_surface_m(const Bekker &soil, const SoilConstants &constants, double rut_m) {
-    if (rut_m <= 0) return 0;
-    return rut_m - constants.k_wide * math::pow(rut_m, soil.n) / reload_N_m3(soil, constants.k_wide, rut_m);
-}
+double rut_surface_m(const Bekker &soil, const SoilConstants &constants, double rut_m) { return old_rut(soil, constants, rut_m).surface_m; }
 
 SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
     SoilForce out;
     const double z = contact.sinkage_m < 0.9 * wheel.radius_m ? contact.sinkage_m : 0.9 * wheel.radius_m;
-    const double surface = rut_surface_m(soil, constants, contact.rut_m);
+    const OldRut rut = old_rut(soil, constants, contact.rut_m);
+    const double surface = rut.surface_m;
     if (!(z > surface)) return out;
     const double n = slipped_exponent(soil, contact.slip);
     double length = chord_m(wheel.radius_m, z);
     const double k = modulus(soil, constants, wheel.width_m, length);
-    double compaction = wheel.width_m * k * math::pow(z, n) * z / (n + 1);
+    const double power = math::pow(z, n);
+    double compaction = wheel.width_m * k * power * z / (n + 1), rut_power = 0;
     if (contact.rut_m > 0) {
         const double d = z - surface, patch = 2 * std::sqrt(2 * wheel.radius_m * d);
         if (patch < length) length = patch;
-        const double before = contact.rut_m < z ? contact.rut_m : z; // the work up to the old depth is done already
-        compaction -= wheel.width_m * k * math::pow(before, n) * before / (n + 1);
+        rut_power = math::exp(n * rut.log_m);
+        const bool deeper = contact.rut_m < z; // the work up to the old depth is done already
+        compaction -= wheel.width_m * k * (deeper ? rut_power : power) * (deeper ? contact.rut_m : z) / (n + 1);
     }
     if (z >= contact.rut_m) {
-        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z);
+        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z, power);
     } else {
         const double share = (z - surface) / (contact.rut_m - surface);
-        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, contact.rut_m) * share * std::sqrt(share);
+        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, contact.rut_m, rut_power) * share * std::sqrt(share);
     }
     out.largest_N = wheel.strength * (length * wheel.width_m * soil.c_Pa + out.normal_N * constants.tan_phi);
     out.shear_slip = wheel.shear * soil.K_m / length;
@@ -108,7 +118,7 @@ Arc make_arc(double radius_m, double depth_m) {
 }
 
 // Depth below the original surface whose stress acts at each node: its own in front of the summit, its mirror's behind.
-void node_depths(const Arc &arc, double summit_rad, double sinkage_m, Nodes &depth) {
+inline void node_depths(const Arc &arc, double summit_rad, double sinkage_m, Nodes &depth) {
     const double behind = (arc.entry_rad - summit_rad) / summit_rad, floor_cos = 1 - sinkage_m / arc.radius_m;
     const double *angle = arc.angle.data(), *cosine = arc.cosine.data();
     for (std::size_t i = 0; i < arc_nodes; ++i) { // series of cos to x^8: 3e-7 at 1 rad
@@ -119,13 +129,65 @@ void node_depths(const Arc &arc, double summit_rad, double sinkage_m, Nodes &dep
 }
 
 // tau at a ratio v/(R w).
-void shear(const Arc &arc, const Nodes &limit_Pa, double ratio, double inverse_K, Nodes &tau) {
+inline void shear(const Arc &arc, const Nodes &limit_Pa, double ratio, double inverse_K, Nodes &tau) {
     const double *angle = arc.angle.data(), *sine = arc.sine.data(), *limit = limit_Pa.data();
     double *out = tau.data();
     for (std::size_t i = 0; i < arc_nodes; ++i) {
         const double j = arc.radius_m * ((arc.entry_rad - angle[i]) - ratio * (arc.sin_entry - sine[i]));
         out[i] = limit[i] * std::copysign(1 - math::exp(-std::fabs(j) * inverse_K), j);
     }
+}
+
+struct Stresses {
+    Nodes sigma, tau, free_tau;
+};
+
+// What the stresses at the nodes need to know. rut_m, surface_m, reload_Pa_m: (5) up to the old depth, and what the slip and the contact's
+// length make of (1) there; beyond it the soil is new. No rut: 0.
+struct Pressing {
+    double summit_rad, sinkage_m, k, exponent, rut_m, surface_m, reload_Pa_m;
+    double strength, cohesion_Pa, tan_phi, ratio, inverse_K;
+};
+
+inline void stresses_at(const Arc &arc, const Pressing &p, Stresses &out) {
+    Nodes depth, limit;
+    node_depths(arc, p.summit_rad, p.sinkage_m, depth);
+    for (std::size_t i = 0; i < arc_nodes; ++i) out.sigma[i] = p.k * math::exp(p.exponent * math::log(depth[i]));
+    if (p.rut_m > 0)
+        for (std::size_t i = 0; i < arc_nodes; ++i) {
+            const double sprung = p.reload_Pa_m * (depth[i] - p.surface_m), again = depth[i] > p.surface_m ? sprung : 0;
+            const double least = again < out.sigma[i] ? again : out.sigma[i];
+            out.sigma[i] = depth[i] >= p.rut_m ? out.sigma[i] : least;
+        }
+    for (std::size_t i = 0; i < arc_nodes; ++i) limit[i] = p.strength * (p.cohesion_Pa + out.sigma[i] * p.tan_phi);
+    shear(arc, limit, p.ratio, p.inverse_K, out.tau);
+    shear(arc, limit, 1, p.inverse_K, out.free_tau);
+}
+
+// The nodes side by side in the widest vectors that this processor has: the same operations on each, none contracted, so the same bits.
+void stresses_narrow(const Arc &arc, const Pressing &p, Stresses &out) { stresses_at(arc, p, out); }
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TRACTION_WIDE_VECTORS 1
+__attribute__((target("avx2"), flatten)) void stresses_avx2(const Arc &arc, const Pressing &p, Stresses &out) { stresses_at(arc, p, out); }
+__attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"), flatten)) void
+stresses_avx512(const Arc &arc, const Pressing &p, Stresses &out) {
+    stresses_at(arc, p, out);
+}
+#endif
+
+using StressFunction = void (*)(const Arc &, const Pressing &, Stresses &);
+StressFunction stresses_in(Vectors vectors) {
+#ifdef TRACTION_WIDE_VECTORS
+    if (vectors == Vectors::avx512) return stresses_avx512;
+    if (vectors == Vectors::avx2) return stresses_avx2;
+#endif
+    return vectors == Vectors::narrow ? stresses_narrow : nullptr;
+}
+
+StressFunction widest_stresses() {
+    for (const Vectors vectors : {Vectors::avx512, Vectors::avx2})
+        if (has(vectors)) return stresses_in(vectors);
+    return stresses_narrow;
 }
 
 struct ArcSum {
@@ -143,35 +205,47 @@ ArcSum sum_over(const Arc &arc, const Nodes &stress) {
 
 } // namespace
 
-SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
+bool has([[maybe_unused]] Vectors vectors) {
+#ifdef TRACTION_WIDE_VECTORS
+    __builtin_cpu_init();
+    if (vectors == Vectors::avx512)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    if (vectors == Vectors::avx2) return __builtin_cpu_supports("avx2");
+#endif
+    return vectors == Vectors::narrow;
+}
+
+namespace {
+
+SoilForce arc_force_by(StressFunction stresses, const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                       const SoilContact &contact) {
     SoilForce out;
     const double r = wheel.radius_m, s = contact.slip;
     const double z = contact.sinkage_m < 0.9 * r ? contact.sinkage_m : 0.9 * r;
-    const double surface = rut_surface_m(soil, constants, contact.rut_m);
+    const OldRut rut = old_rut(soil, constants, contact.rut_m);
+    const double surface = rut.surface_m;
     if (!(z > surface)) return out;
     const Arc arc = make_arc(r, z - surface);
     const double length = r * arc.sin_entry, k = modulus(soil, constants, wheel.width_m, length);
     const double n = slipped_exponent(soil, s), place = soil.c1 + soil.c2 * std::fabs(s);
-    Nodes depth, sigma, limit, tau, free_tau;
-    node_depths(arc, (place < 0.95 ? place : 0.95) * arc.entry_rad, z, depth);
-    for (std::size_t i = 0; i < arc_nodes; ++i) sigma[i] = k * math::exp(n * math::log(depth[i]));
-    if (contact.rut_m >
-        0) { // (5) up to the old depth, and what the slip and the contact's length make of (1) there; beyond it the soil is new
-        const double reload = reload_N_m3(soil, constants.k_wide, contact.rut_m);
-        const double now = k * math::pow(contact.rut_m, n) / (constants.k_wide * math::pow(contact.rut_m, soil.n));
-        for (std::size_t i = 0; i < arc_nodes; ++i) {
-            if (depth[i] >= contact.rut_m) continue;
-            const double again = depth[i] > surface ? now * reload * (depth[i] - surface) : 0;
-            sigma[i] = again < sigma[i] ? again : sigma[i];
-        }
-    }
-    for (std::size_t i = 0; i < arc_nodes; ++i) limit[i] = wheel.strength * (soil.c_Pa + sigma[i] * constants.tan_phi);
-    const double inverse_K = 1 / (soil.K_m * wheel.shear);
-    shear(arc, limit, s >= 0 ? 1 - s : 1 / (1 + (s > -0.99 ? s : -0.99)), inverse_K, tau);
-    shear(arc, limit, 1, inverse_K, free_tau);
+    Pressing p{.summit_rad = (place < 0.95 ? place : 0.95) * arc.entry_rad,
+               .sinkage_m = z,
+               .k = k,
+               .exponent = n,
+               .rut_m = contact.rut_m,
+               .surface_m = surface,
+               .reload_Pa_m = 0,
+               .strength = wheel.strength,
+               .cohesion_Pa = soil.c_Pa,
+               .tan_phi = constants.tan_phi,
+               .ratio = s >= 0 ? 1 - s : 1 / (1 + (s > -0.99 ? s : -0.99)),
+               .inverse_K = 1 / (soil.K_m * wheel.shear)};
+    if (contact.rut_m > 0) p.reload_Pa_m = k * math::exp(n * rut.log_m) / (constants.k_wide * rut.power) * rut.reload_N_m3;
+    Stresses at;
+    stresses(arc, p, at);
 
     const double area = r * wheel.width_m * arc.step_rad;
-    const ArcSum press = sum_over(arc, sigma), grip = sum_over(arc, tau), free = sum_over(arc, free_tau);
+    const ArcSum press = sum_over(arc, at.sigma), grip = sum_over(arc, at.tau), free = sum_over(arc, at.free_tau);
     const double normal = area * (press.along + grip.down);
     out.normal_N = normal > 0 ? normal : 0;
     out.traction_N = area * grip.along;
@@ -182,6 +256,18 @@ SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const So
     out.shear_slip = wheel.shear * soil.K_m / length;
     out.resistance_N = area * press.down + bulldozing_N(soil, constants, wheel.width_m, z, contact.rut_m) + wheel.hysteresis * out.normal_N;
     return out;
+}
+
+} // namespace
+
+SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
+    static const StressFunction widest = widest_stresses();
+    return arc_force_by(widest, soil, constants, wheel, contact);
+}
+
+SoilForce arc_force_in(Vectors vectors, const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                       const SoilContact &contact) {
+    return arc_force_by(stresses_in(vectors), soil, constants, wheel, contact);
 }
 
 double sinkage_under(SoilLawFunction law, const Bekker &soil, const SoilWheel &wheel, double load_N, double slip, double rut_m) {

@@ -56,6 +56,12 @@ SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const
 inline constexpr int arc_nodes = 16;
 SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact);
 
+// How many nodes the arc law takes at once: 2, 4, 8. arc_force takes the most that the processor has; every choice gives the same bits.
+enum class Vectors { narrow, avx2, avx512 };
+bool has(Vectors vectors);
+SoilForce arc_force_in(Vectors vectors, const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                       const SoilContact &contact); // one that the processor has
+
 // The sinkage that carries `load_N`, by bisection on either law.
 using SoilLawFunction = SoilForce (*)(const Bekker &, const SoilConstants &, const SoilWheel &, const SoilContact &);
 double sinkage_under(SoilLawFunction law, const Bekker &soil, const SoilWheel &wheel, double load_N, double slip, double rut_m = 0);

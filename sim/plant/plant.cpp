@@ -43,7 +43,7 @@ Plant::World::World(const PlantConfig &c)
       steering(c.rover.layout, c.rover.half_wheelbase_m, c.rover.half_track_m) {
     start_ode();
     contact_kg = config.rover.mass_kg / static_cast<double>(wheels.size());
-    for (const int i : wheels) place_ahead_m[static_cast<std::size_t>(i)] = place(i).ahead_m;
+    know_wheels();
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, 0);
     rise_rad = config.ground.slope_here_rad(0);
     world = dWorldCreate();
@@ -61,8 +61,10 @@ Plant::World::World(const PlantConfig &c)
     if (!config.ground.terrain.flat()) relief.emplace(config.ground.terrain, config.ground.seed);
     build_bodies();
     if (relief && !config.rover.layout.rocker) place_on_terrain();
+    know_bodies();
+    take_hinge();
     for (const int i : wheels) {
-        if (is_caster(config.rover.layout.kind, i)) continue; // a ball has no spin of its own here
+        if (caster(i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
         const auto m = static_cast<std::size_t>(motor_of(i));
         const double radius = law::wheel_radius_m(config.rover.wheel_radius_m, effects.wheel[m].radius_change);
@@ -77,6 +79,30 @@ Plant::World::World(const PlantConfig &c)
     energy.kinetic = kinetic();
 }
 
+void Plant::World::know_wheels() {
+    for (const int i : wheels) {
+        const auto n = static_cast<std::size_t>(i);
+        place_ahead_m[n] = place(i).ahead_m;
+        is_ball[n] = is_caster(config.rover.layout.kind, i);
+        motor[n] = sim::motor_of(config.rover.layout, i);
+        if (!is_ball[n]) turned_by[static_cast<std::size_t>(motor[n])].push_back(i);
+    }
+}
+
+void Plant::World::know_bodies() {
+    for (const dBodyID body : bodies)
+        now.push_back({.body = body,
+                       .turn = dBodyGetRotation(body),
+                       .at = dBodyGetPosition(body),
+                       .velocity = dBodyGetLinearVel(body),
+                       .spin = dBodyGetAngularVel(body)});
+    const auto place_of = [this](dBodyID body) {
+        return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), body) - bodies.begin());
+    };
+    for (std::size_t n = 0; n < 2; ++n) half_at[n] = place_of(half[n]);
+    for (const int i : wheels) carrier_at[static_cast<std::size_t>(i)] = place_of(carrier[static_cast<std::size_t>(i)]);
+}
+
 Plant::World::~World() {
     if (world != nullptr) dWorldDestroy(world);
     if (threading != nullptr) dThreadingFreeImplementation(threading);
@@ -84,17 +110,15 @@ Plant::World::~World() {
 
 Vec3 Plant::World::axis(int column) const {
     Vec3 sum{};
-    for (const dBodyID body : half) {
-        const dReal *rotation = dBodyGetRotation(body);
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += rotation[4 * k + static_cast<std::size_t>(column)];
-    }
+    for (const std::size_t n : half_at)
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += now[n].turn[4 * k + static_cast<std::size_t>(column)];
     const double size = std::sqrt(dot(sum, sum));
     for (double &part : sum) part /= size;
     return sum;
 }
 
 Vec3 Plant::World::mean_velocity() const {
-    const dReal *a = dBodyGetLinearVel(half[0]), *b = dBodyGetLinearVel(half[1]);
+    const double *a = now[half_at[0]].velocity, *b = now[half_at[1]].velocity;
     return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
 }
 
@@ -106,6 +130,51 @@ void Plant::World::contact_velocity(int i, Vec3 &out) const {
     else
         dBodyGetRelPointVel(half_of(i), at[0], at[1], at[2], velocity);
     out = {velocity[0], velocity[1], velocity[2]};
+}
+
+// Where the halves hang on their hinge and on nothing else, ODE steps them as free bodies and hinge.h says what the joint does to them. A
+// joint that asks for nothing keeps them one island, which is less work than two.
+void Plant::World::take_hinge() {
+    if (half[0] == half[1]) return; // on rockers
+    const bool alone = dBodyGetNumJoints(half[0]) == 1 && dBodyGetNumJoints(half[1]) == 1 && dJointGetType(joint) == dJointTypeHinge;
+    if (!alone || dJointGetHingeParam(joint, dParamLoStop) > -dInfinity || dJointGetHingeParam(joint, dParamHiStop) < dInfinity) return;
+    dVector3 anchor, axis_now;
+    dJointGetHingeAnchor(joint, anchor);
+    dJointGetHingeAxis(joint, axis_now);
+    Hinge &taken = hinge.emplace();
+    taken.erp = dWorldGetERP(world), taken.cfm = dWorldGetCFM(world);
+    for (std::size_t n = 0; n < 2; ++n) {
+        dMass mass;
+        dBodyGetMass(half[n], &mass);
+        dVector3 place, along, lies, stands;
+        dBodyGetPosRelPoint(half[n], anchor[0], anchor[1], anchor[2], place);
+        dBodyVectorFromWorld(half[n], axis_now[0], axis_now[1], axis_now[2], along);
+        dPlaneSpace(along, lies, stands);
+        const auto vector_of = [](const dReal *v) { return Vec3{v[0], v[1], v[2]}; };
+        taken.body[n] = {.mass_kg = mass.mass,
+                         .inertia_kg_m2 = {mass.I[0], mass.I[5], mass.I[10]}, // a box's: diagonal
+                         .anchor_m = vector_of(place),
+                         .axis = vector_of(along),
+                         .normal_1 = vector_of(lies),
+                         .normal_2 = vector_of(stands)};
+        dBodySetGyroscopicMode(half[n], 0);
+    }
+    dJointDisable(joint);
+    dJointAttach(dJointCreateNull(world, nullptr), half[0], half[1]);
+}
+
+void Plant::World::hold_halves() {
+    std::array<HingeMotion, 2> moving{};
+    for (std::size_t n = 0; n < 2; ++n) {
+        const dReal *force = dBodyGetForce(half[n]), *torque = dBodyGetTorque(half[n]);
+        moving[n] = {now[n].turn, now[n].at, now[n].velocity, now[n].spin, {}, {torque[0], torque[1], torque[2]}};
+        for (std::size_t k = 0; k < 3; ++k) moving[n].force_N[k] = force[k] + hinge->body[n].mass_kg * gravity[k]; // ODE adds it itself
+    }
+    const auto loads = hinge->loads(moving, config.dt_s);
+    for (std::size_t n = 0; n < 2; ++n) {
+        dBodyAddForce(half[n], loads[n].force_N[0], loads[n].force_N[1], loads[n].force_N[2]);
+        dBodyAddTorque(half[n], loads[n].torque_Nm[0], loads[n].torque_Nm[1], loads[n].torque_Nm[2]);
+    }
 }
 
 double Plant::World::kinetic() const {
@@ -177,20 +246,48 @@ void Plant::World::step() {
     }
     steering.step(dt);
     const Vec3 before = mean_velocity();
+    begin_bodies();
     for (const int i : wheels) {
-        if (is_caster(config.rover.layout.kind, i)) {
+        if (caster(i)) {
             step_caster(i);
             continue;
         }
         step_wheel(i);
-        if (is_last_of(motor_of(i), i)) turn(motor_of(i), supply_V);
+        if (i == turned_by[static_cast<std::size_t>(motor_of(i))].back()) turn(motor_of(i), supply_V);
     }
+    push_bodies();
     push_body();
+    if (hinge) hold_halves();
     dWorldStep(world, dt);
     ++steps;
 
     if (config.audit) keep_energy();
     observe(before);
+}
+
+void Plant::World::begin_bodies() {
+    for (BodyNow &one : now) {
+        const double *turn = one.turn;
+        const double flat = std::sqrt(turn[0] * turn[0] + turn[4] * turn[4]);
+        one.heading = {turn[0] / flat, turn[4] / flat, 0};
+        one.force = one.torque = {};
+    }
+}
+
+// A wheel's force on the body that carries it. What the wheels give is added up here and handed to ODE once.
+void Plant::World::push_at(int wheel, const Vec3 &force, const Vec3 &arm) {
+    BodyNow &to = now_of(wheel);
+    for (std::size_t k = 0; k < 3; ++k) to.force[k] += force[k];
+    to.torque[0] += arm[1] * force[2] - arm[2] * force[1];
+    to.torque[1] += arm[2] * force[0] - arm[0] * force[2];
+    to.torque[2] += arm[0] * force[1] - arm[1] * force[0];
+}
+
+void Plant::World::push_bodies() {
+    for (const BodyNow &one : now) {
+        dBodyAddForce(one.body, one.force[0], one.force[1], one.force[2]);
+        dBodyAddTorque(one.body, one.torque[0], one.torque[1], one.torque[2]);
+    }
 }
 
 // What the step that was just taken did, by forces at its beginning and speeds at its middle.
@@ -205,7 +302,7 @@ void Plant::World::keep_energy() {
         const double to_body = dot(a.force, after);
         const double vertical = a.load_N * dot(a.stand.up, after);
         const double edge = a.edge_N * along; // a caster only rolls
-        const double rolling = is_caster(config.rover.layout.kind, i) ? vertical + edge - to_body : a.resist_N * along;
+        const double rolling = caster(i) ? vertical + edge - to_body : a.resist_N * along;
         energy.rolling += rolling * dt;
         energy.slip += (a.torque_Nm * a.spin_mean_rad_s - (to_body - vertical + rolling - edge)) * dt;
         energy.body -= (vertical + edge) * dt;

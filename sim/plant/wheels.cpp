@@ -14,8 +14,7 @@ double Plant::World::current_of_others(int i) {
     if (effects.wheel[n].shared_ohm == 0) return 0;
     double sum = 0;
     for (const int j : wheels)
-        if (j != i && !is_caster(config.rover.layout.kind, j) &&
-            law::shares_lead(with, is_front(j) == is_front(i), is_left(j) == is_left(i)))
+        if (j != i && !caster(j) && law::shares_lead(with, is_front(j) == is_front(i), is_left(j) == is_left(i)))
             sum += drive[static_cast<std::size_t>(j)].current_A;
     constexpr double share = 0.3; // of the difference, per step: assumed, 3 ms
     others_A[n] += share * (sum - others_A[n]);
@@ -23,8 +22,9 @@ double Plant::World::current_of_others(int i) {
 }
 
 double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) const {
+    const double place = 1 + config.ground.grip_change(x_m, y_m);
     const double here =
-        strength_here(1 + config.ground.grip_change(x_m, y_m), effects.body, place_on_path(i), truth.path_m, trails(i) ? 1 : 0);
+        even_strength(effects.body) ? place : strength_here(place, effects.body, place_on_path(i), truth.path_m, trails(i) ? 1 : 0);
     return strength_sliding(here, effects.body, sliding_m_s);
 }
 
@@ -100,6 +100,7 @@ void blend(Given &a, const Given &b, double share) {
 // The soils before and behind the axle, and how much of the wheel's footprint the one in front has: at a patch's edge a wheel stands on
 // both.
 Plant::World::Footing Plant::World::footing(const Vec3 &point, const Vec3 &heading, double half_m) const {
+    if (config.ground.patches.empty()) return {.behind = &config.ground.soil, .front = &config.ground.soil};
     const auto soil_at = [&](double ahead_m) {
         return &config.ground.at(point[0] + ahead_m * heading[0], point[1] + ahead_m * heading[1]);
     };
@@ -166,26 +167,27 @@ Plant::World::Meeting Plant::World::meet_soft(int i, ContactInput in, const Foot
 }
 
 // The body's lowest point under the axle, on the plane z = 0.
-Plant::World::Stand Plant::World::stand_on_plane(int i) const {
+Plant::World::Stand Plant::World::stand_on_plane(int i) {
     const Vec3 &bottom = contact_at[static_cast<std::size_t>(i)];
-    const dBodyID body = half_of(i);
+    const BodyNow &on = now_of(i);
     Stand at;
-    dVector3 point;
-    dBodyGetRelPointPos(body, bottom[0], bottom[1], bottom[2], point);
-    at.point = {point[0], point[1], point[2]};
-    contact_velocity(i, at.velocity);
-    const dReal *rotation = dBodyGetRotation(body);
-    const double flat = std::sqrt(rotation[0] * rotation[0] + rotation[4] * rotation[4]);
-    at.heading = {rotation[0] / flat, rotation[4] / flat, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+        at.arm[k] = on.turn[4 * k] * bottom[0] + on.turn[4 * k + 1] * bottom[1] + on.turn[4 * k + 2] * bottom[2];
+        at.point[k] = at.arm[k] + on.at[k];
+    }
+    at.velocity = {on.velocity[0] + (on.spin[1] * at.arm[2] - on.spin[2] * at.arm[1]),
+                   on.velocity[1] + (on.spin[2] * at.arm[0] - on.spin[0] * at.arm[2]),
+                   on.velocity[2] + (on.spin[0] * at.arm[1] - on.spin[1] * at.arm[0])};
+    at.heading = on.heading;
     if (steering.there()) {
         const Steering::Wheel &turned = steering.wheel(i);
-        at.heading = {turned.cosine * at.heading[0] - turned.sine * at.heading[1],
-                      turned.sine * at.heading[0] + turned.cosine * at.heading[1], 0};
+        at.heading = {turned.cosine * on.heading[0] - turned.sine * on.heading[1],
+                      turned.sine * on.heading[0] + turned.cosine * on.heading[1], 0};
     }
     at.ahead = at.heading;
     at.left = {-at.heading[1], at.heading[0], 0};
     at.up = {0, 0, 1};
-    at.depth_m = -point[2];
+    at.depth_m = -at.point[2];
     at.sink_m_s = -at.velocity[2];
     return at;
 }
@@ -212,7 +214,7 @@ Plant::World::Stand Plant::World::stand(int i) {
     }
     at.left = {at.up[1] * at.ahead[2] - at.up[2] * at.ahead[1], at.up[2] * at.ahead[0] - at.up[0] * at.ahead[2],
                at.up[0] * at.ahead[1] - at.up[1] * at.ahead[0]};
-    for (std::size_t k = 0; k < 3; ++k) at.point[k] = axle[k] - radius * at.up[k];
+    for (std::size_t k = 0; k < 3; ++k) at.point[k] = axle[k] - radius * at.up[k], at.arm[k] = at.point[k] - now_of(i).at[k];
     dBodyGetPointVel(body, at.point[0], at.point[1], at.point[2], velocity);
     at.velocity = {velocity[0], velocity[1], velocity[2]};
     at.depth_m = rest.height_m - (axle[2] - radius);
@@ -226,7 +228,7 @@ void Plant::World::step_wheel(int i) {
     const WheelEffects &mine = effects.wheel[n];
     const BodyEffects &b = effects.body;
     Applied &out = applied[n];
-    const Stand at = out.stand = stand(i);
+    const Stand &at = out.stand = stand(i);
     const double along = dot(at.velocity, at.ahead), across = dot(at.velocity, at.left);
 
     const double radius = law::wheel_radius_m(r.wheel_radius_m, mine.radius_change);
@@ -262,12 +264,7 @@ void Plant::World::step_wheel(int i) {
     out.load_N = load;
     out.resist_N = rolling * turned;
     out.edge_N = met.edge_N;
-    const dBodyID body = half_of(i);
-    const Vec3 &bottom = contact_at[n];
-    if (relief)
-        dBodyAddForceAtPos(body, out.force[0], out.force[1], out.force[2], at.point[0], at.point[1], at.point[2]);
-    else
-        dBodyAddForceAtRelPos(body, out.force[0], out.force[1], out.force[2], bottom[0], bottom[1], bottom[2]);
+    push_at(i, out.force, at.arm);
 
     out.torque_Nm = (met.arm_m > 0 ? met.arm_m : radius) * met.force.along_N + met.free_Nm * soft_sign(rim, reversal_m_s);
 
@@ -282,46 +279,38 @@ void Plant::World::step_wheel(int i) {
     w.ground_speed_m_s = along;
 }
 
-bool Plant::World::is_last_of(int motor, int slot) const {
-    if (config.rover.layout.drives[0] < 0) return true;
-    int last = motor;
-    for (const int i : wheels)
-        if (!is_caster(config.rover.layout.kind, i) && motor_of(i) == motor) last = i;
-    return slot == last;
-}
-
 // One drive train for all the wheels that the motor turns: it carries their torques together, and they share its speed.
-void Plant::World::turn(int motor, double supply_V) {
-    const auto n = static_cast<std::size_t>(motor);
+void Plant::World::turn(int slot, double supply_V) {
+    const auto n = static_cast<std::size_t>(slot);
     const RoverParameters &r = config.rover;
     const WheelEffects &mine = effects.wheel[n];
     bool held = false;
     double torque_Nm = 0;
-    for (const int i : wheels) {
-        if (is_caster(r.layout.kind, i) || motor_of(i) != motor) continue;
+    for (const int i : turned_by[n]) {
         held = held || blocked[static_cast<std::size_t>(i)];
         torque_Nm += applied[static_cast<std::size_t>(i)].torque_Nm;
     }
     DriveState &d = drive[n];
     const double speed_before = d.wheel_speed_rad_s;
     if (held) d.wheel_speed_rad_s = d.motor_speed_rad_s = 0;
-    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s, current_of_others(motor)) : 0;
+    d.current_A = enabled && !open[n] ? drive_current(r.drive, mine, d, duty[n], supply_V, config.dt_s, current_of_others(slot)) : 0;
     if (!held) {
         const DriveWork work = drive_step(r.drive, mine, d, torque_Nm, config.dt_s);
         energy.motor += work.motor;
         energy.friction += work.friction;
     }
-    for (const int i : wheels) {
-        if (is_caster(r.layout.kind, i) || motor_of(i) != motor) continue;
+    for (const int i : turned_by[n]) {
         const auto j = static_cast<std::size_t>(i);
-        if (i != motor) drive[j] = d, drive[j].current_A = 0;
+        if (i != slot) drive[j] = d, drive[j].current_A = 0;
         applied[j].spin_mean_rad_s = held ? 0 : 0.5 * (speed_before + d.wheel_speed_rad_s);
         // the wheel's own spin-up turns the chassis the other way about y
         const double radius = law::wheel_radius_m(r.wheel_radius_m, effects.wheel[j].radius_change);
         const double spin = 0.5 * r.wheel_mass_kg * radius * radius * (d.wheel_speed_rad_s - speed_before) / config.dt_s;
         if (law::load_transfer_m(r.centre_height_m, effects.body.raised_m) > 0) {
             const Steering::Wheel &turned = steering.wheel(i); // its axle, of the body
-            dBodyAddRelTorque(half_of(i), turned.sine * spin, -turned.cosine * spin, 0);
+            BodyNow &on = now_of(i);
+            for (std::size_t k = 0; k < 3; ++k)
+                on.torque[k] += (turned.sine * on.turn[4 * k] - turned.cosine * on.turn[4 * k + 1]) * spin;
         }
     }
 }
@@ -332,7 +321,7 @@ void Plant::World::step_caster(int i) {
     const auto n = static_cast<std::size_t>(i);
     const RoverParameters &r = config.rover;
     Applied &out = applied[n];
-    const Stand at = out.stand = stand(i);
+    const Stand &at = out.stand = stand(i);
     const double along = dot(at.velocity, at.ahead), across = dot(at.velocity, at.left), radius = radius_m(i);
     const bool soft = config.ground.contact != ContactLaw::aggregated;
     const Footing foot = footing(at.point, at.heading, soft && !config.ground.patches.empty() ? 0.5 * radius : 0);
@@ -356,7 +345,7 @@ void Plant::World::step_caster(int i) {
     for (std::size_t k = 0; k < 3; ++k)
         out.force[k] = (met.edge_N - rolling * turned.along) * at.ahead[k] - rolling * turned.across * at.left[k] + met.load_N * at.up[k];
     out.load_N = met.load_N, out.edge_N = met.edge_N;
-    dBodyAddForceAtPos(half_of(i), out.force[0], out.force[1], out.force[2], at.point[0], at.point[1], at.point[2]);
+    push_at(i, out.force, at.arm);
     WheelTruth &w = truth.slot(i);
     w.rolling_N = rolling;
     w.rolling_share = turned.along;

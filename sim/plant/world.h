@@ -3,6 +3,7 @@
 #pragma once
 
 #include "contact.h"
+#include "hinge.h"
 #include "layout.h"
 #include "plant.h"
 #include "rut.h"
@@ -54,20 +55,22 @@ struct Plant::World {
     void stand_up(double height_m);
     void place_whole_on_terrain();
     void step();
-    void step_wheel(int i);                // what the ground does to it
-    void turn(int motor, double supply_V); // and the motor's wheels by it
-    int motor_of(int slot) const { return sim::motor_of(config.rover.layout, slot); }
-    bool is_last_of(int motor, int slot) const; // in the order of `wheels`
+    void step_wheel(int i);               // what the ground does to it
+    void turn(int slot, double supply_V); // and its motor's wheels by it
+    int motor_of(int slot) const { return motor[static_cast<std::size_t>(slot)]; }
+    bool caster(int slot) const { return is_ball[static_cast<std::size_t>(slot)]; }
+    void know_wheels();
     void step_caster(int i);
     struct Stand {                        // where a wheel meets the ground: the plane it touches and how far it is pressed in
         Vec3 point{}, velocity{};         // contact point of the body, world
+        Vec3 arm{};                       // from the half's centre to it
         Vec3 heading{};                   // of the wheel, horizontal
         Vec3 ahead{}, left{}, up{};       // of the plane
         double depth_m = 0, sink_m_s = 0; // vertical; sink: how fast it grows
         double steep = 1;                 // depth_m over that along `up`
     };
     Stand stand(int i);
-    Stand stand_on_plane(int i) const;
+    Stand stand_on_plane(int i);
     void place_on_terrain();
     double place_on_path(int i) const;
     double current_of_others(int i);
@@ -89,6 +92,8 @@ struct Plant::World {
     Meeting meet_soft(int i, ContactInput in, const Footing &foot, double factor, const Stand &at);
     const SoilConstants &constants_of(const Soil &soil) const;
     void push_body();
+    void take_hinge();
+    void hold_halves();
     void keep_energy();
     void observe(const Vec3 &velocity_before);
     Vec3 mean_velocity() const;
@@ -104,7 +109,7 @@ struct Plant::World {
         return wheel_place(config.rover.layout, config.rover.half_wheelbase_m, config.rover.half_track_m, slot);
     }
     double radius_m(int slot) const { // as the ground feels it
-        return is_caster(config.rover.layout.kind, slot) ? config.rover.layout.caster_radius_m : config.rover.wheel_radius_m;
+        return caster(slot) ? config.rover.layout.caster_radius_m : config.rover.wheel_radius_m;
     }
     double load_kg() const { return contact_kg; } // of a wheel, on the mean; of a light link's what it can hold
     dBodyID half_of(int wheel) const { return carrier[static_cast<std::size_t>(wheel)]; } // or the link that carries it
@@ -113,11 +118,15 @@ struct Plant::World {
     std::span<const int> wheels; // slots, in order
     double contact_kg = 0;
     std::array<double, wheel_most> place_ahead_m{}; // of the centre of mass
+    std::array<int, wheel_most> motor{};            // the slot whose motor turns this one
+    std::array<bool, wheel_most> is_ball{};
+    std::array<std::vector<int>, wheel_most> turned_by; // the slots that this one's motor turns, in order
     RoverEffects effects;
     Vec3 gravity{};
     std::optional<Relief> relief; // none: a plane
     dWorldID world = nullptr;
     dJointID joint = nullptr;
+    std::optional<Hinge> hinge;                     // the joint, where it is all that holds the halves: solved here, not by ODE
     std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
     dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
     std::array<dBodyID, 2> half{};                  // on rockers both are the body
@@ -129,6 +138,20 @@ struct Plant::World {
         Vec3 body_at{}, bar_at{};
         std::array<Vec3, 2> rocker_at{}, bogie_at{}, pivot_at{}, joint_at{};
     } links;
+    struct BodyNow {
+        dBodyID body = nullptr;
+        const double *turn = nullptr, *at = nullptr, *velocity = nullptr, *spin = nullptr; // ODE's own numbers, which follow the body
+        Vec3 heading{};                                                                    // horizontal, as the step begins
+        Vec3 force{}, torque{};                                                            // of the wheels, in this step
+    };
+    std::vector<BodyNow> now;                         // of `bodies`, in their order
+    std::array<std::size_t, 2> half_at{};             // in it
+    std::array<std::size_t, wheel_most> carrier_at{}; // in it, of each wheel
+    BodyNow &now_of(int wheel) { return now[carrier_at[static_cast<std::size_t>(wheel)]]; }
+    void know_bodies();
+    void begin_bodies();
+    void push_bodies();
+    void push_at(int wheel, const Vec3 &force, const Vec3 &arm);
     std::array<Vec3, wheel_most> contact_at{}; // contact point in its half's frame
     std::array<DriveState, wheel_most> drive{};
     std::array<ContactState, wheel_most> contact{};

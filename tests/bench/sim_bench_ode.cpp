@@ -1,6 +1,4 @@
-#include "sim_bench_rival.h"
-
-#include "sim/plant/drive.h"
+#include "sim_bench_wheel.h"
 
 #include <ode/ode.h>
 
@@ -83,6 +81,45 @@ RivalResult ode_contacts(double seconds) {
     dJointGroupDestroy(scene.contacts);
     dSpaceDestroy(scene.space);
     dWorldDestroy(scene.world);
+    return out;
+}
+
+// The baseline of the factors: two bodies on ODE's hinge, dWorldStep, our wheels and our law, and nothing else - no sensors, no
+// firmware, no log, no effects. Made as the plant was at 246f08e; it is not to be made quicker.
+RivalResult ode_forces(double seconds, sim::ContactLaw law) {
+    const dWorldID world = dWorldCreate();
+    dWorldSetGravity(world, 0, 0, -gravity_m_s2);
+    const sim::Soil &soil = *sim::find_soil("dry_sand_literature");
+    const sim::SoilConstants constants = sim::soil_constants(*soil.bekker, 0.042);
+    std::array<dBodyID, 2> half{};
+    for (std::size_t h = 0; h < 2; ++h) {
+        dMass mass;
+        dMassSetBoxTotal(&mass, 1.44, 0.30, 0.135, 0.185);
+        half[h] = dBodyCreate(world);
+        dBodySetMass(half[h], &mass);
+        dBodySetPosition(half[h], 0, h == 0 ? 0.0675 : -0.0675, 0);
+    }
+    const dJointID joint = dJointCreateHinge(world, nullptr);
+    dJointAttach(joint, half[0], half[1]);
+    dJointSetHingeAnchor(joint, 0, 0, 0);
+    dJointSetHingeAxis(joint, 0, 1, 0);
+    std::array<Wheel, 4> wheels;
+    const std::clock_t start = std::clock();
+    const long steps = std::lround(seconds / rival_dt_s);
+    for (long k = 0; k < steps; ++k) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            const dBodyID body = half[i % 2];
+            const double ahead = i < 2 ? -0.083 : 0.083, aside = i % 2 == 0 ? 0.0525 : -0.0525;
+            dVector3 point, velocity;
+            dBodyGetRelPointPos(body, ahead, aside, 0, point);
+            dBodyGetRelPointVel(body, ahead, aside, 0, velocity);
+            const Push p = push(wheels[i], soil, constants, law, -point[2], velocity);
+            dBodyAddForceAtRelPos(body, p.along, p.across, p.up, ahead, aside, 0);
+        }
+        dWorldStep(world, rival_dt_s);
+    }
+    RivalResult out{static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, dBodyGetPosition(half[0])[0]};
+    dWorldDestroy(world);
     return out;
 }
 

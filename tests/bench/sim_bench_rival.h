@@ -14,6 +14,7 @@ struct RivalResult {
 inline constexpr double rival_dt_s = 0.001, rival_duty = 0.5, gravity_m_s2 = 9.81;
 
 // Straight drive at constant duty on dry sand from the literature, for `seconds` simulated.
+RivalResult ode_forces(double seconds, sim::ContactLaw contact);    // two ODE bodies on its hinge, our wheels and our law: the baseline
 RivalResult ode_contacts(double seconds);                           // six ODE bodies, Coulomb contacts, dWorldStep
 RivalResult mujoco_forces(double seconds, sim::ContactLaw contact); // two MuJoCo bodies, our wheels and our law
 RivalResult mujoco_contacts(double seconds);                        // MuJoCo's own contacts, four wheel bodies

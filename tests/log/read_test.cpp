@@ -345,11 +345,13 @@ TEST(Write, every_number_stands_in_its_shortest_digits) {
                                   0.1 + 0.2,
                                   999999999.999999,
                                   1e-3 - 1e-9};
+    for (int i = 1; i < 20000; ++i) values.push_back(i / 1e6), values.push_back(-i / 1e6); // with and without an exponent
     std::mt19937_64 random(7);
     for (int i = 0; i < 200000; ++i) {
         const double whole = static_cast<double>(static_cast<std::int64_t>(random() % 2000000000001ull) - 1000000000000ll);
         const double scale = std::pow(10.0, static_cast<double>(random() % 13));
         values.push_back(std::round(whole / scale) / 1e6);                    // millionths, of every size
+        values.push_back(std::round(whole / scale) / 512);                    // a radar's clock
         values.push_back(whole / scale);                                      // and anything else
         values.push_back(std::nextafter(std::round(whole / scale) / 1e6, 9)); // beside them
     }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <set>
 
@@ -110,6 +111,29 @@ TEST(arc_force, agrees_with_a_fine_quadrature) {
                 EXPECT_NEAR(f.torque_Nm, fine.torque, bound * radius_m) << soil.name << " z " << z << " s " << s;
             }
     }
+}
+
+// 2, 4 or 8 nodes at once: every bit of every result.
+TEST(arc_force, gives_the_same_bits_in_vectors_of_any_width) {
+    EXPECT_TRUE(has(Vectors::narrow));
+    std::size_t compared = 0;
+    for (const char *name : {"sand", "gravel", "dry_sand_literature", "loam", "snow", "lunar_simulant"}) {
+        const Soil &soil = *find_soil(name);
+        const SoilConstants constants = soil_constants(*soil.bekker, width_m);
+        for (const double z : {1e-4, 3e-3, 0.011, 0.027, 0.049})
+            for (const double s : {-1.0, -0.6, -0.07, 0.0, 0.02, 0.3, 0.9999})
+                for (const double rut : {0.0, 0.004, 0.02}) {
+                    const SoilWheel wheel{radius_m, width_m, 0.005, 0.9, 1.1};
+                    const SoilForce narrow = arc_force_in(Vectors::narrow, *soil.bekker, constants, wheel, {z, s, rut});
+                    for (const Vectors wide : {Vectors::avx2, Vectors::avx512}) {
+                        if (!has(wide)) continue;
+                        const SoilForce same = arc_force_in(wide, *soil.bekker, constants, wheel, {z, s, rut});
+                        EXPECT_EQ(std::memcmp(&same, &narrow, sizeof narrow), 0) << name << ' ' << z << ' ' << s << ' ' << rut;
+                        ++compared;
+                    }
+                }
+    }
+    if (compared == 0) GTEST_SKIP() << "this processor has no wider vectors";
 }
 
 TEST(slip_sinkage, a_slipping_wheel_sinks_deeper_under_the_same_load) {
