@@ -19,7 +19,7 @@ Vector vector_of(const double *first, const double *second) {
 }
 Vector vector_of(const std::array<double, 3> &first, const std::array<double, 3> &second) { return vector_of(first.data(), second.data()); }
 
-struct Turn {
+struct BothTurns {
     Vector x, y, z; // rows
     Vector operator()(const Vector &v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
     Vector back(const Vector &v) const {
@@ -28,7 +28,7 @@ struct Turn {
 };
 
 // (4), in world axes.
-Vector gyroscopic_Nm(const Vector &I, const Turn &turn, const Vector &spin, double h) {
+Vector gyroscopic_Nm(const Vector &I, const BothTurns &turn, const Vector &spin, double h) {
     const Vector own = turn.back(spin), L{I[0] * own[0], I[1] * own[1], I[2] * own[2]}, IL{I[0] * L[0], I[1] * L[1], I[2] * L[2]};
     const Vector side = cross(IL, L);
     const Both yz = I[1] * I[2], share = 1 / (I[0] * yz + h * h * dot(L, IL));
@@ -46,7 +46,7 @@ struct Symmetric {
 };
 
 // The inverse inertia in world axes.
-Symmetric inverse_inertia(const Vector &I, const Turn &turn) {
+Symmetric inverse_inertia(const Vector &I, const BothTurns &turn) {
     const Vector inverse{1 / I[0], 1 / I[1], 1 / I[2]};
     const auto scaled = [&](const Vector &row) { return Vector{row[0] * inverse[0], row[1] * inverse[1], row[2] * inverse[2]}; };
     const Vector x = scaled(turn.x), y = scaled(turn.y), z = scaled(turn.z);
@@ -90,7 +90,7 @@ void solve(std::array<Column, row_count> &A, Column &b) {
 std::array<HingeLoad, 2> Hinge::loads(const std::array<HingeMotion, 2> &now, double dt_s) const {
     const double rate = 1 / dt_s;
     const HingeMotion &a = now[0], &b = now[1];
-    const Turn turn{vector_of(a.turn, b.turn), vector_of(a.turn + 4, b.turn + 4), vector_of(a.turn + 8, b.turn + 8)};
+    const BothTurns turn{vector_of(a.turn, b.turn), vector_of(a.turn + 4, b.turn + 4), vector_of(a.turn + 8, b.turn + 8)};
     const Vector I = vector_of(body[0].inertia_kg_m2, body[1].inertia_kg_m2), spin = vector_of(a.spin, b.spin);
     const Both light = 1 / both(body[0].mass_kg, body[1].mass_kg), sign{1, -1};
     const Vector r = turn(vector_of(body[0].anchor_m, body[1].anchor_m)), axis = turn(vector_of(body[0].axis, body[1].axis));

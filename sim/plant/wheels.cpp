@@ -309,8 +309,7 @@ void Plant::World::turn(int slot, double supply_V) {
         if (law::load_transfer_m(r.centre_height_m, effects.body.raised_m) > 0) {
             const Steering::Wheel &turned = steering.wheel(i); // its axle, of the body
             BodyNow &on = now_of(i);
-            for (std::size_t k = 0; k < 3; ++k)
-                on.torque[k] += (turned.sine * on.turn[4 * k] - turned.cosine * on.turn[4 * k + 1]) * spin;
+            for (std::size_t k = 0; k < 3; ++k) on.torque[k] += (turned.sine * on.turn[4 * k] - turned.cosine * on.turn[4 * k + 1]) * spin;
         }
     }
 }

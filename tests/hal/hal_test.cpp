@@ -289,7 +289,8 @@ TEST(SimHal, a_blocked_wheel_stands_and_is_let_go) {
         const actuator_frame_t actuator{.sequence = static_cast<std::uint32_t>(tick) + 1,
                                         .drive = DRIVE_ON,
                                         .duty_q15 = {16000, 16000, 16000, 16000},
-                                        .status_led = false};
+                                        .status_led = false,
+                                        .curvature_1_m = 0};
         hal.write(hal.context, &actuator);
         const double speed = world.truth().wheel[2].speed_rad_s;
         const bool held = tick > 102 && tick < 199, free = tick == 90 || tick == 290;
@@ -301,7 +302,8 @@ TEST(SimHal, a_blocked_wheel_stands_and_is_let_go) {
 TEST(SimHal, a_released_bridge_carries_no_current_and_safe_stop_releases) {
     hal::SimHal world(sand());
     const hal_t hal = world.hal();
-    actuator_frame_t push{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {30000, 30000, 30000, 30000}, .status_led = false};
+    actuator_frame_t push{
+        .sequence = 0, .drive = DRIVE_ON, .duty_q15 = {30000, 30000, 30000, 30000}, .status_led = false, .curvature_1_m = 0};
     for (int i = 0; i < 50; i++) {
         hal.wait_tick(hal.context);
         push.sequence++;
@@ -318,7 +320,8 @@ TEST(SimHal, a_bridge_that_hears_nothing_new_releases_itself_after_its_time) {
     for (const int how : {0, 1, 2}) {
         hal::SimHal world(sand());
         const hal_t hal = world.hal();
-        actuator_frame_t push{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {9000, 9000, 9000, 9000}, .status_led = false};
+        actuator_frame_t push{
+            .sequence = 0, .drive = DRIVE_ON, .duty_q15 = {9000, 9000, 9000, 9000}, .status_led = false, .curvature_1_m = 0};
         for (int tick = 0; tick < 60; tick++) {
             hal.wait_tick(hal.context);
             const double current_A = world.truth().wheel[0].current_A;
@@ -337,7 +340,8 @@ TEST(SimHal, a_brake_shorts_the_winding_and_a_coast_opens_it) {
     for (const drive_state_t drive : {DRIVE_BRAKE, DRIVE_COAST}) {
         hal::SimHal world(sand());
         const hal_t hal = world.hal();
-        actuator_frame_t order{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {16000, 16000, 16000, 16000}, .status_led = false};
+        actuator_frame_t order{
+            .sequence = 0, .drive = DRIVE_ON, .duty_q15 = {16000, 16000, 16000, 16000}, .status_led = false, .curvature_1_m = 0};
         for (int tick = 0; tick < 103; tick++) {
             hal.wait_tick(hal.context);
             if (tick == 100) order.drive = drive; // the duty it still names counts for nothing
@@ -414,8 +418,11 @@ TEST(DelayHal, gives_each_order_late_by_its_ticks_and_none_before) {
     const hal_t hal = late.hal();
     for (std::int16_t i = 0; i < 8; i++) {
         hal.wait_tick(hal.context);
-        const actuator_frame_t actuator{
-            .sequence = static_cast<std::uint32_t>(i), .drive = DRIVE_ON, .duty_q15 = {i, i, i, i}, .status_led = false};
+        const actuator_frame_t actuator{.sequence = static_cast<std::uint32_t>(i),
+                                        .drive = DRIVE_ON,
+                                        .duty_q15 = {i, i, i, i},
+                                        .status_led = false,
+                                        .curvature_1_m = 0};
         if (i != 2) hal.write(hal.context, &actuator); // a tick without an order moves no other
     }
     // order i is written after tick i + 1 has begun, and seen three ticks later; those of the last three are still under way
@@ -445,7 +452,8 @@ TEST(SimRover, a_delayed_duty_acts_late_by_the_delay) {
         const auto scenario = sim::parse_scenario("duration_s = 1\n[[drive]]\nfor_s = 1\nmode = \"stop\"\n" + delay, "x.toml");
         hal::SimRover rover(scenario, scenario.effects, 3);
         const hal_t hal = rover.hal();
-        actuator_frame_t push{.sequence = 0, .drive = DRIVE_ON, .duty_q15 = {30000, 30000, 30000, 30000}, .status_led = false};
+        actuator_frame_t push{
+            .sequence = 0, .drive = DRIVE_ON, .duty_q15 = {30000, 30000, 30000, 30000}, .status_led = false, .curvature_1_m = 0};
         std::vector<double> current_A;
         while (hal.wait_tick(hal.context) == HAL_OK) {
             push.sequence++;

@@ -2,6 +2,7 @@
 #include "tests/bench/outdoors.h"
 #include "tests/bench/scatterers.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

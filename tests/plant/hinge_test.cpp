@@ -1,6 +1,7 @@
 // Holds the joint of sim/plant/hinge.h to ODE's own hinge: the same two bodies, forces and step, in two worlds.
 #include "sim/plant/hinge.h"
 
+#include <array>
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
