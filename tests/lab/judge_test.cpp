@@ -1,6 +1,7 @@
 // The lab's decision rules one by one, on trials made by hand and on a log of a few seconds: the answer follows from the rule's own words
 // (docs/lab_method.md), so that a rule which is changed by accident is noticed within seconds.
 #include "host_tools/lab/decision/classes.h"
+#include "host_tools/lab/decision/tolerance.h"
 #include "host_tools/lab/decision/trial.h"
 #include "host_tools/lab/fit/distribution.h"
 #include "host_tools/lab/forward/make_dataset.h"
@@ -371,6 +372,34 @@ TEST(Refit, finds_the_hidden_size_and_its_gain_is_the_fall_of_the_held_out_error
         EXPECT_NEAR(t.gain_error, sum_error(t.block_gain), 1e-9);
         EXPECT_LE(t.gain, screen.heldout_error());
     }
+}
+
+Fall fall_of(double sum, double error) {
+    Fall fall;
+    fall.sum = sum, fall.error = error;
+    return fall;
+}
+
+// Rows that say nothing, by themselves; the tolerances give way by 12 squared deviations without the effect.
+TEST(Tolerances, decide_for_a_name_by_which_the_held_out_error_rises_by_two_of_its_standard_errors_at_most) {
+    const double least = DiagnoseOptions{}.least_prior_reduction, spared = least + 3;
+    const Fall scaled = fall_of(0, 1);
+    EXPECT_TRUE(tolerances_decide(scaled, fall_of(1, 1), spared, least));
+    EXPECT_TRUE(tolerances_decide(scaled, fall_of(-1.99, 1), spared, least));
+    EXPECT_FALSE(tolerances_decide(scaled, fall_of(-2.01, 1), spared, least));
+    EXPECT_TRUE(tolerances_decide(scaled, fall_of(-2.01, 1.01), spared, least)); // its own standard error
+    EXPECT_FALSE(tolerances_decide(scaled, fall_of(-1e-9, 0), spared, least));
+}
+
+// What the rows lose is taken off what the tolerances gain, and one of its standard errors.
+TEST(Tolerances, decide_only_where_they_gain_surely_more_than_the_least) {
+    const double least = DiagnoseOptions{}.least_prior_reduction;
+    const Fall noise = fall_of(0, 1);
+    EXPECT_TRUE(tolerances_decide(fall_of(0, 1), noise, least + 1.01, least));
+    EXPECT_FALSE(tolerances_decide(fall_of(0, 1), noise, least + 0.99, least));
+    EXPECT_FALSE(tolerances_decide(fall_of(0, 3), noise, least + 2.99, least));
+    EXPECT_FALSE(tolerances_decide(fall_of(-2, 1), noise, least + 2.99, least));
+    EXPECT_TRUE(tolerances_decide(fall_of(-2, 1), noise, least + 3.01, least));
 }
 
 TEST(SumError, is_the_scatter_of_the_blocks_by_the_root_of_their_number) {

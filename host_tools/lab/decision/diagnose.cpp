@@ -298,7 +298,7 @@ class Search {
         // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
         const double spared =
             before.theta.cwiseAbs2().dot(before.stated_precision()) - compared.theta.cwiseAbs2().dot(compared.stated_precision());
-        const bool by_priors = rival && scaled.sum + spared > options_.least_prior_reduction + scaled.error && noise.sum > -2 * noise.error;
+        const bool by_priors = rival && tolerances_decide(scaled, noise, spared, options_.least_prior_reduction);
         const bool as_much = rival && (rival->explains_as_much() || !falls);
         if (!falls && !by_priors) return std::nullopt;
         if (HeldOut own = held_out(problem); own.error < held_.error)
