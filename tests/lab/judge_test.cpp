@@ -80,6 +80,25 @@ TEST(Judge, asks_for_a_fall_of_the_held_out_error_in_all_or_one_balance_or_of_th
     EXPECT_EQ(verdict_of(t), "not_significant");
 }
 
+// Of what is left beyond the sensors' noise: the same effect under ten times the noise explains a smaller share of all, and as much of what
+// can be explained. Where hardly anything can, three deviations of white noise.
+TEST(Judge, asks_for_a_share_of_what_is_not_noise_and_for_three_deviations_at_least) {
+    const DiagnoseOptions options;
+    Trial t = good("a");
+    t.best_balance_gain = 0;
+    const auto with = [&](double gain, double explainable) {
+        t.gain = gain;
+        judge(t, explainable, options);
+        return t.verdict;
+    };
+    EXPECT_EQ(with(21, 2000), "passes");
+    EXPECT_EQ(with(19, 2000), "not_significant");
+    EXPECT_EQ(with(9.1, 100), "passes");
+    EXPECT_EQ(with(8.9, 100), "not_significant");
+    EXPECT_EQ(with(9.1, 0), "passes");
+    EXPECT_EQ(with(8.9, 0), "not_significant");
+}
+
 TEST(Judge, believes_no_relief_of_priors_and_no_single_balance_where_the_held_out_error_rises) {
     Trial t = good("a");
     t.gain = -1, t.best_balance_gain = 0.5, t.assessment.spared = 100;
@@ -144,7 +163,16 @@ TEST(Size, is_beyond_its_range_at_a_bound_that_is_no_natural_end) {
 }
 
 std::vector<std::size_t> class_of(const Trial &winner, const Trial &other) {
-    return confounded({winner, other}, 0, base_error, DiagnoseOptions{});
+    return confounded({winner, other}, 0, base_error, base_error, DiagnoseOptions{});
+}
+
+// A relaxation length predicts better by not following the encoders' scatter: refused for that, it may not be meant either.
+TEST(Class, holds_nothing_that_only_smooths) {
+    Trial other = good("b");
+    other.gain = 300, other.error_reduction = 310;
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    other.smooths = true;
+    EXPECT_TRUE(class_of(good("a"), other).empty());
 }
 
 // Alike in the log: the same residual, almost the same gain.
@@ -211,6 +239,18 @@ TEST(Class, is_wider_where_only_priors_decide) {
     winner.best_balance_gain = 0.1; // one balance fell: rows decide, too
     other.gain = 55;
     EXPECT_TRUE(class_of(winner, other).empty());
+}
+
+// Nearly all that is left is noise: what the winner explains is much of what can be, and little of all. Rivals may explain half as much.
+TEST(Class, is_wider_where_noise_hides_most) {
+    Trial winner = good("a"), other = good("b");
+    winner.best_balance_gain = other.best_balance_gain = 0;
+    other.gain = 55, other.error_reduction = 60, other.p_value = 0.04;
+    const DiagnoseOptions options;
+    const double noisy = 1.01 * winner.gain / options.least_gain, quiet = 0.99 * winner.gain / options.least_gain;
+    EXPECT_EQ(confounded({winner, other}, 0, noisy, base_error, options).size(), 1U);
+    EXPECT_TRUE(confounded({winner, other}, 0, quiet, base_error, options).empty());
+    EXPECT_TRUE(confounded({winner, other}, 0, noisy, 1.01 * other.gain / options.least_gain, options).empty()); // too little by itself
 }
 
 Diagnosis with_class(const std::vector<std::string> &members, const std::vector<std::string> &accepted) {
@@ -284,6 +324,19 @@ Problem fitted() {
     Problem problem(short_log().data, physics, free_parameters(short_log().model, physics));
     problem.fit({});
     return problem;
+}
+
+TEST(Screening, tells_what_is_explainable_from_noise) {
+    const Problem problem = fitted();
+    const Screen screen(problem);
+    const double noise = problem.noise_rows().cwiseProduct(problem.row_scale).squaredNorm();
+    EXPECT_GT(noise, 0);
+    EXPECT_LT(noise, static_cast<double>(problem.row_scale.size())); // no row's scale is below its noise
+    EXPECT_NEAR(screen.explainable(), screen.heldout_error() - noise, 1e-9 * noise);
+    EXPECT_GT(screen.explainable(), 0); // a friction is missing
+    Problem louder = problem;
+    louder.residual *= 0.1; // sensors ten times better than stated
+    EXPECT_EQ(Screen(louder).explainable(), 0);
 }
 
 // Half of the catalogue's effects count as tried: 54 effects, of which near copies of one another count once. A p that is corrected for
