@@ -5,6 +5,7 @@
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
+#include "manner.h"
 #include "shapes.h"
 #include "tolerance.h"
 #include "trial.h"
@@ -64,6 +65,7 @@ class Search {
         eliminate_backward(problem);
         if (options_.shapes) test_shapes(first, problem);
         settle_last(problem);
+        reject_conflicts(problem);
         refine_shapes(problem);
         d_.limits = limits_of(problem);
         conclude();
@@ -161,6 +163,7 @@ class Search {
                 if (next) winner = i;
             }
         } while (!next && refit_passing(trials, problem, screen));
+        if (next) prefer_stated(trials, winner, *next, problem, screen);
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
         if (!next) return std::nullopt;
@@ -270,6 +273,24 @@ class Search {
         std::string rival; // a tolerance that explains as much; empty: none does
     };
 
+    void note_conflict(const std::string &label, const std::string &only_with) {
+        const std::string text = label + " would explain a part, but only with " + only_with + ", and this drive has one manner: not named";
+        if (std::find(d_.messages.begin(), d_.messages.end(), text) == d_.messages.end()) d_.messages.push_back(text);
+    }
+
+    // Of a class that a drive of one manner cannot tell apart, a law of a number that the model states comes first.
+    void prefer_stated(std::vector<Trial> &trials, std::size_t &winner, Next &next, const Problem &before, const Screen &screen) {
+        if (changes_stated_number(trials[winner].candidate) || !is_of_one_manner(data_)) return;
+        for (const std::size_t i : confounded(trials, winner, screen.heldout_error(), screen.explainable(), options_)) {
+            if (!changes_stated_number(trials[i].candidate)) continue;
+            std::optional<Next> other = with(trials[i], before);
+            if (!other) continue;
+            winner = i;
+            next = std::move(*other);
+            return;
+        }
+    }
+
     bool falls_notably(const HeldOut &held) const {
         Eigen::Index row = 0;
         double most = 0;
@@ -298,6 +319,11 @@ class Search {
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
         t.verdict = "not_held_out";
         if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
+        if (const std::optional<std::string> only_with = conflict(problem, t.candidate)) {
+            t.verdict = "conflict";
+            note_conflict(t.candidate.label(), *only_with);
+            return std::nullopt;
+        }
         Problem compared = problem; // on the scales of the model without it
         compared.keep_scales(before);
         compared.jacobian.resize(0, 0);
@@ -398,9 +424,7 @@ class Search {
             for (std::size_t j = 0; j < one.value.size(); ++j) sure = sure || one.low[j] * one.high[j] > 0;
             const bool solid = sure && large_enough(one.candidate, one.value);
             if (d_.accepted.size() == 1 && solid) return;
-            Model without = d_.model;
-            std::erase_if(without.effects,
-                          [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+            Model without = model_without(one.candidate);
             Problem problem = fitted(without, &last);
             const Screen screen(problem);
             Columns::Cache cache;
@@ -423,6 +447,12 @@ class Search {
         const HeldOut left_before = held_out(before), left_after = held_out(after);
         return fall_between(left_before, left_after, noise_weight(before)).sure() &&
                fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
+    }
+
+    Model model_without(const Candidate &one) const {
+        Model without = d_.model;
+        std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == one.effect && use.wheel == one.wheel; });
+        return without;
     }
 
     void remove(std::size_t i, Model without, const Problem &problem) {
@@ -474,9 +504,7 @@ class Search {
 
     void reject_as_nearest(std::size_t i, Problem &last) {
         const CandidateResult one = d_.accepted[i];
-        Model without = d_.model;
-        std::erase_if(without.effects,
-                      [&](const EffectUse &use) { return use.name == one.candidate.effect && use.wheel == one.candidate.wheel; });
+        Model without = model_without(one.candidate);
         d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance +
                               " alone explains as much: not named");
         for (CandidateResult &r : d_.ranking)
@@ -495,6 +523,22 @@ class Search {
         last = *d_.model_fit;
         d_.ladder.back().train = overall_error(last), d_.ladder.back().heldout = held_out(last).error;
         refresh(last, Screen(last));
+    }
+
+    // A better place of the joint fit may lean on limits that the place where the name was accepted did not need.
+    void reject_conflicts(Problem &last) {
+        for (std::size_t i = d_.accepted.size(); i-- > 0;) {
+            const std::string label = d_.accepted[i].candidate.label();
+            const std::optional<std::string> only_with = conflict(last, d_.accepted[i].candidate);
+            if (!only_with) continue;
+            note_conflict(label, *only_with);
+            Model without = model_without(d_.accepted[i].candidate);
+            last = fitted(without, &last);
+            remove(i, std::move(without), last);
+            for (CandidateResult &r : d_.ranking)
+                if (r.candidate.label() == label) r.verdict = "conflict";
+            d_.model_fit.reset();
+        }
     }
 
     // The variants that were tried are stations on a line: beside the strengths, their shape parameters that are numbers on a scale (not

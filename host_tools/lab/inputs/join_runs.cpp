@@ -1,5 +1,7 @@
 #include "join_runs.h"
 
+#include "smooth.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +17,24 @@ bool accumulates(const std::string &name) {
         if (name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0) return true;
     }
     return false;
+}
+
+// A run's camera frame is turned so that its heading goes on where the last run ended; its path is turned with it, as a rigid body. Without
+// this a path would be looked at from another run's heading. Needs a heading in both; the camera's frame is else taken to be the same.
+void turn_path(const log::Log &whole, log::Log &run) {
+    const log::Signal *before = whole.find("camera.yaw_rad"), *yaw = run.find("camera.yaw_rad");
+    const auto path = [&](const char *name) {
+        const auto found = std::find_if(run.signals.begin(), run.signals.end(), [&](const log::Signal &s) { return s.name == name; });
+        return found == run.signals.end() || found->value.empty() ? nullptr : &*found;
+    };
+    log::Signal *x = path("camera.x_m"), *y = path("camera.y_m");
+    if (before == nullptr || yaw == nullptr || before->value.empty() || yaw->value.empty() || x == nullptr || y == nullptr) return;
+    const double turn = before->value.back() - yaw->value.front(), c = std::cos(turn), s = std::sin(turn);
+    const log::Signal old_x = *x, old_y = *y;
+    for (std::size_t k = 0; k < x->value.size(); ++k)
+        x->value[k] = c * old_x.value[k] - s * interpolate(old_y.t_s, old_y.value, old_x.t_s[k]);
+    for (std::size_t k = 0; k < y->value.size(); ++k)
+        y->value[k] = s * interpolate(old_x.t_s, old_x.value, old_y.t_s[k]) + c * old_y.value[k];
 }
 
 double first_time(const log::Log &log) {
@@ -33,7 +53,8 @@ JoinedRuns join_runs(const std::vector<log::Log> &runs) {
     out.start_s = {first_time(runs.front())};
     double end = out.start_s[0] + runs.front().duration_s();
     for (std::size_t i = 1; i < runs.size(); ++i) {
-        const log::Log &run = runs[i];
+        log::Log run = runs[i];
+        turn_path(out.log, run);
         const double start = out.start_s[0] + 10 * std::ceil((end - out.start_s[0] + 5) / 10), shift = start - first_time(run);
         out.start_s.push_back(start);
         end = start + run.duration_s();

@@ -1,7 +1,8 @@
 // join_runs.h - several runs of one machine as one log: one after the other in time, with a gap in which nothing is learnt.
 //
 // Each run begins at a multiple of 10 s at least 5 s after the last one's end: blocks of 5 s and of 2.5 s (docs/lab_method.md) never hold
-// two runs. Counts, angles and positions go on where the last run ended, so that nothing jumps. Header: the first run's, with what all
+// two runs. Counts, angles and poses go on where the last run ended, so that nothing jumps: a camera's
+// path is moved and turned as a whole, by its heading. Header: the first run's, with what all
 // others add to it.
 #pragma once
 

@@ -92,6 +92,7 @@ std::string candidate_words(const CandidateResult &r, const Diagnosis &d) {
                                                                   {"too_little", "there, but helps too little to matter"},
                                                                   {"too_small", "there, but not surely large enough to matter"},
                                                                   {"beyond_range", "helps only at a size that is not plausible"},
+                                                                  {"conflict", "not to be believed of a drive of one manner"},
                                                                   {"wrong_sign", "helps only with a sign that is not physical"},
                                                                   {"not_excited", "this log cannot show it"},
                                                                   {"wrong_model", "not judged: the model's numbers come first"}};

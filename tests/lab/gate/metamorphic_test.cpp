@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace traction::gate {
 namespace {
@@ -94,16 +95,43 @@ TEST(Metamorphic, the_noise_that_is_stated_may_be_wrong_by_a_factor_of_ten) {
     }
 }
 
-TEST(Metamorphic, one_drive_in_two_logs_is_the_same_drive) {
-    log::Log halves[2] = {hidden(), hidden()};
-    for (int i = 0; i < 2; ++i)
+// The first and the second half of a drive as two logs.
+std::vector<log::Log> two_logs(const log::Log &whole) {
+    std::vector<log::Log> halves{whole, whole};
+    for (std::size_t i = 0; i < 2; ++i)
         for (log::Signal &s : halves[i].signals) {
             log::Signal part{s.name, {}, {}};
             for (std::size_t k = 0; k < s.t_s.size(); ++k)
                 if ((s.t_s[k] < duration_s / 2) == (i == 0)) part.t_s.push_back(s.t_s[k]), part.value.push_back(s.value[k]);
             s = std::move(part);
         }
-    EXPECT_EQ(verdict(lab::join_runs({halves[0], halves[1]}).log, machine()).effects, as_it_is().effects);
+    return halves;
+}
+
+TEST(Metamorphic, one_drive_in_two_logs_is_the_same_drive) {
+    EXPECT_EQ(verdict(lab::join_runs(two_logs(hidden())).log, machine()).effects, as_it_is().effects);
+}
+
+// Between two runs somebody carries the rover to another place and turns it round: its camera sees the same motion from elsewhere.
+TEST(Metamorphic, a_run_may_begin_anywhere_and_at_any_heading) {
+    std::vector<log::Log> moved = two_logs(hidden());
+    const double turn = 2.1, c = std::cos(turn), s = std::sin(turn);
+    const auto signal = [&](const char *name) {
+        return std::find_if(moved[1].signals.begin(), moved[1].signals.end(), [&](const log::Signal &one) { return one.name == name; });
+    };
+    const auto x = signal("camera.x_m"), y = signal("camera.y_m"), yaw = signal("camera.yaw_rad");
+    ASSERT_TRUE(x != moved[1].signals.end() && y != moved[1].signals.end() && yaw != moved[1].signals.end());
+    ASSERT_EQ(x->t_s, y->t_s);
+    for (std::size_t k = 0; k < x->value.size(); ++k) {
+        const double east = x->value[k], north = y->value[k];
+        x->value[k] = c * east - s * north + 3, y->value[k] = s * east + c * north - 5;
+    }
+    for (double &angle : yaw->value) angle += turn;
+    const lab::Diagnosis plain = verdict(lab::join_runs(two_logs(hidden())).log, machine());
+    const lab::Diagnosis d = verdict(lab::join_runs(moved).log, machine());
+    EXPECT_EQ(d.effects, as_it_is().effects);
+    ASSERT_FALSE(d.ladder.empty());
+    EXPECT_NEAR(d.ladder[0].train, plain.ladder[0].train, 1e-6 * plain.ladder[0].train); // a rigid motion changes rounding alone
 }
 
 // A mass on a rail with friction, driven back and forth by a smooth force: position and current, 200 Hz. Second-order steps of 0.1 ms.
