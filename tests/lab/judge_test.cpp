@@ -1,6 +1,7 @@
 // The lab's decision rules one by one, on trials made by hand and on a log of a few seconds: the answer follows from the rule's own words
 // (docs/lab_method.md), so that a rule which is changed by accident is noticed within seconds.
 #include "host_tools/lab/decision/classes.h"
+#include "host_tools/lab/decision/tolerance.h"
 #include "host_tools/lab/decision/trial.h"
 #include "host_tools/lab/fit/distribution.h"
 #include "host_tools/lab/forward/make_dataset.h"
@@ -79,6 +80,25 @@ TEST(Judge, asks_for_a_fall_of_the_held_out_error_in_all_or_one_balance_or_of_th
     EXPECT_EQ(verdict_of(t), "not_significant");
 }
 
+// Of what is left beyond the sensors' noise: the same effect under ten times the noise explains a smaller share of all, and as much of what
+// can be explained. Where hardly anything can, three deviations of white noise.
+TEST(Judge, asks_for_a_share_of_what_is_not_noise_and_for_three_deviations_at_least) {
+    const DiagnoseOptions options;
+    Trial t = good("a");
+    t.best_balance_gain = 0;
+    const auto with = [&](double gain, double explainable) {
+        t.gain = gain;
+        judge(t, explainable, options);
+        return t.verdict;
+    };
+    EXPECT_EQ(with(21, 2000), "passes");
+    EXPECT_EQ(with(19, 2000), "not_significant");
+    EXPECT_EQ(with(9.1, 100), "passes");
+    EXPECT_EQ(with(8.9, 100), "not_significant");
+    EXPECT_EQ(with(9.1, 0), "passes");
+    EXPECT_EQ(with(8.9, 0), "not_significant");
+}
+
 TEST(Judge, believes_no_relief_of_priors_and_no_single_balance_where_the_held_out_error_rises) {
     Trial t = good("a");
     t.gain = -1, t.best_balance_gain = 0.5, t.assessment.spared = 100;
@@ -143,7 +163,16 @@ TEST(Size, is_beyond_its_range_at_a_bound_that_is_no_natural_end) {
 }
 
 std::vector<std::size_t> class_of(const Trial &winner, const Trial &other) {
-    return confounded({winner, other}, 0, base_error, DiagnoseOptions{});
+    return confounded({winner, other}, 0, base_error, base_error, DiagnoseOptions{});
+}
+
+// A relaxation length predicts better by not following the encoders' scatter: refused for that, it may not be meant either.
+TEST(Class, holds_nothing_that_only_smooths) {
+    Trial other = good("b");
+    other.gain = 300, other.error_reduction = 310;
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    other.smooths = true;
+    EXPECT_TRUE(class_of(good("a"), other).empty());
 }
 
 // Alike in the log: the same residual, almost the same gain.
@@ -210,6 +239,18 @@ TEST(Class, is_wider_where_only_priors_decide) {
     winner.best_balance_gain = 0.1; // one balance fell: rows decide, too
     other.gain = 55;
     EXPECT_TRUE(class_of(winner, other).empty());
+}
+
+// Nearly all that is left is noise: what the winner explains is much of what can be, and little of all. Rivals may explain half as much.
+TEST(Class, is_wider_where_noise_hides_most) {
+    Trial winner = good("a"), other = good("b");
+    winner.best_balance_gain = other.best_balance_gain = 0;
+    other.gain = 55, other.error_reduction = 60, other.p_value = 0.04;
+    const DiagnoseOptions options;
+    const double noisy = 1.01 * winner.gain / options.least_gain, quiet = 0.99 * winner.gain / options.least_gain;
+    EXPECT_EQ(confounded({winner, other}, 0, noisy, base_error, options).size(), 1U);
+    EXPECT_TRUE(confounded({winner, other}, 0, quiet, base_error, options).empty());
+    EXPECT_TRUE(confounded({winner, other}, 0, noisy, 1.01 * other.gain / options.least_gain, options).empty()); // too little by itself
 }
 
 Diagnosis with_class(const std::vector<std::string> &members, const std::vector<std::string> &accepted) {
@@ -283,6 +324,19 @@ Problem fitted() {
     Problem problem(short_log().data, physics, free_parameters(short_log().model, physics));
     problem.fit({});
     return problem;
+}
+
+TEST(Screening, tells_what_is_explainable_from_noise) {
+    const Problem problem = fitted();
+    const Screen screen(problem);
+    const double noise = problem.noise_rows().cwiseProduct(problem.row_scale).squaredNorm();
+    EXPECT_GT(noise, 0);
+    EXPECT_LT(noise, static_cast<double>(problem.row_scale.size())); // no row's scale is below its noise
+    EXPECT_NEAR(screen.explainable(), screen.heldout_error() - noise, 1e-9 * noise);
+    EXPECT_GT(screen.explainable(), 0); // a friction is missing
+    Problem louder = problem;
+    louder.residual *= 0.1; // sensors ten times better than stated
+    EXPECT_EQ(Screen(louder).explainable(), 0);
 }
 
 // Half of the catalogue's effects count as tried: 54 effects, of which near copies of one another count once. A p that is corrected for
@@ -371,6 +425,34 @@ TEST(Refit, finds_the_hidden_size_and_its_gain_is_the_fall_of_the_held_out_error
         EXPECT_NEAR(t.gain_error, sum_error(t.block_gain), 1e-9);
         EXPECT_LE(t.gain, screen.heldout_error());
     }
+}
+
+Fall fall_of(double sum, double error) {
+    Fall fall;
+    fall.sum = sum, fall.error = error;
+    return fall;
+}
+
+// Rows that say nothing, by themselves; the tolerances give way by 12 squared deviations without the effect.
+TEST(Tolerances, decide_for_a_name_by_which_the_held_out_error_rises_by_two_of_its_standard_errors_at_most) {
+    const double least = DiagnoseOptions{}.least_prior_reduction, spared = least + 3;
+    const Fall scaled = fall_of(0, 1);
+    EXPECT_TRUE(tolerances_decide(scaled, fall_of(1, 1), spared, least));
+    EXPECT_TRUE(tolerances_decide(scaled, fall_of(-1.99, 1), spared, least));
+    EXPECT_FALSE(tolerances_decide(scaled, fall_of(-2.01, 1), spared, least));
+    EXPECT_TRUE(tolerances_decide(scaled, fall_of(-2.01, 1.01), spared, least)); // its own standard error
+    EXPECT_FALSE(tolerances_decide(scaled, fall_of(-1e-9, 0), spared, least));
+}
+
+// What the rows lose is taken off what the tolerances gain, and one of its standard errors.
+TEST(Tolerances, decide_only_where_they_gain_surely_more_than_the_least) {
+    const double least = DiagnoseOptions{}.least_prior_reduction;
+    const Fall noise = fall_of(0, 1);
+    EXPECT_TRUE(tolerances_decide(fall_of(0, 1), noise, least + 1.01, least));
+    EXPECT_FALSE(tolerances_decide(fall_of(0, 1), noise, least + 0.99, least));
+    EXPECT_FALSE(tolerances_decide(fall_of(0, 3), noise, least + 2.99, least));
+    EXPECT_FALSE(tolerances_decide(fall_of(-2, 1), noise, least + 2.99, least));
+    EXPECT_TRUE(tolerances_decide(fall_of(-2, 1), noise, least + 3.01, least));
 }
 
 TEST(SumError, is_the_scatter_of_the_blocks_by_the_root_of_their_number) {

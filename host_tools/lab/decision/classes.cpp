@@ -5,7 +5,7 @@
 
 namespace traction::lab {
 
-std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error,
+std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error, double explainable,
                                     const DiagnoseOptions &options) {
     std::vector<std::size_t> members;
     const Trial &w = trials[winner];
@@ -14,10 +14,10 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
     DiagnoseOptions nearly = options;
     nearly.p_limit = 0.05;
     for (std::size_t i = 0; i < trials.size(); ++i) {
-        if (i == winner || !trials[i].refitted) continue;
+        if (i == winner || !trials[i].refitted || trials[i].smooths) continue;
         Trial t = trials[i];
         const bool explains_more = t.error_reduction > w.error_reduction;
-        judge(t, base_error, by_priors || explains_more ? nearly : options);
+        judge(t, explainable, by_priors || explains_more ? nearly : options);
         if (t.verdict != "passes") continue;
         // the same effect on two wheels is a question, on all of them or on one of them it is one answer
         if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;

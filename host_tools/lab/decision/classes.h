@@ -11,7 +11,8 @@ namespace traction::lab {
 // Which of the candidates that pass the data cannot tell from the winner. The nearly sure are in the class too where they explain more of
 // all rows than the winner does, or where the rows alone would not have named it but the data sheet's tolerances did: then what explains
 // half as much may be meant.
-std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error,
+// base_error: the baseline's held-out error; explainable: the part of it that is not noise.
+std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error, double explainable,
                                     const DiagnoseOptions &options);
 
 // Takes out the class that the label stands for, if there is one; those behind it move up.

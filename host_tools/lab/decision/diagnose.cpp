@@ -148,20 +148,22 @@ class Search {
     std::optional<Problem> forward_step(Problem &problem, const Screen &screen, bool is_first, bool may_restart = true) {
         std::vector<Trial> trials = screened(problem, screen);
         const double base_error = screen.heldout_error();
-        for (Trial &t : trials) judge(t, base_error, options_);
+        for (Trial &t : trials) judge(t, screen.explainable(), options_);
         refit_likely(trials, problem, screen);
         if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
         judge_beyond_range(trials, base_error);
-        std::stable_sort(trials.begin(), trials.end(),
-                         [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
         std::optional<Next> next;
         std::size_t winner = trials.size();
-        for (std::size_t i = 0; i < trials.size() && !next; ++i) {
-            if (trials[i].verdict != "passes" || !trials[i].refitted) continue; // behind others that explain more
-            next = with(trials[i], problem);
-            if (next) winner = i;
-        }
-        if (next) prefer_stated(trials, winner, *next, problem, base_error);
+        do { // what was refused stands in nobody's way: those that were not fitted because it explained more have their turn
+            std::stable_sort(trials.begin(), trials.end(),
+                             [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
+            for (std::size_t i = 0; i < trials.size() && !next; ++i) {
+                if (trials[i].verdict != "passes" || !trials[i].refitted) continue; // behind others that explain more
+                next = with(trials[i], problem);
+                if (next) winner = i;
+            }
+        } while (!next && refit_passing(trials, problem, screen));
+        if (next) prefer_stated(trials, winner, *next, problem, screen);
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
         if (!next) return std::nullopt;
@@ -191,7 +193,6 @@ class Search {
     // Those most sure by their linear step, those of larger predicted reduction than what passed, then those whose scan saw more than the
     // step did.
     void refit_likely(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
-        Columns columns(problem, cache_);
         double best = 0; // of the held-out gains that passed: what explains less than half can be neither the winner nor of its class
         std::vector<Trial *> order;
         for (Trial &t : trials) order.push_back(&t);
@@ -200,12 +201,7 @@ class Search {
             for (Trial *t : order) {
                 if (t->refitted || !likely(*t)) continue;
                 if (most-- <= 0) return;
-                refit(*t, problem, screen, d_.model, data_);
-                if (t->assessment.projected.size() == 0)
-                    t->assessment.projected = screen.projected(columns.of(t->candidate).col(0)); // the step was the fit
-                judge(*t, screen.heldout_error(), options_);
-                if (t->verdict == "passes") best = std::max(best, t->gain);
-                tick();
+                if (refit_and_judge(*t, problem, screen)) best = std::max(best, t->gain);
             }
         };
         refit_some(
@@ -226,6 +222,29 @@ class Search {
                 return t.nonlinear_reduction > std::max(3 * least_reduction, 0.3 * t.error_reduction) && t.error_reduction > 0.5 * best;
             },
             largest_reduction);
+    }
+
+    // Those that pass by their linear step and were not fitted, the most sure first, as many as `refits`; whether one passes still.
+    bool refit_passing(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
+        std::vector<Trial *> order;
+        for (Trial &t : trials)
+            if (t.verdict == "passes" && !t.refitted) order.push_back(&t);
+        std::stable_sort(order.begin(), order.end(),
+                         [](const Trial *a, const Trial *b) { return a->assessment.p_value < b->assessment.p_value; });
+        bool any = false;
+        for (std::size_t i = 0; i < order.size() && i < static_cast<std::size_t>(options_.refits); ++i)
+            any = refit_and_judge(*order[i], problem, screen) || any;
+        return any;
+    }
+
+    bool refit_and_judge(Trial &t, Problem &problem, const Screen &screen) {
+        Columns columns(problem, cache_);
+        refit(t, problem, screen, d_.model, data_);
+        if (t.assessment.projected.size() == 0)
+            t.assessment.projected = screen.projected(columns.of(t.candidate).col(0)); // the step was the fit
+        judge(t, screen.explainable(), options_);
+        tick();
+        return t.verdict == "passes";
     }
 
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
@@ -260,9 +279,9 @@ class Search {
     }
 
     // Of a class that a drive of one manner cannot tell apart, a law of a number that the model states comes first.
-    void prefer_stated(std::vector<Trial> &trials, std::size_t &winner, Next &next, const Problem &before, double base_error) {
+    void prefer_stated(std::vector<Trial> &trials, std::size_t &winner, Next &next, const Problem &before, const Screen &screen) {
         if (changes_stated_number(trials[winner].candidate) || !is_of_one_manner(data_)) return;
-        for (const std::size_t i : confounded(trials, winner, base_error, options_)) {
+        for (const std::size_t i : confounded(trials, winner, screen.heldout_error(), screen.explainable(), options_)) {
             if (!changes_stated_number(trials[i].candidate)) continue;
             std::optional<Next> other = with(trials[i], before);
             if (!other) continue;
@@ -317,14 +336,15 @@ class Search {
             const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
             scaled.sum -= smoothed.dot(weight);
             noise.sum -= smoothed.dot(noise_weight(before));
-            if (!(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight))) return std::nullopt;
+            t.smooths = !(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight));
+            if (t.smooths) return std::nullopt;
         }
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
         const bool falls = scaled.sure() && noise.sure();
         // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
         const double spared =
             before.theta.cwiseAbs2().dot(before.stated_precision()) - compared.theta.cwiseAbs2().dot(compared.stated_precision());
-        const bool by_priors = rival && scaled.sum + spared > options_.least_prior_reduction + scaled.error && noise.sum > -2 * noise.error;
+        const bool by_priors = rival && tolerances_decide(scaled, noise, spared, options_.least_prior_reduction);
         const bool as_much = rival && (rival->explains_as_much() || !falls);
         if (!falls && !by_priors) return std::nullopt;
         if (HeldOut own = held_out(problem); own.error < held_.error)
@@ -365,7 +385,8 @@ class Search {
     void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first,
                 const std::string &rival) {
         const bool found = winner < trials.size();
-        const std::vector<std::size_t> members = found ? confounded(trials, winner, base_error, options_) : std::vector<std::size_t>();
+        const std::vector<std::size_t> members =
+            found ? confounded(trials, winner, base_error, screen.explainable(), options_) : std::vector<std::size_t>();
         for (std::size_t i = 0; i < trials.size(); ++i) {
             CandidateResult r = result_of(trials[i], base_error, screen);
             const bool member = std::find(members.begin(), members.end(), i) != members.end();
@@ -411,7 +432,7 @@ class Search {
             Trial t = screen_candidate(one.candidate, screen, columns);
             t.start = one.value;
             refit(t, problem, screen, without, data_);
-            judge(t, screen.heldout_error(), options_);
+            judge(t, screen.explainable(), options_);
             if ((t.verdict == "passes" || t.verdict == "beyond_range") && solid) continue; // accepted as a least size, it stays one
             if (solid && predicts_better(problem, last)) continue;
             d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");
@@ -449,6 +470,13 @@ class Search {
     // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
     // that is not needed beside a shape was its proxy. What is rejected is told as the nearest of the catalogue.
     void test_shapes(const Problem &first, Problem &last) {
+        // of the model with no name: a shape that would take the last name's place must be worth a word by itself
+        std::optional<std::optional<UnknownShape>> alone;
+        const auto may_take_its_place = [&] {
+            if (d_.accepted.size() > 1) return true;
+            if (!alone) alone = find_unknown(first, first, {}, options_).shape;
+            return alone->has_value();
+        };
         for (bool again = true; again;) {
             again = false;
             std::vector<Candidate> named;
@@ -458,17 +486,19 @@ class Search {
             std::vector<std::size_t> &rest = findings.replaced;
             for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);
                  rest.pop_back()) {
+                if (!may_take_its_place()) break;
                 reject_as_nearest(rest.back(), last);
                 again = true;
             }
             if (!again && findings.proxy) {
                 d_.unknown = findings.cause;
-                reject_as_nearest(*findings.proxy, last);
-                again = true;
+                if (may_take_its_place()) {
+                    reject_as_nearest(*findings.proxy, last);
+                    again = true;
+                }
             }
             again = again && !d_.accepted.empty();
-            if (d_.accepted.empty() && !named.empty()) // a shape that took the last name's place must be worth a word by itself
-                d_.unknown = find_unknown(first, last, {}, options_).shape;
+            if (d_.accepted.empty() && !named.empty()) d_.unknown = *alone;
         }
     }
 

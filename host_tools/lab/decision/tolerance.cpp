@@ -11,6 +11,7 @@ namespace traction::lab {
 
 namespace {
 
+constexpr double most_rise = 2; // standard errors of the held-out error by which a name that the tolerances decide may raise it
 constexpr double farthest = 3;  // opened deviations: a data sheet that is wrong by more is no tolerance
 constexpr double a_part = 0.25; // of the effect's reduction, at least, that a rival must reach by the linear step
 
@@ -99,6 +100,10 @@ double largest_deviation(const Problem &problem, const Group &group) {
 } // namespace
 
 bool ToleranceRival::explains_as_much() const { return lead < std::max(2 * error, two_deviations_squared); }
+
+bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, double least) {
+    return scaled.sum + spared > least + scaled.error && noise.sum > -most_rise * noise.error;
+}
 
 std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths) {
     std::vector<Group> groups = groups_of(before);

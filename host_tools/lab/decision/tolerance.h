@@ -24,6 +24,12 @@ struct ToleranceRival {
     bool explains_as_much() const;
 };
 
+// Where the rows alone do not say that an effect is needed, the stated tolerances may decide, which give way without it: rows and
+// tolerances together gain more than `least` squared deviations, surely, and the error of blocks left out, in units of noise, rises by no
+// more than two of its standard errors. `scaled`, `noise`: its falls on the fit's scales and in units of noise; `spared`: squared stated
+// deviations that the parameters keep to.
+bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, double least);
+
 // The nearest rival of an effect. `before`: the model without it, linearised at its optimum; `with`: with it, on the same scales, its
 // strengths the last parameters. Nothing where no stated deviation does a quarter of what the effect does.
 std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths);

@@ -12,8 +12,9 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double clearly_worse = 1.02; // of the baseline's error: beyond such a size no better one is sought (assumed)
-constexpr double classes_tried = 26;   // catalogue effects that are not near copies of one another: about half of the catalogue
+constexpr double least_gain_squares = 9; // three deviations of white noise, where nearly all that the baseline leaves is noise
+constexpr double clearly_worse = 1.02;   // of the baseline's error: beyond such a size no better one is sought (assumed)
+constexpr double classes_tried = 26;     // catalogue effects that are not near copies of one another: about half of the catalogue
 
 bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
     for (std::size_t j = 0; j < value.size(); ++j)
@@ -194,10 +195,9 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
         if (before[b] > 0) t.best_balance_gain = std::max(t.best_balance_gain, 1 - after[b] / before[b]);
 }
 
-void judge(Trial &t, double base_error, const DiagnoseOptions &options) {
-    const double relative = base_error > 0 ? t.gain / base_error : 0;
-    const bool by_rows =
-        relative > options.least_gain || t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
+void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
+    const bool by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
+                         t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
     const bool gains = t.gain > 0 && (by_rows || t.assessment.spared > options.least_prior_reduction);
     if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";

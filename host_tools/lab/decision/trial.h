@@ -28,6 +28,7 @@ struct Trial {
     Eigen::VectorXd start_change;                 // of the baseline's parameters there
     std::string verdict;
     bool refitted = false;
+    bool smooths = false;     // most of what it gains is by not following the encoders' scatter: no evidence, of itself or beside another
     bool at_least = false;    // its size lies where the fit may go no further, yet nothing else explains as much
     Eigen::VectorXd baseline; // increments of the baseline's parameters, where refitted
 };
@@ -42,7 +43,8 @@ void scan(Trial &trial, Problem &base, const Screen &screen);
 // Fits baseline plus candidate in full.
 void refit(Trial &trial, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data);
 
-void judge(Trial &trial, double base_error, const DiagnoseOptions &options);
+// explainable: the part of the baseline's held-out error that is not noise (Screen).
+void judge(Trial &trial, double explainable, const DiagnoseOptions &options);
 bool large_enough(const Candidate &candidate, const std::vector<double> &value);
 bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
 bool strongly_nonlinear(const std::string &effect);                              // its slope at zero says little of its size

@@ -55,6 +55,7 @@ Screen::Screen(const Problem &problem, Eigen::Index leading) : problem_(problem)
     base_penalty_ = final_theta.cwiseProduct(final_theta).dot(precision_);
     base_deviations_ = final_theta.cwiseProduct(final_theta).dot(precision_.cwiseQuotient(alike_));
     base_error_ = block_error_.sum() + base_penalty_;
+    noise_squares_ = problem.noise_rows().cwiseProduct(problem.row_scale).squaredNorm();
     error_ = residual_.squaredNorm() + theta.cwiseAbs2().dot(precision_) - moment_.dot(step);
 }
 

@@ -12,6 +12,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <vector>
 
 namespace traction::lab {
@@ -65,6 +66,8 @@ class Screen {
     double penalty() const { return base_penalty_; }       // of the priors, at the baseline's optimum
     double deviations() const { return base_deviations_; } // the same in squared stated deviations
     double heldout_error() const { return base_error_; }   // sum of squares over held-out blocks, priors included
+    // The part of heldout_error() that is not the sensors' noise, which no model takes off; never below 0.
+    double explainable() const { return std::max(0.0, base_error_ - noise_squares_); }
     const Eigen::VectorXd &block_error() const { return block_error_; }
     const std::vector<std::pair<double, double>> &blocks() const { return block_times_; } // 5 s blocks
     // Held-out sum of squares per balance; in_noise: in units of each row's measurement noise, which no model changes.
@@ -119,7 +122,7 @@ class Screen {
     Blocks fine_, coarse_;
     std::vector<std::pair<double, double>> block_times_;
     Eigen::VectorXd block_error_;
-    double base_error_ = 0, base_penalty_ = 0, base_deviations_ = 0, error_ = 0;
+    double base_error_ = 0, base_penalty_ = 0, base_deviations_ = 0, error_ = 0, noise_squares_ = 0;
 };
 
 } // namespace traction::lab
