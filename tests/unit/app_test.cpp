@@ -284,7 +284,7 @@ std::string config_bits(const control_config_t &c) {
     put(c.geometry), put(c.sense), put(c.circuit), put(c.slip), put(c.motor), put(c.wheel_pid), put(c.slip_pi), put(c.speed_control),
         put(c.soil_sweep);
     put(c.safety), put(c.doppler.beam), put(c.doppler.offset_count), put(c.doppler.scale), put(c.doppler.quiet_power_count2);
-    put(c.ground_speed.window), put(c.ground_speed.still_m_s);
+    put(c.ground_speed.window), put(c.ground_speed.still_m_s), put(c.steering);
     return out;
 }
 
@@ -295,7 +295,7 @@ TEST(Parameters, every_key_of_the_list_is_read_and_reaches_the_configuration) {
         const float low = rover_parameter_low(i), high = rover_parameter_high(i);
         rover_parameters_t reference;
         rover_parameters_reference(&reference);
-        const float now = reference.value[i], other = key.starts_with("encoder_sign") ? -1.0f : now * 0.7f + (now == 0 ? 20.0f : 0.0f);
+        const float now = reference.value[i], other = key.starts_with("encoder_sign") ? -1.0f : now != 0 ? now * 0.7f : 0.25f * (high > 0 ? high : low);
         ASSERT_TRUE(other >= low && other <= high) << key;
         char text[160];
         (void)std::snprintf(text, sizeof text, "%s%s = %.9g\n", format.c_str(), key.c_str(), static_cast<double>(other));
