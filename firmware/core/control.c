@@ -34,15 +34,22 @@ static float feed_forward(const control_config_t *config, float reference_rad_s,
 
 enum { BEYOND_VALUES = 3 }; // in a row: a quarter of a second
 
+// What the body has of it where wheels steer. Like what follows from the curvature, apart from the tick of a rover that does not steer: its
+// registers are its own.
+static __attribute__((noinline)) float steered_hint_m_s(const control_config_t *config, const sense_output_t *sense)
+{
+    float ahead_m_s = 0.0f;
+    for (int32_t i = 0; i < WHEEL_COUNT; i++) {
+        const float rim_m_s = sense->speed_rad_s[i] * config->slip.wheel_radius_m;
+        ahead_m_s += steering_forward(&config->steering, i, rim_m_s, sense->gyro_z_rad_s);
+    }
+    return config->geometry.wheel_share * ahead_m_s;
+}
+
 static float rim_hint_m_s(const control_config_t *config, const sense_output_t *sense)
 {
-    if (steering_there(&config->steering)) { // what the body has of it
-        float ahead_m_s = 0.0f;
-        for (int32_t i = 0; i < WHEEL_COUNT; i++) {
-            const float rim_m_s = sense->speed_rad_s[i] * config->slip.wheel_radius_m;
-            ahead_m_s += steering_forward(&config->steering, i, rim_m_s, sense->gyro_z_rad_s);
-        }
-        return config->geometry.wheel_share * ahead_m_s;
+    if (steering_there(&config->steering)) {
+        return steered_hint_m_s(config, sense);
     }
     const float sum = sense->speed_rad_s[0] + sense->speed_rad_s[1] + sense->speed_rad_s[2] + sense->speed_rad_s[3];
     return config->geometry.wheel_share * sum * config->slip.wheel_radius_m; // a wheel that is not there has speed 0
@@ -142,7 +149,10 @@ static ground_t wheels_ground(const control_config_t *config, float speed_m_s, f
     const float left_m_s = speed_m_s - offset;
     const float right_m_s = speed_m_s + offset;
     ground_t out = {{left_m_s, right_m_s, left_m_s, right_m_s}};
-    for (int32_t i = 0; i < WHEEL_COUNT && steering_there(&config->steering); i++) {
+    if (!steering_there(&config->steering)) {
+        return out;
+    }
+    for (int32_t i = 0; i < WHEEL_COUNT; i++) {
         out.wheel_m_s[i] = steering_rim(&config->steering, i, out.wheel_m_s[i], yaw_rate_rad_s);
     }
     return out;
@@ -244,7 +254,7 @@ static float speed_to_steer_by(control_state_t *state, const estimate_t *estimat
 }
 
 // The curvature that is steered, and the yaw rate that goes with it at the speed that is asked for: a rover that steers cannot turn more.
-static float steer(const control_config_t *config, control_state_t *state, const command_t *command)
+static __attribute__((noinline)) float steer(const control_config_t *config, control_state_t *state, const command_t *command)
 {
     const speed_control_config_t *most = &config->speed_control;
     const float speed_m_s = fixed_clamp(fixed_finite(command->platform_speed_m_s), -most->speed_max_m_s, most->speed_max_m_s);
@@ -254,7 +264,7 @@ static float steer(const control_config_t *config, control_state_t *state, const
 }
 
 // The reference of a wheel that rolls round the bend, from that of its side.
-static float steered_rad_s(const control_config_t *config, int32_t wheel, float side_rad_s, float yaw_rate_rad_s)
+static __attribute__((noinline)) float steered_rad_s(const control_config_t *config, int32_t wheel, float side_rad_s, float yaw_rate_rad_s)
 {
     const float limit = config->speed_control.wheel_max_rad_s;
     const float rim_m_s = steering_rim(&config->steering, wheel, side_rad_s * config->geometry.wheel_radius_m, yaw_rate_rad_s);
@@ -273,7 +283,7 @@ static void drive_mode(const control_config_t *config, control_state_t *state, c
     const bool steers = steering_there(&config->steering) && (mode == MODE_PLATFORM_SPEED || mode == MODE_SLIP);
     if (steers) {
         yaw_rate_rad_s = steer(config, state, command);
-    } else if (mode != MODE_STOP) {
+    } else if (mode != MODE_STOP && steering_there(&config->steering)) {
         state->curvature_1_m = 0.0f; // the other modes ask for no bend
     }
     if (new_mode) {

@@ -115,9 +115,11 @@ void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_
     }
     const float mean = (float)sum * (1.0f / (2.0f * NOISE_TICKS * 65536.0f * 65536.0f)); // units of 2^-16 m/s
     state->accel_noise_m2_s2 += noise_share * (mean - state->accel_noise_m2_s2);
-    const float most = slow_most * state->accel_noise_m2_s2;
-    const float slow = fixed_greater(state->slow_noise_m2_s2, most) ? most : state->slow_noise_m2_s2;
-    const float noise = fixed_greater(slow, state->accel_noise_m2_s2) ? slow : state->accel_noise_m2_s2;
+    float noise = state->accel_noise_m2_s2;
+    if (fixed_greater(state->slow_noise_m2_s2, noise)) {
+        const float most = slow_most * noise;
+        noise = fixed_greater(state->slow_noise_m2_s2, most) ? most : state->slow_noise_m2_s2;
+    }
     state->speed_noise_m2_s2 = fixed_clamp(noise, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
     ground_speed_weigh_wheels(config, state);
 }

@@ -1,6 +1,5 @@
 #include "steering.h"
 
-#include "fixed.h"
 #include "signals.h"
 
 #include <math.h>

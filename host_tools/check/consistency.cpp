@@ -230,18 +230,34 @@ double unexplained_by_noise(const Wheel &wheel) {
     return n > 0 && law.y_rms > 0 ? noise_share(left) * power / n / (law.y_rms * law.y_rms) : 0;
 }
 
-// Correlation of voltage and current, the speed's part taken out of both, over half a second and the best of 0 to 0.25 s of delay. 1 where
-// either is mostly noise.
+// The current with its sign's share added, in root mean squares: what a bridge asks of the voltage where its dead time costs that much more
+// than the winding (bridge_dead_time). Through zero the sign goes smoothly, over a fifth of them.
+std::vector<double> with_dead_time(const std::vector<double> &current, double times) {
+    double power = 0, n = 0;
+    for (const double i : current)
+        if (std::isfinite(i)) power += i * i, n += 1;
+    const double rms = n > 0 ? std::sqrt(power / n) : 0;
+    std::vector<double> out = current;
+    for (double &i : out) i += rms > 0 ? times * rms * i / std::sqrt(i * i + 0.04 * rms * rms) : 0;
+    return out;
+}
+
+// Correlation of voltage and current, the speed's part taken out of both, over half a second and the best of 0 to 0.25 s of delay, and of
+// a bridge without and with a dead time. 1 where either is mostly noise.
 double current_beside_voltage(const Wheel &wheel) {
     double best = 0;
-    const std::vector<double> speed = smooth(wheel.speed, 5), current = smooth(wheel.current, 5);
-    for (std::size_t late = 0; late <= 5; ++late) {
-        std::vector<double> voltage(wheel.voltage.size(), not_known);
-        for (std::size_t k = late; k < voltage.size(); ++k) voltage[k] = wheel.voltage[k - late];
-        const double u = fit(smooth(voltage, 5), speed).a, i = fit(current, speed).a;
-        if (late == 0 && (noise_share(less(voltage, wheel.speed, u)) > 0.2 || noise_share(less(wheel.current, wheel.speed, i)) > 0.2))
-            return 1;
-        best = std::max(best, correlation(less(smooth(voltage, 5), speed, u), less(current, speed, i)));
+    const std::vector<double> speed = smooth(wheel.speed, 5);
+    for (const double times : {0.0, 2.0, 6.0}) {
+        const std::vector<double> asked = with_dead_time(wheel.current, times), current = smooth(asked, 5);
+        for (std::size_t late = 0; late <= 5; ++late) {
+            std::vector<double> voltage(wheel.voltage.size(), not_known);
+            for (std::size_t k = late; k < voltage.size(); ++k) voltage[k] = wheel.voltage[k - late];
+            const double u = fit(smooth(voltage, 5), speed).a, i = fit(current, speed).a;
+            if (late == 0 && times == 0 &&
+                (noise_share(less(voltage, wheel.speed, u)) > 0.2 || noise_share(less(wheel.current, wheel.speed, i)) > 0.2))
+                return 1;
+            best = std::max(best, correlation(less(smooth(voltage, 5), speed, u), less(current, speed, i)));
+        }
     }
     return best;
 }

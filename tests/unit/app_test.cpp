@@ -295,7 +295,9 @@ TEST(Parameters, every_key_of_the_list_is_read_and_reaches_the_configuration) {
         const float low = rover_parameter_low(i), high = rover_parameter_high(i);
         rover_parameters_t reference;
         rover_parameters_reference(&reference);
-        const float now = reference.value[i], other = key.starts_with("encoder_sign") ? -1.0f : now != 0 ? now * 0.7f : 0.25f * (high > 0 ? high : low);
+        const float now = reference.value[i], other = key.starts_with("encoder_sign") ? -1.0f
+                                                      : now != 0                      ? now * 0.7f
+                                                                                      : 0.25f * (high > 0 ? high : low);
         ASSERT_TRUE(other >= low && other <= high) << key;
         char text[160];
         (void)std::snprintf(text, sizeof text, "%s%s = %.9g\n", format.c_str(), key.c_str(), static_cast<double>(other));

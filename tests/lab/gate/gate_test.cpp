@@ -60,6 +60,26 @@ TEST(Gate, no_sound_log_is_refused) {
     }
 }
 
+// A bridge that swallows 6 V before its motor has any: its current follows the voltage beyond that alone. The log that was refused, and
+// another drive's current in its place.
+TEST(Gate, a_bridge_with_a_long_dead_time_is_no_unrelated_current) {
+    const generator::BlindCase one = generator::draw_strange_case(797004, "one");
+    ASSERT_EQ(one.config.hidden.size(), 1U);
+    ASSERT_EQ(one.config.hidden[0].name, "bridge_dead_time");
+    log::Log log = generator::generate(one.config);
+    EXPECT_EQ(errors(check::check(log, {}, {})), "");
+    generator::GeneratorConfig another = one.config;
+    another.run = 1;
+    const log::Log other = generator::generate(another);
+    for (log::Signal &s : log.signals) {
+        const log::Signal *theirs = other.find(s.name);
+        if (s.name == "wheel1.current_A")
+            for (std::size_t k = 0; k < std::min(s.value.size(), theirs->value.size()); ++k) s.value[k] = theirs->value[k];
+    }
+    EXPECT_NE(errors(check::check(log, {}, {})).find("unrelated [wheel1.current_A]"), std::string::npos)
+        << errors(check::check(log, {}, {}));
+}
+
 // On even ground two wheels on one axle count alike to the last digit; only their currents' noise differs.
 TEST(Gate, wheels_that_a_simulation_turns_alike_are_no_copies) {
     sim::Scenario scenario = sim::read_scenario("scenarios/identification.toml");
