@@ -167,22 +167,28 @@ void one_motor(const Wheel &wheel, Findings &findings) {
         return;
     const Fit now = fit(wheel.voltage, wheel.speed, wheel.current);
     if (!now.good || now.rms * now.rms < 0.01 * now.y_rms * now.y_rms) return; // nothing to gain
-    double best = now.rms * now.rms;
+    double best = 1, left = 0, size = 0; // best: of the power that is left without the shift, over the same rows
     int cells = 0;
     std::string column;
     for (int c = -farthest; c <= farthest; ++c) {
         const std::vector<double> speed = shifted(wheel.speed, c), current = shifted(wheel.current, c), voltage = shifted(wheel.voltage, c);
+        std::vector<double> overlap = wheel.voltage; // the start, which a short drive's misfit is, must not drop out on one side alone
+        for (std::size_t k = 0; k < overlap.size(); ++k)
+            if (!std::isfinite(speed[k]) || !std::isfinite(current[k]) || !std::isfinite(voltage[k])) overlap[k] = not_known;
+        const Fit same = fit(overlap, wheel.speed, wheel.current);
+        if (!same.good || same.rms == 0) continue;
         for (const auto &[which, law] : {std::pair{name + "duty", fit(voltage, wheel.speed, wheel.current)},
                                          std::pair{wheel.speed_column, fit(wheel.voltage, speed, wheel.current)},
                                          std::pair{name + "current_A", fit(wheel.voltage, wheel.speed, current)}}) {
-            if (!law.good || !(law.a > 0) || !(law.b > 0) || law.rms * law.rms >= best) continue;
-            best = law.rms * law.rms, cells = c, column = which;
+            const double share = law.rms * law.rms / (same.rms * same.rms);
+            if (!law.good || !(law.a > 0) || !(law.b > 0) || share >= best) continue;
+            best = share, left = law.rms * law.rms, size = law.y_rms * law.y_rms, cells = c, column = which;
         }
     }
     constexpr double widest_s = 0.25; // [s] the catalogue's actuation_delay goes to 0.2
     if (std::abs(cells) * step_s < widest_s || std::abs(cells) == farthest) return;
-    if (best > 0.25 * now.rms * now.rms || best > 0.1 * now.y_rms * now.y_rms) return;
-    tell_late(column, cells * step_s, "the rest of its motor", now.rms / std::sqrt(best), findings);
+    if (best > 0.25 || left > 0.1 * size) return;
+    tell_late(column, cells * step_s, "the rest of its motor", 1 / std::sqrt(best), findings);
 }
 
 // Two sensors of the ground's speed, or of its change, that have nothing in common although it changes.

@@ -60,6 +60,19 @@ TEST(Gate, no_sound_log_is_refused) {
     }
 }
 
+// Seven seconds at one speed: what a motor's law leaves is the start, which a shift by more than its length drops out of the comparison.
+TEST(Gate, a_short_drive_at_one_speed_is_not_late) {
+    const sim::Scenario scenario =
+        sim::parse_scenario("duration_s = 8.0\n[ground]\nsoil = \"concrete\"\n[[drive]]\nfor_s = 7.0\nmode = \"platform_speed\"\n"
+                            "speed_m_s = 0.3\n[[drive]]\nfor_s = 1.0\nmode = \"stop\"\n",
+                            "short.toml");
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SimulateOptions options;
+        options.seed = seed;
+        EXPECT_EQ(errors(check::check(simulate(scenario, options).log, {}, {})), "") << seed;
+    }
+}
+
 // A bridge that swallows 6 V before its motor has any: its current follows the voltage beyond that alone. The log that was refused, and
 // another drive's current in its place.
 TEST(Gate, a_bridge_with_a_long_dead_time_is_no_unrelated_current) {
