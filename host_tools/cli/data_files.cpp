@@ -47,7 +47,8 @@ fs::path need_data_root() {
 
 std::string data_file(const std::string &path, const std::string &folder) {
     std::error_code none;
-    if (path.empty() || fs::exists(path, none) || fs::path(path).is_absolute()) return path;
+    const bool here = fs::exists(path, none) && !fs::is_directory(path, none); // a folder of the same name is another thing
+    if (path.empty() || here || fs::path(path).is_absolute()) return path;
     const fs::path root = data_root();
     if (root.empty()) return path;
     if (fs::exists(root / path, none)) return (root / path).string();

@@ -60,6 +60,9 @@ says 4 "no/such/run.csv: cannot be written: No such file" simulate cruise --out 
 gives 0 "the log was not kept; --out LOG keeps it" simulate scenarios/cruise.toml
 gives 0 "log in run.csv" simulate cruise --out run.csv
 "$cli" simulate "$root/scenarios/cruise.toml" --out again.csv >/dev/null && cmp run.csv again.csv || bad "a short name drives another run"
+mkdir cruise
+gives 0 "log in run.csv" simulate cruise --out run.csv # a folder of that name is no scenario
+rmdir cruise
 gives 0 "no history" history --model models/rover_sand.toml
 gives 0 "wrote heavy_model.toml" rover heavy --soil gravel --model heavy_model.toml
 gives 0 "log in heavy.csv" simulate cruise --rover heavy --out heavy.csv
