@@ -28,22 +28,10 @@ function(traction_own target)
   endif()
 endfunction()
 
-# With TRACTION_TOGETHER several C++ files are compiled as one, so that headers are read and templates instantiated once for all of them.
-# What that saves, and that answers stay: tests/bench/first_build.sh. Who changes Traction builds file by file.
-function(traction_together target)
-  if(TRACTION_TOGETHER AND NOT CMAKE_CROSSCOMPILING)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
-    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>) # of one file's names by another's
-  endif()
-endfunction()
-
 # traction_library(NAME sources...)
 function(traction_library name)
   add_library(${name} STATIC ${ARGN})
   traction_own(${name})
-  if(ARGN MATCHES "\\.cpp")
-    traction_together(${name})
-  endif()
 endfunction()
 
 # traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
