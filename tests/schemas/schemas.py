@@ -373,7 +373,7 @@ def main(root: Path, build: Path, cli: Path, tractiond: Path, work: Path) -> int
         for part in [pool.submit(runs.lab), pool.submit(runs.whole)]:
             part.result()
 
-    same_as_source(schemas, "emulate", root / "host_tools/cli/verb_emulate.cpp", "nlohmann::json summary(", r'\{"(\w+)",')
+    same_as_source(schemas, "emulate", root / "host_tools/cli/verb_emulate.cpp", "nlohmann::json run_json(", r'\{"(\w+)",')
     same_as_source(schemas, "campaign", root / "python/traction/campaigns/__main__.py", "def _write(", r'"(\w+)":')
     for verb, why in runs.excused.items():
         print(f"not run here: {verb}: {why}")
