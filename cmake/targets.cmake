@@ -28,10 +28,29 @@ function(traction_own target)
   endif()
 endfunction()
 
+# With TRACTION_TOGETHER several C++ files are compiled as one, so that headers are read and templates instantiated once for all of them.
+# What that saves, and that answers stay: tests/bench/first_build.sh. Who changes Traction builds file by file. The largest takes 1.3 GB:
+# no more of them at a time than the machine's memory holds.
+if(TRACTION_TOGETHER)
+  cmake_host_system_information(RESULT memory_MB QUERY TOTAL_PHYSICAL_MEMORY)
+  math(EXPR jobs "${memory_MB} / 2000 + 1")
+  set_property(GLOBAL APPEND PROPERTY JOB_POOLS together=${jobs})
+endif()
+function(traction_together target)
+  if(TRACTION_TOGETHER AND NOT CMAKE_CROSSCOMPILING)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10 JOB_POOL_COMPILE together)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>) # of one file's names by another's
+  endif()
+endfunction()
+
 # traction_library(NAME sources...)
 function(traction_library name)
   add_library(${name} STATIC ${ARGN})
   traction_own(${name})
+  string(FIND "${CMAKE_CURRENT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/tests" of_tests)
+  if(ARGN MATCHES "\\.cpp" AND NOT of_tests EQUAL 0) # rule_one_name reads sim, hal and host_tools
+    traction_together(${name})
+  endif()
 endfunction()
 
 # traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
