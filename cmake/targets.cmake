@@ -22,7 +22,7 @@ function(traction_own target)
   endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   if(TRACTION_SANITIZE)
-    target_compile_options(${target} PUBLIC -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+    target_compile_options(${target} PUBLIC $<$<CONFIG:Debug>:-O1> -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>) # GCC's guess is wrong in the library's own headers once these are on
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
@@ -79,7 +79,7 @@ function(traction_waits name)
 endfunction()
 
 # What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of each other library those that go through its
-# code within seconds. The rest runs in the host build.
+# code within seconds. The rest runs in the host build, and under sanitizers in the preset sanitize.
 set(TRACTION_SANITIZED_LABELS unit hal replay)
 set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
     lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score lab_generator_physics svg_test)
@@ -88,7 +88,7 @@ set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects
 # when cross-compiling.
 function(traction_test name)
   cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
-  if(TRACTION_SANITIZE AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
+  if(TRACTION_SANITIZE AND NOT TRACTION_SANITIZE_EVERY AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
     return()
   endif()
   add_executable(${name} ${T_SOURCES})
