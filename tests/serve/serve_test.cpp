@@ -686,7 +686,8 @@ TEST_F(Watched, telemetry_grows_survives_silence_and_a_restart_and_is_kept) {
     std::atomic<int> none{0};
     const std::string told = (home_ / "told.json").string();
     ASSERT_EQ(run_child(TRACTION_PROGRAM, {"drive", "--host", at_, "--key", key(), "--for", "1.5", "--json", told}, {}, none).exit_code, 0);
-    for (const auto &[name, count] : json::parse(content(told))["link"].items()) EXPECT_EQ(count, 0) << name;
+    const json link = json::parse(content(told))["link"]; // outlives the loop
+    for (const auto &[name, count] : link.items()) EXPECT_EQ(count, 0) << name;
 
     EXPECT_EQ(status_of(post("/api/cancel", R"({"id": 1})")), 200);
     const json entry = ended(1);
