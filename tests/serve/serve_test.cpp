@@ -667,7 +667,7 @@ TEST_F(Watched, telemetry_grows_survives_silence_and_a_restart_and_is_kept) {
     EXPECT_EQ(first[12], 0);   // no fault
     EXPECT_GT(first[10], 5.0); // two lithium cells, 7.2 V
     EXPECT_LT(first[10], 9.0);
-    for (int i = 0; i < 4; ++i) EXPECT_GT(first[6 + i], 0.0) << first; // every motor draws current
+    for (std::size_t i = 6; i < 10; ++i) EXPECT_GT(first[i], 0.0) << first; // every motor draws current
     EXPECT_LT(first[16], 1.5);
     rover_goes();
     const json gone = row(silent);
