@@ -170,11 +170,12 @@ TEST(HeightPicture, lies_as_a_map_does_with_its_top_at_the_highest_y) {
     EXPECT_DOUBLE_EQ(map.at(1, 0), 1.0);
 }
 
-TEST(HeightPicture, a_torn_file_is_refused_wherever_it_is_torn_and_so_is_one_with_a_wrong_byte) {
+TEST(HeightPicture, a_torn_file_is_refused_wherever_it_is_torn_and_a_wrong_byte_is_refused_or_changes_no_height) {
     const std::string path = in_temp("torn.png");
     for (const int interlace : {PNG_INTERLACE_NONE, PNG_INTERLACE_ADAM7}) {
         ASSERT_TRUE(write_png(path, hills(16, interlace)));
         const std::string whole = bytes_of(path);
+        const std::vector<double> heights_m = read_height_picture(path, 0.1, 0, 1).height_m;
         for (std::size_t length = 0; length < whole.size(); length += length < 64 || length + 20 > whole.size() ? 1 : 97) {
             std::ofstream(path, std::ios::binary) << whole.substr(0, length);
             EXPECT_NE(told(path), "read") << length;
@@ -186,7 +187,10 @@ TEST(HeightPicture, a_torn_file_is_refused_wherever_it_is_torn_and_so_is_one_wit
             std::string wrong = whole;
             wrong[at] = static_cast<char>(wrong[at] ^ 0x10);
             std::ofstream(path, std::ios::binary) << wrong;
-            EXPECT_NE(told(path), "read") << at;
+            if (told(path) == "read") { // libpng 1.6.48 does not look at the last checksum, that of the end mark
+                EXPECT_EQ(read_height_picture(path, 0.1, 0, 1).height_m, heights_m) << at;
+                EXPECT_GE(at, whole.size() - 4);
+            }
         }
     }
 }

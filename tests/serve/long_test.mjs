@@ -1,5 +1,5 @@
-// long_test.mjs CHROMIUM TRACTION FOLDER SHOTS_DIR - a log of 1000 s in the live page: how long its result takes to stand there, beside a log of
-// 20 s in the same run, and how much memory server and page take.
+// long_test.mjs CHROMIUM TRACTION FOLDER SHOTS_DIR - a log of 1000 s in the live page: what its result costs the page, beside a log of 20 s in
+// the same run, in processor time (the machine may be busy), and how much memory server and page take.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -27,27 +27,26 @@ async function run(log, verb, title) {
   await until(page, (begins) => document.querySelector('#result h1')?.textContent.startsWith(begins), title);
   await until(page, () => document.querySelector('#running').hidden);
 }
-// how long a fresh page takes from its address to the result, which it shows last
+// what a fresh page works from its address to the result, which it shows last
 async function load(key, what) {
-  const began = Date.now();
-  const { page: p, close } = await open();
+  const { page: p, worked_s, close } = await open();
   await p.waitForSelector(what, { timeout: 60000 });
   await p.evaluate(() => new Promise((drawn) => { requestAnimationFrame(() => requestAnimationFrame(drawn)); }));
-  took[key] = { ms: Date.now() - began, MB: (await p.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6 };
+  took[key] = { s: await worked_s(), MB: (await p.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6 };
   if (key.startsWith('long')) await p.screenshot({ path: `${shots}/${key}.png` });
   await close();
 }
 
 for (const [verb, title, what] of [['Compare', 'compare', '#balances canvas'], ['Look', 'drive: ', '#result .stage[data-view]']])
-  claim(`${verb}: the result of 1000 s stands within 3 s of that of 20 s`, async () => {
+  claim(`${verb}: the result of 1000 s costs the page at most 3 s of work more than that of 20 s`, async () => {
     const key = verb.toLowerCase();
     for (const log of ['short', 'long']) {
       await run(log, verb, title === 'compare' ? title : `${title}${log}`);
       await load(`${log}_${key}`, what);
     }
     const [small, large] = [took[`short_${key}`], took[`long_${key}`]];
-    console.log(`      ${key}: 1000 s ${large.ms} ms, page's heap ${large.MB.toFixed(0)} MB; 20 s ${small.ms} ms, ${small.MB.toFixed(0)} MB; server's peak ${peak().toFixed(0)} MB`);
-    assert.ok(large.ms - small.ms <= 3000, `${large.ms} ms, the short one ${small.ms} ms`);
+    console.log(`      ${key}: 1000 s ${large.s.toFixed(2)} s, page's heap ${large.MB.toFixed(0)} MB; 20 s ${small.s.toFixed(2)} s, ${small.MB.toFixed(0)} MB; server's peak ${peak().toFixed(0)} MB`);
+    assert.ok(small.s > 0.01 && large.s - small.s <= 3, `${large.s} s, the short one ${small.s} s`);
   });
 
 claim('a simulated drive of 1000 s grows to its end: every row is there, and zero is lost', async () => {

@@ -41,9 +41,13 @@ export async function open(browser, where, trouble, settings = {}) {
   page.on('console', (m) => { if (['error', 'warning'].includes(m.type()) && !/GPU stall|software rendering|WebGL: CONTEXT_LOST|ERR_CONNECTION_REFUSED|ERR_INCOMPLETE_CHUNKED|ERR_EMPTY_RESPONSE|ERR_CONNECTION_RESET/.test(m.text())) trouble.push(`console: ${m.text()}`); });
   page.on('pageerror', (e) => trouble.push(`error: ${e.message}`));
   page.on('request', (r) => { if (!/^(data|blob):/.test(r.url()) && new URL(r.url()).host !== new URL(where()).host) trouble.push(`request: ${r.url()}`); });
+  // what the page's main thread has worked, in seconds of the processor: what else the machine does is not in it
+  const seen = await context.newCDPSession(page);
+  await seen.send('Performance.enable', { timeDomain: 'threadTicks' });
+  const worked_s = async () => (await seen.send('Performance.getMetrics')).metrics.find((m) => m.name === 'TaskDuration').value;
   await page.goto(where());
   await ready(page);
-  return { page, close: () => context.close() };
+  return { page, worked_s, close: () => context.close() };
 }
 
 // Opens every fold; axe finds nothing and nothing is cut. The page must be one with bypassCSP.
