@@ -57,9 +57,10 @@ for entry in "$@"; do
     railed_radar) eva $entry -eva-auto-loop-unroll 136 -eva-slevel-function "$build,check_radar:150" ;;
     block) eva $entry -eva-auto-loop-unroll 136 -eva-use-spec $contracts -eva-slevel-function "$build,take:20" ;;
     without_lines) eva $entry -eva-min-loop-unroll 128 -eva-slevel-function "$build" ;;
-    outside) eva $entry -eva-auto-loop-unroll 136 -eva-use-spec take_line -eva-slevel-function "$build,watch_outside:12" ;;
+    outside) eva $entry -eva-min-loop-unroll 4 -eva-auto-loop-unroll 136 -eva-use-spec take_line -eva-slevel-function "$build" ;;
     take_line | lean) eva $entry -eva-auto-loop-unroll 136 -eva-slevel-function "$build" ;;
-    *) eva $entry -eva-auto-loop-unroll 136 -eva-use-spec $contracts \
+    *) [ $entry = blind ] && domains="-eva-domains bitwise" || domains= # one bit of many that is not set
+      eva $entry $domains -eva-auto-loop-unroll 136 -eva-use-spec $contracts \
       -eva-slevel-function "$build,sense_measure:20,doppler_missing:20,window_change_m_s:130,$counts" ;;
   esac
   grep -E "^\[eva:alarm\]" -A 4 "$out/log.$entry" | sed "s#$root/##" > "$out/alarms.$entry" || true
