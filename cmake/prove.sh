@@ -9,7 +9,7 @@
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/build/prove}
-[ $# -lt 2 ] && set -- transform line lean step railed_radar radar_dead block take_line without_lines outside default blind paper dj_radar_2 dj_radar_3 drs1000 || shift
+[ $# -lt 2 ] && set -- transform lean step railed_radar radar_dead block take_line without_lines outside default blind paper dj_radar_2 dj_radar_3 drs1000 || shift
 command -v frama-c > /dev/null || { echo "prove: skipped, needs frama-c (apt: frama-c-base)"; exit 0; }
 mkdir -p "$out"
 cc -std=c11 -O2 -o "$out/template_gen" -I"$root" "$root/firmware/template/doppler_template_gen.c" "$root/firmware/template/radar_template.c" -lm
@@ -26,8 +26,8 @@ for file in "$root"/firmware/core/*.c; do
   esac
 done
 
-# What a tick takes from the other runs; the last two are those of the transform and the line.
-contracts=radar_dead,take_line,watch_outside,without_lines,doppler_line_take,fft_power_about,fft_power_flat
+# What a tick takes from the other runs; the last two are those of the transform.
+contracts=radar_dead,take_line,watch_outside,without_lines,fft_power_about,fft_power_flat
 counts=watch_span:8,learn_rest:24,count_values:24,ground_speed_remember:6,ground_speed_watch_radar:20,tick:40 # x + (x < most ? 1 : 0)
 build=rover_parameters_reference:200,rover_parameters_scale:200 # loops over the parameters, followed to their end
 
@@ -52,15 +52,15 @@ total=0
 for entry in "$@"; do
   case $entry in
     transform) eva $entry -eva-precision 4 ;;
-    line) eva $entry -eva-min-loop-unroll 64 -eva-slevel-function "$build" ;;
     radar_dead) eva $entry -eva-auto-loop-unroll 136 -eva-slevel-function "$build,radar_dead:400" ;;
     step) eva $entry -eva-auto-loop-unroll 136 -eva-slevel-function "$build,measure_wheel:20" ;;
     railed_radar) eva $entry -eva-auto-loop-unroll 136 -eva-slevel-function "$build,check_radar:150" ;;
     block) eva $entry -eva-auto-loop-unroll 136 -eva-use-spec $contracts -eva-slevel-function "$build,take:20" ;;
     without_lines) eva $entry -eva-min-loop-unroll 128 -eva-slevel-function "$build" ;;
-    outside) eva $entry -eva-auto-loop-unroll 136 -eva-use-spec take_line -eva-slevel-function "$build,watch_outside:12" ;;
+    outside) eva $entry -eva-min-loop-unroll 4 -eva-auto-loop-unroll 136 -eva-use-spec take_line -eva-slevel-function "$build" ;;
     take_line | lean) eva $entry -eva-auto-loop-unroll 136 -eva-slevel-function "$build" ;;
-    *) eva $entry -eva-auto-loop-unroll 136 -eva-use-spec $contracts \
+    *) [ $entry = blind ] && domains="-eva-domains bitwise" || domains= # one bit of many that is not set
+      eva $entry $domains -eva-auto-loop-unroll 136 -eva-use-spec $contracts \
       -eva-slevel-function "$build,sense_measure:20,doppler_missing:20,window_change_m_s:130,$counts" ;;
   esac
   grep -E "^\[eva:alarm\]" -A 4 "$out/log.$entry" | sed "s#$root/##" > "$out/alarms.$entry" || true

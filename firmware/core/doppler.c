@@ -365,7 +365,7 @@ static void watch_outside(const doppler_template_t *beam, doppler_state_t *state
     int32_t bins = FFT_BINS - from;
     int32_t lines = 0;
     bool taken = true;
-    while (taken && lines < OUTSIDE_LINES) {
+    for (int32_t looks = 0; taken && looks < OUTSIDE_LINES; looks++) {
         int32_t peak = from;
         for (int32_t k = from; k < FFT_BINS; k++) {
             peak = left[k] > left[peak] ? k : peak;

@@ -63,7 +63,8 @@ void doppler_line_take(doppler_line_t *line, const doppler_line_span_t *span, in
     }
     const uint32_t per_sample = line->bin << 24;
     const int32_t most = 4 * 32767 * DOPPLER_LINE_BLOCK;
-    for (int32_t i = 0; i < span->count; i++) {
+    const int32_t count = span->count;
+    for (int32_t i = 0; i < count; i++) {
         const int32_t x = hold((int32_t)sample[i] - span->mean, 65535);
         const uint32_t turn = per_sample * line->next;
         line->re = hold(line->re, most) + ((x * cos_q15(turn)) >> 15);

@@ -85,7 +85,7 @@ void ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_s
     if (fixed_bits(state->held_sign) == 0u) {
         const bool sure = !state->other_alive && state->refused == 0 && sign * wheel_sign > 0.0f &&
                           fixed_greater(ground_speed_square(state->speed_m_s), sure_sigmas2 * state->p_vv);
-        state->held_values = sure ? state->held_values + 1 : 0;
+        state->held_values = !sure ? 0 : state->held_values < HELD_VALUES ? state->held_values + 1 : HELD_VALUES;
         state->held_sign = state->held_values >= HELD_VALUES ? sign : 0.0f;
     } else if (state->held_sign * wheel_sign < 0.0f) {
         release(state);

@@ -16,20 +16,6 @@ void fft_power_about(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t po
     ensures \initialized(power + (0 .. 127)); */
 void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t power[FFT_BINS]);
 
-// Proved by prove_line for every count.
-/*@ requires 0 <= span->count <= 64 && span->low == -16384 && span->high == 16352 && -32768 <= span->mean <= 32767;
-    requires line->bin <= 127 && -32767 <= line->a_re <= 32767 && -32767 <= line->a_im <= 32767 && 0 <= line->blocks <= 32 &&
-      line->thinks <= 37 && -8453888 <= line->re <= 8453888 && -8453888 <= line->im <= 8453888;
-    requires -8388352 <= *sum <= 8388352;
-    assigns line->next, line->re, line->im, line->past_re[0 .. 31], line->past_im[0 .. 31], line->blocks, line->thinks
-      \from *line, *span, sample[0 .. 63];
-    assigns sample[0 .. span->count - 1] \from *line, *span, sample[0 .. 63];
-    assigns *sum \from *line, *span, sample[0 .. 63], *sum;
-    ensures \forall integer n; 0 <= n < span->count ==> -16384 <= sample[n] <= 16352;
-    ensures 0 <= line->blocks <= 32 && line->thinks <= 37 && -8453888 <= line->re <= 8453888 && -8453888 <= line->im <= 8453888;
-    ensures -12582912 <= *sum <= 12582912; */
-void doppler_line_take(doppler_line_t *line, const doppler_line_span_t *span, int16_t *sample, int32_t *sum);
-
 // What no interval holds, and who holds it instead. By runs of their own:
 //   sense.step        |step| <= encoder_step_max, from a quotient         prove_step
 //   made, railed      a block holds no more than came, at most 64         prove_block
