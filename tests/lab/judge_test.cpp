@@ -241,6 +241,25 @@ TEST(Class, is_wider_where_only_priors_decide) {
     EXPECT_TRUE(class_of(winner, other).empty());
 }
 
+// Where only priors decide, what the rows say of the difference is scatter: unless it is larger than two standard errors of the paired blocks
+// nobody is told apart by it, whatever share it is. (A motor constant 13 % off was called a voltage gain, d' 6.1 against 4.4.)
+TEST(Class, holds_whom_the_paired_blocks_do_not_tell_from_a_winner_that_only_priors_decide) {
+    Trial winner = good("a"), other = good("b");
+    winner.assessment.prior_reduction = 95, winner.best_balance_gain = 0;
+    other.gain = 25, other.error_reduction = 60;
+    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
+    const auto alternating = [&](double by) { // about 2.5: the sum of the ten differences, 75, has the standard error 10 by / 3
+        for (int b = 0; b < 10; ++b) other.block_gain[b] = 2.5 + (b % 2 == 0 ? by : -by);
+    };
+    alternating(1.01 * 11.25);
+    EXPECT_EQ(class_of(winner, other).size(), 1U);
+    alternating(0.99 * 11.25);
+    EXPECT_TRUE(class_of(winner, other).empty());
+    alternating(1.01 * 11.25);
+    winner.best_balance_gain = 0.1; // one balance fell: the rows decide
+    EXPECT_TRUE(class_of(winner, other).empty());
+}
+
 // Nearly all that is left is noise: what the winner explains is much of what can be, and little of all. Rivals may explain half as much.
 TEST(Class, is_wider_where_noise_hides_most) {
     Trial winner = good("a"), other = good("b");
@@ -453,6 +472,46 @@ TEST(Tolerances, decide_only_where_they_gain_surely_more_than_the_least) {
     EXPECT_FALSE(tolerances_decide(fall_of(0, 3), noise, least + 2.99, least));
     EXPECT_FALSE(tolerances_decide(fall_of(-2, 1), noise, least + 2.99, least));
     EXPECT_TRUE(tolerances_decide(fall_of(-2, 1), noise, least + 3.01, least));
+}
+
+// From one contradiction with the sheet to another nothing is explained.
+TEST(Tolerances, pay_for_no_name_that_takes_a_stated_number_to_its_limit) {
+    const double least = DiagnoseOptions{}.least_prior_reduction;
+    EXPECT_TRUE(tolerances_pay(least + 0.01, 1, 0, least));
+    EXPECT_FALSE(tolerances_pay(least + 0.01, 1, 1, least));
+    EXPECT_FALSE(tolerances_pay(1e6, 1, 1, least));
+    const Physics physics = make_physics(short_log().model);
+    const Problem before(short_log().data, physics, free_parameters(short_log().model, physics));
+    std::size_t stated = 0;
+    for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+        const double prior = before.parameters[i].prior;
+        for (const double side : {-7.0, 7.0}) {
+            Problem with = before;
+            with.theta[static_cast<Eigen::Index>(i)] = side * (prior > 0 ? prior : 1e6);
+            with.within_bounds();
+            if (!with.at_bound(i)) continue;
+            EXPECT_EQ(newly_at_limits(before, with), prior > 0 ? 1U : 0U) << name_of(before.parameters[i]);
+            EXPECT_EQ(newly_at_limits(with, with), 0U) << name_of(before.parameters[i]); // it was there without the name
+            EXPECT_EQ(newly_at_limits(with, before), 0U) << name_of(before.parameters[i]);
+            Problem named = before; // the name's own size follows; at a limit of its own it is no number of the sheet
+            named.parameters.push_back(candidate("a").strengths[0]);
+            named.theta.conservativeResize(named.theta.size() + 1);
+            named.theta[named.theta.size() - 1] = 1;
+            EXPECT_EQ(newly_at_limits(before, named), 0U);
+            stated += prior > 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(stated, 10U); // a sheet of more than five numbers
+}
+
+// Four squared deviations of stated numbers widened by what is left (Birge): at three noises 4 * 9.
+TEST(Tolerances, pay_as_the_error_that_is_left_lets_them) {
+    EXPECT_TRUE(tolerances_pay(36.1, 3, 0, 9));
+    EXPECT_FALSE(tolerances_pay(35.9, 3, 0, 9));
+    EXPECT_FALSE(tolerances_pay(8.9, 0.1, 0, 9)); // never less than stated
+    EXPECT_TRUE(tolerances_pay(9.1, 1.5, 0, 9));  // 4 * 2.25 = 9
+    EXPECT_FALSE(tolerances_pay(3.9, 0.1, 0, 1));
+    EXPECT_TRUE(tolerances_pay(4.1, 0.1, 0, 1));
 }
 
 TEST(SumError, is_the_scatter_of_the_blocks_by_the_root_of_their_number) {

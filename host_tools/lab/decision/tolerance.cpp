@@ -105,6 +105,18 @@ bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, dou
     return scaled.sum + spared > least + scaled.error && noise.sum > -most_rise * noise.error;
 }
 
+std::size_t newly_at_limits(const Problem &before, const Problem &with) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < before.parameters.size(); ++i)
+        if (with.parameters[i].prior > 0 && with.at_bound(i) && !before.at_bound(i)) ++count;
+    return count;
+}
+
+bool tolerances_pay(double spared, double error_in_noise, std::size_t broken, double least) {
+    const double birge = std::max(1.0, error_in_noise);
+    return broken == 0 && spared > std::max(least, two_deviations_squared * birge * birge);
+}
+
 std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths) {
     std::vector<Group> groups = groups_of(before);
     if (!groups.empty()) predict(with, static_cast<Eigen::Index>(strengths), groups);
