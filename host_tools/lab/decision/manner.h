@@ -31,7 +31,8 @@ std::optional<std::string> conflict(const Problem &fitted, const Candidate &cand
 void note_conflict(Diagnosis &diagnosis, const std::string &label, const std::string &only_with);
 
 // A better place of the joint fit may lean on limits that the place where a name was accepted did not need: what was accepted is asked
-// again, the last first, each beside what is left by then. `take_back(i)` removes the i-th name and hands back the model without it, fitted.
+// again, the last first, each beside what is left by then. `take_back(i)` removes the i-th name and hands back the model without it,
+// fitted.
 void reject_conflicts(Diagnosis &diagnosis, Problem &last, const std::function<Problem(std::size_t)> &take_back);
 
 // More rolling resistance, of all wheels: every model states one, and it asks nothing of the ground's grip, as a drag or a slope does.
