@@ -8,7 +8,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace traction::lab {
 namespace {
@@ -92,6 +96,67 @@ TEST(Manner, one_wheel_alone_and_numbers_at_their_limits_are_not_believed_of_a_c
             }
         }
     }
+}
+
+// Where the joint fit ended a number leans on its limit; without the second name it does not, and the first is believed.
+TEST(Manner, names_that_lean_on_a_limit_are_taken_back_the_last_first_until_none_does) {
+    const Model model = sheet();
+    generator::GeneratorConfig config = machine("cruise");
+    config.duration_s = 20;
+    const Dataset cruise = make_dataset(model, generator::generate(config));
+    config.drive = "full";
+    const Dataset full = make_dataset(model, generator::generate(config));
+    const Physics physics = make_physics(model);
+    const Problem sound(cruise, physics, free_parameters(model, physics));
+    ASSERT_FALSE(conflict(sound, on("a", -1, stage_motion)));
+    Problem leans = sound;
+    for (std::size_t i = 0; i < leans.parameters.size(); ++i)
+        if (name_of(leans.parameters[i]) == "rover.mass_kg") leans.theta[static_cast<Eigen::Index>(i)] = 7 * leans.parameters[i].prior;
+    leans.within_bounds();
+    Diagnosis named;
+    for (const char *effect : {"a", "b"}) {
+        CandidateResult r;
+        r.candidate = on(effect, -1, stage_motion), r.verdict = "named";
+        named.accepted.push_back(r), named.ranking.push_back(r);
+    }
+    std::vector<std::size_t> taken;
+    const auto ask = [&](Diagnosis d, Problem last, const Problem &without_b, const Problem &without_a) {
+        taken.clear();
+        reject_conflicts(d, last, [&](std::size_t i) {
+            taken.push_back(i);
+            d.accepted.erase(d.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+            return i == 1 ? without_b : without_a;
+        });
+        return std::make_pair(d, last);
+    };
+    using Indices = std::vector<std::size_t>;
+    auto [d, last] = ask(named, leans, sound, sound);
+    EXPECT_EQ(taken, Indices{1});
+    ASSERT_EQ(d.accepted.size(), 1U);
+    EXPECT_EQ(d.accepted[0].candidate.effect, "a");
+    EXPECT_EQ(d.ranking[0].verdict, "named");
+    EXPECT_EQ(d.ranking[1].verdict, "conflict");
+    ASSERT_EQ(d.messages.size(), 1U);
+    EXPECT_EQ(d.messages[0], "b would explain a part, but only with rover.mass_kg at its limit, and this drive has one manner: not named");
+    EXPECT_EQ(last.theta, sound.theta); // what is left is the fit without it
+    std::tie(d, last) = ask(named, leans, leans, sound);
+    EXPECT_EQ(taken, (Indices{1, 0}));
+    EXPECT_EQ(d.ranking[0].verdict, "conflict");
+    EXPECT_EQ(d.messages.size(), 2U);
+    ask(named, sound, leans, leans);
+    EXPECT_TRUE(taken.empty());
+    Problem elsewhere(full, physics, free_parameters(model, physics)); // of other drives blocks left out tell
+    elsewhere.theta = leans.theta;
+    ask(named, elsewhere, leans, leans);
+    EXPECT_TRUE(taken.empty());
+}
+
+TEST(Manner, a_note_is_told_once) {
+    Diagnosis d;
+    note_conflict(d, "a", "x");
+    note_conflict(d, "a", "x");
+    note_conflict(d, "b", "x");
+    EXPECT_EQ(d.messages.size(), 2U);
 }
 
 // On the carpet of a measured robot body_drag was named first in half of the directions, and predicted the other directions worse than no

@@ -24,8 +24,9 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
         const double error = sum_error(w.block_gain - t.block_gain);
         const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
         const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
-        if (explains_more || (less < (by_priors ? 0.5 : 0.1) * w.gain && (less < 2 * error || std::fabs(cosine) > options.same_cosine)))
-            members.push_back(i);
+        const bool alike = less < 2 * error || std::fabs(cosine) > options.same_cosine;
+        // where the rows say little, a share of a gain that is mostly scatter tells nobody apart
+        if (explains_more || (by_priors && less < 2 * error) || (less < (by_priors ? 0.5 : 0.1) * w.gain && alike)) members.push_back(i);
     }
     return members;
 }

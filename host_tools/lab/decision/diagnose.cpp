@@ -65,7 +65,13 @@ class Search {
         eliminate_backward(problem);
         if (options_.shapes) test_shapes(first, problem);
         settle_last(problem);
-        reject_conflicts(problem);
+        reject_conflicts(d_, problem, [&](std::size_t i) {
+            Model without = model_without(d_.accepted[i].candidate);
+            Problem left = fitted(without, &problem);
+            remove(i, std::move(without), left);
+            d_.model_fit.reset();
+            return left;
+        });
         refine_shapes(problem);
         d_.limits = limits_of(problem);
         conclude();
@@ -273,11 +279,6 @@ class Search {
         std::string rival; // a tolerance that explains as much; empty: none does
     };
 
-    void note_conflict(const std::string &label, const std::string &only_with) {
-        const std::string text = label + " would explain a part, but only with " + only_with + ", and this drive has one manner: not named";
-        if (std::find(d_.messages.begin(), d_.messages.end(), text) == d_.messages.end()) d_.messages.push_back(text);
-    }
-
     // Of a class that a drive of one manner cannot tell apart, a law of a number that the model states comes first.
     void prefer_stated(std::vector<Trial> &trials, std::size_t &winner, Next &next, const Problem &before, const Screen &screen) {
         if (changes_stated_number(trials[winner].candidate) || !is_of_one_manner(data_)) return;
@@ -321,7 +322,7 @@ class Search {
         if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
         if (const std::optional<std::string> only_with = conflict(problem, t.candidate)) {
             t.verdict = "conflict";
-            note_conflict(t.candidate.label(), *only_with);
+            note_conflict(d_, t.candidate.label(), *only_with);
             return std::nullopt;
         }
         Problem compared = problem; // on the scales of the model without it
@@ -351,11 +352,8 @@ class Search {
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
-        // the rows are weighed by what they leave, the stated deviations are not: a model that misses draws its numbers from them by its
-        // misses alone. Widened by what is left, in noises (Birge 1932, the ratio of external to internal error), they still must tell
-        const double birge = std::max(1.0, held.error);
-        const bool tolerances_pay = rival && spared > std::max(options_.least_prior_reduction, two_deviations_squared * birge * birge);
-        if (!tolerances_pay && !falls_notably(held)) return std::nullopt;
+        const bool pay = rival && tolerances_pay(spared, held.error, newly_at_limits(before, compared), options_.least_prior_reduction);
+        if (!pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
@@ -523,22 +521,6 @@ class Search {
         last = *d_.model_fit;
         d_.ladder.back().train = overall_error(last), d_.ladder.back().heldout = held_out(last).error;
         refresh(last, Screen(last));
-    }
-
-    // A better place of the joint fit may lean on limits that the place where the name was accepted did not need.
-    void reject_conflicts(Problem &last) {
-        for (std::size_t i = d_.accepted.size(); i-- > 0;) {
-            const std::string label = d_.accepted[i].candidate.label();
-            const std::optional<std::string> only_with = conflict(last, d_.accepted[i].candidate);
-            if (!only_with) continue;
-            note_conflict(label, *only_with);
-            Model without = model_without(d_.accepted[i].candidate);
-            last = fitted(without, &last);
-            remove(i, std::move(without), last);
-            for (CandidateResult &r : d_.ranking)
-                if (r.candidate.label() == label) r.verdict = "conflict";
-            d_.model_fit.reset();
-        }
     }
 
     // The variants that were tried are stations on a line: beside the strengths, their shape parameters that are numbers on a scale (not

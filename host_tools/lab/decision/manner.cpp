@@ -53,6 +53,23 @@ std::optional<std::string> conflict(const Problem &fitted, const Candidate &cand
     return std::nullopt;
 }
 
+void note_conflict(Diagnosis &d, const std::string &label, const std::string &only_with) {
+    const std::string text = label + " would explain a part, but only with " + only_with + ", and this drive has one manner: not named";
+    if (std::find(d.messages.begin(), d.messages.end(), text) == d.messages.end()) d.messages.push_back(text);
+}
+
+void reject_conflicts(Diagnosis &d, Problem &last, const std::function<Problem(std::size_t)> &take_back) {
+    for (std::size_t i = d.accepted.size(); i-- > 0;) {
+        const std::string label = d.accepted[i].candidate.label();
+        const std::optional<std::string> only_with = conflict(last, d.accepted[i].candidate);
+        if (!only_with) continue;
+        note_conflict(d, label, *only_with);
+        last = take_back(i);
+        for (CandidateResult &r : d.ranking)
+            if (r.candidate.label() == label) r.verdict = "conflict";
+    }
+}
+
 bool changes_stated_number(const Candidate &candidate) { return candidate.wheel < 0 && candidate.effect == "rolling_resistance"; }
 
 } // namespace traction::lab

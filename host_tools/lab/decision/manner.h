@@ -8,9 +8,11 @@
 // - of a class, a law that changes a number which the model states is told before one that adds something to it.
 #pragma once
 
-#include "candidate.h"
+#include "diagnose.h"
 #include "host_tools/lab/fit/problem.h"
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -24,6 +26,14 @@ bool is_of_one_manner(const Dataset &data);
 // velocity the ground leans on its limits for want of slip, and a sensor's numbers are its own matter. Why it cannot be believed of a drive
 // of one manner, in words that go on from "only with"; nothing where it can.
 std::optional<std::string> conflict(const Problem &fitted, const Candidate &candidate);
+
+// Says so, once.
+void note_conflict(Diagnosis &diagnosis, const std::string &label, const std::string &only_with);
+
+// A better place of the joint fit may lean on limits that the place where a name was accepted did not need: what was accepted is asked
+// again, the last first, each beside what is left by then. `take_back(i)` removes the i-th name and hands back the model without it,
+// fitted.
+void reject_conflicts(Diagnosis &diagnosis, Problem &last, const std::function<Problem(std::size_t)> &take_back);
 
 // More rolling resistance, of all wheels: every model states one, and it asks nothing of the ground's grip, as a drag or a slope does.
 bool changes_stated_number(const Candidate &candidate);

@@ -11,9 +11,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double most_rise = 2; // standard errors of the held-out error by which a name that the tolerances decide may raise it
-constexpr double farthest = 3;  // opened deviations: a data sheet that is wrong by more is no tolerance
-constexpr double a_part = 0.25; // of the effect's reduction, at least, that a rival must reach by the linear step
+constexpr double most_rise = 2;       // standard errors of the held-out error by which a name that the tolerances decide may raise it
+constexpr double farthest = 3;        // opened deviations: a data sheet that is wrong by more is no tolerance
+constexpr double contradicted = 5.99; // stated deviations: six are a fit's limit; a natural end that is nearer contradicts no sheet
+constexpr double a_part = 0.25;       // of the effect's reduction, at least, that a rival must reach by the linear step
 
 struct Group {
     std::string name;
@@ -103,6 +104,24 @@ bool ToleranceRival::explains_as_much() const { return lead < std::max(2 * error
 
 bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, double least) {
     return scaled.sum + spared > least + scaled.error && noise.sum > -most_rise * noise.error;
+}
+
+std::size_t newly_at_limits(const Problem &before, const Problem &with) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < with.parameters.size(); ++i) {
+        const FreeParameter &p = with.parameters[i];
+        if (!(p.prior > 0) || !with.at_bound(i) || std::fabs(with.theta[static_cast<Eigen::Index>(i)]) < contradicted * p.prior) continue;
+        for (std::size_t j = 0; j < before.parameters.size(); ++j) {
+            const FreeParameter &q = before.parameters[j];
+            if (p.owner == q.owner && p.key == q.key && p.wheel == q.wheel && p.own == q.own) count += before.at_bound(j) ? 0 : 1;
+        }
+    }
+    return count;
+}
+
+bool tolerances_pay(double spared, double error_in_noise, std::size_t broken, double least) {
+    const double birge = std::max(1.0, error_in_noise);
+    return broken == 0 && spared > std::max(least, two_deviations_squared * birge * birge);
 }
 
 std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths) {

@@ -30,6 +30,16 @@ struct ToleranceRival {
 // deviations that the parameters keep to.
 bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, double least);
 
+// Numbers that lie six stated deviations off, their limit, in `with` and not in `before` (an effect may fix what it stands for). A name
+// that the stated tolerances alone speak for must not break one itself: from one contradiction with the sheet to another nothing is
+// explained (prior-data conflict: Evans and Moshonov 2006, Bayesian Analysis 1, 893-914).
+std::size_t newly_at_limits(const Problem &before, const Problem &with);
+
+// What the tolerances gain is reason enough for a name by which the error hardly falls: more than `least` squared stated deviations, and
+// still four where these are widened by the error that is left, in noises (Birge 1932, the ratio of external to internal error), for a
+// model that misses draws its numbers from what is stated by its misses alone; and none is broken anew.
+bool tolerances_pay(double spared, double error_in_noise, std::size_t newly_at_limits, double least);
+
 // The nearest rival of an effect. `before`: the model without it, linearised at its optimum; `with`: with it, on the same scales, its
 // strengths the last parameters. Nothing where no stated deviation does a quarter of what the effect does.
 std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths);
