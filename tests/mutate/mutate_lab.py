@@ -271,7 +271,8 @@ def main():
         flags = [word for word in keep[compiler:] if word not in ("-Winvalid-pch",)]
         flags = [flag for at, flag in enumerate(flags) if not flag.endswith("cmake_pch.hxx") and not (flag == "-include" and flags[at + 1].endswith("cmake_pch.hxx"))]
         target = out / (source.name.replace("/", "_"))
-        objects.append(str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name)))
+        library = re.search(r"-o \S*/(\w+)\.dir/", line).group(1)
+        objects.append((library, str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name))))
         print(f"{options.name}: {source.name}: {len(source.mutants)} faults", flush=True)
 
     judges = []
@@ -280,7 +281,8 @@ def main():
         at = link.index("-o")
         program = out / test
         link[at + 1] = str(program)
-        done = subprocess.run(link[:at] + objects + link[at:], cwd=build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        used = [path for library, path in objects if any(word.endswith(f"lib{library}.a") for word in link)]
+        done = subprocess.run(link[:at] + used + link[at:], cwd=build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:
             sys.exit(f"{options.name}: {test} cannot be linked:\n{done.stdout[-3000:]}")
         judges.append(program)
@@ -290,11 +292,13 @@ def main():
     for program in judges:
         start = time.monotonic()
         # failures on the way do not matter: a test that fails without any fault is left out of the judges below
+        (out / "reached").unlink(missing_ok=True)
         done = run([str(program), "--gtest_brief=1"], TRACTION_MUTANT_REACHED=str(out / "reached"))
         if done.returncode != 0:
             sys.exit(f"{options.name}: {program.name} fails without any fault:\n{done.stdout[-1500:]}")
         seconds[program] = time.monotonic() - start
-        reached[program] = {int(line) for line in (out / "reached").read_text().split()}
+        there = (out / "reached").exists()  # a program that comes by no fault writes none
+        reached[program] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
     mutants = {number: (source.name, *what) for source in sources for number, what in source.mutants.items()}
     content = "".join(source.path.read_text() for source in sources)
     stamp = hashlib.sha256((content + "".join(str((build / "x", test)) for test in options.tests)).encode()
