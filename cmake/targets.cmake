@@ -22,9 +22,24 @@ function(traction_own target)
   endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   if(TRACTION_SANITIZE)
-    target_compile_options(${target} PUBLIC -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+    target_compile_options(${target} PUBLIC $<$<CONFIG:Debug>:-O1> -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>) # GCC's guess is wrong in the library's own headers once these are on
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+# With TRACTION_TOGETHER several C++ files are compiled as one, so that headers are read and templates instantiated once for all of them.
+# What that saves, and that answers stay: tests/bench/first_build.sh. Who changes Traction builds file by file. The largest takes 1.3 GB:
+# no more of them at a time than the machine's memory holds.
+if(TRACTION_TOGETHER)
+  cmake_host_system_information(RESULT memory_MB QUERY TOTAL_PHYSICAL_MEMORY)
+  math(EXPR jobs "${memory_MB} / 2000 + 1")
+  set_property(GLOBAL APPEND PROPERTY JOB_POOLS together=${jobs})
+endif()
+function(traction_together target)
+  if(TRACTION_TOGETHER AND NOT CMAKE_CROSSCOMPILING)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10 JOB_POOL_COMPILE together)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>) # of one file's names by another's
   endif()
 endfunction()
 
@@ -32,6 +47,10 @@ endfunction()
 function(traction_library name)
   add_library(${name} STATIC ${ARGN})
   traction_own(${name})
+  string(FIND "${CMAKE_CURRENT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/tests" of_tests)
+  if(ARGN MATCHES "\\.cpp" AND NOT of_tests EQUAL 0) # rule_one_name reads sim, hal and host_tools
+    traction_together(${name})
+  endif()
 endfunction()
 
 # traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
@@ -60,7 +79,7 @@ function(traction_waits name)
 endfunction()
 
 # What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of each other library those that go through its
-# code within seconds. The rest runs in the host build.
+# code within seconds. The rest runs in the host build, and under sanitizers in the preset sanitize.
 set(TRACTION_SANITIZED_LABELS unit hal replay)
 set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
     lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score lab_generator_physics svg_test)
@@ -69,7 +88,7 @@ set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects
 # when cross-compiling.
 function(traction_test name)
   cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
-  if(TRACTION_SANITIZE AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
+  if(TRACTION_SANITIZE AND NOT TRACTION_SANITIZE_EVERY AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
     return()
   endif()
   add_executable(${name} ${T_SOURCES})

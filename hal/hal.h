@@ -36,7 +36,7 @@ typedef struct {
     uint8_t device[HAL_DEVICES]; // hal_device_t
 } hal_status_t;
 
-typedef struct hal {
+typedef struct {
     void *context; // owned by the HAL that filled this struct
     // Blocks until the next 10 ms tick. HAL_OK, HAL_END or a negative error; HAL_ERR_TIMEOUT: the tick came without its clock.
     hal_result_t (*wait_tick)(void *context);

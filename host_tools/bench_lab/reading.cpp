@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -61,6 +62,8 @@ bool true_of_the_chain(const std::string &name, const json &seal) {
     return late && (name == "accel_delay" || name == "accel_lag");
 }
 
+constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+
 void coverage(const json &effect, const json &result, Reading &reading) {
     const std::string name = text(effect, "name");
     for (const json &candidate : list_of(result, "accepted")) { // the joint fit's values, which the user is shown
@@ -71,7 +74,7 @@ void coverage(const json &effect, const json &result, Reading &reading) {
         for (const auto &[key, value] : effect.at("parameters").items()) {
             const auto fitted = parameters->find(key);
             if (fitted == parameters->end() || !fitted->is_object()) continue;
-            const double low = number(*fitted, "low", NAN), high = number(*fitted, "high", NAN), truth = value.get<double>();
+            const double low = number(*fitted, "low", not_given), high = number(*fitted, "high", not_given), truth = value.get<double>();
             if (std::isfinite(low) && std::isfinite(high)) reading.covered.push_back(truth >= low && truth <= high);
         }
         return;

@@ -1,6 +1,7 @@
 #include "order_delay.h"
 
 #include <cmath>
+#include <limits>
 
 namespace traction {
 
@@ -38,7 +39,7 @@ double duty_in_force(std::span<const Sample> samples, std::size_t k, std::size_t
 
 double order_delay_s(std::span<const Sample> samples) {
     int best_ms = 0;
-    double least = INFINITY;
+    double least = std::numeric_limits<double>::infinity();
     for (int late_ms = 0; late_ms <= longest_ms; late_ms++) {
         double sum = 0;
         for (std::size_t wheel = 0; wheel < WHEEL_COUNT; wheel++) sum += left_over(samples, wheel, late_ms);

@@ -64,9 +64,9 @@ Status status_of(const mavlink_traction_status_t &told) {
                   .session = told.session,
                   .tick = told.tick,
                   .faults = told.faults,
-                  .speed_m_s = told.speed_m_s,
-                  .speed_std_m_s = told.speed_std_m_s,
-                  .set_speed_m_s = told.set_speed_m_s,
+                  .speed_m_s = static_cast<double>(told.speed_m_s),
+                  .speed_std_m_s = static_cast<double>(told.speed_std_m_s),
+                  .set_speed_m_s = static_cast<double>(told.set_speed_m_s),
                   .battery_V = told.battery_mV * 1e-3,
                   .mode = told.mode,
                   .drive = told.drive,
@@ -330,7 +330,9 @@ std::string Operator::log(const LogEntry &entry, const std::function<void(std::s
         mavlink_msg_log_request_data_encode_status(our_system, our_component, &self_->channel.status, &packet, &request);
         self_->send(packet);
     };
-    for (double asked_s = -10, began_s = self_->now_s(); missing > 0;) {
+    double asked_s = -10;
+    const double began_s = self_->now_s();
+    while (missing > 0) { // waiting() counts down
         const double now_s = self_->now_s();
         if (now_s - std::max(last_s, began_s) > patience_s) {
             self_->waiting = nullptr;
@@ -402,7 +404,7 @@ double Operator::set_parameter(const std::string &name, double value) {
         mavlink_param_value_t told;
         mavlink_msg_param_value_decode(&packet, &told);
         if (text_of(told.param_id, sizeof told.param_id) != name) return;
-        is = told.param_value;
+        is = static_cast<double>(told.param_value);
         answered = true;
     };
     self_->until([&] { return answered; },

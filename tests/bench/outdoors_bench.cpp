@@ -282,8 +282,9 @@ void stand_first(Row &row, double stood) {
 }
 
 std::string names_of(std::uint32_t faults) {
+    if (faults == 0) return {};
     char text[32];
-    std::snprintf(text, sizeof text, faults == 0 ? "" : "0x%x", faults);
+    std::snprintf(text, sizeof text, "0x%x", faults);
     return text;
 }
 

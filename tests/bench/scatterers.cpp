@@ -102,7 +102,7 @@ double Scatterers::echo(double x_m, double z_m) {
     double e[4];
     for (int i = 0; i < 4; ++i) {
         const int cell = static_cast<int>(std::floor(static_cast<double>(first + i) / per_cell));
-        e[i] = samples(cell)[first + i - cell * per_cell];
+        e[i] = static_cast<double>(samples(cell)[first + i - cell * per_cell]);
     }
     const double u = at - (first + 1);
     return e[1] + 0.5 * u * (e[2] - e[0] + u * (2 * e[0] - 5 * e[1] + 4 * e[2] - e[3] + u * (3 * (e[1] - e[2]) + e[3] - e[0])));

@@ -18,7 +18,7 @@ void print(const can_frame_t &frame) {
 int main() {
     std::mt19937 random(7);
     const auto draw = [&random](int low, int high) {
-        return static_cast<int>(static_cast<std::int64_t>(random() % (static_cast<std::uint64_t>(high) - low + 1)) + low);
+        return static_cast<int>(static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(std::int64_t{high} - low + 1)) + low);
     };
     for (unsigned n = 0; n < 200; n++) {
         actuator_frame_t actuator{};

@@ -76,7 +76,7 @@ echo 'no venv here'; exit 1
 S
 run demo --seed 3
 [ "$status" -eq 0 ] || fail "demo ended with $status"
-expect "$calls" '^cmake --preset host -DBUILD_TESTING=OFF -DTRACTION_WERROR=OFF'
+expect "$calls" '^cmake --preset host -DBUILD_TESTING=OFF -DTRACTION_WERROR=OFF -DTRACTION_TOGETHER=ON'
 expect "$calls" '^ninja -C .*/build/host traction$'
 expect "$work/said" '^traction: configuring build/host$'
 expect "$work/said" '^traction: building build/host, 40 steps$'

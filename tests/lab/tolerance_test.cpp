@@ -108,7 +108,7 @@ TEST(Tolerance, a_share_that_cannot_be_is_told) {
 // Without tolerances of their own 9 of 10 such logs were given names (up to four each).
 TEST(Tolerance, clean_logs_of_machines_whose_wheels_differ_get_no_name) {
     for (const Soil soil : {Soil::sand, Soil::gravel, Soil::concrete})
-        for (const std::uint64_t seed : {7001, 7002}) {
+        for (const std::uint64_t seed : {7001u, 7002u}) {
             const GeneratorConfig config = apart(soil, seed);
             const Model model = parse_model(generator::data_sheet(config), "sheet");
             const Diagnosis d = diagnose(model, make_dataset(model, generator::generate(config)), {});
@@ -119,7 +119,7 @@ TEST(Tolerance, clean_logs_of_machines_whose_wheels_differ_get_no_name) {
 // 95 % of 20 values: 15 and fewer would be a chance of 1 in 380.
 TEST(Tolerance, the_interval_of_a_wheel_is_that_of_the_shared_value_and_its_own) {
     int inside = 0, count = 0;
-    for (const std::uint64_t seed : {7011, 7012, 7013, 7014, 7015}) {
+    for (const std::uint64_t seed : {7011u, 7012u, 7013u, 7014u, 7015u}) {
         const GeneratorConfig config = apart(Soil::sand, seed);
         Model model = parse_model(generator::data_sheet(config), "sheet");
         fit_model(model, make_dataset(model, generator::generate(config)), "");

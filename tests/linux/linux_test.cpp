@@ -218,22 +218,31 @@ TEST(can_socket, asks_for_a_restart_as_rtnetlink_lays_it_out) {
     ifinfomsg link;
     std::memcpy(&link, message + NLMSG_HDRLEN, sizeof link);
     EXPECT_EQ(link.ifi_index, 3);
-    const auto *info = static_cast<const rtattr *>(static_cast<const void *>(message + NLMSG_SPACE(sizeof(ifinfomsg))));
-    int left = static_cast<int>(length - NLMSG_SPACE(sizeof(ifinfomsg)));
-    ASSERT_TRUE(RTA_OK(info, left));
-    ASSERT_EQ(info->rta_type, IFLA_LINKINFO);
-    int inner = static_cast<int>(RTA_PAYLOAD(info));
-    const auto *kind = reinterpret_cast<const rtattr *>(RTA_DATA(info));
-    ASSERT_TRUE(RTA_OK(kind, inner));
-    ASSERT_EQ(kind->rta_type, IFLA_INFO_KIND);
-    EXPECT_EQ(std::string(static_cast<const char *>(RTA_DATA(kind)), RTA_PAYLOAD(kind)), "can");
-    const rtattr *data = RTA_NEXT(kind, inner);
-    ASSERT_TRUE(RTA_OK(data, inner));
-    ASSERT_EQ(data->rta_type, IFLA_INFO_DATA);
-    const auto *restart = static_cast<const rtattr *>(RTA_DATA(data));
-    EXPECT_EQ(restart->rta_type, IFLA_CAN_RESTART);
+    // an attribute: its head, then its bytes, the next one aligned; whole within `end`
+    const auto attribute = [&message](std::size_t at, std::size_t end) {
+        rtattr info{};
+        EXPECT_LE(at + RTA_LENGTH(0), end);
+        std::memcpy(&info, message + at, sizeof info);
+        EXPECT_GE(info.rta_len, RTA_LENGTH(0));
+        EXPECT_LE(at + info.rta_len, end);
+        return info;
+    };
+    const std::size_t info_at = NLMSG_SPACE(sizeof(ifinfomsg));
+    const rtattr info = attribute(info_at, length);
+    ASSERT_EQ(info.rta_type, IFLA_LINKINFO);
+    const std::size_t kind_at = info_at + RTA_LENGTH(0), end = info_at + info.rta_len;
+    const rtattr kind = attribute(kind_at, end);
+    ASSERT_EQ(kind.rta_type, IFLA_INFO_KIND);
+    EXPECT_EQ(std::string(message + kind_at + RTA_LENGTH(0), message + kind_at + kind.rta_len), "can");
+    const std::size_t data_at = kind_at + RTA_ALIGN(kind.rta_len);
+    const rtattr data = attribute(data_at, end);
+    ASSERT_EQ(data.rta_type, IFLA_INFO_DATA);
+    const std::size_t restart_at = data_at + RTA_LENGTH(0);
+    const rtattr restart = attribute(restart_at, data_at + data.rta_len);
+    EXPECT_EQ(restart.rta_type, IFLA_CAN_RESTART);
+    ASSERT_EQ(restart.rta_len, RTA_LENGTH(sizeof(std::uint32_t)));
     std::uint32_t value = 0;
-    std::memcpy(&value, RTA_DATA(restart), sizeof value);
+    std::memcpy(&value, message + restart_at + RTA_LENGTH(0), sizeof value);
     EXPECT_EQ(value, 1u);
 }
 

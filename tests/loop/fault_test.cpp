@@ -271,7 +271,7 @@ class Cruise : public Link {
 TEST(Fault, none_where_wheels_that_roll_tell_the_sign_beside_wheels_that_spin) {
     sim::Scenario scenario = sim::read_scenario("scenarios/sweep_sand.toml");
     scenario.effects.push_back(sim::parse_effect("slip_sinkage:coefficient=0.3"));
-    for (const std::uint64_t seed : {1, 12, 35}) {
+    for (const std::uint64_t seed : {1u, 12u, 35u}) {
         SimulateOptions options;
         options.seed = seed, options.truth = true;
         const SimulationResult result = simulate(scenario, options);

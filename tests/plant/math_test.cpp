@@ -29,8 +29,10 @@ struct Draw {
     }
 };
 
-double relative(double value, long double exact) { return static_cast<double>(std::fabs((value - exact) / exact)); }
-double absolute(double value, long double exact) { return static_cast<double>(std::fabs(value - exact)); }
+double relative(double value, long double exact) {
+    return static_cast<double>(std::fabs((static_cast<long double>(value) - exact) / exact));
+}
+double absolute(double value, long double exact) { return static_cast<double>(std::fabs(static_cast<long double>(value) - exact)); }
 
 // Worst error of `mine` over random arguments and the ends of the range.
 template <class Mine, class Exact, class Error> double worst(Mine mine, Exact exact, Error error, double low, double high) {

@@ -31,6 +31,12 @@ FNR == 1 { inside = 0 }
     if (match(line, /[A-Za-z_0-9:~]+ *(\(|=|\[|\{|;)/)) {
         name = substr(line, RSTART, RLENGTH); sub(/ *[(=[{;]$/, "", name)
         if (name !~ /:/ && name != "operator") told(name)
+        line = substr(line, RSTART + RLENGTH)
+        while (match(line, /\([^()]*\)|\{[^{}]*\}/)) line = substr(line, 1, RSTART - 1) substr(line, RSTART + RLENGTH)
+        while (match(line, /, *[A-Za-z_0-9]+ *=/)) { # the further names of one declaration
+            name = substr(line, RSTART, RLENGTH); gsub(/[, =]/, "", name); told(name)
+            line = substr(line, RSTART + RLENGTH)
+        }
     }
 }'
 done)

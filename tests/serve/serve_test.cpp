@@ -667,7 +667,7 @@ TEST_F(Watched, telemetry_grows_survives_silence_and_a_restart_and_is_kept) {
     EXPECT_EQ(first[12], 0);   // no fault
     EXPECT_GT(first[10], 5.0); // two lithium cells, 7.2 V
     EXPECT_LT(first[10], 9.0);
-    for (int i = 0; i < 4; ++i) EXPECT_GT(first[6 + i], 0.0) << first; // every motor draws current
+    for (std::size_t i = 6; i < 10; ++i) EXPECT_GT(first[i], 0.0) << first; // every motor draws current
     EXPECT_LT(first[16], 1.5);
     rover_goes();
     const json gone = row(silent);
@@ -686,7 +686,8 @@ TEST_F(Watched, telemetry_grows_survives_silence_and_a_restart_and_is_kept) {
     std::atomic<int> none{0};
     const std::string told = (home_ / "told.json").string();
     ASSERT_EQ(run_child(TRACTION_PROGRAM, {"drive", "--host", at_, "--key", key(), "--for", "1.5", "--json", told}, {}, none).exit_code, 0);
-    for (const auto &[name, count] : json::parse(content(told))["link"].items()) EXPECT_EQ(count, 0) << name;
+    const json link = json::parse(content(told))["link"]; // outlives the loop
+    for (const auto &[name, count] : link.items()) EXPECT_EQ(count, 0) << name;
 
     EXPECT_EQ(status_of(post("/api/cancel", R"({"id": 1})")), 200);
     const json entry = ended(1);

@@ -48,7 +48,7 @@ TEST(Motor, limited_duty_keeps_the_current_within_its_limit) {
     const motor_config_t config = rover_motor();
     for (float duty = -1.0f; duty <= 1.0f; duty += 0.1f) {
         for (float w = -20.0f; w <= 20.0f; w += 2.0f) {
-            const double limited = motor_duty_limited(&config, duty, w, motor_per_supply(7.2f), 1.5f);
+            const double limited = static_cast<double>(motor_duty_limited(&config, duty, w, motor_per_supply(7.2f), 1.5f));
             const double current = (limited * 7.2 - 0.265 * static_cast<double>(w)) / 3.24;
             EXPECT_LE(std::fabs(current), 1.5 + 1e-5); // float rounding of volts / ohm
         }

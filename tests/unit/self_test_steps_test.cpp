@@ -266,7 +266,7 @@ TEST(SelfTestSteps, a_device_silent_in_more_than_half_of_the_ticks_is_named_with
     }
     Bench bridge; // where a description asks for one
     bridge.config.required |= FRAME_BRIDGE_0 << 2u;
-    bridge.frame.present &= ~(FRAME_BRIDGE_0 << 2u);
+    bridge.frame.present &= ~(static_cast<unsigned>(FRAME_BRIDGE_0) << 2u);
     EXPECT_EQ(bridge.run().failures, static_cast<std::uint32_t>(SELF_TEST_SILENT));
     EXPECT_EQ(bridge.result.wheels, 4u);
 }

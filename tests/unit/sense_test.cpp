@@ -70,7 +70,7 @@ TEST(Sense, a_silent_encoder_is_bridged_without_a_false_speed) {
         sensor_frame_t frame = quiet_frame();
         frame.encoder_count[2] = 40 * k;
         if (k >= 20 && k < 25) {
-            frame.present &= ~(FRAME_ENCODER_0 << 2u);
+            frame.present &= ~(static_cast<unsigned>(FRAME_ENCODER_0) << 2u);
         }
         const sense_output_t out = sense_measure(&config, &state, &frame);
         if (k > 9) {

@@ -21,7 +21,8 @@ struct SlippingWheel {
         const double f = concrete ? 1 - std::exp(-s / sc) : 1 - sc / s * (1 - std::exp(-s / sc));
         return slip() < 0 ? -fm_N * f : fm_N * f;
     }
-    void tick(double duty) {
+    void tick(float asked) {
+        const double duty = static_cast<double>(asked);
         for (int i = 0; i < 20; ++i) {
             const double current = (duty * 7.2 - 0.265 * w) / 3.24;
             w += 5e-4 * (0.265 * current - 1.6e-3 * w - 0.03 - 0.057 * traction()) / 5e-3;

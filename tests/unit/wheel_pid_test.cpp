@@ -13,7 +13,8 @@ struct Wheel {
     double w = 0;
     double load_Nm = 0;
     bool blocked = false;
-    void tick(double duty) {
+    void tick(float asked) {
+        const double duty = static_cast<double>(asked);
         for (int i = 0; i < 10; ++i) {
             const double current = (duty * 7.2 - 0.265 * w) / 3.24;
             const double dry = 0.03 * std::fmax(-1.0, std::fmin(1.0, w / 0.05));

@@ -11,13 +11,13 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double block_s = 5.0, fewest_blocks = 10;
+constexpr double block_s = 5.0, fewest_refit_blocks = 10;
 constexpr std::size_t most_parts = 10;
 constexpr int steps = 3, halvings = 3;
 constexpr double worth = 0.1; // fall of the squares below which a step is the last
 
 void cut(const Dataset &data, HeldOut &out) {
-    const double length = data.independent_rows ? data.step_s : std::min(block_s, data.duration_s / fewest_blocks);
+    const double length = data.independent_rows ? data.step_s : std::min(block_s, data.duration_s / fewest_refit_blocks);
     std::map<double, std::size_t> known;
     std::vector<double> place;
     for (const Balance &b : data.balance)

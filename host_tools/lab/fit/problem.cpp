@@ -15,10 +15,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double huber = 3.0;                            // in units of the balance's scale
-constexpr double correlated_s = 2.5, fewest_blocks = 20; // blocks of the design effect, as those of the tests (screen.cpp)
-constexpr double most_alike = 4;                         // no stated deviation counts for less than half of itself
-constexpr std::size_t passes_at_once = 4;                // neighbours of the motion side by side: their own series must stay near too
+constexpr double huber = 3.0;                                   // in units of the balance's scale
+constexpr double correlated_s = 2.5, fewest_design_blocks = 20; // blocks of the design effect, as those of the tests (screen.cpp)
+constexpr double most_alike = 4;                                // no stated deviation counts for less than half of itself
+constexpr std::size_t passes_at_once = 4; // neighbours of the motion side by side: their own series must stay near too
 
 // The wheel that all slots are of; -1: several, or the body.
 int wheel_of(const FreeParameter &p) {
@@ -337,7 +337,7 @@ void Problem::set_scales() {
 void Problem::weigh_stated() {
     for (FreeParameter &p : parameters) p.alike = 1;
     if (data_->independent_rows || jacobian.rows() != row_scale.size() || jacobian.cols() != theta.size()) return;
-    const double length = std::min(correlated_s, data_->duration_s / fewest_blocks);
+    const double length = std::min(correlated_s, data_->duration_s / fewest_design_blocks);
     const auto blocks = static_cast<Eigen::Index>(std::floor(data_->duration_s / length)) + 1;
     const Eigen::VectorXd e = residual.cwiseProduct(row_scale);
     Eigen::MatrixXd score = Eigen::MatrixXd::Zero(theta.size(), blocks);

@@ -24,8 +24,9 @@ std::string sizes(const CandidateResult &r) {
     for (std::size_t j = 0; j < r.value.size(); ++j)
         text += (j > 0 ? ", " : "") + r.candidate.strengths[j].key + " = " +
                 sized_text(r.value[j], r.low[j], r.high[j], r.candidate.strengths[j].unit);
-    for (const auto &[key, value] : r.candidate.variant) {
-        const auto refined = std::find_if(r.shapes.begin(), r.shapes.end(), [&](const ShapeEstimate &s) { return s.key == key; });
+    for (const auto &variant : r.candidate.variant) {
+        const auto &[key, value] = variant;
+        const auto refined = std::find_if(r.shapes.begin(), r.shapes.end(), [&](const ShapeEstimate &s) { return s.key == variant.first; });
         text += (text.empty() ? "" : ", ") + key + " = ";
         if (refined == r.shapes.end())
             append(text, "%g", value);

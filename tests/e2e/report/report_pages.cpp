@@ -39,7 +39,7 @@ Figure every_mark() {
                              .heat = {.x_label = "slip [1]",
                                       .x_edges = {-1, -0.3, 0, 0.3, 1},
                                       .y_labels = {"0", "1"},
-                                      .value = {{1, 1.1, 2.2, 6.1}, {1, NAN, 1.4, 3.3}}}});
+                                      .value = {{1, 1.1, 2.2, 6.1}, {1, std::nan(""), 1.4, 3.3}}}});
     return figure;
 }
 

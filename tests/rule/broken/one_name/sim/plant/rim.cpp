@@ -2,6 +2,7 @@ namespace traction::sim {
 
 namespace {
 
+constexpr double rubber_m = 0.01;
 struct Edge {
     int at = 0;
 };

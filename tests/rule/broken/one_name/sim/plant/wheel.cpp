@@ -2,6 +2,7 @@ namespace traction::sim {
 
 namespace {
 
+constexpr double tread_m = 0.02, rubber_m = 0.03;
 double radius(double size_m) { return size_m / 2; }
 
 } // namespace
