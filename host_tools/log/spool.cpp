@@ -2,59 +2,18 @@
 
 #include "csv_text.h"
 #include "ulog.h"
-#include "write_file.h"
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <limits>
-#include <memory>
 
 namespace traction::log {
 
-namespace {
-
-// The folder in which the log will stand, when it will be a file there.
-std::string folder_of(const std::string &path) {
-    struct stat there {};
-    const bool in_place = path == "-" || (stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode));
-    if (in_place) return std::filesystem::temp_directory_path().string();
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    return folder.empty() ? "." : folder;
-}
-
-int unnamed_file(const std::string &folder) {
-    const int fd = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (fd >= 0) return fd;
-    std::string name = folder + "/.spool.XXXXXX"; // a file system without O_TMPFILE
-    const int named = mkostemp(name.data(), O_CLOEXEC);
-    if (named >= 0) unlink(name.c_str());
-    return named;
-}
-
-} // namespace
-
-Spool::Spool(std::string path) : path_(std::move(path)) {}
-
-Spool::~Spool() {
-    if (fd_ >= 0) close(fd_);
-}
-
-void Spool::fail() const {
-    throw FileError(path_, 0, 0, std::string("cannot be written: ") + std::strerror(errno),
-                    "give a path that can be, with space for the log twice");
+Spool::Spool(std::string path) : path_(std::move(path)), scratch_(path_) {
+    if (!path_.empty() && !names_a_ulog(path_)) rows_ = std::make_unique<RowSpool>(path_);
 }
 
 std::size_t Spool::add(const std::string &name, bool absent_is_zero, std::size_t reserve) {
+    if (rows_) return rows_->add(name, absent_is_zero);
     Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .blocks = {}, .absent_is_zero = absent_is_zero};
     fresh.signal.t_s.reserve(path_.empty() ? reserve : std::min(reserve, block));
     fresh.signal.value.reserve(path_.empty() ? reserve : std::min(reserve, block));
@@ -62,7 +21,7 @@ std::size_t Spool::add(const std::string &name, bool absent_is_zero, std::size_t
     return columns_.size() - 1;
 }
 
-void Spool::put(std::size_t column, double t_s, double value) {
+void Spool::put_in_column(std::size_t column, double t_s, double value) {
     Column &to = columns_[column];
     to.signal.t_s.push_back(t_s);
     to.signal.value.push_back(value);
@@ -71,20 +30,10 @@ void Spool::put(std::size_t column, double t_s, double value) {
 }
 
 void Spool::keep_block(Column &column) {
-    if (fd_ < 0) fd_ = unnamed_file(folder_of(path_));
-    if (fd_ < 0) fail();
-    column.blocks.push_back(end_);
-    for (std::vector<double> *part : {&column.signal.t_s, &column.signal.value}) {
-        const char *from = reinterpret_cast<const char *>(part->data());
-        std::size_t left = part->size() * sizeof(double);
-        while (left > 0) {
-            const ssize_t done = pwrite(fd_, from, left, static_cast<off_t>(end_));
-            if (done < 0 && errno == EINTR) continue;
-            if (done <= 0) fail();
-            from += done, left -= static_cast<std::size_t>(done), end_ += static_cast<std::uint64_t>(done);
-        }
-        part->clear();
-    }
+    column.blocks.push_back(scratch_.append(column.signal.t_s.data(), block * sizeof(double)));
+    scratch_.append(column.signal.value.data(), block * sizeof(double));
+    column.signal.t_s.clear();
+    column.signal.value.clear();
 }
 
 void Spool::load(const Column &column, std::size_t number, std::vector<double> &into) const {
@@ -94,15 +43,7 @@ void Spool::load(const Column &column, std::size_t number, std::vector<double> &
         return;
     }
     into.resize(2 * block);
-    char *to = reinterpret_cast<char *>(into.data());
-    std::size_t left = into.size() * sizeof(double);
-    std::uint64_t at = column.blocks[number];
-    while (left > 0) {
-        const ssize_t done = pread(fd_, to, left, static_cast<off_t>(at));
-        if (done < 0 && errno == EINTR) continue;
-        if (done <= 0) fail();
-        to += done, left -= static_cast<std::size_t>(done), at += static_cast<std::uint64_t>(done);
-    }
+    scratch_.read(column.blocks[number], into.data(), into.size() * sizeof(double));
 }
 
 Log Spool::take() {
@@ -160,114 +101,14 @@ class Spool::Again : public UlogColumn {
 };
 
 void Spool::write(const std::map<std::string, std::string> &header) {
-    if (!names_a_ulog(path_)) {
-        write_as_csv(header);
+    if (rows_) {
+        rows_->write(header);
         return;
     }
     std::vector<std::unique_ptr<UlogColumn>> columns;
     for (const Column &column : columns_)
         if (!column.left_out()) columns.push_back(std::make_unique<Again>(*this, column));
     write_ulog(header, columns, path_);
-}
-
-// The rows of a log, column by column, straight into the file.
-class Spool::Rows {
-  public:
-    Rows(WholeFile &file, std::vector<Reader> readers) : file_(file), readers_(std::move(readers)), shown_(readers_.size()) {
-        for (const Reader &reader : readers_) next_.push_back(reader.t_s());
-        room_ = (readers_.size() + 1) * (number_room + 1) + 1;
-        text_.resize(std::max(2 * room_, std::size_t{1} << 20));
-        to_ = text_.data();
-    }
-    void write() {
-        while (take_due()) {
-            put_row();
-            // one column that is sampled more often than the rest: no search for the next row
-            if (due_.size() != 1) continue;
-            const std::size_t quick = due_.front();
-            double others_s = never;
-            for (std::size_t i = 0; i < next_.size(); ++i)
-                if (i != quick) others_s = std::min(others_s, next_[i]);
-            while (next_[quick] < others_s) now_s_ = next_[quick], put_row();
-        }
-        flush();
-    }
-
-  private:
-    // What was last written in a column: most numbers stay what they were.
-    struct Shown {
-        std::uint64_t bits = 0;
-        std::size_t size = 0;
-        std::array<char, number_room> text{};
-    };
-    bool take_due() {
-        now_s_ = never;
-        for (const double t_s : next_) now_s_ = t_s < now_s_ ? t_s : now_s_;
-        due_.clear();
-        if (now_s_ == never) return false;
-        for (std::size_t i = 0; i < next_.size(); ++i)
-            if (next_[i] == now_s_) due_.push_back(i);
-        return true;
-    }
-    void put_row() {
-        if (static_cast<std::size_t>(text_.data() + text_.size() - to_) < room_) flush();
-        to_ = put_number(to_, now_s_);
-        std::size_t at = 0;
-        for (const std::size_t i : due_) {
-            commas(i + 1 - at);
-            at = i + 1;
-            Reader &reader = readers_[i];
-            Shown &shown = shown_[i];
-            const auto bits = std::bit_cast<std::uint64_t>(reader.value());
-            if (bits != shown.bits || shown.size == 0) {
-                shown.bits = bits;
-                shown.size = static_cast<std::size_t>(put_number(shown.text.data(), reader.value()) - shown.text.data());
-            }
-            std::memcpy(to_, shown.text.data(), number_room); // as many bytes always: quicker, and there is room
-            to_ += shown.size;
-            reader.next();
-            next_[i] = reader.t_s();
-        }
-        commas(readers_.size() - at);
-        *to_++ = '\n';
-    }
-    void commas(std::size_t count) {
-        if (count == 1) {
-            *to_++ = ',';
-            return;
-        }
-        std::memset(to_, ',', count);
-        to_ += count;
-    }
-    void flush() {
-        file_.write({text_.data(), static_cast<std::size_t>(to_ - text_.data())});
-        to_ = text_.data();
-    }
-
-    WholeFile &file_;
-    std::vector<Reader> readers_;
-    std::vector<Shown> shown_;
-    std::vector<double> next_; // time of each reader's next sample
-    std::vector<std::size_t> due_;
-    double now_s_ = never;
-    std::vector<char> text_;
-    std::size_t room_ = 0; // of a row
-    char *to_ = nullptr;
-};
-
-void Spool::write_as_csv(const std::map<std::string, std::string> &header) {
-    std::vector<std::string> names;
-    std::vector<Reader> readers;
-    for (const Column &column : columns_) {
-        if (column.left_out()) continue;
-        names.push_back(column.signal.name);
-        readers.emplace_back(*this, column);
-        readers.back().check(-never);
-    }
-    WholeFile file(path_);
-    file.write(csv_head(header, names, path_));
-    Rows(file, std::move(readers)).write();
-    file.keep();
 }
 
 } // namespace traction::log

@@ -1,13 +1,15 @@
-// spool.h - a log that is being made: what is older than a block waits on the disk, so that memory does not grow with the run.
+// spool.h - a log that is being made: what is older than a block waits on the disk (scratch.h), so that memory does not grow with the run.
 //
-// The disk's part is a file without a name in the folder of the log (or in that of temporaries), gone with the process whatever ends it.
+// A CSV is kept in rows (row_spool.h); a ULog in columns, because its topics and types are known only at the end.
 #pragma once
 
 #include "log.h"
+#include "row_spool.h"
+#include "scratch.h"
 
 #include <cstdint>
-#include <cstdio>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,14 +21,15 @@ class Spool {
 
     // path: where the log will be written; empty: everything stays in memory, for take. Throws FileError.
     explicit Spool(std::string path = "");
-    ~Spool();
-    Spool(const Spool &) = delete;
-    Spool &operator=(const Spool &) = delete;
-
     // A new column; its number. absent_is_zero: left out where it never held anything but 0. reserve: samples that are expected.
     std::size_t add(const std::string &name, bool absent_is_zero = false, std::size_t reserve = 0);
     // A sample. Times of a column go up. Throws FileError.
-    void put(std::size_t column, double t_s, double value);
+    void put(std::size_t column, double t_s, double value) {
+        if (rows_)
+            rows_->put(column, t_s, value);
+        else
+            put_in_column(column, t_s, value);
+    }
 
     // The columns that hold something, as a log in memory; the spool is empty after it. Only without a path.
     Log take();
@@ -43,16 +46,14 @@ class Spool {
     };
     class Reader;
     class Again;
-    class Rows;
-    void write_as_csv(const std::map<std::string, std::string> &header);
+    void put_in_column(std::size_t column, double t_s, double value);
     void keep_block(Column &column);
     void load(const Column &column, std::size_t number, std::vector<double> &into) const; // times, then values
-    [[noreturn]] void fail() const;                                                       // errno
 
     std::string path_;
-    std::vector<Column> columns_;
-    int fd_ = -1;
-    std::uint64_t end_ = 0; // of the file
+    std::unique_ptr<RowSpool> rows_; // CSV
+    std::vector<Column> columns_;    // everything else
+    Scratch scratch_;
 };
 
 } // namespace traction::log

@@ -209,17 +209,25 @@ WholeFile::~WholeFile() {
 void WholeFile::fail(int error) { refuse(path_ == "-" ? "standard output" : path_, error); } // the destructor cleans up
 
 void WholeFile::flush() {
-    std::string_view rest = buffer_;
+    put_out(buffer_);
+    buffer_.clear();
+}
+
+void WholeFile::put_out(std::string_view rest) {
     while (!rest.empty()) {
         const ssize_t count = ::write(fd_, rest.data(), rest.size());
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(errno);
         rest.remove_prefix(static_cast<std::size_t>(count));
     }
-    buffer_.clear();
 }
 
 void WholeFile::write(std::string_view text) {
+    if (text.size() >= std::size_t{1} << 16) { // not copied once more
+        flush();
+        put_out(text);
+        return;
+    }
     buffer_ += text;
     if (buffer_.size() > std::size_t{1} << 18) flush();
 }

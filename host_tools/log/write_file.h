@@ -45,6 +45,7 @@ class WholeFile {
 
   private:
     void flush();
+    void put_out(std::string_view text);
     [[noreturn]] void fail(int error);
     std::string path_, temporary_, buffer_; // temporary_ empty: written in place
     Claim claim_;

@@ -18,16 +18,15 @@ double lattice(std::int64_t i, std::int64_t j, std::uint64_t seed) {
     return static_cast<double>(h >> 11) * (2.0 / 9007199254740992.0) - 1.0;
 }
 
+// Without SSE4.1 std::floor is a call. |x| < 2^63.
+double floor(double x) {
+    const auto below = static_cast<double>(static_cast<std::int64_t>(x));
+    return below > x ? below - 1 : below;
+}
+
 double smooth(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
 
 } // namespace
-
-double traction_share(TractionLaw law, double s_abs, double shear_slip) {
-    const double q = s_abs / shear_slip;
-    if (law == TractionLaw::burckhardt) return 1 - math::exp(-q);
-    if (q < 1e-3) return q * (0.5 - q / 6); // series of 1 - (1 - exp(-q))/q; the next term is below 4e-11
-    return 1 - (1 - math::exp(-q)) / q;
-}
 
 const Soil &Ground::at(double x_m, double y_m) const {
     for (auto patch = patches.rbegin(); patch != patches.rend(); ++patch)
@@ -46,16 +45,19 @@ double Ground::slope_here_rad(double path_m) const {
     return rise;
 }
 
-double Ground::grip_change(double x_m, double y_m) const {
+double Ground::grip_change(double x_m, double y_m, GripCell &last) const {
     double trend = 0;
     if (gradient_1_m != 0) trend = gradient_1_m * (x_m * math::cos(gradient_direction_rad) + y_m * math::sin(gradient_direction_rad));
     if (grip_noise <= 0) return trend > -0.95 ? trend : -0.95; // some grip is left everywhere
     const double u = x_m / grip_length_m, v = y_m / grip_length_m;
-    const double iu = std::floor(u), iv = std::floor(v);
-    const auto i = static_cast<std::int64_t>(iu), j = static_cast<std::int64_t>(iv);
+    const double iu = floor(u), iv = floor(v);
+    if (!(iu == last.i && iv == last.j)) {
+        const auto i = static_cast<std::int64_t>(iu), j = static_cast<std::int64_t>(iv);
+        last = {iu, iv, {lattice(i, j, seed), lattice(i + 1, j, seed), lattice(i, j + 1, seed), lattice(i + 1, j + 1, seed)}};
+    }
     const double a = smooth(u - iu), b = smooth(v - iv);
-    const double low = lattice(i, j, seed) * (1 - a) + lattice(i + 1, j, seed) * a;
-    const double high = lattice(i, j + 1, seed) * (1 - a) + lattice(i + 1, j + 1, seed) * a;
+    const double low = last.corner[0] * (1 - a) + last.corner[1] * a;
+    const double high = last.corner[2] * (1 - a) + last.corner[3] * a;
     // Uniform -1..1 has variance 1/3; the quintic weights keep 0.78355 of it per dimension (the mean of (1-a)^2 + a^2).
     constexpr double scale = 1.7320508075688772 / 0.78355; // makes the rms 1
     const double change = trend + grip_noise * scale * (low * (1 - b) + high * b);

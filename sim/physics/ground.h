@@ -4,16 +4,23 @@
 //   Burckhardt:          Ft(s)/Fm = 1 - exp(-s/sc)                  (21) Lhomme-Desages, odd in s
 #pragma once
 
+#include "math.h"
 #include "soil.h"
 #include "terrain.h"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace traction::sim {
 
 // Ft/Fm for s_abs = |s| >= 0 and shear_slip > 0, within 0..1.
-double traction_share(TractionLaw law, double s_abs, double shear_slip);
+inline double traction_share(TractionLaw law, double s_abs, double shear_slip) {
+    const double q = s_abs / shear_slip;
+    if (law == TractionLaw::burckhardt) return 1 - math::exp(-q);
+    if (q < 1e-3) return q * (0.5 - q / 6); // series of 1 - (1 - exp(-q))/q; the next term is below 4e-11
+    return 1 - (1 - math::exp(-q)) / q;
+}
 
 // How wheel and ground meet.
 enum class ContactLaw {
@@ -31,6 +38,12 @@ struct SoilPatch {
 // From path_m on the ground rises by slope_rad.
 struct SlopeStep {
     double path_m = 0, slope_rad = 0;
+};
+
+// The cell of the grip's noise where one asked last, and what its corners hold: who goes on from there asks the lattice seldom.
+struct GripCell {
+    double i = std::numeric_limits<double>::quiet_NaN(), j = i;
+    double corner[4]{}; // (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)
 };
 
 struct Ground {
@@ -53,7 +66,7 @@ struct Ground {
     // The rise where the rover has come to, path_m along its way: slope_rad, or the steps' with a straight blend before each.
     double slope_here_rad(double path_m) const;
     // Relative change of the grip at a place: value noise, deterministic, rms grip_noise.
-    double grip_change(double x_m, double y_m) const;
+    double grip_change(double x_m, double y_m, GripCell &last) const;
 };
 
 } // namespace traction::sim

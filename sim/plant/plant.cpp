@@ -274,15 +274,6 @@ void Plant::World::begin_bodies() {
     }
 }
 
-// A wheel's force on the body that carries it. What the wheels give is added up here and handed to ODE once.
-void Plant::World::push_at(int wheel, const Vec3 &force, const Vec3 &arm) {
-    BodyNow &to = now_of(wheel);
-    for (std::size_t k = 0; k < 3; ++k) to.force[k] += force[k];
-    to.torque[0] += arm[1] * force[2] - arm[2] * force[1];
-    to.torque[1] += arm[2] * force[0] - arm[0] * force[2];
-    to.torque[2] += arm[0] * force[1] - arm[1] * force[0];
-}
-
 void Plant::World::push_bodies() {
     for (const BodyNow &one : now) {
         dBodyAddForce(one.body, one.force[0], one.force[1], one.force[2]);

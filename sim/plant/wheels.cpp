@@ -21,8 +21,8 @@ double Plant::World::current_of_others(int i) {
     return others_A[n];
 }
 
-double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) const {
-    const double place = 1 + config.ground.grip_change(x_m, y_m);
+double Plant::World::grip_factor(int i, double x_m, double y_m, double sliding_m_s) {
+    const double place = 1 + config.ground.grip_change(x_m, y_m, grip_cell[static_cast<std::size_t>(i)]);
     const double here =
         even_strength(effects.body) ? place : strength_here(place, effects.body, place_on_path(i), truth.path_m, trails(i) ? 1 : 0);
     return strength_sliding(here, effects.body, sliding_m_s);

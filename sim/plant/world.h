@@ -74,7 +74,7 @@ struct Plant::World {
     void place_on_terrain();
     double place_on_path(int i) const;
     double current_of_others(int i);
-    double grip_factor(int i, double x_m, double y_m, double sliding_m_s) const; // of Fm: place, track, sliding
+    double grip_factor(int i, double x_m, double y_m, double sliding_m_s); // of Fm: place, track, sliding
     struct Meeting {
         ContactForce force;
         double load_N = 0, rolling_N = 0, sinkage_m = 0;
@@ -151,7 +151,14 @@ struct Plant::World {
     void know_bodies();
     void begin_bodies();
     void push_bodies();
-    void push_at(int wheel, const Vec3 &force, const Vec3 &arm);
+    // A wheel's force on the body that carries it. What the wheels give is added up here and handed to ODE once.
+    void push_at(int wheel, const Vec3 &force, const Vec3 &arm) {
+        BodyNow &to = now_of(wheel);
+        for (std::size_t k = 0; k < 3; ++k) to.force[k] += force[k];
+        to.torque[0] += arm[1] * force[2] - arm[2] * force[1];
+        to.torque[1] += arm[2] * force[0] - arm[0] * force[2];
+        to.torque[2] += arm[0] * force[1] - arm[1] * force[0];
+    }
     std::array<Vec3, wheel_most> contact_at{}; // contact point in its half's frame
     std::array<DriveState, wheel_most> drive{};
     std::array<ContactState, wheel_most> contact{};
@@ -163,6 +170,7 @@ struct Plant::World {
     RutMemory ruts;
     Steering steering;
     std::array<RutTrace, wheel_most> trace;
+    std::array<GripCell, wheel_most> grip_cell{};
     struct Applied {
         Vec3 force{};                                                                    // at the contact point, world
         double load_N = 0, resist_N = 0, edge_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed

@@ -247,3 +247,20 @@ TEST(emulated_world, refuses_what_no_wire_carries) {
         EXPECT_THROW(emulate::World(scenario, {}, seed, emulate::Sensors::can), sim::ScenarioError) << fault;
     }
 }
+
+TEST(emulated_world, refuses_a_rover_that_its_nodes_cannot_drive_and_names_what) {
+    for (const auto &[name, key] :
+         {std::pair{"ackermann", "steering"}, std::pair{"two_wheels", "layout.wheels"}, std::pair{"two_motors", "layout.drives"}}) {
+        const sim::Scenario scenario = sim::read_scenario(std::string(TRACTION_SOURCE_DIR "/scenarios/") + name + ".toml");
+        for (const auto sensors : {emulate::Sensors::can, emulate::Sensors::iio}) {
+            std::string said;
+            try {
+                emulate::World(scenario, {}, seed, sensors);
+            } catch (const sim::ScenarioError &error) {
+                said = error.what();
+            }
+            EXPECT_NE(said.find(key), std::string::npos) << name << ": " << said;
+            EXPECT_NE(said.find("traction simulate"), std::string::npos) << "no way out told: " << said;
+        }
+    }
+}

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace traction::sim;
@@ -79,6 +80,27 @@ TEST(Sensors, driving_shakes_the_accelerometer) {
     const auto all = glide(default_sensors(), 7, 0.8, 100);
     const double sigma = std::hypot(accel_noise_m_s2, accel_vibration_1_s * 0.8);
     EXPECT_NEAR(moments(all, [](const auto &m) { return m.accel_m_s2[0]; }).deviation, sigma, 3 * 0.0071 * sigma);
+}
+
+// The readings with the shaking less those without, by one seed: what is left are the two harmonic motions, averaged over a tick's ten
+// steps, which takes sin(10 a)/(10 sin a) of them, a = pi f/1000.
+TEST(Sensors, a_body_that_hops_and_nods_shows_both_motions_and_at_rest_none) {
+    constexpr double rate_Hz = 5, heave_m = 0.002, nod_rad = 0.01, w = 2 * M_PI * rate_Hz, a = M_PI * rate_Hz / 1000;
+    const double kept = std::sin(10 * a) / (10 * std::sin(a)) / std::sqrt(2);
+    SensorConfig shaken = default_sensors();
+    shaken.heave_m = heave_m, shaken.heave_Hz = rate_Hz;
+    shaken.pitch_vibration_rad = nod_rad, shaken.pitch_vibration_Hz = rate_Hz;
+    for (const auto &[speed_m_s, share] : {std::pair{0.0, 0.0}, {0.05, 0.5}, {0.1, 1.0}, {-0.4, 1.0}}) {
+        auto with = glide(shaken, 7, speed_m_s, 10);
+        const auto without = glide(default_sensors(), 7, speed_m_s, 10);
+        for (std::size_t i = 0; i < with.size(); i++) {
+            with[i].accel_m_s2[2] -= without[i].accel_m_s2[2];
+            with[i].gyro_rad_s[1] -= without[i].gyro_rad_s[1];
+        }
+        const double lift = share * heave_m * w * w * kept, turn = share * nod_rad * w * kept;
+        EXPECT_NEAR(moments(with, [](const auto &m) { return m.accel_m_s2[2]; }).deviation, lift, 1e-6) << speed_m_s;
+        EXPECT_NEAR(moments(with, [](const auto &m) { return m.gyro_rad_s[1]; }).deviation, turn, 1e-6) << speed_m_s;
+    }
 }
 
 TEST(Sensors, the_camera_looks_seven_times_a_second_with_a_millimetre) {

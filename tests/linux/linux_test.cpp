@@ -126,6 +126,7 @@ TEST(hardware, tells_every_mistake_with_file_line_key_value_and_mend) {
         {"can_interface = \"can7\"", "can_interface = \"../can7\"", "a device's name has no \"..\""},
         {"[hardware]", "[hard_ware]", "rover.toml: no section [hardware]"},
         {"[body]", "[hardware]\n[body]", "rover.toml:6: hardware.section"},
+        {"[body]", "[steering]\nfront = 1\n[body]", "hardware.steering = [steering]: these devices have no steering servo"},
         {"watchdog = \"watchdog0\"", "watchdog = \"" + std::string(70, 'w') + "\"", "longer than 63"},
         {"watchdog = \"watchdog0\"", "watchdog = \"" + std::string(400, 'w') + "\"", "rover.toml:17: hardware.line: too long"},
     };

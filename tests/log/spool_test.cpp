@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace traction::log {
 namespace {
@@ -47,6 +48,28 @@ TEST(Spool, writes_the_bytes_that_write_csv_writes) {
     }
 }
 
+// Rows are kept as they come: whatever comes between, before, late or alone must stand where write_csv puts it.
+TEST(Spool, writes_those_bytes_in_whatever_order_the_columns_come) {
+    const auto fill_apart = [](Spool &spool) {
+        const std::size_t a = spool.add("a.x_m"), b = spool.add("b.x_m"), c = spool.add("c.x_m"), zero = spool.add("z.x_m", true);
+        for (int k = 0; k < 3000; ++k) spool.put(a, k * 0.01, k % 7 == 0 ? 0.5 : -0.0); // one column whole, then the next from the start
+        for (int k = 0; k < 3000; ++k) spool.put(b, k * 0.015, k);
+        for (int k = 0; k < 3000; ++k) {
+            spool.put(b, 60 + k * 0.01, k / 100); // back on the times of others
+            if (k % 3 != 0) spool.put(a, 60 + k * 0.01, 1.0 / (k + 1));
+            if (k % 50 == 1) spool.put(c, 60 + k * 0.01 - 0.004, k);    // late, between two rows that are there
+            if (k % 50 == 2) spool.put(zero, 60 + k * 0.01 + 0.001, 0); // alone in its row, and left out with it
+        }
+    };
+    const test::File at_once("spool_apart.csv", ""), grown("spool_apart_grown.csv", "");
+    Spool memory, disk(grown.path());
+    fill_apart(memory);
+    fill_apart(disk);
+    write_csv(memory.take(), at_once.path());
+    disk.write({});
+    EXPECT_EQ(at_once.text(), grown.text());
+}
+
 TEST(Spool, writes_the_ulog_that_write_ulog_writes) {
     for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, Spool::block, 7 * Spool::block + 11}) {
         const test::File at_once("spool_at_once.ulg", ""), grown("spool_grown.ulg", "");
@@ -63,12 +86,17 @@ TEST(Spool, writes_the_ulog_that_write_ulog_writes) {
 
 TEST(Spool, refuses_what_cannot_stand_in_a_log) {
     const test::File kept("spool_refused.csv", "as it was");
-    for (const bool backwards : {true, false}) {
+    const double last_s = 3 * Spool::block - 1, never = std::numeric_limits<double>::infinity();
+    const std::pair<double, double> refused[] = {{5.0, 1},     {last_s, 1},
+                                                 {never, 1},   {std::numeric_limits<double>::quiet_NaN(), 1},
+                                                 {1e9, never}, {1e9, std::numeric_limits<double>::quiet_NaN()}};
+    for (const auto &[t_s, value] : refused) {
         Spool spool(kept.path());
         const std::size_t column = spool.add("wheel0.speed_rad_s");
         for (std::size_t k = 0; k < 3 * Spool::block; ++k) spool.put(column, static_cast<double>(k), 1);
-        spool.put(column, backwards ? 5.0 : 1e9, backwards ? 1 : std::numeric_limits<double>::quiet_NaN());
-        EXPECT_THROW(spool.write({}), LogError);
+        spool.put(column, t_s, value);
+        spool.put(column, 2e9, 1); // what is right after it does not mend it
+        EXPECT_THROW(spool.write({}), LogError) << t_s << ' ' << value;
         EXPECT_EQ(kept.text(), "as it was") << "nothing half-written";
     }
 }

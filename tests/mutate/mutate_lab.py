@@ -1,6 +1,6 @@
-"""mutate_lab - how many small faults in the lab's decision code do its tests notice? Started by mutate_lab.sh.
+"""mutate_lab - how many small faults in the lab's decision code (mutate_lab.sh) or in the simulator (mutate_sim.sh) do their tests notice?
 
-Every file is rewritten once with all its faults in it, each asleep behind a switch (mutant.h), so that the lab is compiled once and a fault costs
+Every file is rewritten once with all its faults in it, each asleep behind a switch (mutant.h), so that they are compiled once and a fault costs
 one run of the tests. Faults: relation, logic, sign and product exchanged, a constant doubled, halved, one more or less, a condition always or
 never true, std::min for std::max, a statement left out. What does not compile is dropped; what no test comes by counts as survived, "not
 reached". A seeded sample is judged, within a budget of minutes; verdicts are kept in OUT/verdicts.tsv, and the next run goes on from there as long
@@ -202,7 +202,7 @@ def run(command, timeout=None, **environment):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout, env=dict(os.environ, **environment))
 
 
-def compile_mutated(source, command, target):
+def compile_mutated(source, command, target, name):
     """Rewrites and compiles until what is left compiles. Returns the object."""
     object_file = target.with_suffix(".o")
     for _ in range(40):
@@ -219,8 +219,8 @@ def compile_mutated(source, command, target):
             above = [at for at in source.plan if any(at < line for line in bad)]
             source.drop({max(above) + 1} if above else set())
         if len(source.plan) == before:
-            sys.exit(f"mutate_lab: {source.name} does not compile:\n{done.stdout[:3000]}")
-    sys.exit(f"mutate_lab: {source.name} does not come to compile")
+            sys.exit(f"{name}: {source.name} does not compile:\n{done.stdout[:3000]}")
+    sys.exit(f"{name}: {source.name} does not come to compile")
 
 
 def build_commands(build, target):
@@ -238,16 +238,17 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--folders", nargs="+", default=FOLDERS)
+    parser.add_argument("--name", default="mutate_lab", help="how the run calls itself")
     parser.add_argument("--only", default="", help="files whose name holds this (a regular expression)")
     options = parser.parse_args()
     root, out, build = options.root.resolve(), options.out.resolve(), options.build.resolve()
     began = time.monotonic()
     out.mkdir(parents=True, exist_ok=True)
 
-    commands = build_commands(build, options.tests[0])
+    commands = [line for test in options.tests for line in build_commands(build, test)]
     sources, number = [], 1
     for folder in options.folders:
-        for path in sorted((root / folder).glob("*.cpp")):
+        for path in sorted((root / folder).rglob("*.cpp")):
             source = Source(path, root, number)
             sources.append(source)
             number = source.next_number
@@ -272,8 +273,9 @@ def main():
         flags = [word for word in keep[compiler:] if word not in ("-Winvalid-pch",)]
         flags = [flag for at, flag in enumerate(flags) if not flag.endswith("cmake_pch.hxx") and not (flag == "-include" and flags[at + 1].endswith("cmake_pch.hxx"))]
         target = out / (source.name.replace("/", "_"))
-        objects.append(str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target)))
-        print(f"mutate_lab: {source.name}: {len(source.mutants)} faults", flush=True)
+        library = re.search(r"-o \S*/(\w+)\.dir/", line).group(1)
+        objects.append((library, str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name))))
+        print(f"{options.name}: {source.name}: {len(source.mutants)} faults", flush=True)
 
     judges = []
     for test in options.tests:
@@ -281,9 +283,10 @@ def main():
         at = link.index("-o")
         program = out / test
         link[at + 1] = str(program)
-        done = subprocess.run(link[:at] + objects + link[at:], cwd=build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        used = [path for library, path in objects if any(word.endswith(f"lib{library}.a") for word in link)]
+        done = subprocess.run(link[:at] + used + link[at:], cwd=build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:
-            sys.exit(f"mutate_lab: {test} cannot be linked:\n{done.stdout[-3000:]}")
+            sys.exit(f"{options.name}: {test} cannot be linked:\n{done.stdout[-3000:]}")
         judges.append(program)
 
     os.chdir(root)
@@ -291,11 +294,13 @@ def main():
     for program in judges:
         start = time.monotonic()
         # failures on the way do not matter: a test that fails without any fault is left out of the judges below
+        (out / "reached").unlink(missing_ok=True)
         done = run([str(program), "--gtest_brief=1"], TRACTION_MUTANT_REACHED=str(out / "reached"))
         if done.returncode != 0:
-            sys.exit(f"mutate_lab: {program.name} fails without any fault:\n{done.stdout[-1500:]}")
+            sys.exit(f"{options.name}: {program.name} fails without any fault:\n{done.stdout[-1500:]}")
         seconds[program] = time.monotonic() - start
-        reached[program] = {int(line) for line in (out / "reached").read_text().split()}
+        there = (out / "reached").exists()  # a program that comes by no fault writes none
+        reached[program] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
     mutants = {number: (source.name, *what) for source in sources for number, what in source.mutants.items()}
     content = "".join(source.path.read_text() for source in sources)
     stamp = hashlib.sha256((content + "".join(str((build / "x", test)) for test in options.tests)).encode()
@@ -309,7 +314,7 @@ def main():
     order = sorted(number for number in mutants if re.search(options.only, mutants[number][0]))
     random.Random(options.seed).shuffle(order)
     chosen, judged = order[:options.mutants], {}
-    print(f"mutate_lab: {len(mutants)} faults of {len(objects)} files; a sample of {len(chosen)}, seed {options.seed}", flush=True)
+    print(f"{options.name}: {len(mutants)} faults of {len(objects)} files; a sample of {len(chosen)}, seed {options.seed}", flush=True)
     with kept.open("a") as log:
         for number in chosen:
             if time.monotonic() - began > 60 * options.minutes:
@@ -343,12 +348,14 @@ def main():
         rows = [row for name, row in table.items() if name.startswith(folder)]
         killed, count = sum(row["killed"] for row in rows), sum(sum(row.values()) for row in rows)
         if count:
-            print(f"mutate_lab: {folder or 'all'}: {killed} of {count} noticed, {100 * killed / count:.1f} %")
+            share = killed / count
+            error = 100 * (share * (1 - share) / count) ** 0.5  # of the sample, one sigma
+            print(f"{options.name}: {folder or 'all'}: {killed} of {count} noticed, {100 * share:.1f} % ({error:.1f} % of sampling error)")
     if len(judged) < len(chosen):
-        print(f"mutate_lab: the {options.minutes:g} minutes are over after {len(judged)} of {len(chosen)}; the same command goes on from here")
+        print(f"{options.name}: the {options.minutes:g} minutes are over after {len(judged)} of {len(chosen)}; the same command goes on from here")
     (out / "survivors").write_text("".join(f"{mutants[n][0]}:{mutants[n][1]}: {mutants[n][2]}  =>  {mutants[n][3]}  [{v}]\n"
                                            for n, v in sorted(judged.items()) if v != "killed"))
-    print(f"mutate_lab: survivors: {out / 'survivors'}")
+    print(f"{options.name}: survivors: {out / 'survivors'}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,264 @@
+#include "row_spool.h"
+
+#include "csv_text.h"
+#include "write_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace traction::log {
+
+namespace {
+
+struct RowHead { // a row as it is kept: this, the columns that changed, their values
+    double t_s;
+    std::uint32_t pattern, changed;
+};
+
+} // namespace
+
+std::size_t RowSpool::add(const std::string &name, bool absent_is_zero) {
+    Column fresh;
+    fresh.name = name;
+    fresh.absent_is_zero = absent_is_zero;
+    columns_.push_back(std::move(fresh));
+    for (Lane &lane : lanes_)
+        for (auto *room : {&lane.columns, &lane.changed_columns}) room->resize(columns_.size());
+    for (Lane &lane : lanes_) lane.changed_bits.resize(columns_.size());
+    if (lanes_.empty()) start_lane();
+    return columns_.size() - 1;
+}
+
+void RowSpool::start_lane() {
+    Lane fresh;
+    fresh.columns.resize(columns_.size());
+    fresh.changed_columns.resize(columns_.size());
+    fresh.changed_bits.resize(columns_.size());
+    lanes_.push_back(std::move(fresh));
+}
+
+void RowSpool::refuse(std::size_t column, double t_s, double value) {
+    if (refused_.empty()) refused_.push_back({column, columns_[column].count, columns_[column].last_s, t_s, value});
+}
+
+// The lane that takes a sample of a time that is not that of its column's row, the row begun; none where the sample is refused.
+RowSpool::Lane *RowSpool::new_row(std::size_t column, double t_s, double value) {
+    Column &to = columns_[column];
+    if (!(t_s > to.last_s && t_s < never)) {
+        refuse(column, t_s, value);
+        return nullptr;
+    }
+    if (!(lanes_[to.lane].now_s <= t_s)) {
+        const auto fits = std::find_if(lanes_.begin(), lanes_.end(), [t_s](const Lane &lane) { return lane.now_s <= t_s; });
+        to.lane = static_cast<std::size_t>(fits - lanes_.begin());
+        if (fits == lanes_.end()) start_lane();
+    }
+    Lane &lane = lanes_[to.lane];
+    if (lane.now_s < t_s) {
+        close_row(lane);
+        lane.now_s = t_s;
+    }
+    return &lane;
+}
+
+void RowSpool::change(Lane &lane, std::size_t column, std::uint64_t bits) {
+    Column &to = columns_[column];
+    const auto value = std::bit_cast<double>(bits);
+    if (!std::isfinite(value)) {
+        --to.count;
+        refuse(column, to.last_s, value);
+        ++to.count;
+    }
+    to.bits = bits;
+    to.all_zero = to.all_zero && value == 0;
+    lane.changed_columns[lane.changed] = static_cast<std::uint32_t>(column);
+    lane.changed_bits[lane.changed++] = bits;
+}
+
+void RowSpool::close_row(Lane &lane) {
+    if (lane.size == 0) return;
+    const auto is_this = [&lane](const std::vector<std::uint32_t> &pattern) {
+        return pattern.size() == lane.size && std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
+    };
+    if (lane.pattern >= patterns_.size() || !is_this(patterns_[lane.pattern])) {
+        lane.pattern = static_cast<std::uint32_t>(std::find_if(patterns_.begin(), patterns_.end(), is_this) - patterns_.begin());
+        if (lane.pattern == patterns_.size())
+            patterns_.emplace_back(lane.columns.begin(), lane.columns.begin() + static_cast<std::ptrdiff_t>(lane.size));
+    }
+    const RowHead head{lane.now_s, lane.pattern, static_cast<std::uint32_t>(lane.changed)};
+    const auto put = [&lane](const void *from, std::size_t size) {
+        const auto *bytes = static_cast<const char *>(from);
+        lane.bytes.insert(lane.bytes.end(), bytes, bytes + size);
+    };
+    put(&head, sizeof head);
+    put(lane.changed_columns.data(), lane.changed * sizeof lane.changed_columns[0]);
+    put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
+    lane.size = lane.changed = 0;
+    if (lane.bytes.size() < chunk_bytes) return;
+    lane.chunks.push_back({scratch_.append(lane.bytes.data(), lane.bytes.size()), lane.bytes.size()});
+    lane.bytes.clear();
+}
+
+// One lane, row after row.
+class RowSpool::Reader {
+  public:
+    Reader(const RowSpool &spool, const Lane &lane) : spool_(spool), lane_(lane) { next(); }
+    double t_s() const { return head_.t_s; } // never: behind the last row
+    std::uint32_t pattern() const { return head_.pattern; }
+    template <typename Do> void each_change(const Do &what) const {
+        const char *columns = row_, *bits = row_ + head_.changed * sizeof(std::uint32_t);
+        for (std::size_t i = 0; i < head_.changed; ++i) {
+            std::uint32_t column = 0;
+            double value = 0;
+            std::memcpy(&column, columns + i * sizeof column, sizeof column);
+            std::memcpy(&value, bits + i * sizeof value, sizeof value);
+            what(column, value);
+        }
+    }
+    void next() {
+        if (at_ == size_ && !open_chunk()) {
+            head_.t_s = never;
+            return;
+        }
+        std::memcpy(&head_, data_ + at_, sizeof head_);
+        row_ = data_ + at_ + sizeof head_;
+        at_ += sizeof head_ + head_.changed * (sizeof(std::uint32_t) + sizeof(std::uint64_t));
+    }
+
+  private:
+    bool open_chunk() {
+        at_ = size_ = 0;
+        if (number_ > lane_.chunks.size()) return false;
+        if (number_ == lane_.chunks.size()) {
+            data_ = lane_.bytes.data();
+            size_ = lane_.bytes.size();
+        } else {
+            const Chunk &chunk = lane_.chunks[number_];
+            loaded_.resize(chunk.size);
+            spool_.scratch_.read(chunk.place, loaded_.data(), chunk.size);
+            data_ = loaded_.data();
+            size_ = chunk.size;
+        }
+        ++number_;
+        return size_ > 0;
+    }
+    const RowSpool &spool_;
+    const Lane &lane_;
+    RowHead head_{};
+    const char *row_ = nullptr, *data_ = nullptr;
+    std::vector<char> loaded_;
+    std::size_t number_ = 0, at_ = 0, size_ = 0;
+};
+
+// The rows of all lanes, straight into the file.
+class RowSpool::Rows {
+  public:
+    Rows(const RowSpool &spool, WholeFile &file) : file_(file) {
+        std::vector<std::uint32_t> place(spool.columns_.size(), left_out);
+        for (std::size_t i = 0; i < place.size(); ++i)
+            if (!spool.columns_[i].left_out()) place[i] = static_cast<std::uint32_t>(columns_++);
+        shown_of_ = place;
+        shown_.resize(columns_);
+        for (const std::vector<std::uint32_t> &pattern : spool.patterns_) {
+            std::vector<std::uint32_t> cells;
+            for (const std::uint32_t column : pattern)
+                if (place[column] != left_out) cells.push_back(place[column]);
+            std::sort(cells.begin(), cells.end());
+            cells_.push_back(std::move(cells));
+        }
+        for (const Lane &lane : spool.lanes_) readers_.emplace_back(spool, lane);
+        room_ = (columns_ + 2) * (number_room + 1) + commas.size();
+        text_.resize(room_ + 65536);
+        to_ = text_.data();
+    }
+    void write() {
+        for (;;) {
+            double now_s = never;
+            for (const Reader &reader : readers_) now_s = std::min(now_s, reader.t_s());
+            if (now_s == never) break;
+            const std::vector<std::uint32_t> *cells = nullptr;
+            for (Reader &reader : readers_) {
+                if (reader.t_s() != now_s) continue;
+                reader.each_change([this](std::uint32_t column, double value) { show(column, value); });
+                cells = cells == nullptr ? &cells_[reader.pattern()] : together(*cells, cells_[reader.pattern()]);
+                reader.next();
+            }
+            if (!cells->empty()) put_row(now_s, *cells);
+        }
+        flush();
+    }
+
+  private:
+    static constexpr std::uint32_t left_out = static_cast<std::uint32_t>(-1);
+    static constexpr std::string_view commas = ",,,,,,,,,,,,,,,,";
+    struct Shown { // the text of what a column holds
+        std::array<char, number_room> text;
+        std::size_t size;
+    };
+    void show(std::uint32_t column, double value) {
+        if (shown_of_[column] == left_out) return;
+        Shown &shown = shown_[shown_of_[column]];
+        shown.size = static_cast<std::size_t>(put_number(shown.text.data(), value) - shown.text.data());
+    }
+    // No column is in two lanes at one time: its times go up.
+    const std::vector<std::uint32_t> *together(const std::vector<std::uint32_t> &a, const std::vector<std::uint32_t> &b) {
+        std::vector<std::uint32_t> both(a.size() + b.size());
+        std::merge(a.begin(), a.end(), b.begin(), b.end(), both.begin());
+        both_ = std::move(both);
+        return &both_;
+    }
+    void put_row(double now_s, const std::vector<std::uint32_t> &cells) {
+        if (static_cast<std::size_t>(text_.data() + text_.size() - to_) < room_) flush();
+        char *to = put_number(to_, now_s);
+        std::size_t at = 0;
+        for (const std::uint32_t cell : cells) {
+            to = put_commas(to, cell + 1 - at);
+            at = cell + 1;
+            const Shown &shown = shown_[cell];
+            std::memcpy(to, shown.text.data(), number_room); // as many bytes always: quicker, and there is room
+            to += shown.size;
+        }
+        to = put_commas(to, columns_ - at);
+        *to++ = '\n';
+        to_ = to;
+    }
+    static char *put_commas(char *to, std::size_t count) {
+        if (count <= commas.size())
+            std::memcpy(to, commas.data(), commas.size());
+        else
+            std::memset(to, ',', count);
+        return to + count;
+    }
+    void flush() {
+        file_.write({text_.data(), static_cast<std::size_t>(to_ - text_.data())});
+        to_ = text_.data();
+    }
+
+    WholeFile &file_;
+    std::vector<Reader> readers_;
+    std::size_t columns_ = 0; // that are written
+    std::vector<std::uint32_t> shown_of_;
+    std::vector<Shown> shown_;
+    std::vector<std::vector<std::uint32_t>> cells_; // of each pattern, in the order of the columns
+    std::vector<std::uint32_t> both_;
+    std::vector<char> text_;
+    std::size_t room_ = 0; // of a row
+    char *to_ = nullptr;
+};
+
+void RowSpool::write(const std::map<std::string, std::string> &header) {
+    for (const Refused &one : refused_)
+        check_sample(columns_[one.column].name, one.index, one.before_s, one.t_s, one.value, scratch_.path());
+    for (Lane &lane : lanes_) close_row(lane);
+    std::vector<std::string> names;
+    for (const Column &column : columns_)
+        if (!column.left_out()) names.push_back(column.name);
+    WholeFile file(scratch_.path());
+    file.write(csv_head(header, names, scratch_.path()));
+    Rows(*this, file).write();
+    file.keep();
+}
+
+} // namespace traction::log

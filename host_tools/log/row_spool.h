@@ -1,0 +1,82 @@
+// row_spool.h - a log that is being made for CSV, kept in the rows in which it comes in.
+//
+// Samples of one time are one row: its time once, which columns it has (a pattern, of which a run has a few), and the values that are not
+// what their column held before. What is kept, and read back, goes on from where it was: it stays in the processor's cache, where a block
+// of every column does not. Samples whose time lies before the row that their column's lane is at go to another lane; the lanes are
+// merged when the log is written.
+#pragma once
+
+#include "scratch.h"
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace traction::log {
+
+class RowSpool {
+  public:
+    static constexpr std::size_t chunk_bytes = 32768; // of a lane, kept in memory
+
+    explicit RowSpool(std::string path) : scratch_(std::move(path)) {}
+
+    std::size_t add(const std::string &name, bool absent_is_zero);
+    void put(std::size_t column, double t_s, double value) {
+        Column &to = columns_[column];
+        Lane *lane = &lanes_[to.lane];
+        if (!(t_s == lane->now_s && t_s > to.last_s)) lane = new_row(column, t_s, value);
+        if (lane == nullptr) return;
+        to.last_s = t_s;
+        ++to.count;
+        lane->columns[lane->size++] = static_cast<std::uint32_t>(column);
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        if (bits != to.bits || to.count == 1) change(*lane, column, bits);
+    }
+    void write(const std::map<std::string, std::string> &header); // whole or not at all; throws LogError
+
+  private:
+    struct Column {
+        std::uint64_t bits = 0; // of the last value
+        double last_s = -std::numeric_limits<double>::infinity();
+        std::size_t count = 0, lane = 0;
+        bool absent_is_zero = false, all_zero = true;
+        std::string name;
+        bool left_out() const { return count == 0 || (absent_is_zero && all_zero); }
+    };
+    struct Chunk {
+        std::uint64_t place;
+        std::size_t size;
+    };
+    struct Lane {
+        double now_s = -std::numeric_limits<double>::infinity(); // of the row that is open
+        std::size_t size = 0, changed = 0;                       // of it
+        std::vector<std::uint32_t> columns;                      // in the order in which they came; room for all
+        std::vector<std::uint32_t> changed_columns;
+        std::vector<std::uint64_t> changed_bits;
+        std::uint32_t pattern = 0; // of the row before
+        std::vector<char> bytes;
+        std::vector<Chunk> chunks; // on the disk
+    };
+    struct Refused { // the first sample that cannot stand in a log
+        std::size_t column, index;
+        double before_s, t_s, value;
+    };
+    class Reader;
+    class Rows;
+    Lane *new_row(std::size_t column, double t_s, double value);
+    void change(Lane &lane, std::size_t column, std::uint64_t bits);
+    void close_row(Lane &lane);
+    void start_lane();
+    void refuse(std::size_t column, double t_s, double value);
+
+    Scratch scratch_;
+    std::vector<Column> columns_;
+    std::vector<Lane> lanes_;
+    std::vector<std::vector<std::uint32_t>> patterns_;
+    std::vector<Refused> refused_; // one at most
+};
+
+} // namespace traction::log
