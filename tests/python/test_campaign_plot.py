@@ -300,7 +300,7 @@ def test_the_command_line_drives_plots_and_tells(tmp_path):
 
 
 def test_the_cost_of_a_drive_is_measured(tmp_path):
-    words = ["--drives", "4", "12", "--duration", "1", "--parent", "2000", "--json", "cost.json"]
+    words = ["--drives", "4", "12", "--duration", "1", "--parent", "10000", "--json", "cost.json"]
     done = subprocess.run([sys.executable, "-m", "traction.campaigns.cost", *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     told = json.loads((tmp_path / "cost.json").read_text())
@@ -318,7 +318,7 @@ def test_the_cost_of_a_drive_is_measured(tmp_path):
     lines = done.stdout.splitlines()
     assert (
         lines[-2].split()[0] == "12"
-        and lines[-1].startswith("the parent alone, 2000 drives")
+        and lines[-1].startswith("the parent alone, 10000 drives")
         and "of cores x single" in done.stdout
         and "the drive alone" in done.stdout
     )

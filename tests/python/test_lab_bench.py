@@ -116,7 +116,20 @@ def test_a_row_tells_the_truth_what_was_said_and_the_time_apart(reference):
         if row["hidden_category"] == "one":
             assert row["floor"] > 0 and row["detectability"] > 0
     assert any(json.loads(row["intervals"]) for row in rows)
-    assert not list(reference.folder.glob("scratch")) and not list((reference.folder / "inbox").iterdir())
+    assert not list(reference.folder.glob("scratch*")) and not list((reference.folder / "inbox").iterdir())
+
+
+@needs_build
+def test_a_run_begins_beside_what_a_killed_ones_programs_still_write(tmp_path, monkeypatch):
+    spec = LabSpec.of(SMALL)
+    left = Path(spec.task(tmp_path).scratch)
+    (left / "under_way.csv").write_text("t_s")
+    monkeypatch.setattr(shutil, "rmtree", lambda *_, **__: None)  # what somebody writes into is not taken away
+    own = Path(spec.task(tmp_path).scratch)
+    assert own != left and own.is_dir() and not list(own.iterdir()) and (left / "under_way.csv").is_file()
+    monkeypatch.undo()
+    spec.task(tmp_path)
+    assert not left.is_dir() and not own.is_dir()
 
 
 @needs_build

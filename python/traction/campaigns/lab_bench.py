@@ -17,6 +17,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -260,11 +261,17 @@ class LabSpec:
         return pa.schema([*fields, apart("lab_cpu_s", number)])
 
     def task(self, folder: str | os.PathLike[str]) -> LabTask:
-        """What its workers are given. Logs lie in `scratch`, which a killed run leaves behind and the next one empties."""
-        scratch = Path(folder).resolve() / "scratch"
-        shutil.rmtree(scratch, ignore_errors=True)
+        """What its workers are given. Logs lie in a `scratch-*` of this run: those of a killed one may still be written."""
+        clear_scratch(folder)
+        scratch = Path(folder).resolve() / f"scratch-{uuid.uuid4().hex}"
         scratch.mkdir()
         return LabTask(self.kind, self.programs, self.duration_s, str(scratch))
+
+
+def clear_scratch(folder: str | os.PathLike[str]) -> None:
+    """Takes away the logs that a bench's runs left in a campaign's folder, as far as nobody writes there any more."""
+    for left in Path(folder).glob("scratch-*"):
+        shutil.rmtree(left, ignore_errors=True)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -14,7 +13,7 @@ from typing import Any
 from .. import _html
 from .._errors import CampaignError
 from . import cluster
-from .lab_bench import LabSpec, LabTable, plan_of, read_plan, tables_of
+from .lab_bench import LabSpec, LabTable, clear_scratch, plan_of, read_plan, tables_of
 from .picture import check_ending, draw
 from .plan import Plan
 from .points import read_points
@@ -193,7 +192,7 @@ def _run(spec: Plan, store: Store, workers: int, scheduler: Any, progress: Calla
             told = now
             rate = (done - before) / max(now - began, 1e-9)
             progress(Progress(done, failed, len(rows), rate, (len(rows) - done) / rate))
-    shutil.rmtree(store.folder / "scratch", ignore_errors=True)  # a bench's logs
+    clear_scratch(store.folder)
 
 
 def bar(title: str) -> Callable[[Progress], None]:
