@@ -10,15 +10,6 @@
 
 namespace traction::log {
 
-namespace {
-
-struct RowHead { // a row as it is kept: this, the columns that changed, their values
-    double t_s;
-    std::uint32_t pattern, changed;
-};
-
-} // namespace
-
 std::size_t RowSpool::add(const std::string &name, bool absent_is_zero) {
     Column fresh;
     fresh.name = name;

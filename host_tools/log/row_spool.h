@@ -46,6 +46,10 @@ class RowSpool {
         std::string name;
         bool left_out() const { return count == 0 || (absent_is_zero && all_zero); }
     };
+    struct RowHead { // a row as it is kept: this, the columns that changed, their values
+        double t_s;
+        std::uint32_t pattern, changed;
+    };
     struct Chunk {
         std::uint64_t place;
         std::size_t size;

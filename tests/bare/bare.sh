@@ -19,8 +19,16 @@ packages=$(awk '$1 == "build" { print $2 }' "$here/cmake/apt-packages.txt")
 # shellcheck disable=SC2086
 "$inside" apt-get install -s --no-install-recommends $packages >"$base/$suite.plan.log" 2>&1 || die "apt cannot install the build's packages ($base/$suite.plan.log)"
 say "packages: $(grep -c '^Inst ' "$base/$suite.plan.log") to install, $("$inside" apt-get install --no-install-recommends --assume-no $packages 2>/dev/null | sed -n 's/^Need to get \(.*\) of archives.*/\1/p; s/^ *Download size: \(.*\)/\1/p' | head -n 1) to download"
+# no_warnings: what the last build said
+no_warnings() {
+    if grep -q 'warning:' "$system/root/traction/build/host/build.log"; then
+        grep 'warning:' "$system/root/traction/build/host/build.log" | sort | uniq -c
+        die "the build warns"
+    fi
+}
 # README's first command: installs, configures, builds, runs
 timed first_demo "$inside" sh -c "${enter}./traction demo"
+no_warnings
 grep '^traction: ' "$base/$suite.first_demo.log" | sed 's/^traction: /bare:   /; s/\(are not here:\).*/\1 .../'
 tail -n 8 "$base/$suite.first_demo.log"
 timed second_demo "$inside" sh -c "${enter}./traction demo"
@@ -31,10 +39,7 @@ if [ -z "${TRACTION_BARE_CACHE-}" ]; then
     "$inside" rm -rf /root/traction/build
     timed configure_and_build "$inside" sh -c "${enter}CCACHE_DISABLE=1 ./traction build"
 fi
-if grep -q 'warning:' "$system/root/traction/build/host/build.log"; then
-    grep 'warning:' "$system/root/traction/build/host/build.log" | sort | uniq -c
-    die "the build warns"
-fi
+no_warnings
 if [ "$run_tests" = yes ]; then
     timed tests "$inside" sh -c "${enter}./traction test"
     grep -E 'tests passed|SKIPPED|Skipped|\*\*\*' "$base/$suite.tests.log" || true
