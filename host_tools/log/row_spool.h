@@ -23,7 +23,9 @@ class RowSpool {
 
     explicit RowSpool(std::string path) : scratch_(std::move(path)) {}
 
+    // A new column; its number. absent_is_zero: left out where it never held anything but 0.
     std::size_t add(const std::string &name, bool absent_is_zero);
+    // A sample, t_s in s. Times of a column go up; the first that does not, or is no number, is refused by write. Throws FileError.
     void put(std::size_t column, double t_s, double value) {
         Column &to = columns_[column];
         Lane *lane = &lanes_[to.lane];
@@ -35,7 +37,8 @@ class RowSpool {
         const auto bits = std::bit_cast<std::uint64_t>(value);
         if (bits != to.bits || to.count == 1) change(*lane, column, bits);
     }
-    void write(const std::map<std::string, std::string> &header); // whole or not at all; throws LogError
+    // The log, whole or not at all, in the order of write_csv. Throws LogError of what was refused, FileError.
+    void write(const std::map<std::string, std::string> &header);
 
   private:
     struct Column {

@@ -38,8 +38,8 @@ if [ -z "${TRACTION_BARE_CACHE-}" ]; then
     # the build alone, from installed packages and without ccache: the figures of docs/performance.md
     "$inside" rm -rf /root/traction/build
     timed configure_and_build "$inside" sh -c "${enter}CCACHE_DISABLE=1 ./traction build"
+    no_warnings
 fi
-no_warnings
 if [ "$run_tests" = yes ]; then
     timed tests "$inside" sh -c "${enter}./traction test"
     grep -E 'tests passed|SKIPPED|Skipped|\*\*\*' "$base/$suite.tests.log" || true

@@ -60,6 +60,12 @@ TEST(Spool, writes_those_bytes_in_whatever_order_the_columns_come) {
             if (k % 50 == 1) spool.put(c, 60 + k * 0.01 - 0.004, k);    // late, between two rows that are there
             if (k % 50 == 2) spool.put(zero, 60 + k * 0.01 + 0.001, 0); // alone in its row, and left out with it
         }
+        const std::size_t p = spool.add("p.x_m"), q = spool.add("q.x_m");
+        for (int k = 0; k < 3000; ++k) { // the last column first; and p, of the first lane, stands behind b, which is in another
+            spool.put(q, 100 + k * 0.01, k);
+            spool.put(p, 100 + k * 0.01, -k);
+            spool.put(b, 100 + k * 0.01, 0.5 * k);
+        }
     };
     const test::File at_once("spool_apart.csv", ""), grown("spool_apart_grown.csv", "");
     Spool memory, disk(grown.path());
