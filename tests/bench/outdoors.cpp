@@ -8,10 +8,10 @@
 
 namespace outdoors {
 
-Echo::Echo(std::uint64_t seed) {
+Echo::Echo(std::uint64_t seed, double depression_deg) {
     Random random{seed * 0x9e3779b1u + 3};
     const double rad = pi / 180, height = 0.3, near = 0.1, far = 2.0, side = 1.2, k2 = 4 * pi * 9.9e9 / 299792458.0;
-    const double c = std::cos(20 * rad), s = std::sin(20 * rad);
+    const double c = std::cos(depression_deg * rad), s = std::sin(depression_deg * rad);
     const auto cells = static_cast<std::size_t>(track_m / grid_m) + 4;
     for (int b = 0; b < bands; ++b) {
         band_[b].assign(cells, 0);
@@ -86,8 +86,8 @@ struct Rover { // four like wheels on soil, one body
 } // namespace
 
 Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
-    const Echo *const echo = now.scatterers ? nullptr : &echo_of(seed);
-    Scatterers *const ground = now.scatterers ? &scatterers_of(seed) : nullptr;
+    const Echo *const echo = now.scatterers ? nullptr : &echo_of(seed, now.depression_deg);
+    Scatterers *const ground = now.scatterers ? &scatterers_of(seed, now.depression_deg) : nullptr;
     FrontEnd front(now.echo_count, now.snr_dB, seed);
     Rattle rattle(seed);
     Random noise{seed * 77 + 5}, accel_noise{seed * 131 + 9}, luck{seed * 991 + 1};
@@ -113,7 +113,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
     std::uint32_t tick = 0;
     int since = 0, samples = 0;
     const int substeps = 50;
-    double heave_accel = 0;
+    double heave_accel = 0, yaw_rim_m = 0;
     for (int k = 0; k < static_cast<int>(now.duration_s / tick_s); ++k, ++tick) {
         const double before = now.closed ? rover.speed : last_speed, shakes = t < now.still_s ? 0 : 1;
         double speed = before, wheel = 0;
@@ -131,11 +131,12 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
             if (now.scatterers) rattle.turn(wheel / radius_m, dt, !now.closed);
             if (t * rate_Hz >= samples + 1) {
                 ++samples;
-                const double z = shakes * now.heave_m * std::sin(2 * pi * now.heave_Hz * t),
+                const double z = shakes * now.heave_m * std::sin(2 * pi * now.heave_Hz * t) + (now.lift_m ? now.lift_m(t) : 0),
                              pitch = shakes * now.pitch_rad * std::sin(2 * pi * 5 * t);
                 const bool dead = now.radar_dead && now.radar_dead(t);
-                const double heard = now.scatterers ? front.filtered(ground->echo(path + 0.3 * pitch, z))
-                                                    : low.step(high.step(now.echo_count * echo->at(path + 0.3 * pitch, z)));
+                const double share = now.echo_share ? now.echo_share(t) : 1;
+                const double heard = now.scatterers ? front.filtered(share * ground->echo(path + 0.3 * pitch, z))
+                                                    : low.step(high.step(share * now.echo_count * echo->at(path + 0.3 * pitch, z)));
                 const double own = dead ? 0.3 : now.scatterers ? 0 : white; // noise of the converter
                 const double count = 512 + now.offset_count + own * noise.normal() +
                                      (dead ? 0 : heard + now.tone_count * std::sin(2 * pi * now.tone_Hz * t));
@@ -148,8 +149,10 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 }
             }
         }
+        yaw_rim_m += now.turn ? tick_s * now.turn(t) : 0;
         heave_accel = -now.heave_m * std::pow(2 * pi * now.heave_Hz, 2) * std::sin(2 * pi * now.heave_Hz * t);
-        const double moves = (speed - before) / tick_s + gravity * std::sin(slope_at(t));
+        const double felt = now.accel_more ? now.accel_more(t) : 0; // beside what the body does
+        const double moves = (speed - before) / tick_s + gravity * std::sin(slope_at(t)) + felt;
         const double accel = (now.scatterers ? rattle.accel(moves, now.accel_bias, now.accel_noise, wheel / radius_m / (2 * pi))
                                              : moves + now.accel_bias + now.accel_noise * accel_noise.normal()) +
                              shakes * 0.3 * now.pitch_rad * std::pow(2 * pi * 5, 2) * -std::sin(2 * pi * 5 * t) -
@@ -169,7 +172,8 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
         frame.elapsed_ticks = static_cast<std::uint32_t>(since);
         frame.time_us = 1000000u + tick * 10000u;
         for (int i = 0; i < WHEEL_COUNT; ++i) {
-            frame.encoder_count[i] = static_cast<std::int32_t>(std::floor((now.scatterers ? rattle.angle(i) : angle) * 6000 / (2 * pi)));
+            const double turned = (now.scatterers ? rattle.angle(i) : angle) + (i % 2 == 0 ? -yaw_rim_m : yaw_rim_m) / radius_m;
+            frame.encoder_count[i] = static_cast<std::int32_t>(std::floor(turned * 6000 / (2 * pi)));
             const double current = now.closed ? rover.current : 0.3;
             frame.current_count[i] = static_cast<std::uint16_t>(std::clamp(2048 + current / 0.002 + 5 * accel_noise.normal(), 1.0, 4094.0));
         }

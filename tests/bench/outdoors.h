@@ -15,6 +15,8 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace outdoors {
@@ -26,7 +28,7 @@ inline constexpr double radar_Hz = 512, tick_s = 0.01, radius_m = 0.057, gravity
 // (1) on a grid along the track; bands of depression.
 class Echo {
   public:
-    explicit Echo(std::uint64_t seed);
+    Echo(std::uint64_t seed, double depression_deg);
     double at(double x_m, double z_m) const;
 
   private:
@@ -36,10 +38,11 @@ class Echo {
     double sine_[bands] = {};
 };
 
-inline const Echo &echo_of(std::uint64_t seed) {
-    static std::map<std::uint64_t, Echo> cache;
-    const auto found = cache.find(seed);
-    return found != cache.end() ? found->second : cache.emplace(seed, Echo(seed)).first->second;
+inline const Echo &echo_of(std::uint64_t seed, double depression_deg = 20) {
+    static std::map<std::pair<std::uint64_t, double>, Echo> cache;
+    const std::pair key(seed, depression_deg);
+    const auto found = cache.find(key);
+    return found != cache.end() ? found->second : cache.emplace(key, Echo(seed, depression_deg)).first->second;
 }
 
 struct Case {
@@ -61,6 +64,11 @@ struct Case {
     bool scatterers = false;                               // the second generator's echo, accelerometer and wheels, scatterers.h
     bool gyros = false; // all three, with offset and noise; a slope then comes within 0.1 s, as far as a body can pitch
     std::function<double(double)> gyro_y_more, gyro_x_more; // what they read too much [rad/s]
+    double depression_deg = 20;                             // of the radar as it is mounted; the firmware's template has 20
+    std::function<double(double)> echo_share;               // amplitude of the ground's echo over echo_count: a puddle, other ground
+    std::function<double(double)> lift_m;                   // of the radar: a kerb
+    std::function<double(double)> accel_more;               // what the accelerometer reads too much: a blow, warmth [m/s^2]
+    std::function<double(double)> turn;                     // rim speed that the right wheels have more, the left ones less [m/s]
     // closed loop
     bool closed = false;
     bool coasts = false; // in mode stop

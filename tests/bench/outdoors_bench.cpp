@@ -5,7 +5,7 @@
 // begins after S seconds of standing, so that the gyros' offsets are known, and half a second of setting off. Exit 1 when a row misses its
 // goal: error <= 4 cm/s, or NEES <= 2, or a fault within 0.5 s; never a wrong sign for more than 0.5 s; closed loops within 0.1 m/s of
 // their command from 1.5 s on, without a fault.
-#include "tests/bench/outdoors.h"
+#include "tests/bench/outdoors_ground.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,16 +20,8 @@ namespace {
 
 using outdoors::Case;
 
-double ramp(double t, double t0, double t1, double v0, double v1) {
-    return t <= t0 ? v0 : t >= t1 ? v1 : v0 + (v1 - v0) * (t - t0) / (t1 - t0);
-}
-
-struct Row {
-    std::string group;
-    Case what;
-    double fault_by_s = -1;  // a fault is an answer when it comes by then
-    std::uint32_t right = 0; // faults that are the truth: wheels that stand or push against the way
-};
+using outdoors::ramp;
+using outdoors::Row;
 
 std::vector<Case> calm() {
     std::vector<Case> all;
@@ -263,6 +255,9 @@ std::vector<Row> rows() {
             add("closed", name, now);
         }
     }
+    for (Row &row : outdoors::ground_rows()) {
+        all.push_back(std::move(row));
+    }
     return all;
 }
 
@@ -276,6 +271,7 @@ void stand_first(Row &row, double stood) {
     now.duration_s += late, now.settle_s += late, now.still_s = stood;
     row.fault_by_s += row.fault_by_s >= 0 ? late : 0;
     later(now.slope), later(now.radar_dead), later(now.radar_silent);
+    later(now.echo_share), later(now.lift_m), later(now.accel_more), later(now.turn);
     for (auto *of : {&now.speed, &now.wheel}) {
         if (*of) *of = [=, inner = *of](double t) { return t > late ? inner(t - late) : ramp(t, stood, late, 0, inner(0)); };
     }

@@ -27,7 +27,8 @@ clutter::Biquad low_pass(double corner_Hz, double rate_Hz, double q) {
 
 } // namespace
 
-Scatterers::Scatterers(std::uint64_t seed) : seed_(seed) {
+Scatterers::Scatterers(std::uint64_t seed, double depression_deg)
+    : seed_(seed), cosine_(std::cos(depression_deg * pi / 180)), sine_(std::sin(depression_deg * pi / 180)) {
     double power = 0;
     constexpr int places = 1000; // over 5 m
     for (int i = 0; i < places; ++i) {
@@ -54,7 +55,7 @@ const std::vector<Scatterers::Point> &Scatterers::column(int index) {
 
 double Scatterers::gain(const Point &point, double x_m) const {
     const double x = point.x - x_m, down = height_m - point.z, r2 = x * x + point.y * point.y + down * down, r = std::sqrt(r2);
-    const double c = std::cos(pi / 9), s = std::sin(pi / 9), ahead = (x * c + down * s) / r;
+    const double c = cosine_, s = sine_, ahead = (x * c + down * s) / r;
     if (x <= 0 && ahead <= 0) {
         return 0;
     }

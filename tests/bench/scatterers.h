@@ -16,13 +16,14 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace outdoors {
 
 class Scatterers {
   public:
-    explicit Scatterers(std::uint64_t seed);
+    explicit Scatterers(std::uint64_t seed, double depression_deg = 20);
     // Radar at x along the track, z above its height: (1), mean square 1; at z 0 interpolated, as it is the same in every drive.
     double echo(double x_m, double z_m);
 
@@ -37,6 +38,7 @@ class Scatterers {
     const float *samples(int cell);
 
     std::uint64_t seed_;
+    double cosine_, sine_; // of the depression
     std::map<int, std::vector<Point>> columns_;
     std::map<int, std::vector<float>> sampled_;
     int cell_ = -1000000;
@@ -44,10 +46,11 @@ class Scatterers {
     double scale_ = 1;
 };
 
-inline Scatterers &scatterers_of(std::uint64_t seed) {
-    static std::map<std::uint64_t, Scatterers> cache;
-    const auto found = cache.find(seed);
-    return found != cache.end() ? found->second : cache.emplace(seed, Scatterers(seed)).first->second;
+inline Scatterers &scatterers_of(std::uint64_t seed, double depression_deg = 20) {
+    static std::map<std::pair<std::uint64_t, double>, Scatterers> cache;
+    const std::pair key(seed, depression_deg);
+    const auto found = cache.find(key);
+    return found != cache.end() ? found->second : cache.emplace(key, Scatterers(seed, depression_deg)).first->second;
 }
 
 // The converter's count of an echo: front end, noise, hum, steps.
