@@ -24,13 +24,8 @@ static void release(ground_speed_state_t *state)
 // The value's window, with the sign that is held; the bias may have jumped.
 static void take_held(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
-    ground_speed_track_t track = ground_speed_best_of(state);
-    const float tau = state->value_tau_s;
-    track.speed_m_s = state->held_sign * state->value_m_s - tau * track.bias_m_s2 + state->value_change_m_s;
-    track.p_bb += config->agile_m2_s4;
-    track.p_vb = -tau * track.p_bb;
-    track.p_vv = state->value_noise_m2_s2 + tau * tau * track.p_bb;
-    ground_speed_hold(config, &track);
+    const ground_speed_track_t track =
+        ground_speed_told(config, state, state->held_sign, state->bias_m_s2, state->p_bb + config->agile_m2_s4);
     ground_speed_keep_best(state, &track);
     state->other_alive = false;
     state->rolls_ticks = 0;

@@ -78,6 +78,9 @@ typedef struct {
 
 ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
                                             const ground_speed_track_t *track, float accel_m_s2);
+// A track of which nothing is known but the last value with that sign, and a bias.
+ground_speed_track_t ground_speed_told(const ground_speed_config_t *config, const ground_speed_state_t *state, float sign, float bias_m_s2,
+                                       float p_bb);
 void ground_speed_update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s, float wheel_m_s);
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);

@@ -94,11 +94,11 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
     state->against = !against ? 0 : state->against + (state->against >= 1000 ? 0 : state->rolls ? 2 : 1);
     if (state->against >= config->against_values) {
         const ground_speed_track_t best = ground_speed_best_of(state);
-        ground_speed_split(state, &state->other, &best);
-        state->other.at.speed_m_s = -best.speed_m_s;
-        state->other.at.bias_m_s2 = 2.0f * state->value_accel_m_s2 - best.bias_m_s2; // (2) of the mirror image
-        state->other.at.p_vb = 0.0f;
-        ground_speed_hold(config, &state->other.at);
+        const float bias = 2.0f * state->value_accel_m_s2 - best.bias_m_s2;                 // (2) of the mirror image
+        const float window_m2_s2 = (float)config->window->ticks * state->speed_noise_m2_s2; // of V over it
+        const float p_bb = best.p_bb + 4.0f * window_m2_s2 * ground_speed_square(config->window->per_s);
+        const ground_speed_track_t mirror = ground_speed_told(config, state, best.speed_m_s < 0.0f ? 1.0f : -1.0f, bias, p_bb);
+        ground_speed_split(state, &state->other, &mirror);
         state->odds = config->against_odds;
         state->other_alive = true;
         state->against = 0;

@@ -55,6 +55,22 @@ ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config,
     return out;
 }
 
+// Of the value that came a tick or two ago; +-1.
+ground_speed_track_t ground_speed_told(const ground_speed_config_t *config, const ground_speed_state_t *state, float sign, float bias_m_s2,
+                                       float p_bb)
+{
+    const float tau = state->value_tau_s;
+    ground_speed_track_t out = {
+        .speed_m_s = sign * state->value_m_s - tau * bias_m_s2 + state->value_change_m_s,
+        .bias_m_s2 = bias_m_s2,
+        .p_vv = state->value_noise_m2_s2 + tau * tau * p_bb,
+        .p_vb = -tau * p_bb,
+        .p_bb = p_bb,
+    };
+    ground_speed_hold(config, &out);
+    return out;
+}
+
 static const float believed_cost = 4.0f; // [1] two standard deviations
 
 // What was believed of the speed, the slope and the sign was a line's.

@@ -85,7 +85,9 @@ void add_starts(Rows &all) {
 void add_turns(Rows &all) {
     for (const double rim : {0.1, 0.3}) {
         Case now;
-        now.speed = [](double t) { return t < 5 ? 0.3 * ramp(t, 1, 1.5, 0, 1) * ramp(t, 4, 4.5, 1, 0) : t < 10 ? 0 : ramp(t, 10, 10.5, 0, 0.3); };
+        now.speed = [](double t) {
+            return t < 5 ? 0.3 * ramp(t, 1, 1.5, 0, 1) * ramp(t, 4, 4.5, 1, 0) : t < 10 ? 0 : ramp(t, 10, 10.5, 0, 0.3);
+        };
         now.turn = [rim](double t) { return ramp(t, 5, 5.2, 0, rim) * ramp(t, 9, 9.2, 1, 0); };
         add(all, "turns on the spot", rim, now);
         now.slope = [](double t) { return t < 5 ? -5 * deg : t > 9.2 ? 5 * deg : 5 * deg * -std::cos((t - 5) * pi / 4.2); };
