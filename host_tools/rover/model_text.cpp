@@ -81,6 +81,7 @@ std::string model_text(const sim::RoverDescription &rover, const std::string &so
     std::string text = "# Made by traction rover from " + rover.name +
                        ".\nformat = \"traction.model/1\"\nname = " + quoted(rover.name + " on " + soil_name) +
                        "\n\n[rover]\nmotion = \"longitudinal\"\n";
+    if (!rover.layout().rigid && !rover.layout().rocker) text += "halves = true # left and right turn against each other\n";
     if (rover.drives[0] >= 0) text += "drives = [" + std::to_string(rover.drives[0]) + ", " + std::to_string(rover.drives[1]) + "]\n";
     text += from_key(rover, "mass_kg", "body", "mass_kg", 0);
     text += "yaw_inertia_kg_m2 = { value = " + number(mass / 12 * (length * length + width * width)) +

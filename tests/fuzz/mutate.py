@@ -28,7 +28,6 @@ CXX_FLAGS = ["-std=c++20", "-O1", "-ffp-contract=off", "-w"]
 KINDS = {"plain": [], "sanitized": SANITIZE}
 SHELL = ["daemon", "parameters", "store", "template_text", "thread", "trace_queue", "trace_text"] # what app_test calls
 NO_JUDGE = ["ulog_test"] # asks nothing of firmware/core
-OUTDOORS = ["tests/loop/outdoors_test.cpp", "tests/bench/outdoors.cpp"] # whole drives, which need nothing but firmware/core either
 RADARS = ["mdu1130", "dj_radar_2", "dj_radar_3", "drs1000"]
 TIMES = 5  # a mutant that takes so many times the processor time of the original does not end; a busy machine changes nothing about it
 
@@ -45,6 +44,13 @@ def must(command, **options):
 
 def cxx():
     return ["ccache", "c++"] if shutil.which("ccache") else ["c++"]
+
+
+def outdoors_sources(root):
+    """What outdoors_test is made of, as its CMakeLists.txt says: whole drives, which need nothing but firmware/core either."""
+    folder = root / "tests/loop"
+    words = re.search(r"traction_test\(outdoors_test\b.*? SOURCES (.*?) LIBS firmware_core\)", (folder / "CMakeLists.txt").read_text()).group(1).split()
+    return [folder / word.replace("${PROJECT_SOURCE_DIR}", str(root)) for word in words]
 
 
 def build_judge(root, out, jobs):
@@ -64,8 +70,8 @@ def build_judge(root, out, jobs):
     for source in tests:
         commands.append([*cxx(), *CXX_FLAGS, f"-I{root}", "-c", source, "-o", base / f"{source.stem}.o"])
     (base / "outdoors").mkdir(exist_ok=True)
-    for source in OUTDOORS:
-        commands.append([*cxx(), *CXX_FLAGS, f"-I{root}", "-c", root / source, "-o", base / "outdoors" / f"{pathlib.Path(source).stem}.o"])
+    for source in outdoors_sources(root):
+        commands.append([*cxx(), *CXX_FLAGS, f"-I{root}", "-c", source, "-o", base / "outdoors" / f"{source.stem}.o"])
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         list(pool.map(must, commands))
     return [base / f"{source.stem}.o" for source in tests if source.stem != "fixed_test"]
@@ -242,8 +248,8 @@ def main():
     table, survivors, judged, others = {}, [], 0, {"invalid": 0, "same": 0}
     idle = list(workers)
     digest = hashlib.sha256()
-    for source in sorted([*(root / "firmware").rglob("*.[ch]"), *(root / "tests/unit").glob("*.*"), *(root / "tests/bench").glob("outdoors.*"),
-                          root / OUTDOORS[0]]):
+    for source in sorted([*(root / "firmware").rglob("*.[ch]"), *(root / "tests/unit").glob("*.*"), *(root / "tests/bench").glob("scatterers.*"),
+                          *(root / "tests/bench").glob("outdoors.*"), root / "tests/loop/outdoors_test.cpp"]):
         digest.update(source.read_bytes())
     kept, stamp, known = out / "verdicts.tsv", digest.hexdigest() + (" plain" if options.plain else ""), {}
     if kept.exists() and kept.read_text().startswith(stamp + "\n"):

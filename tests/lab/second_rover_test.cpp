@@ -7,9 +7,11 @@
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
-#include <stdexcept>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 
 namespace traction::lab {
@@ -51,6 +53,18 @@ TEST(SecondRover, the_reference_model_is_the_shipped_one) {
     EXPECT_EQ(made.rover.at("mass_kg").value, shipped.rover.at("mass_kg").value);
     EXPECT_NEAR(made.rover.at("yaw_inertia_kg_m2").value, shipped.rover.at("yaw_inertia_kg_m2").value, 1e-4);
     EXPECT_NEAR(made.wheel[0].soil.at("mu").value, shipped.wheel[0].soil.at("mu").value, 1e-6); // the shipped one has six digits
+}
+
+// Two halves on a joint are tipped each by its own pull; one stiff chassis, or wheels on rockers, are not.
+TEST(SecondRover, its_model_has_halves_where_the_chassis_has) {
+    const auto halves = [](const sim::RoverDescription &rover) { return parse_model(traction::model_text(rover, "sand"), "made").halves; };
+    const sim::RoverDescription reference = sim::read_rover_file("rovers/lhomme_desages.toml");
+    EXPECT_TRUE(halves(reference));
+    for (const char *soil : {"sand", "gravel", "concrete"})
+        EXPECT_TRUE(read_model("models/rover_" + std::string(soil) + ".toml").halves) << soil;
+    std::ifstream file("rovers/lhomme_desages.toml");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_FALSE(halves(sim::parse_rover(text + "\n[layout]\nrigid = 1\n", "stiff")));
 }
 
 TEST(SecondRover, a_clean_drive_is_explained) {

@@ -161,8 +161,11 @@ claim('a new file and a growing one appear without a reload', async () => {
   copyFileSync(`${folder}/demo_sand_1.csv`, `${folder}/from_afar.csv`);
   await page.waitForSelector('#logs label:has-text("from_afar.csv")');
   await page.waitForTimeout(1500);
-  appendFileSync(`${folder}/from_afar.csv`, '1000,\n');
-  await page.waitForSelector('#logs label:has-text("from_afar.csv"):has-text("growing")');
+  let row = 1000;
+  const grow = setInterval(() => appendFileSync(`${folder}/from_afar.csv`, `${row++},\n`), 300); // it is said until the next look
+  try {
+    await page.waitForSelector('#logs label:has-text("from_afar.csv"):has-text("growing")');
+  } finally { clearInterval(grow); }
   writeFileSync(`${folder}/foreign.csv`, 'a,b\n1,2\n');
   await page.waitForSelector('#logs label:has-text("foreign.csv"):has-text("needs a map")');
   await page.check('#logs input[value="foreign.csv"]');

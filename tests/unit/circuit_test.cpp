@@ -158,6 +158,29 @@ TEST_F(Circuit, an_open_winding_is_named_and_the_rover_drives_on) {
     EXPECT_EQ(trace.actuator.drive, DRIVE_ON);
 }
 
+// One wheel that draws on less voltage than the dead one has is witness enough, whichever of the two has the lower number; one that needs
+// more voltage than the dead one has is none.
+TEST_F(Circuit, any_wheel_is_witness_to_an_open_winding_and_one_that_needs_more_voltage_is_not) {
+    for (const int dead : {0, 3}) {
+        for (const bool less : {true, false}) {
+            SetUp();
+            trace = {};
+            command.mode = MODE_OPEN_LOOP;
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                speed_rad_s[i] = 5;
+                command.duty[i] = static_cast<float>(ke * 5 / supply_V); // no voltage is left, no current flows
+            }
+            command.duty[dead] += 0.1f;                    // 0.72 V, 0.22 A, were it whole
+            command.duty[3 - dead] += less ? 0.05f : 0.2f; // the one other that draws
+            open[dead] = true;
+            run(100);
+            EXPECT_EQ(trace.faults & FAULT_MOTOR_OPEN, less ? static_cast<uint32_t>(FAULT_MOTOR_OPEN) : 0u) << dead << less;
+            EXPECT_EQ(trace.fault_wheels, less ? 1u << static_cast<uint32_t>(dead) : 0u) << dead << less;
+            open[dead] = false;
+        }
+    }
+}
+
 // A bridge whose dead time takes 1.5 V, the most of the catalogue, passes no current on less: no encoder and no winding is to blame.
 TEST_F(Circuit, a_dead_band_of_the_bridges_is_neither_a_frozen_encoder_nor_an_open_winding) {
     for (const double load_Nm : {0.0, 0.05, 0.15})

@@ -54,6 +54,33 @@ TEST(ControlTrace, holds_torque_and_traction_of_its_own_current_and_speed) {
     for (int i = 1; i < WHEEL_COUNT; ++i) EXPECT_GT(last.wheel[i].torque_Nm, last.wheel[i - 1].torque_Nm); // each its own
 }
 
+// The bias is the filter's; a wheel's saturation is forgotten in the first tick without one.
+TEST(ControlTrace, holds_the_bias_of_the_accelerometer_and_the_saturation_of_its_own_tick) {
+    const control_config_t config = rover_config_default();
+    control_state_t state;
+    control_reset(&config, &state);
+    command_t command = {};
+    command.mode = MODE_OPEN_LOOP;
+    int told = 0;
+    for (uint32_t tick = 0; tick < 200; ++tick) {
+        sensor_frame_t frame = rolling_frame(tick);
+        frame.accel_x_count = 100;
+        command.duty[1] = 0.2f;
+        command.mode = tick % 20 < 10 ? MODE_WHEEL_SPEED : MODE_STOP;
+        for (float &speed : command.wheel_speed_rad_s) speed = 1000; // beyond any duty
+        const trace_t trace = control_step(&config, &state, &command, &frame);
+        EXPECT_EQ(trace.accel_bias_m_s2, state.ground_speed.bias_m_s2) << tick;
+        told += trace.accel_bias_m_s2 < 0.0f || trace.accel_bias_m_s2 > 0.0f ? 1 : 0;
+        bool any = false;
+        for (const wheel_trace_t &wheel : trace.wheel) any = any || wheel.saturated;
+        EXPECT_EQ(state.saturated, any) << tick;
+        if (trace.mode == MODE_STOP) {
+            EXPECT_FALSE(any) << tick;
+        }
+    }
+    EXPECT_GT(told, 50);
+}
+
 std::vector<float> duties(float slip_ref) {
     command_t command = {};
     command.mode = MODE_SLIP;

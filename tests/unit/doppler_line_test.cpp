@@ -94,6 +94,34 @@ TEST(DopplerLine, takes_a_line_off_white_noise_and_leaves_the_noise) {
     }
 }
 
+// Cells of (2) are 0.25 Hz wide: between them a parabola through three half cells tells the place, wherever in a cell it is.
+TEST(DopplerLine, the_place_between_two_cells_is_told) {
+    for (int part = 0; part < 48; ++part) {
+        const double Hz = 50 + 0.5 * part / 48 + 0.003;
+        std::vector<double> counts;
+        for (int n = 0; n < 512 * 10; ++n) counts.push_back(100 * std::cos(2 * pi * Hz * n / rate_Hz + 0.7 * part));
+        const Heard heard = listen(counts, 25);
+        ASSERT_GT(heard.found, 0) << Hz;
+        EXPECT_NEAR(heard.Hz, Hz, 0.01) << part;
+    }
+}
+
+// Samples that go by unseen end the block that they fall into, and those before it; within a block they are only counted.
+TEST(DopplerLine, a_skip_forgets_the_blocks_that_it_breaks) {
+    doppler_line_t line = {};
+    doppler_line_suggest(&line, 25);
+    line.re = 7, line.im = -9, line.blocks = 4, line.next = 10;
+    doppler_line_skip(&line, DOPPLER_LINE_BLOCK - 11);
+    EXPECT_EQ(line.next, DOPPLER_LINE_BLOCK - 1u);
+    EXPECT_EQ(line.re, 7);
+    EXPECT_EQ(line.blocks, 4);
+    doppler_line_skip(&line, 1);
+    EXPECT_EQ(line.next, static_cast<std::uint32_t>(DOPPLER_LINE_BLOCK));
+    EXPECT_EQ(line.re, 0);
+    EXPECT_EQ(line.im, 0);
+    EXPECT_EQ(line.blocks, 0);
+}
+
 // 33.3 Hz lies in the middle of the echo of 0.5 m/s, which sways as the sum does.
 TEST(DopplerLine, is_found_inside_the_echo_and_taken_off_it) {
     for (const std::uint64_t seed : {1u, 2u, 3u}) {

@@ -273,4 +273,51 @@ TEST(DopplerSpectrum, a_known_line_within_the_band_is_left_out) {
     }
 }
 
+// What lines leave is a relief if they held more than half of what the other bins do, five bins a line: 3 lines > all.
+TEST(DopplerSpectrum, lines_that_hold_more_than_half_of_what_the_others_do_were_what_was_heard) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const double level : {800.0, 2000.0, 3000.0, 1e5}) {
+        doppler_state_t state = {};
+        state.full = true;
+        double all = 0, lines = 0;
+        for (int k = 0; k < FFT_BINS; k++) {
+            const double power = k == 20 ? level : 100;
+            state.power[k] = static_cast<std::uint64_t>(power * unit);
+            all += k < end_of_band() ? power : 0;
+            lines += k >= 18 && k <= 22 ? power : 0;
+        }
+        ASSERT_GT(std::fabs(3 * lines - all), 100);
+        int looks = 0;
+        for (; looks < 100 && !state.weigh_lines; looks++) {
+            state.due = 1;
+            doppler_step(&config, &state, nullptr, 0);
+        }
+        ASSERT_TRUE(state.weigh_lines) << level;
+        EXPECT_EQ(state.line[0], 1u << 20) << level;
+        doppler_step(&config, &state, nullptr, 0);
+        EXPECT_FALSE(state.weigh_lines);
+        EXPECT_EQ(state.relief_masked, 3 * lines > all) << level;
+        EXPECT_EQ(state.relief > 0, 3 * lines > all) << level;
+    }
+}
+
+// A relief that no line of (3) gave stays one of the other kind; a look at the lines leaves none of those before it.
+TEST(DopplerSpectrum, what_was_relieved_keeps_its_kind_and_old_lines_are_forgotten) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const bool masked : {false, true}) {
+        doppler_state_t state = with(echo(60, 2e4, 10));
+        state.pending = true;
+        state.relief = 3;
+        state.relief_masked = masked;
+        EXPECT_TRUE(doppler_step(&config, &state, nullptr, 0).fresh);
+        EXPECT_EQ(state.relief, 2);
+        EXPECT_EQ(state.relief_masked, masked);
+    }
+    doppler_state_t state = with(echo(60, 2e4, 10));
+    for (std::uint32_t &word : state.line) word = ~0u;
+    state.due = 1;
+    doppler_step(&config, &state, nullptr, 0);
+    for (const std::uint32_t word : state.line) EXPECT_EQ(word, 0u);
+}
+
 } // namespace

@@ -246,4 +246,28 @@ TEST(DopplerStream, a_window_that_a_gap_fills_is_heard_one_call_later_and_knows_
     EXPECT_EQ(out.late_samples, 8 + 2);
 }
 
+// The mean that is taken off is that of the window: its sum is kept by what comes and what goes, and drifts by nothing.
+TEST(DopplerStream, the_sum_of_the_window_stays_that_of_its_samples) {
+    doppler_config_t config = rover_config_default().doppler;
+    for (const int hop : {64, 61, 3, 256}) {
+        config.hop = hop;
+        doppler_state_t state = {};
+        std::uint32_t random = 7;
+        int values = 0;
+        for (int tick = 0; tick < 700; tick++) {
+            std::vector<std::uint16_t> sample(5);
+            for (std::uint16_t &x : sample) {
+                random = random * 1664525u + 1013904223u;
+                x = static_cast<std::uint16_t>(400 + (random >> 16) % 150);
+            }
+            values += doppler_step(&config, &state, sample.data(), 5).fresh ? 1 : 0;
+            if (state.tone.found) break; // what a line leaves in them is doppler_line_test's
+            std::int32_t sum = 0;
+            for (int j = 0; j < state.filled; j++) sum += state.window.sample[j];
+            ASSERT_EQ(state.sum, sum) << "hop " << hop << " tick " << tick;
+        }
+        EXPECT_GT(values, 5) << hop;
+    }
+}
+
 } // namespace

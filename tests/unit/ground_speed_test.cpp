@@ -249,6 +249,36 @@ double expected_variance(const ground_speed_config_t &config, const ground_speed
            static_cast<double>(config.doppler_noise_m2_s2) + static_cast<double>(config.doppler_noise_m_s) * v;
 }
 
+// A rover that stands is sure of it, whatever the last spectra were unlike.
+TEST(GroundSpeed, what_no_spectrum_fits_is_no_doubt_of_a_rover_that_stands) {
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    ground_speed_state_t state;
+    ground_speed_reset(&config, &state);
+    for (int k = 0; k < 300; ++k) {
+        const ground_speed_input_t input = k % 12 == 0 ? with_radar(0, 0, true, 0) : only_accel(0, 0);
+        state.alike_m_s = 0.3f;
+        const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
+        if (out.standstill) {
+            EXPECT_LT(out.std_m_s, 0.05f) << k;
+        }
+    }
+    EXPECT_TRUE(state.standstill);
+}
+
+// For ticks that were missed the newest acceleration stands: one call after three ticks has the speed of three calls.
+TEST(GroundSpeed, missed_ticks_move_the_speed_on_by_their_own_number) {
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    for (const unsigned elapsed : {2u, 3u, 9u}) {
+        ground_speed_state_t one = settled(config, 0.4), each = one;
+        ground_speed_input_t input = only_accel(0.5, 0.4);
+        for (unsigned k = 0; k < elapsed; ++k) ground_speed_step(&config, &each, &input);
+        input.elapsed_ticks = elapsed;
+        ground_speed_step(&config, &one, &input);
+        EXPECT_NEAR(one.speed_m_s, each.speed_m_s, 1e-5) << elapsed;
+        EXPECT_NEAR(one.speed_m_s, 0.4 + 0.005 * elapsed, 2e-4) << elapsed;
+    }
+}
+
 TEST(GroundSpeed, gate_refuses_beyond_three_and_a_half_sigma_and_weighs_what_it_accepts) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     const double v = 0.4;

@@ -203,6 +203,18 @@ TEST_F(DrivingRover, over_current_limits_that_wheel_alone_after_its_i2t) {
     EXPECT_EQ(trace.wheel[1].duty, 1.0f);
 }
 
+// What brakes heats as what drives: i2t knows no sign.
+TEST_F(DrivingRover, a_current_against_the_drive_counts_by_its_square) {
+    config.circuit.contradict_V = 1000; // these currents fit no circuit
+    command.mode = MODE_OPEN_LOOP;
+    frame.current_count[2] = 2048 - 1100; // -2.2 A
+    run(300);
+    EXPECT_EQ(trace.faults, 0u);
+    run(15);
+    EXPECT_EQ(trace.faults, FAULT_OVER_CURRENT);
+    EXPECT_EQ(trace.fault_wheels, 4u);
+}
+
 TEST_F(DrivingRover, a_stalled_wheel_is_limited_after_a_second) {
     turn[0] = 0;
     frame.current_count[0] = 2048 + 800;

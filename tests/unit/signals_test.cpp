@@ -1,4 +1,5 @@
 // What signals.h counts is what it lists: a device or a fault that is added and forgotten there would be silently dead.
+#include "firmware/core/fault_name.h"
 #include "firmware/core/signals.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -36,5 +38,14 @@ TEST(Signals, all_devices_are_all_bits) {
 }
 
 TEST(Signals, every_fault_is_counted) { EXPECT_EQ(FAULT_COUNT, highest("FAULT_") + 1); }
+
+TEST(Signals, every_fault_has_a_name_of_its_own_and_what_is_none_is_said_to_be) {
+    std::set<std::string> names;
+    for (int32_t bit = 0; bit < FAULT_COUNT; bit++) names.insert(fault_name(bit));
+    EXPECT_EQ(names.size(), static_cast<std::size_t>(FAULT_COUNT));
+    EXPECT_EQ(names.count(""), 0u);
+    for (const int32_t bit : {-1, -2147483647, static_cast<int32_t>(FAULT_COUNT), 31, 2147483647})
+        EXPECT_STREQ(fault_name(bit), "unknown fault") << bit;
+}
 
 } // namespace
