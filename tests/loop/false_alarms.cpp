@@ -85,16 +85,23 @@ std::string draw(std::uint64_t seed, double duration_s, bool wide) {
 }
 
 // What motors and sensors are really like: within a tenth of their description.
-std::vector<sim::ActiveEffect> unlike(std::uint64_t seed, bool wide) {
+std::string unlike(std::uint64_t seed, bool wide) {
     sim::Random random(seed, "unlike");
-    std::vector<sim::ActiveEffect> effects;
-    if (random.below(2) == 0) effects.push_back(sim::parse_effect("voltage_gain:change=" + number(random.uniform(-0.05, 0.05))));
-    if (random.below(2) == 0)
-        effects.push_back(
-            sim::parse_effect("current_gain:change=" + number(random.uniform(-0.1, 0.1)) + ",wheel=" + std::to_string(random.below(4))));
-    if (wide && random.below(2) == 0) effects.push_back(sim::parse_effect("mass_offset_x:offset_m=" + number(random.uniform(-0.03, 0.03))));
-    return effects;
+    std::string text;
+    const auto effect = [&](const char *name, const char *parameter, double size) {
+        text += std::string("[[effect]]\nname = \"") + name + "\"\n" + parameter + " = " + number(size) + "\n";
+    };
+    if (random.below(2) == 0) effect("voltage_gain", "change", random.uniform(-0.05, 0.05));
+    if (random.below(2) == 0) {
+        effect("current_gain", "change", random.uniform(-0.1, 0.1));
+        text += "wheel = " + std::to_string(random.below(4)) + "\n";
+    }
+    if (wide && random.below(2) == 0) effect("mass_offset_x", "offset_m", random.uniform(-0.03, 0.03));
+    return text;
 }
+
+// Every second drive is a restart of which nothing is known.
+bool is_warm(std::uint64_t seed) { return seed % 2 == 0; }
 
 } // namespace
 
@@ -102,7 +109,9 @@ int main(int argc, char **argv) {
     const bool wide = std::string(argv[argc - 1]) == "wide";
     argc -= wide ? 1 : 0;
     if (argc == 3 && std::string(argv[1]) == "scenario") {
-        std::fputs(draw(static_cast<std::uint64_t>(std::atoll(argv[2])), 60, wide).c_str(), stdout);
+        const auto seed = static_cast<std::uint64_t>(std::atoll(argv[2]));
+        if (is_warm(seed)) std::puts("# begins with windings taken to be warm, which a scenario cannot say");
+        std::fputs((draw(seed, 60, wide) + unlike(seed, wide)).c_str(), stdout);
         return 0;
     }
     const double hours = argc > 1 ? std::atof(argv[1]) : 10;
@@ -112,10 +121,9 @@ int main(int argc, char **argv) {
     std::uint64_t alarms = 0;
     for (std::uint64_t seed = first; seed < first + drives; seed++) {
         SimulateOptions options;
-        options.effects = unlike(seed, wide);
         options.record = false;
-        options.warm = seed % 2 == 0; // every second drive is a restart of which nothing is known
-        const auto scenario = sim::parse_scenario(draw(seed, drive_s, wide), "seed " + std::to_string(seed));
+        options.warm = is_warm(seed);
+        const auto scenario = sim::parse_scenario(draw(seed, drive_s, wide) + unlike(seed, wide), "seed " + std::to_string(seed));
         const SimulationResult result = simulate(scenario, options);
         if (result.faults == 0) continue;
         alarms++;
