@@ -15,13 +15,30 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
     ground_speed_weigh_wheels(config, state);
 }
 
+enum {
+    PUSH_TICKS = 100,
+    UNFELT_VALUES = 40
+}; // a window and the loud values after it; five seconds, in which a line is learnt (doppler_line.h)
+
+// (19): what stood and is faster than slow_m_s a second later was pushed, and the accelerometer has felt at least half of it.
+static bool was_pushed(const ground_speed_config_t *config, const ground_speed_state_t *state)
+{
+    const int32_t then = state->integral_q20[((uint32_t)state->head - PUSH_TICKS) % GROUND_SPEED_HISTORY];
+    const float change_m_s = (float)fixed_wrap_difference(state->integral_q20[state->head], then) * (1.0f / 1048576.0f);
+    const float felt_m_s = change_m_s - (float)PUSH_TICKS * config->tick_s * state->bias_m_s2;
+    return fixed_greater(fabsf(felt_m_s), 0.5f * config->slow_m_s);
+}
+
 // Standing: wheels at rest for a while, and either no echo or a speed so low that blocked wheels end it at once; or wheels at rest for long
 // while nothing that the radar says tells of a speed: the accelerometer alone must not drive a parked rover away.
 static bool is_standing(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
     const bool heard = state->unheard_ticks < config->parked_needed; // what was loud before that tells nothing any more
-    if (state->still_ticks < config->still_needed || (heard && state->loud >= config->loud_needed)) {
+    if (state->still_ticks < config->still_needed) {
         return false;
+    }
+    if (heard && state->loud >= config->loud_needed) {
+        return state->standstill && state->loud < UNFELT_VALUES && !was_pushed(config, state);
     }
     const bool slow = state->heard && fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < ground_speed_square(config->slow_m_s);
     const bool parked = state->still_ticks >= config->parked_needed && (!heard || state->loud == 0);

@@ -54,6 +54,9 @@
 // held while (17) holds: an estimate that has passed zero by |d|/4 all the same takes the value with that sign, and its bias is free to
 // jump. (18): wheels whose rim has stayed with the radar's value for half a second (12 % and 2 cm/s slower, 6 % and 1 cm/s faster), and
 // never parted from it within the last three, roll: their sign is a witness of exp(3/2) per value, and asks twice as soon.
+//   |V(t) - V(t - 1 s) - b 1 s| > slow/2                                                (19)
+// What stood and is loud a second later was pushed, and felt it; else the values are a lamp's or a creep's remains, and for five seconds,
+// in which a line is learnt, it stands on. Less than half of it is the noise of a second, and what the bias lags (assumed).
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
