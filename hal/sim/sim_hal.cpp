@@ -66,7 +66,7 @@ void SimHal::advance() {
         fail_motors(t_s);
         plant_.step();
         now_ms_++;
-        sensors_.step(plant_.truth());
+        sensors_.step(i + 1 < steps_per_tick ? plant_.truth_of_body() : plant_.truth()); // of the wheels the last alone is measured
     }
     // the radar's FIFO and the camera's poses wait for whoever reads
     sim::Measurements now;

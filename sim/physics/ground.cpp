@@ -18,14 +18,6 @@ double lattice(std::int64_t i, std::int64_t j, std::uint64_t seed) {
     return static_cast<double>(h >> 11) * (2.0 / 9007199254740992.0) - 1.0;
 }
 
-// Without SSE4.1 std::floor is a call. |x| < 2^63.
-double floor(double x) {
-    const auto below = static_cast<double>(static_cast<std::int64_t>(x));
-    return below > x ? below - 1 : below;
-}
-
-double smooth(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
-
 } // namespace
 
 const Soil &Ground::at(double x_m, double y_m) const {
@@ -45,23 +37,19 @@ double Ground::slope_here_rad(double path_m) const {
     return rise;
 }
 
+void GripCell::go_to(double i_now, double j_now, std::uint64_t seed) {
+    const auto a = static_cast<std::int64_t>(i_now), b = static_cast<std::int64_t>(j_now);
+    *this = {i_now, j_now, {lattice(a, b, seed), lattice(a + 1, b, seed), lattice(a, b + 1, seed), lattice(a + 1, b + 1, seed)}};
+}
+
 double Ground::grip_change(double x_m, double y_m, GripCell &last) const {
     double trend = 0;
     if (gradient_1_m != 0) trend = gradient_1_m * (x_m * math::cos(gradient_direction_rad) + y_m * math::sin(gradient_direction_rad));
     if (grip_noise <= 0) return trend > -0.95 ? trend : -0.95; // some grip is left everywhere
     const double u = x_m / grip_length_m, v = y_m / grip_length_m;
-    const double iu = floor(u), iv = floor(v);
-    if (!(iu == last.i && iv == last.j)) {
-        const auto i = static_cast<std::int64_t>(iu), j = static_cast<std::int64_t>(iv);
-        last = {iu, iv, {lattice(i, j, seed), lattice(i + 1, j, seed), lattice(i, j + 1, seed), lattice(i + 1, j + 1, seed)}};
-    }
-    const double a = smooth(u - iu), b = smooth(v - iv);
-    const double low = last.corner[0] * (1 - a) + last.corner[1] * a;
-    const double high = last.corner[2] * (1 - a) + last.corner[3] * a;
-    // Uniform -1..1 has variance 1/3; the quintic weights keep 0.78355 of it per dimension (the mean of (1-a)^2 + a^2).
-    constexpr double scale = 1.7320508075688772 / 0.78355; // makes the rms 1
-    const double change = trend + grip_noise * scale * (low * (1 - b) + high * b);
-    return change > -0.95 ? change : -0.95;
+    const double i = detail::floor(u), j = detail::floor(v);
+    if (!(i == last.i && j == last.j)) last.go_to(i, j, seed);
+    return detail::grip_between(u - i, v - j, last.corner[0], last.corner[1], last.corner[2], last.corner[3], trend, grip_noise);
 }
 
 } // namespace traction::sim

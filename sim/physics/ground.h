@@ -44,6 +44,7 @@ struct SlopeStep {
 struct GripCell {
     double i = std::numeric_limits<double>::quiet_NaN(), j = i;
     double corner[4]{}; // (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)
+    void go_to(double i_now, double j_now, std::uint64_t seed);
 };
 
 struct Ground {
@@ -68,5 +69,31 @@ struct Ground {
     // Relative change of the grip at a place: value noise, deterministic, rms grip_noise.
     double grip_change(double x_m, double y_m, GripCell &last) const;
 };
+
+// ---- inline: what every wheel of every step calls, and in several wheels side by side becomes vector code (sim/plant/abreast.cpp)
+namespace detail {
+
+// |x| < 2^51. In additions: std::floor is a call without SSE4.1.
+inline double floor(double x) {
+    constexpr double round_by = 6755399441055744.0; // 1.5 * 2^52
+    const double near = (x + round_by) - round_by;
+    return near > x ? near - 1 : near;
+}
+
+inline double smooth(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
+
+// (u, v): the place within its cell.
+inline double grip_between(double u, double v, double low_left, double low_right, double high_left, double high_right, double trend,
+                           double grip_noise) {
+    const double a = smooth(u), b = smooth(v);
+    const double low = low_left * (1 - a) + low_right * a;
+    const double high = high_left * (1 - a) + high_right * a;
+    // Uniform -1..1 has variance 1/3; the quintic weights keep 0.78355 of it per dimension (the mean of (1-a)^2 + a^2).
+    constexpr double scale = 1.7320508075688772 / 0.78355; // makes the rms 1
+    const double change = trend + grip_noise * scale * (low * (1 - b) + high * b);
+    return change > -0.95 ? change : -0.95;
+}
+
+} // namespace detail
 
 } // namespace traction::sim

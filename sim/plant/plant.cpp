@@ -63,6 +63,7 @@ Plant::World::World(const PlantConfig &c)
     if (relief && !config.rover.layout.rocker) place_on_terrain();
     know_bodies();
     take_hinge();
+    know_abreast();
     for (const int i : wheels) {
         if (caster(i)) continue; // a ball has no spin of its own here
         const auto n = static_cast<std::size_t>(i);
@@ -230,7 +231,7 @@ void Plant::World::step() {
     double supply_A = 0;
     for (const int slot : wheels) {
         const auto i = static_cast<std::size_t>(slot);
-        supply_A += duty[i] * drive[i].current_A;
+        supply_A += duty[i] * (abreast.ahead ? abreast.wheels.current_A[i] : drive[i].current_A);
     }
     used_C += supply_A * dt;
     const double supply_V =
@@ -247,14 +248,10 @@ void Plant::World::step() {
     steering.step(dt);
     const Vec3 before = mean_velocity();
     begin_bodies();
-    for (const int i : wheels) {
-        if (caster(i)) {
-            step_caster(i);
-            continue;
-        }
-        step_wheel(i);
-        if (i == turned_by[static_cast<std::size_t>(motor_of(i))].back()) turn(motor_of(i), supply_V);
-    }
+    if (goes_abreast())
+        step_abreast(supply_V);
+    else
+        step_wheels(supply_V);
     push_bodies();
     push_body();
     if (hinge) hold_halves();
@@ -263,6 +260,19 @@ void Plant::World::step() {
 
     if (config.audit) keep_energy();
     observe(before);
+}
+
+void Plant::World::step_wheels(double supply_V) {
+    settle();
+    abreast.holds = false;
+    for (const int i : wheels) {
+        if (caster(i)) {
+            step_caster(i);
+            continue;
+        }
+        step_wheel(i);
+        if (i == turned_by[static_cast<std::size_t>(motor_of(i))].back()) turn(motor_of(i), supply_V);
+    }
 }
 
 void Plant::World::begin_bodies() {
@@ -338,6 +348,10 @@ void Plant::World::observe(const Vec3 &velocity_before) {
     truth.roll_rad = math::asin(ey[2]);
     truth.path_m += truth.v_body_m_s[0] * (steps > 0 ? dt : 0);
     if (std::fabs(truth.v_body_m_s[0]) > 1e-3) direction = truth.v_body_m_s[0] > 0 ? 1 : -1;
+    if (abreast.ahead) {
+        for (std::size_t i = 0; i < truth.wheel.size(); ++i) truth.wheel[i].current_A = abreast.wheels.current_A[i];
+        return;
+    }
     for (const int slot : wheels) {
         const auto i = static_cast<std::size_t>(slot);
         WheelTruth &w = truth.slot(slot);
@@ -371,11 +385,17 @@ void Plant::sag_supply(double sag_V) { world_->sag_V = sag_V; }
 
 void Plant::step() { world_->step(); }
 
-const Truth &Plant::truth() const { return world_->truth; }
+const Truth &Plant::truth() const {
+    world_->settle();
+    return world_->truth;
+}
+
+const Truth &Plant::truth_of_body() const { return world_->truth; }
 
 const Energy &Plant::energy() const { return world_->energy; }
 
 std::uint64_t Plant::state_hash() const {
+    world_->settle();
     std::uint64_t hash = 1469598103934665603ull; // FNV-1a
     const auto mix = [&hash](double value) {
         const auto bits = std::bit_cast<std::uint64_t>(value);

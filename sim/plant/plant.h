@@ -78,6 +78,7 @@ class Plant {
     void step();                           // advances by dt_s
 
     const Truth &truth() const;
+    const Truth &truth_of_body() const; // the same; of the wheels current_A alone is that of the last step. Quicker
     const Energy &energy() const;
     std::uint64_t state_hash() const; // of every state variable's bits
 

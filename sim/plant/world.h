@@ -2,11 +2,13 @@
 // only.
 #pragma once
 
+#include "abreast.h"
 #include "contact.h"
 #include "hinge.h"
 #include "layout.h"
 #include "plant.h"
 #include "rut.h"
+#include "soft_sign.h"
 #include "steering.h"
 
 #include "sim/physics/effects/acting.h"
@@ -26,12 +28,6 @@ namespace traction::sim {
 using Vec3 = std::array<double, 3>;
 
 inline double dot(const Vec3 &a, const Vec3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-inline constexpr double reversal_m_s =
-    0.005; // what rolling does to torque and load turns over this speed: assumed, below any sensor's resolution
-
-// -1..1, the sign of a speed made continuous over `width`.
-inline double soft_sign(double speed, double width) { return std::clamp(speed / width, -1.0, 1.0); }
 
 inline constexpr double half_offset_share = 0.25; // a half's centre lies a quarter of the width beside the middle
 constexpr bool is_left(int slot) { return slot % 2 == 0; }
@@ -55,6 +51,12 @@ struct Plant::World {
     void stand_up(double height_m);
     void place_whole_on_terrain();
     void step();
+    void step_wheels(double supply_V); // one after another
+    void know_abreast();               // whether the four can be stepped side by side (abreast.h)
+    bool goes_abreast() const;         // in this step
+    void step_abreast(double supply_V);
+    void give_abreast(FourGiven &given);
+    void settle();                        // what was stepped side by side goes where all else looks for it
     void step_wheel(int i);               // what the ground does to it
     void turn(int slot, double supply_V); // and its motor's wheels by it
     int motor_of(int slot) const { return motor[static_cast<std::size_t>(slot)]; }
@@ -171,6 +173,16 @@ struct Plant::World {
     Steering steering;
     std::array<RutTrace, wheel_most> trace;
     std::array<GripCell, wheel_most> grip_cell{};
+    struct Abreast {
+        bool can = false, soft = false;
+        bool holds = false; // the wheels' state stands here; and
+        bool ahead = false; // here alone
+        FourKnown known;
+        FourCarriers carriers;
+        FourOrders orders;
+        FourWheels wheels;
+        const FourSteps *steps = nullptr;
+    } abreast;
     struct Applied {
         Vec3 force{};                                                                    // at the contact point, world
         double load_N = 0, resist_N = 0, edge_N = 0, torque_Nm = 0, spin_mean_rad_s = 0; // resist: rolling resistance, signed
