@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <string>
@@ -13,8 +14,9 @@ constexpr double never = std::numeric_limits<double>::infinity(); // the time of
 
 // The shortest text that reads back to the same double.
 void append_number(std::string &text, double value);
-inline constexpr std::size_t number_room = 32; // bytes that put_number may use
-char *put_number(char *to, double value);      // the same, written there; its end
+inline constexpr std::size_t number_room = 32;           // bytes that put_number may use
+char *put_number(char *to, double value);                // the same, written there; its end
+char *put_millionths(char *to, std::int32_t millionths); // put_number of millionths/1e6
 
 // The lines above the rows: names, format, header. Throws LogError with `path` where a key, a value or a name cannot be written.
 std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path);

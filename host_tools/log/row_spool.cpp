@@ -11,22 +11,30 @@
 namespace traction::log {
 
 std::size_t RowSpool::add(const std::string &name, bool absent_is_zero) {
+    if (columns_.size() > std::numeric_limits<std::uint16_t>::max())
+        throw LogError(scratch_.path(), 0, 0, "too many signals for a CSV", "write a ULog (.ulg)");
     Column fresh;
     fresh.name = name;
     fresh.absent_is_zero = absent_is_zero;
     columns_.push_back(std::move(fresh));
-    for (Lane &lane : lanes_)
-        for (auto *room : {&lane.columns, &lane.changed_columns}) room->resize(columns_.size());
-    for (Lane &lane : lanes_) lane.changed_bits.resize(columns_.size());
+    for (Lane &lane : lanes_) make_room(lane);
     if (lanes_.empty()) start_lane();
     return columns_.size() - 1;
 }
 
+void RowSpool::make_room(Lane &lane) const {
+    const std::size_t count = columns_.size();
+    lane.columns.resize(count);
+    lane.whole_columns.resize(count);
+    lane.whole_values.resize(count);
+    lane.changed_columns.resize(count);
+    lane.changed_bits.resize(count);
+    lane.bytes.resize(chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t)));
+}
+
 void RowSpool::start_lane() {
     Lane fresh;
-    fresh.columns.resize(columns_.size());
-    fresh.changed_columns.resize(columns_.size());
-    fresh.changed_bits.resize(columns_.size());
+    make_room(fresh);
     lanes_.push_back(std::move(fresh));
 }
 
@@ -63,8 +71,9 @@ void RowSpool::change(Lane &lane, std::size_t column, std::uint64_t bits) {
         ++to.count;
     }
     to.bits = bits;
+    to.millionths = none;
     to.all_zero = to.all_zero && value == 0;
-    lane.changed_columns[lane.changed] = static_cast<std::uint32_t>(column);
+    lane.changed_columns[lane.changed] = static_cast<std::uint16_t>(column);
     lane.changed_bits[lane.changed++] = bits;
 }
 
@@ -78,18 +87,22 @@ void RowSpool::close_row(Lane &lane) {
         if (lane.pattern == patterns_.size())
             patterns_.emplace_back(lane.columns.begin(), lane.columns.begin() + static_cast<std::ptrdiff_t>(lane.size));
     }
-    const RowHead head{lane.now_s, lane.pattern, static_cast<std::uint32_t>(lane.changed)};
-    const auto put = [&lane](const void *from, std::size_t size) {
-        const auto *bytes = static_cast<const char *>(from);
-        lane.bytes.insert(lane.bytes.end(), bytes, bytes + size);
+    const RowHead head{lane.now_s, lane.pattern, static_cast<std::uint16_t>(lane.whole), static_cast<std::uint16_t>(lane.changed)};
+    char *to = lane.bytes.data() + lane.used;
+    const auto put = [&to](const void *from, std::size_t size) {
+        std::memcpy(to, from, size);
+        to += size;
     };
     put(&head, sizeof head);
+    put(lane.whole_columns.data(), lane.whole * sizeof lane.whole_columns[0]);
+    put(lane.whole_values.data(), lane.whole * sizeof lane.whole_values[0]);
     put(lane.changed_columns.data(), lane.changed * sizeof lane.changed_columns[0]);
     put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
-    lane.size = lane.changed = 0;
-    if (lane.bytes.size() < chunk_bytes) return;
-    lane.chunks.push_back({scratch_.append(lane.bytes.data(), lane.bytes.size()), lane.bytes.size()});
-    lane.bytes.clear();
+    lane.used += head.size();
+    lane.size = lane.whole = lane.changed = 0;
+    if (lane.used < chunk_bytes) return;
+    lane.chunks.push_back({scratch_.append(lane.bytes.data(), lane.used), lane.used});
+    lane.used = 0;
 }
 
 // One lane, row after row.
@@ -98,15 +111,10 @@ class RowSpool::Reader {
     Reader(const RowSpool &spool, const Lane &lane) : spool_(spool), lane_(lane) { next(); }
     double t_s() const { return head_.t_s; } // never: behind the last row
     std::uint32_t pattern() const { return head_.pattern; }
-    template <typename Do> void each_change(const Do &what) const {
-        const char *columns = row_, *bits = row_ + head_.changed * sizeof(std::uint32_t);
-        for (std::size_t i = 0; i < head_.changed; ++i) {
-            std::uint32_t column = 0;
-            double value = 0;
-            std::memcpy(&column, columns + i * sizeof column, sizeof column);
-            std::memcpy(&value, bits + i * sizeof value, sizeof value);
-            what(column, value);
-        }
+    // whole(column, millionths) and other(column, value) of what changed.
+    template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) const {
+        const char *from = each<std::int32_t>(row_, head_.whole, whole);
+        each<double>(from, head_.changed, other);
     }
     void next() {
         if (at_ == size_ && !open_chunk()) {
@@ -115,16 +123,27 @@ class RowSpool::Reader {
         }
         std::memcpy(&head_, data_ + at_, sizeof head_);
         row_ = data_ + at_ + sizeof head_;
-        at_ += sizeof head_ + head_.changed * (sizeof(std::uint32_t) + sizeof(std::uint64_t));
+        at_ += head_.size();
     }
 
   private:
+    template <typename Value, typename Do> static const char *each(const char *columns, std::size_t count, const Do &what) {
+        const char *values = columns + count * sizeof(std::uint16_t);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::uint16_t column = 0;
+            Value value{};
+            std::memcpy(&column, columns + i * sizeof column, sizeof column);
+            std::memcpy(&value, values + i * sizeof value, sizeof value);
+            what(column, value);
+        }
+        return values + count * sizeof(Value);
+    }
     bool open_chunk() {
         at_ = size_ = 0;
         if (number_ > lane_.chunks.size()) return false;
         if (number_ == lane_.chunks.size()) {
             data_ = lane_.bytes.data();
-            size_ = lane_.bytes.size();
+            size_ = lane_.used;
         } else {
             const Chunk &chunk = lane_.chunks[number_];
             loaded_.resize(chunk.size);
@@ -172,7 +191,8 @@ class RowSpool::Rows {
             const std::vector<std::uint32_t> *cells = nullptr;
             for (Reader &reader : readers_) {
                 if (reader.t_s() != now_s) continue;
-                reader.each_change([this](std::uint32_t column, double value) { show(column, value); });
+                reader.each_change([this](std::uint32_t column, std::int32_t millionths) { show(column, millionths, log::put_millionths); },
+                                   [this](std::uint32_t column, double value) { show(column, value, put_number); });
                 cells = cells == nullptr ? &cells_[reader.pattern()] : together(*cells, cells_[reader.pattern()]);
                 reader.next();
             }
@@ -188,10 +208,10 @@ class RowSpool::Rows {
         std::array<char, number_room> text;
         std::size_t size;
     };
-    void show(std::uint32_t column, double value) {
+    template <typename Value> void show(std::uint32_t column, Value value, char *(*put)(char *, Value)) {
         if (shown_of_[column] == left_out) return;
         Shown &shown = shown_[shown_of_[column]];
-        shown.size = static_cast<std::size_t>(put_number(shown.text.data(), value) - shown.text.data());
+        shown.size = static_cast<std::size_t>(put(shown.text.data(), value) - shown.text.data());
     }
     // No column is in two lanes at one time: its times go up.
     const std::vector<std::uint32_t> *together(const std::vector<std::uint32_t> &a, const std::vector<std::uint32_t> &b) {

@@ -1,9 +1,9 @@
 // row_spool.h - a log that is being made for CSV, kept in the rows in which it comes in.
 //
 // Samples of one time are one row: its time once, which columns it has (a pattern, of which a run has a few), and the values that are not
-// what their column held before. What is kept, and read back, goes on from where it was: it stays in the processor's cache, where a block
-// of every column does not. Samples whose time lies before the row that their column's lane is at go to another lane; the lanes are
-// merged when the log is written.
+// what their column held before; most are whole millionths (recorder.h) and kept as such, from which their digits come. What is kept, and
+// read back, goes on from where it was: it stays in the processor's cache, where a block of every column does not. Samples whose time lies
+// before the row that their column's lane is at go to another lane; the lanes are merged when the log is written.
 #pragma once
 
 #include "scratch.h"
@@ -35,23 +35,45 @@ class RowSpool {
         ++to.count;
         lane->columns[lane->size++] = static_cast<std::uint32_t>(column);
         const auto bits = std::bit_cast<std::uint64_t>(value);
-        if (bits != to.bits || to.count == 1) change(*lane, column, bits);
+        if (bits != to.bits || to.millionths != none) change(*lane, column, bits);
+    }
+    // The same of the value millionths/1e6.
+    void put_millionths(std::size_t column, double t_s, std::int32_t millionths) {
+        Column &to = columns_[column];
+        Lane *lane = &lanes_[to.lane];
+        if (!(t_s == lane->now_s && t_s > to.last_s)) lane = new_row(column, t_s, millionths / 1e6);
+        if (lane == nullptr) return;
+        to.last_s = t_s;
+        ++to.count;
+        lane->columns[lane->size++] = static_cast<std::uint32_t>(column);
+        if (millionths == to.millionths) return;
+        to.millionths = millionths;
+        to.all_zero = to.all_zero && millionths == 0;
+        lane->whole_columns[lane->whole] = static_cast<std::uint16_t>(column);
+        lane->whole_values[lane->whole++] = millionths;
     }
     // The log, whole or not at all, in the order of write_csv. Throws LogError of what was refused, FileError.
     void write(const std::map<std::string, std::string> &header);
 
   private:
+    static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
     struct Column {
-        std::uint64_t bits = 0; // of the last value
+        std::uint64_t bits = 0;                                             // of the last value
+        std::int64_t millionths = std::numeric_limits<std::int64_t>::max(); // or, where it came as such, it; none: it did not
         double last_s = -std::numeric_limits<double>::infinity();
         std::size_t count = 0, lane = 0;
         bool absent_is_zero = false, all_zero = true;
         std::string name;
         bool left_out() const { return count == 0 || (absent_is_zero && all_zero); }
     };
-    struct RowHead { // a row as it is kept: this, the columns that changed, their values
+    struct RowHead { // a row as it is kept: this, the columns that changed to whole millionths, their values, the other ones, theirs
         double t_s;
-        std::uint32_t pattern, changed;
+        std::uint32_t pattern;
+        std::uint16_t whole, changed;
+        std::size_t size() const {
+            return sizeof *this + whole * (sizeof(std::uint16_t) + sizeof(std::int32_t)) +
+                   changed * (sizeof(std::uint16_t) + sizeof(std::uint64_t));
+        }
     };
     struct Chunk {
         std::uint64_t place;
@@ -59,12 +81,14 @@ class RowSpool {
     };
     struct Lane {
         double now_s = -std::numeric_limits<double>::infinity(); // of the row that is open
-        std::size_t size = 0, changed = 0;                       // of it
+        std::size_t size = 0, whole = 0, changed = 0;            // of it
         std::vector<std::uint32_t> columns;                      // in the order in which they came; room for all
-        std::vector<std::uint32_t> changed_columns;
+        std::vector<std::uint16_t> whole_columns, changed_columns;
+        std::vector<std::int32_t> whole_values;
         std::vector<std::uint64_t> changed_bits;
         std::uint32_t pattern = 0; // of the row before
-        std::vector<char> bytes;
+        std::vector<char> bytes;   // a chunk and a row
+        std::size_t used = 0;      // of them
         std::vector<Chunk> chunks; // on the disk
     };
     struct Refused { // the first sample that cannot stand in a log
@@ -77,6 +101,7 @@ class RowSpool {
     void change(Lane &lane, std::size_t column, std::uint64_t bits);
     void close_row(Lane &lane);
     void start_lane();
+    void make_room(Lane &lane) const;
     void refuse(std::size_t column, double t_s, double value);
 
     Scratch scratch_;

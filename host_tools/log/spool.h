@@ -30,6 +30,13 @@ class Spool {
         else
             put_in_column(column, t_s, value);
     }
+    // The same of the value millionths/1e6.
+    void put_millionths(std::size_t column, double t_s, std::int32_t millionths) {
+        if (rows_)
+            rows_->put_millionths(column, t_s, millionths);
+        else
+            put_in_column(column, t_s, millionths / 1e6);
+    }
 
     // The columns that hold something, as a log in memory; the spool is empty after it. Only without a path.
     Log take();

@@ -152,6 +152,26 @@ char *put_number(char *to, double value) {
     return std::to_chars(to, to + number_room, value).ptr;
 }
 
+char *put_millionths(char *to, std::int32_t millionths) {
+    if (millionths == 0) {
+        *to = '0';
+        return to + 1;
+    }
+    if (millionths < 0) *to++ = '-';
+    const auto whole = static_cast<std::uint32_t>(std::abs(static_cast<std::int64_t>(millionths)));
+    if (whole < 1000) return put_small(to, whole);
+    const std::uint32_t above = whole / 1000000, below = whole % 1000000;
+    if (above < 10)
+        *to++ = static_cast<char>('0' + above);
+    else
+        to = put_whole(to, above);
+    if (below == 0) return to;
+    *to++ = '.';
+    to = put_pair(put_pair(put_pair(to, below / 10000), below / 100 % 100), below % 100);
+    while (to[-1] == '0') --to;
+    return to;
+}
+
 void append_number(std::string &text, double value) {
     char buffer[number_room];
     text.append(buffer, put_number(buffer, value));

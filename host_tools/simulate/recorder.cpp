@@ -9,9 +9,16 @@
 
 namespace traction {
 
-namespace {
-double tidy(float value) { return std::nearbyint(static_cast<double>(value) * 1e6) / 1e6 + 0.0; }
-} // namespace
+// Rounded to whole millionths.
+void Recorder::put_tidy(std::size_t column, double t_s, float value) {
+    const double millionths = static_cast<double>(value) * 1e6;
+    if (std::fabs(millionths) < 2e9) {
+        constexpr double round_by = 6755399441055744.0; // 1.5 * 2^52: nearbyint without a call
+        spool_.put_millionths(column, t_s, static_cast<std::int32_t>((millionths + round_by) - round_by));
+    } else {
+        put(column, t_s, std::nearbyint(millionths) / 1e6 + 0.0);
+    }
+}
 
 std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
     return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
@@ -94,19 +101,19 @@ double Recorder::exact(float value) {
 void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace) {
     const Wheel &at = wheel_[wheel];
     if ((frame.present & (unsigned{FRAME_ENCODER_0} << static_cast<unsigned>(wheel))) != 0u) {
-        put(at.speed, t_s, tidy(trace.speed_rad_s));
+        put_tidy(at.speed, t_s, trace.speed_rad_s);
         put(at.encoder, t_s, frame.encoder_count[wheel]);
     }
     if ((frame.present & (unsigned{FRAME_CURRENT_0} << static_cast<unsigned>(wheel))) != 0u) {
-        put(at.current, t_s, tidy(trace.current_A));
+        put_tidy(at.current, t_s, trace.current_A);
         put(at.current_count, t_s, frame.current_count[wheel]);
     }
-    put(at.duty, t_s, tidy(trace.duty));
-    put(at.set_speed, t_s, tidy(trace.set_speed_rad_s));
-    put(at.slip, t_s, tidy(trace.slip));
-    put(at.torque, t_s, tidy(trace.torque_Nm));
-    put(at.traction, t_s, tidy(trace.traction_N));
-    put(at.slip_std, t_s, tidy(trace.slip_std));
+    put_tidy(at.duty, t_s, trace.duty);
+    put_tidy(at.set_speed, t_s, trace.set_speed_rad_s);
+    put_tidy(at.slip, t_s, trace.slip);
+    put_tidy(at.torque, t_s, trace.torque_Nm);
+    put_tidy(at.traction, t_s, trace.traction_N);
+    put_tidy(at.slip_std, t_s, trace.slip_std);
     put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
     put(at.saturated, t_s, trace.saturated ? 1 : 0);
     put(at.refused, t_s, trace.encoder_refused ? 1 : 0);
@@ -153,18 +160,18 @@ void Recorder::add_command(double t_s, const command_t &command) {
 }
 
 void Recorder::add_estimates(double t_s, const trace_t &trace) {
-    if ((trace.present & FRAME_BATTERY) != 0u) put(at_.battery, t_s, tidy(trace.battery_voltage_V));
-    if ((trace.present & FRAME_ACCEL) != 0u) put(at_.accel, t_s, tidy(trace.accel_x_m_s2));
-    if ((trace.present & FRAME_GYRO) != 0u) put(at_.gyro, t_s, tidy(trace.gyro_z_rad_s));
-    if (trace.radar_fresh) put(at_.radar_speed, t_s, tidy(trace.radar_speed_m_s));
-    put(at_.speed, t_s, tidy(trace.speed_m_s));
-    put(at_.speed_std, t_s, tidy(trace.speed_std_m_s));
-    put(at_.bias, t_s, tidy(trace.accel_bias_m_s2));
+    if ((trace.present & FRAME_BATTERY) != 0u) put_tidy(at_.battery, t_s, trace.battery_voltage_V);
+    if ((trace.present & FRAME_ACCEL) != 0u) put_tidy(at_.accel, t_s, trace.accel_x_m_s2);
+    if ((trace.present & FRAME_GYRO) != 0u) put_tidy(at_.gyro, t_s, trace.gyro_z_rad_s);
+    if (trace.radar_fresh) put_tidy(at_.radar_speed, t_s, trace.radar_speed_m_s);
+    put_tidy(at_.speed, t_s, trace.speed_m_s);
+    put_tidy(at_.speed_std, t_s, trace.speed_std_m_s);
+    put_tidy(at_.bias, t_s, trace.accel_bias_m_s2);
     put(at_.standstill, t_s, trace.standstill ? 1 : 0);
     put(at_.mode, t_s, trace.mode);
     put(at_.faults, t_s, trace.faults);
     put(at_.fault_wheels, t_s, trace.fault_wheels);
-    put(at_.curvature, t_s, tidy(trace.actuator.curvature_1_m));
+    put_tidy(at_.curvature, t_s, trace.actuator.curvature_1_m);
     put(at_.drive, t_s, trace.actuator.drive);
     put(at_.motor_enable, t_s, trace.actuator.drive == DRIVE_ON || trace.actuator.drive == DRIVE_BRAKE ? 1 : 0);
 }

@@ -31,6 +31,7 @@ class Recorder {
   private:
     std::size_t column(const std::string &name, bool absent_is_zero = false);
     void put(std::size_t column, double t_s, double value) { spool_.put(column, t_s, value); }
+    void put_tidy(std::size_t column, double t_s, float value);
     void add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
     void add_frame(double t_s, const sensor_frame_t &frame);
     void add_command(double t_s, const command_t &command);

@@ -25,15 +25,12 @@ double chord_m(double radius_m, double depth_m) { return std::sqrt(depth_m * (2 
 struct OldRut {
     double log_m, power, reload_N_m3, surface_m; // power: rut^n; reload: k_u
 };
-OldRut old_rut(const Bekker &soil, const SoilConstants &constants, double rut_m) {
-    OldRut rut{};
-    if (rut_m <= 0) return rut;
-    rut.log_m = math::log(rut_m);
-    const double own = soil.reload_N_m4 * rut_m, least = 2 * constants.k_wide * math::exp((soil.n - 1) * rut.log_m);
-    rut.power = math::exp(soil.n * rut.log_m);
-    rut.reload_N_m3 = own > least ? own : least;
-    rut.surface_m = rut_m - constants.k_wide * rut.power / rut.reload_N_m3;
-    return rut;
+inline OldRut old_rut(const Bekker &soil, const SoilConstants &constants, double rut_m) {
+    const double log_m = math::log(rut_m), power = math::exp(soil.n * log_m);
+    const double own = soil.reload_N_m4 * rut_m, least = 2 * constants.k_wide * math::exp((soil.n - 1) * log_m);
+    const double reload = own > least ? own : least, surface = rut_m - constants.k_wide * power / reload;
+    const bool there = rut_m > 0;
+    return {there ? log_m : 0, there ? power : 0, there ? reload : 0, there ? surface : 0};
 }
 
 // Bulldozing: only soil that still stands is pushed.
@@ -57,37 +54,95 @@ SoilConstants soil_constants(const Bekker &soil, double wheel_width_m) {
 
 double rut_surface_m(const Bekker &soil, const SoilConstants &constants, double rut_m) { return old_rut(soil, constants, rut_m).surface_m; }
 
-SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
-    SoilForce out;
-    const double z = contact.sinkage_m < 0.9 * wheel.radius_m ? contact.sinkage_m : 0.9 * wheel.radius_m;
-    const OldRut rut = old_rut(soil, constants, contact.rut_m);
+namespace {
+
+// No early return and no branch but choices between two values: in a loop over wheels it is vector code.
+inline SoilForce bekker_here(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, double sinkage_m, double slip,
+                             double rut_m) {
+    const double deepest = 0.9 * wheel.radius_m, z = sinkage_m < deepest ? sinkage_m : deepest;
+    const OldRut rut = old_rut(soil, constants, rut_m);
     const double surface = rut.surface_m;
-    if (!(z > surface)) return out;
-    const double n = slipped_exponent(soil, contact.slip);
-    double length = chord_m(wheel.radius_m, z);
-    const double k = modulus(soil, constants, wheel.width_m, length);
-    const double power = math::pow(z, n);
-    double compaction = wheel.width_m * k * power * z / (n + 1), rut_power = 0;
-    if (contact.rut_m > 0) {
-        const double d = z - surface, patch = 2 * std::sqrt(2 * wheel.radius_m * d);
-        if (patch < length) length = patch;
-        rut_power = math::exp(n * rut.log_m);
-        const bool deeper = contact.rut_m < z; // the work up to the old depth is done already
-        compaction -= wheel.width_m * k * (deeper ? rut_power : power) * (deeper ? contact.rut_m : z) / (n + 1);
-    }
-    if (z >= contact.rut_m) {
-        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z, power);
-    } else {
-        const double share = (z - surface) / (contact.rut_m - surface);
-        out.normal_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, contact.rut_m, rut_power) * share * std::sqrt(share);
-    }
-    out.largest_N = wheel.strength * (length * wheel.width_m * soil.c_Pa + out.normal_N * constants.tan_phi);
-    out.shear_slip = wheel.shear * soil.K_m / length;
-    const double share = traction_share(TractionLaw::janosi, std::fabs(contact.slip), out.shear_slip);
-    out.traction_N = std::copysign(out.largest_N * share, contact.slip);
-    out.resistance_N = compaction + bulldozing_N(soil, constants, wheel.width_m, z, contact.rut_m) + wheel.hysteresis * out.normal_N;
-    out.torque_Nm = wheel.radius_m * out.traction_N;
+    const double n = slipped_exponent(soil, slip);
+    const double chord = chord_m(wheel.radius_m, z);
+    const double k = modulus(soil, constants, wheel.width_m, chord);
+    const double power = math::pow(z, n), rut_power = math::exp(n * rut.log_m);
+    const bool old = rut_m > 0, deeper = rut_m < z; // the work up to the old depth is done already
+    const double d = z - surface, patch = 2 * std::sqrt(2 * wheel.radius_m * d), shorter = patch < chord ? patch : chord;
+    const double length = old ? shorter : chord;
+    const double done = wheel.width_m * k * (deeper ? rut_power : power) * (deeper ? rut_m : z) / (n + 1);
+    const double compaction = wheel.width_m * k * power * z / (n + 1), left = compaction - done;
+    const double share = (z - surface) / (rut_m - surface);
+    const double fresh_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, z, power);
+    const double again_N = bekker_normal(wheel.width_m, wheel.radius_m, k, n, rut_m, rut_power) * share * std::sqrt(share);
+    const bool there = z > surface;
+    const double normal = z >= rut_m ? fresh_N : again_N;
+    const double largest = wheel.strength * (length * wheel.width_m * soil.c_Pa + normal * constants.tan_phi);
+    const double shear_slip = wheel.shear * soil.K_m / length;
+    const double traction = std::copysign(largest * traction_share(TractionLaw::janosi, std::fabs(slip), shear_slip), slip);
+    const double resistance =
+        (old ? left : compaction) + bulldozing_N(soil, constants, wheel.width_m, z, rut_m) + wheel.hysteresis * normal;
+    SoilForce out;
+    out.normal_N = there ? normal : 0;
+    out.largest_N = there ? largest : 0;
+    out.shear_slip = there ? shear_slip : 1;
+    out.traction_N = there ? traction : 0;
+    out.resistance_N = there ? resistance : 0;
+    out.torque_Nm = there ? wheel.radius_m * traction : 0;
     return out;
+}
+
+} // namespace
+
+SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact) {
+    return bekker_here(soil, constants, wheel, contact.sinkage_m, contact.slip, contact.rut_m);
+}
+
+namespace {
+
+inline void four_bekker(const Bekker &of_soil, const SoilConstants &of_wheel, const SoilWheel &all, const FourSoilContacts &contacts,
+                        FourSoilForces &__restrict out) {
+    const Bekker soil = of_soil; // copies: nothing is loaded in one side of a choice alone
+    const SoilConstants constants = of_wheel;
+    SoilWheel wheel = all;
+    for (std::size_t i = 0; i < 4; ++i) {
+        wheel.strength = contacts.strength[i];
+        const SoilForce one = bekker_here(soil, constants, wheel, contacts.sinkage_m[i], contacts.slip[i], contacts.rut_m[i]);
+        out.normal_N[i] = one.normal_N, out.largest_N[i] = one.largest_N, out.shear_slip[i] = one.shear_slip;
+        out.traction_N[i] = one.traction_N, out.resistance_N[i] = one.resistance_N, out.torque_Nm[i] = one.torque_Nm;
+    }
+}
+
+__attribute__((flatten)) void four_bekker_narrow(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                                                 const FourSoilContacts &contacts, FourSoilForces &out) {
+    four_bekker(soil, constants, wheel, contacts, out);
+}
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TRACTION_WIDE_VECTORS 1
+__attribute__((target("avx2"), flatten)) void four_bekker_avx2(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                                                               const FourSoilContacts &contacts, FourSoilForces &out) {
+    four_bekker(soil, constants, wheel, contacts, out);
+}
+#endif
+
+using FourFunction = void (*)(const Bekker &, const SoilConstants &, const SoilWheel &, const FourSoilContacts &, FourSoilForces &);
+FourFunction four_bekker_in([[maybe_unused]] Vectors vectors) {
+#ifdef TRACTION_WIDE_VECTORS
+    if (vectors != Vectors::narrow) return four_bekker_avx2; // four fill no wider ones
+#endif
+    return four_bekker_narrow;
+}
+
+} // namespace
+
+void bekker_forces_in(Vectors vectors, const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                      const FourSoilContacts &contacts, FourSoilForces &out) {
+    four_bekker_in(vectors)(soil, constants, wheel, contacts, out);
+}
+
+void bekker_forces(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const FourSoilContacts &contacts,
+                   FourSoilForces &out) {
+    static const FourFunction widest = four_bekker_in(has(Vectors::avx2) ? Vectors::avx2 : Vectors::narrow);
+    widest(soil, constants, wheel, contacts, out);
 }
 
 namespace {
@@ -167,7 +222,6 @@ inline void stresses_at(const Arc &arc, const Pressing &p, Stresses &out) {
 // The nodes side by side in the widest vectors that this processor has: the same operations on each, none contracted, so the same bits.
 void stresses_narrow(const Arc &arc, const Pressing &p, Stresses &out) { stresses_at(arc, p, out); }
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TRACTION_WIDE_VECTORS 1
 __attribute__((target("avx2"), flatten)) void stresses_avx2(const Arc &arc, const Pressing &p, Stresses &out) { stresses_at(arc, p, out); }
 __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"), flatten)) void
 stresses_avx512(const Arc &arc, const Pressing &p, Stresses &out) {

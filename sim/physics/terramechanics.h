@@ -52,6 +52,16 @@ SoilConstants soil_constants(const Bekker &soil, double wheel_width_m);
 // (1)-(5). Sinkage <= 0 gives no force.
 SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact);
 
+// (1)-(5) of four wheels of one soil, size and width, a number of each in a place of its own: the same bits.
+struct FourSoilContacts {
+    alignas(32) double strength[4], sinkage_m[4], slip[4], rut_m[4];
+};
+struct FourSoilForces {
+    alignas(32) double normal_N[4], largest_N[4], shear_slip[4], traction_N[4], resistance_N[4], torque_Nm[4];
+};
+void bekker_forces(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const FourSoilContacts &contacts,
+                   FourSoilForces &out); // wheel.strength is not read
+
 // (6).
 inline constexpr int arc_nodes = 16;
 SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact);
@@ -59,6 +69,8 @@ SoilForce arc_force(const Bekker &soil, const SoilConstants &constants, const So
 // How many nodes the arc law takes at once: 2, 4, 8. arc_force takes the most that the processor has; every choice gives the same bits.
 enum class Vectors { narrow, avx2, avx512 };
 bool has(Vectors vectors);
+void bekker_forces_in(Vectors vectors, const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
+                      const FourSoilContacts &contacts, FourSoilForces &out); // the same
 SoilForce arc_force_in(Vectors vectors, const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel,
                        const SoilContact &contact); // one that the processor has
 

@@ -111,11 +111,26 @@ void Plant::World::give_abreast(FourGiven &given) {
     FourWheels &w = abreast.wheels;
     const RoverParameters &r = config.rover;
     const Soil &soil = config.ground.soil;
+    SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, 1, law::shear_stiffness(1, effects.body.shear_change)};
+    std::array<double, wheel_count> rut_m{};
+    for (std::size_t i = 0; i < wheel_count; ++i) rut_m[i] = trace[i].follow(ruts, w.point_m[0][i], w.point_m[1][i], w.sinkage_m[i]);
+    if (config.ground.contact == ContactLaw::bekker) {
+        FourSoilContacts in;
+        FourSoilForces out;
+        for (std::size_t i = 0; i < wheel_count; ++i)
+            in.strength[i] = w.factor[i], in.sinkage_m[i] = w.sinkage_m[i], in.slip[i] = w.law_slip[i], in.rut_m[i] = rut_m[i];
+        bekker_forces(*soil.bekker, constants[0], wheel, in, out);
+        for (std::size_t i = 0; i < wheel_count; ++i) {
+            given.load_N[i] = out.normal_N[i], given.most_N[i] = out.largest_N[i], given.shear_slip[i] = out.shear_slip[i];
+            given.side_ratio[i] = 1, given.resistance_N[i] = out.resistance_N[i];
+            given.by_slip_N[i] = std::fabs(out.traction_N[i]), given.twist_Nm[i] = std::fabs(out.torque_Nm[i]);
+            given.free_N[i] = given.free_Nm[i] = 0;
+        }
+        return;
+    }
     for (std::size_t i = 0; i < wheel_count; ++i) {
-        const double rut = trace[i].follow(ruts, w.point_m[0][i], w.point_m[1][i], w.sinkage_m[i]);
-        const SoilWheel wheel{r.wheel_radius_m, r.wheel_width_m, r.tyre_hysteresis, w.factor[i],
-                              law::shear_stiffness(1, effects.body.shear_change)};
-        const Given one = on_soft(soil, constants[0], config.ground.contact, wheel, {w.sinkage_m[i], w.law_slip[i], rut}, w.still[i]);
+        wheel.strength = w.factor[i];
+        const Given one = on_soft(soil, constants[0], config.ground.contact, wheel, {w.sinkage_m[i], w.law_slip[i], rut_m[i]}, w.still[i]);
         given.load_N[i] = one.soil.normal_N, given.most_N[i] = one.soil.largest_N, given.shear_slip[i] = one.soil.shear_slip;
         given.side_ratio[i] = one.side_ratio, given.by_slip_N[i] = one.by_slip_N, given.twist_Nm[i] = one.twist_Nm;
         given.resistance_N[i] = one.soil.resistance_N;
