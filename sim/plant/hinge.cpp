@@ -1,5 +1,7 @@
 #include "hinge.h"
 
+#include "sim/physics/terramechanics.h"
+
 #include <cstddef>
 
 namespace traction::sim {
@@ -87,7 +89,10 @@ void solve(std::array<Column, row_count> &A, Column &b) {
 
 } // namespace
 
-std::array<HingeLoad, 2> Hinge::loads(const std::array<HingeMotion, 2> &now, double dt_s) const {
+namespace {
+
+inline void loads_here(const Hinge &hinge, const std::array<HingeMotion, 2> &now, double dt_s, std::array<HingeLoad, 2> &out) {
+    const auto &body = hinge.body;
     const double rate = 1 / dt_s;
     const HingeMotion &a = now[0], &b = now[1];
     const BothTurns turn{vector_of(a.turn, b.turn), vector_of(a.turn + 4, b.turn + 4), vector_of(a.turn + 8, b.turn + 8)};
@@ -113,7 +118,7 @@ std::array<HingeLoad, 2> Hinge::loads(const std::array<HingeMotion, 2> &now, dou
         my{W.xz * r[0] - W.xx * r[2], W.yz * r[0] - W.xy * r[2], W.zz * r[0] - W.xz * r[2]},
         mz{W.xx * r[1] - W.xy * r[0], W.xy * r[1] - W.yy * r[0], W.xz * r[1] - W.yz * r[0]};
     const Vector m1 = W(u1), m2 = W(u2), back_1 = cross(m1, r), back_2 = cross(m2, r), whirl = cross(free_spin, r);
-    const double stiff = cfm * rate, lightness = sum(light) + stiff;
+    const double stiff = hinge.cfm * rate, lightness = sum(light) + stiff;
     std::array<Column, row_count> A{};
     A[0][0] = lightness + sum(mx[1] * r[2] - mx[2] * r[1]);
     A[1][0] = sum(my[1] * r[2] - my[2] * r[1]);
@@ -126,7 +131,7 @@ std::array<HingeLoad, 2> Hinge::loads(const std::array<HingeMotion, 2> &now, dou
     A[4][3] = sum(dot(m2, u1));
     A[4][4] = stiff + sum(dot(m2, u2));
 
-    const double back = erp * rate * rate;
+    const double back = hinge.erp * rate * rate;
     Column lambda{};
     for (std::size_t k = 0; k < 3; ++k)
         lambda[k] = -sum(sign * (free_way[k] + whirl[k])) - back * sum(sign * (both(a.at[k], b.at[k]) + r[k]));
@@ -137,11 +142,33 @@ std::array<HingeLoad, 2> Hinge::loads(const std::array<HingeMotion, 2> &now, dou
     solve(A, lambda);
 
     const Vector pull{sign * lambda[0], sign * lambda[1], sign * lambda[2]}, twist = cross(r, pull);
-    std::array<HingeLoad, 2> out;
     for (std::size_t k = 0; k < 3; ++k) {
         const Both sum_Nm = gyroscopic[k] + twist[k] + u1[k] * lambda[3] + u2[k] * lambda[4];
         for (std::size_t n = 0; n < 2; ++n) out[n].force_N[k] = pull[k][n], out[n].torque_Nm[k] = sum_Nm[n];
     }
+}
+
+// The same for a processor whose instructions leave their operands alone: a quarter fewer of them, the same bits.
+using Loads = void (*)(const Hinge &, const std::array<HingeMotion, 2> &, double, std::array<HingeLoad, 2> &);
+void loads_narrow(const Hinge &hinge, const std::array<HingeMotion, 2> &now, double dt_s, std::array<HingeLoad, 2> &out) {
+    loads_here(hinge, now, dt_s, out);
+}
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target("avx2"), flatten)) void loads_avx2(const Hinge &hinge, const std::array<HingeMotion, 2> &now, double dt_s,
+                                                         std::array<HingeLoad, 2> &out) {
+    loads_here(hinge, now, dt_s, out);
+}
+Loads widest_loads() { return has(Vectors::avx2) ? loads_avx2 : loads_narrow; }
+#else
+Loads widest_loads() { return loads_narrow; }
+#endif
+
+} // namespace
+
+std::array<HingeLoad, 2> Hinge::loads(const std::array<HingeMotion, 2> &now, double dt_s) const {
+    static const Loads widest = widest_loads();
+    std::array<HingeLoad, 2> out;
+    widest(*this, now, dt_s, out);
     return out;
 }
 

@@ -345,7 +345,7 @@ void Plant::World::observe(const Vec3 &velocity_before) {
     truth.yaw_rad += math::atan2(cross, along);
     heading_before = ex;
     truth.pitch_rad = -math::asin(ex[2]);
-    truth.roll_rad = math::asin(ey[2]);
+    left_rises = ey[2];
     truth.path_m += truth.v_body_m_s[0] * (steps > 0 ? dt : 0);
     if (std::fabs(truth.v_body_m_s[0]) > 1e-3) direction = truth.v_body_m_s[0] > 0 ? 1 : -1;
     if (abreast.ahead) {
@@ -387,6 +387,7 @@ void Plant::step() { world_->step(); }
 
 const Truth &Plant::truth() const {
     world_->settle();
+    world_->truth.roll_rad = math::asin(world_->left_rises);
     return world_->truth;
 }
 

@@ -78,7 +78,7 @@ class Plant {
     void step();                           // advances by dt_s
 
     const Truth &truth() const;
-    const Truth &truth_of_body() const; // the same; of the wheels current_A alone is that of the last step. Quicker
+    const Truth &truth_of_body() const; // the same but for roll_rad, and of the wheels current_A alone is of this step
     const Energy &energy() const;
     std::uint64_t state_hash() const; // of every state variable's bits
 

@@ -193,6 +193,7 @@ struct Plant::World {
     bool enabled = true;
     double direction = 1;
     Vec3 heading_before{};
+    double left_rises = 0; // sine of the roll
     double potential_0 = 0;
     double used_C = 0; // charge taken from the battery
     std::uint64_t steps = 0;

@@ -35,9 +35,15 @@ inline constexpr double gyro_noise_rad_s = 0.005;
 
 class AnalogSensor {
   public:
-    AnalogSensor(const AnalogConfig &config, std::uint64_t seed, std::string_view name) : config_(config), random_(seed, name) {}
+    AnalogSensor(const AnalogConfig &config, std::uint64_t seed, std::string_view name)
+        : config_(config), random_(seed, name), late_(config.lag_s > 0 || config.delay_s > 0) {}
 
     void add(double truth, double step_s = 0) { // once per plant step, step_s after the one before
+        if (!late_) {
+            sum_ += truth;
+            count_++;
+            return;
+        }
         if (config_.lag_s > 0) {
             filtered_ = started_ ? filtered_ + step_s / (config_.lag_s + step_s) * (truth - filtered_) : truth;
             truth = filtered_;
@@ -67,7 +73,7 @@ class AnalogSensor {
     std::deque<double> waiting_;
     double sum_ = 0, filtered_ = 0;
     int count_ = 0;
-    bool started_ = false;
+    bool late_, started_ = false;
 };
 
 } // namespace traction::sim

@@ -5,9 +5,10 @@
 
 #include "random.h"
 
+#include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
+#include <vector>
 
 namespace traction::sim {
 
@@ -37,7 +38,10 @@ class Camera {
     Pose past(double t_s) const;
     CameraConfig config_;
     Random random_;
-    std::deque<Pose> history_;
+    std::vector<Pose> ring_; // the poses not yet too old, the oldest at oldest_: a power of two of places
+    std::size_t oldest_ = 0, count_ = 0;
+    const Pose &kept(std::size_t i) const { return ring_[(oldest_ + i) & (ring_.size() - 1)]; }
+    void keep(const Pose &pose);
     std::int64_t next_ = 0;
 };
 

@@ -84,7 +84,14 @@ void BandPass::settle(double x) {
 
 Radar::Radar(const RadarConfig &config, std::uint64_t seed)
     : config_(config), track_(beam_of(config), mix64(seed) ^ 0x7261646172u), filter_(filter_of(config)), noise_(seed, "radar.noise"),
-      fade_(seed, "radar.dropout") {}
+      fade_(seed, "radar.dropout") {
+    // 1/f between 0.5 and 50 Hz: three first-order noises of equal power, a decade apart
+    constexpr std::array<double, 3> corner_Hz{0.5, 5, 50};
+    for (std::size_t i = 0; i < corner_Hz.size(); i++) {
+        const double keep = 1 - std::min(1.0, 2 * math::pi * corner_Hz[i] / config_.rate_Hz);
+        flicker_[i] = {keep, std::sqrt((1 - keep * keep) / 3)};
+    }
+}
 
 std::uint16_t Radar::sample(double path_m) {
     // mean power of the complex echo is 1, so its real part has rms 1/sqrt 2
@@ -96,13 +103,10 @@ std::uint16_t Radar::sample(double path_m) {
             faded_samples_ = static_cast<int>(config_.dropout_s * config_.rate_Hz);
         if (faded_samples_ > 0) echo = 0;
     }
-    // 1/f between 0.5 and 50 Hz: three first-order noises of equal power, a decade apart
-    constexpr std::array<double, 3> corner_Hz{0.5, 5, 50};
     double flicker = 0;
-    for (std::size_t i = 0; i < corner_Hz.size(); i++) {
-        const double keep = 1 - std::min(1.0, 2 * math::pi * corner_Hz[i] / config_.rate_Hz);
-        flicker_[i] = keep * flicker_[i] + std::sqrt((1 - keep * keep) / 3) * noise_.normal();
-        flicker += flicker_[i];
+    for (Flicker &one : flicker_) {
+        one.state = one.keep * one.state + one.gain * noise_.normal();
+        flicker += one.state;
     }
     if (!settled_) filter_.settle(echo);
     settled_ = true;

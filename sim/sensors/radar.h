@@ -82,7 +82,10 @@ class Radar {
     RadarTrack track_;
     BandPass filter_;
     Random noise_, fade_;
-    std::array<double, 3> flicker_{};
+    struct Flicker {
+        double keep, gain, state = 0;
+    };
+    std::array<Flicker, 3> flicker_{};
     int faded_samples_ = 0;
     std::int64_t samples_ = 0;
     bool settled_ = false;

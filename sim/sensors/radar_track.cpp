@@ -2,6 +2,7 @@
 
 #include "random.h"
 #include "sim/physics/math.h"
+#include "sim/physics/terramechanics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,14 +96,37 @@ void RadarTrack::make_response(const RadarBeam &beam) {
         }
 }
 
-// sum[at ...] += (a + ib) * line[tap ...]
-void RadarTrack::add(const Line &line, std::int64_t tap, float a, float b, Chunk &sum, std::int64_t at, std::int64_t count) {
-    const float *h_re = line.re.data() + tap, *h_im = line.im.data() + tap;
-    float *re = sum.re.data() + at, *im = sum.im.data() + at;
+namespace {
+
+inline void add_here(const float *h_re, const float *h_im, float a, float b, float *__restrict re, float *__restrict im,
+                     std::int64_t count) {
     for (std::int64_t i = 0; i < count; i++) {
         re[i] += a * h_re[i] - b * h_im[i];
         im[i] += a * h_im[i] + b * h_re[i];
     }
+}
+
+// In the widest vectors that this processor has: the same operations on each number, none contracted, so the same bits.
+using Add = void (*)(const float *, const float *, float, float, float *, float *, std::int64_t);
+void add_narrow(const float *h_re, const float *h_im, float a, float b, float *re, float *im, std::int64_t count) {
+    add_here(h_re, h_im, a, b, re, im, count);
+}
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target("avx2"), flatten)) void add_avx2(const float *h_re, const float *h_im, float a, float b, float *re, float *im,
+                                                       std::int64_t count) {
+    add_here(h_re, h_im, a, b, re, im, count);
+}
+Add widest_add() { return has(Vectors::avx2) ? add_avx2 : add_narrow; }
+#else
+Add widest_add() { return add_narrow; }
+#endif
+
+} // namespace
+
+// sum[at ...] += (a + ib) * line[tap ...]
+void RadarTrack::add(const Line &line, std::int64_t tap, float a, float b, Chunk &sum, std::int64_t at, std::int64_t count) {
+    static const Add widest = widest_add();
+    widest(line.re.data() + tap, line.im.data() + tap, a, b, sum.re.data() + at, sum.im.data() + at, count);
 }
 
 // Baseband of nodes [index*chunk_nodes, +chunk_nodes). Each node owns its scatterers, so chunks can be made in any order.

@@ -2,6 +2,7 @@
 
 #include "sim/physics/math.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace traction::sim {
@@ -55,8 +56,8 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &st
     : config_(config), radar_(config.radar, mix64(seed + 1)), camera_(config.camera, mix64(seed + 2)),
       battery_(config.battery, seed, "battery"), accel_(config.accel, seed, "imu.accel"), gyro_(config.gyro, seed, "imu.gyro"),
       accel_y_({.noise = config.accel.noise}, seed, "imu.accel_y"), accel_z_({.noise = config.accel.noise}, seed, "imu.accel_z"),
-      gyro_x_({.noise = config.gyro.noise}, seed, "imu.gyro_x"), gyro_y_({.noise = config.gyro.noise}, seed, "imu.gyro_y"), last_(start),
-      tan_depression_(tangent_of(config.radar.depression_deg)) {
+      gyro_x_({.noise = config.gyro.noise}, seed, "imu.gyro_x"), gyro_y_({.noise = config.gyro.noise}, seed, "imu.gyro_y"),
+      last_(last_of(start)), tan_depression_(tangent_of(config.radar.depression_deg)) {
     constexpr std::array<std::string_view, wheel_count> name{"wheel0.current", "wheel1.current", "wheel2.current", "wheel3.current"};
     for (std::size_t i = 0; i < wheel_count; i++) current_.emplace_back(config.current[i], seed, name[i]);
     if (const auto pose = camera_.step({start.t_s, start.position_m[0], start.position_m[1], start.yaw_rad}))
@@ -66,7 +67,7 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed, const Truth &st
 // Two harmonic motions, grown with the speed up to 0.1 m/s: a standing rover does not shake.
 Sensors::Vibration Sensors::vibration(const Truth &truth) const {
     Vibration shake;
-    const double share = std::fmin(1.0, std::fabs(truth.v_body_m_s[0]) / 0.1);
+    const double share = std::min(1.0, std::fabs(truth.v_body_m_s[0]) / 0.1);
     if (config_.heave_m > 0) {
         const double rate = 2 * math::pi * config_.heave_Hz, phase = rate * truth.t_s;
         shake.heave_m = share * config_.heave_m * math::sin(phase);
@@ -88,7 +89,7 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
     double lifted_m = 0;
     if (config_
             .on_terrain) { // along the line of sight (cos theta_d, 0, -sin theta_d) over cos theta_d; a level drive gives the same as below
-        lifted_m = config_.radar_mount_pitch * 0.5 * (truth.v_body_m_s[2] + last_.v_body_m_s[2]) * (truth.t_s - last_.t_s);
+        lifted_m = config_.radar_mount_pitch * 0.5 * (truth.v_body_m_s[2] + last_.up_m_s) * (truth.t_s - last_.t_s);
     } else if (config_.radar_mount_pitch != 0) {
         double ground_rad = 0;
         if (config_.ground_slope_rad != 0) ground_rad = -config_.ground_slope_rad * math::cos(truth.yaw_rad - config_.ground_direction_rad);
@@ -120,9 +121,9 @@ void Sensors::step_radar(const Truth &truth, double accel_m_s2, const Vibration 
 void Sensors::step(const Truth &truth) {
     const double step_s = truth.t_s - last_.t_s;
     if (step_s > 0) {
-        const double rate = (truth.v_body_m_s[0] - last_.v_body_m_s[0]) / step_s;
-        accel_m_s2_ += (rate - accel_m_s2_) * std::fmin(1.0, step_s / accel_smoothing_s);
-        lagged_m_s2_ += (accel_m_s2_ - lagged_m_s2_) * std::fmin(1.0, step_s / law::accel_tilt_lag_s);
+        const double rate = (truth.v_body_m_s[0] - last_.ahead_m_s) / step_s;
+        accel_m_s2_ += (rate - accel_m_s2_) * std::min(1.0, step_s / accel_smoothing_s);
+        lagged_m_s2_ += (accel_m_s2_ - lagged_m_s2_) * std::min(1.0, step_s / law::accel_tilt_lag_s);
     }
     const Vibration shake = vibration(truth);
     step_radar(truth, accel_m_s2_, shake);
@@ -139,7 +140,7 @@ void Sensors::step(const Truth &truth) {
     gyro_.add(truth.rate_body_rad_s[2], step_s);
     if (const auto pose = camera_.step({truth.t_s, truth.position_m[0], truth.position_m[1], truth.yaw_rad}))
         pending_.camera.push_back(*pose);
-    last_ = truth;
+    last_ = last_of(truth);
 }
 
 void Sensors::measure(Measurements &out) {
@@ -149,11 +150,11 @@ void Sensors::measure(Measurements &out) {
     pending_.camera.clear();
     for (std::size_t i = 0; i < wheel_count; i++) {
         out.encoder_count[i] =
-            Encoder(config_.effects.wheel[i].encoder_missed, config_.encoder_counts_per_turn).count(last_.wheel[i].motor_angle_rad);
+            Encoder(config_.effects.wheel[i].encoder_missed, config_.encoder_counts_per_turn).count(last_.motor_angle_rad[i]);
         out.current_A[i] = current_[i].measure(last_.t_s);
     }
     out.battery_V = battery_.measure(last_.t_s);
-    const double vibration = config_.accel_vibration_1_s * std::fabs(last_.v_body_m_s[0]);
+    const double vibration = config_.accel_vibration_1_s * std::fabs(last_.ahead_m_s);
     out.accel_m_s2 = {accel_.measure(last_.t_s, vibration), accel_y_.measure(last_.t_s, vibration), accel_z_.measure(last_.t_s, vibration)};
     out.gyro_rad_s = {gyro_x_.measure(last_.t_s), gyro_y_.measure(last_.t_s), gyro_.measure(last_.t_s)};
 }

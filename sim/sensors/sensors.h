@@ -80,7 +80,19 @@ class Sensors {
     AnalogSensor battery_, accel_, gyro_; // of the last two: x and z, which the effects of the catalogue act on
     AnalogSensor accel_y_, accel_z_, gyro_x_, gyro_y_;
     Measurements pending_;
-    Truth last_;
+    struct Last { // of the truth, what the next step and the tick's end ask for
+        double t_s, path_m, ahead_m_s, up_m_s;
+        std::array<double, wheel_count> motor_angle_rad;
+    };
+    static Last last_of(const Truth &truth) {
+        return {truth.t_s,
+                truth.path_m,
+                truth.v_body_m_s[0],
+                truth.v_body_m_s[2],
+                {truth.wheel[0].motor_angle_rad, truth.wheel[1].motor_angle_rad, truth.wheel[2].motor_angle_rad,
+                 truth.wheel[3].motor_angle_rad}};
+    }
+    Last last_;
     double tan_depression_;
     std::deque<double> radar_waiting_; // steps of the path that the beam has yet to see
     double radar_path_m_ = 0, heave_m_ = 0;
