@@ -47,8 +47,7 @@ Plant::World::World(const PlantConfig &c)
     gravity = gravity_vector(config.ground, effects.body, config.rover.gravity_m_s2, 0);
     rise_rad = config.ground.slope_here_rad(0);
     world = dWorldCreate();
-    threading = dThreadingAllocateSelfThreadedImplementation();
-    dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading), threading);
+    calls.serve(world);
     dWorldSetGravity(world, gravity[0], gravity[1], gravity[2]);
     dWorldSetAutoDisableFlag(world, 0);
     if (config.ground.contact != ContactLaw::aggregated) {
@@ -106,7 +105,6 @@ void Plant::World::know_bodies() {
 
 Plant::World::~World() {
     if (world != nullptr) dWorldDestroy(world);
-    if (threading != nullptr) dThreadingFreeImplementation(threading);
 }
 
 Vec3 Plant::World::axis(int column) const {

@@ -10,6 +10,7 @@
 #include "rut.h"
 #include "soft_sign.h"
 #include "steering.h"
+#include "step_calls.h"
 
 #include "sim/physics/effects/acting.h"
 #include "sim/physics/terramechanics.h"
@@ -128,13 +129,13 @@ struct Plant::World {
     std::optional<Relief> relief; // none: a plane
     dWorldID world = nullptr;
     dJointID joint = nullptr;
-    std::optional<Hinge> hinge;                     // the joint, where it is all that holds the halves: solved here, not by ODE
-    std::array<dJointID, 2> rail{};                 // a carriage's: no way aside, no turning
-    dThreadingImplementationID threading = nullptr; // its own: ODE's default is shared by all worlds and not thread-safe
-    std::array<dBodyID, 2> half{};                  // on rockers both are the body
-    std::vector<dBodyID> bodies;                    // all of them
-    std::array<dBodyID, wheel_most> carrier{};      // of each wheel
-    struct Links {                                  // and, as they were built, level at the origin, their centres and pivots
+    std::optional<Hinge> hinge;                // the joint, where it is all that holds the halves: solved here, not by ODE
+    std::array<dJointID, 2> rail{};            // a carriage's: no way aside, no turning
+    StepCalls calls;                           // its own: ODE's default is shared by all worlds and not thread-safe
+    std::array<dBodyID, 2> half{};             // on rockers both are the body
+    std::vector<dBodyID> bodies;               // all of them
+    std::array<dBodyID, wheel_most> carrier{}; // of each wheel
+    struct Links {                             // and, as they were built, level at the origin, their centres and pivots
         std::array<dBodyID, 2> rocker{}, bogie{};
         dBodyID bar = nullptr;
         Vec3 body_at{}, bar_at{};
