@@ -72,7 +72,7 @@ Plant::World::World(const PlantConfig &c)
     }
     truth.battery_voltage_V = config.rover.battery_voltage_V;
     truth.yaw_rad = config.yaw_rad;
-    heading_before = axis(0);
+    heading_before = axes().x;
     potential_0 = potential();
     observe(mean_velocity());
     energy = {};
@@ -107,13 +107,16 @@ Plant::World::~World() {
     if (world != nullptr) dWorldDestroy(world);
 }
 
-Vec3 Plant::World::axis(int column) const {
-    Vec3 sum{};
-    for (const std::size_t n : half_at)
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += now[n].turn[4 * k + static_cast<std::size_t>(column)];
-    const double size = std::sqrt(dot(sum, sum));
-    for (double &part : sum) part /= size;
-    return sum;
+// Rows of four, as ODE's: three columns and one that means nothing, side by side.
+Plant::World::Axes Plant::World::axes() const {
+    const double *a = now[half_at[0]].turn, *b = now[half_at[1]].turn;
+    double sum[3][4], size[4];
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t c = 0; c < 4; ++c) sum[k][c] = 0.0 + a[4 * k + c] + b[4 * k + c];
+    for (std::size_t c = 0; c < 4; ++c) size[c] = std::sqrt(sum[0][c] * sum[0][c] + sum[1][c] * sum[1][c] + sum[2][c] * sum[2][c]);
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t c = 0; c < 4; ++c) sum[k][c] /= size[c];
+    return {{sum[0][0], sum[1][0], sum[2][0]}, {sum[0][1], sum[1][1], sum[2][1]}, {sum[0][2], sum[1][2], sum[2][2]}};
 }
 
 Vec3 Plant::World::mean_velocity() const {
@@ -330,7 +333,8 @@ void Plant::World::observe(const Vec3 &velocity_before) {
         truth.joint_rad = math::asin(dBodyGetRotation(half[0])[8]) - math::asin(dBodyGetRotation(half[1])[8]);
     }
     if (config.rover.layout.rocker) observe_links();
-    const Vec3 ex = axis(0), ey = axis(1), ez = axis(2), v = mean_velocity();
+    const auto [ex, ey, ez] = axes();
+    const Vec3 v = mean_velocity();
     truth.v_body_m_s = {dot(v, ex), dot(v, ey), dot(v, ez)};
     truth.rate_body_rad_s = {dot(rate_world, ex), dot(rate_world, ey), dot(rate_world, ez)};
     Vec3 felt{};

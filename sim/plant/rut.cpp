@@ -38,17 +38,20 @@ std::uint64_t RutMemory::cell(double x_m, double y_m, int right, int up) const {
 void RutMemory::add(const RutPiece &piece) {
     near_[cell(piece.x1_m, piece.y1_m, 0, 0)].push_back(static_cast<std::uint32_t>(pieces_.size()));
     pieces_.push_back(piece);
+    longest_m_ = std::max(longest_m_, std::sqrt(squared(piece.x1_m - piece.x0_m, piece.y1_m - piece.y0_m)));
 }
 
 double RutMemory::depth(double x_m, double y_m) const {
     double found = 0;
     const double reach2 = width_m_ * width_m_;
+    const double far_m = 1.0001 * (width_m_ + longest_m_), far2 = far_m * far_m; // of its second end: no piece reaches so far
     for (int right = -1; right <= 1; ++right)
         for (int up = -1; up <= 1; ++up) {
             const auto list = near_.find(cell(x_m, y_m, right, up));
             if (list == near_.end()) continue;
             for (const std::uint32_t i : list->second) {
                 const RutPiece &p = pieces_[i];
+                if (squared(x_m - p.x1_m, y_m - p.y1_m) > far2) continue;
                 const double dx = p.x1_m - p.x0_m, dy = p.y1_m - p.y0_m, length2 = squared(dx, dy);
                 const double along = length2 > 0 ? ((x_m - p.x0_m) * dx + (y_m - p.y0_m) * dy) / length2 : 0;
                 const double share = std::clamp(along, 0.0, 1.0);

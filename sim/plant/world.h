@@ -100,7 +100,10 @@ struct Plant::World {
     void keep_energy();
     void observe(const Vec3 &velocity_before);
     Vec3 mean_velocity() const;
-    Vec3 axis(int column) const;                   // mean of the halves, unit, world
+    struct Axes {
+        Vec3 x, y, z;
+    };
+    Axes axes() const;                             // mean of the halves, unit, world
     void contact_velocity(int i, Vec3 &out) const; // of the contact point, as far as the last step knew it
     double kinetic() const;
     double potential() const;
