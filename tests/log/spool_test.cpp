@@ -1,4 +1,5 @@
 // A log that is written while it grows is the log that is written at once; nothing of it is lost or kept twice.
+#include "host_tools/log/csv_text.h"
 #include "host_tools/log/spool.h"
 #include "host_tools/log/ulog.h"
 #include "host_tools/log/write_file.h"
@@ -115,6 +116,51 @@ TEST(Spool, tells_where_it_cannot_write) {
         FAIL() << "a folder that is not there";
     } catch (const FileError &error) {
         EXPECT_NE(std::string(error.what()).find("/nowhere/at/all.csv"), std::string::npos) << error.what();
+    }
+}
+
+// A whole number of millionths is the number that it is: as text, and in a column where others come between.
+TEST(Spool, millionths_are_written_as_their_number) {
+    const auto expect_same = [](std::int32_t millionths) {
+        char whole[number_room], number[number_room];
+        const std::string a(whole, put_millionths(whole, millionths)), b(number, put_number(number, millionths / 1e6));
+        ASSERT_EQ(a, b) << millionths;
+    };
+    for (std::int32_t n = -20000; n <= 20000; ++n) expect_same(n);
+    for (std::int64_t n = std::numeric_limits<std::int32_t>::min(); n <= std::numeric_limits<std::int32_t>::max(); n += 65521)
+        expect_same(static_cast<std::int32_t>(n));
+    for (const std::int32_t n : {1000000, 10000000, 100000000, 1000000000, 2000000000, 999999, 9999999, 1000001, 100000001}) {
+        for (const std::int32_t off : {-1, 0, 1}) expect_same(n + off), expect_same(-(n + off));
+    }
+    expect_same(std::numeric_limits<std::int32_t>::max());
+}
+
+TEST(Spool, a_column_of_millionths_and_other_numbers_is_written_as_at_once) {
+    for (const char *name : {"spool_grown.csv", "spool_grown.ulg"}) {
+        const test::File at_once(std::string("spool_at_once") + (name + 11), ""), grown(name, "");
+        Spool memory, disk(grown.path());
+        for (Spool *spool : {&memory, &disk}) {
+            const std::size_t mixed = spool->add("a.x_m"), zero = spool->add("b.x_m", true), held = spool->add("c.x_m");
+            for (int k = 0; k < 20000; ++k) {
+                const double t_s = k * 0.01;
+                if (k % 7 == 3)
+                    spool->put(mixed, t_s, 0.1 * k);
+                else if (k % 7 == 4)
+                    spool->put(mixed, t_s, (k - 1) / 1e6); // what the last millionths were, as a number
+                else
+                    spool->put_millionths(mixed, t_s, k / 3 * 3);
+                spool->put_millionths(zero, t_s, 0);
+                if (k % 3 == 0) spool->put_millionths(held, t_s, k < 9000 ? 0 : -5);
+            }
+        }
+        Log log = memory.take();
+        log.header = {{"seed", "7"}};
+        if (names_a_ulog(grown.path()))
+            write_ulog(log, at_once.path());
+        else
+            write_csv(log, at_once.path());
+        disk.write(log.header);
+        EXPECT_EQ(at_once.text(), grown.text()) << name;
     }
 }
 

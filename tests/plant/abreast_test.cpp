@@ -207,5 +207,37 @@ TEST(abreast, every_width_of_vectors_gives_the_same_bits) {
     EXPECT_EQ(different, 0);
 }
 
+TEST(abreast, four_soil_forces_are_those_of_one_wheel_at_any_width) {
+    std::mt19937_64 random(20261126);
+    const auto draw = [&random](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53; };
+    for (const Soil &soil : soil_library()) {
+        if (!soil.bekker) continue;
+        SoilWheel wheel{0.057, 0.042, 0.005, 1, 1.2};
+        const SoilConstants constants = soil_constants(*soil.bekker, wheel.width_m);
+        for (int n = 0; n < 5000; ++n) {
+            FourSoilContacts in;
+            for (std::size_t i = 0; i < 4; ++i) {
+                in.strength[i] = draw(0.05, 1.5), in.slip[i] = draw(-1, 1);
+                in.sinkage_m[i] = n % 3 == 0 ? 0 : draw(-0.001, n % 5 == 0 ? 0.08 : 0.02);
+                in.rut_m[i] = random() % 2 == 0 ? 0 : draw(0, 0.02);
+            }
+            for (const Vectors vectors : {Vectors::narrow, Vectors::avx2}) {
+                if (!has(vectors)) continue;
+                FourSoilForces out;
+                bekker_forces_in(vectors, *soil.bekker, constants, wheel, in, out);
+                for (std::size_t i = 0; i < 4; ++i) {
+                    wheel.strength = in.strength[i];
+                    const SoilForce one = bekker_force(*soil.bekker, constants, wheel, {in.sinkage_m[i], in.slip[i], in.rut_m[i]});
+                    const auto same = [](double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); };
+                    ASSERT_TRUE(same(one.normal_N, out.normal_N[i]) && same(one.largest_N, out.largest_N[i]) &&
+                                same(one.shear_slip, out.shear_slip[i]) && same(one.traction_N, out.traction_N[i]) &&
+                                same(one.resistance_N, out.resistance_N[i]) && same(one.torque_Nm, out.torque_Nm[i]))
+                        << soil.name << ' ' << n << ' ' << i;
+                }
+            }
+        }
+    }
+}
+
 } // namespace
 } // namespace traction::sim
