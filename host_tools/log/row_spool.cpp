@@ -101,7 +101,13 @@ void RowSpool::close_row(Lane &lane) {
     lane.used += head.size();
     lane.size = lane.whole = lane.changed = 0;
     if (lane.used < chunk_bytes) return;
-    lane.chunks.push_back({scratch_.append(lane.bytes.data(), lane.used), lane.used});
+    if (in_memory_ + lane.used <= memory_bytes) {
+        if (in_memory_ == 0) scratch_.open(); // who cannot write there learns it now, not at the end
+        in_memory_ += lane.used;
+        lane.chunks.push_back({{lane.bytes.data(), lane.bytes.data() + lane.used}, 0, lane.used});
+    } else {
+        lane.chunks.push_back({{}, scratch_.append(lane.bytes.data(), lane.used), lane.used});
+    }
     lane.used = 0;
 }
 
@@ -146,9 +152,11 @@ class RowSpool::Reader {
             size_ = lane_.used;
         } else {
             const Chunk &chunk = lane_.chunks[number_];
-            loaded_.resize(chunk.size);
-            spool_.scratch_.read(chunk.place, loaded_.data(), chunk.size);
-            data_ = loaded_.data();
+            if (chunk.bytes.empty()) {
+                loaded_.resize(chunk.size);
+                spool_.scratch_.read(chunk.place, loaded_.data(), chunk.size);
+            }
+            data_ = chunk.bytes.empty() ? loaded_.data() : chunk.bytes.data();
             size_ = chunk.size;
         }
         ++number_;

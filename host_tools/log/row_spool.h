@@ -19,7 +19,8 @@ namespace traction::log {
 
 class RowSpool {
   public:
-    static constexpr std::size_t chunk_bytes = 32768; // of a lane, kept in memory
+    static constexpr std::size_t chunk_bytes = 32768;     // of a lane, filled in memory
+    static constexpr std::size_t memory_bytes = 8u << 20; // of full chunks, two or three minutes: what comes after them waits on the disk
 
     explicit RowSpool(std::string path) : scratch_(std::move(path)) {}
 
@@ -76,6 +77,7 @@ class RowSpool {
         }
     };
     struct Chunk {
+        std::vector<char> bytes; // empty: on the disk, at
         std::uint64_t place;
         std::size_t size;
     };
@@ -89,7 +91,7 @@ class RowSpool {
         std::uint32_t pattern = 0; // of the row before
         std::vector<char> bytes;   // a chunk and a row
         std::size_t used = 0;      // of them
-        std::vector<Chunk> chunks; // on the disk
+        std::vector<Chunk> chunks; // full ones
     };
     struct Refused { // the first sample that cannot stand in a log
         std::size_t column, index;
@@ -105,6 +107,7 @@ class RowSpool {
     void refuse(std::size_t column, double t_s, double value);
 
     Scratch scratch_;
+    std::size_t in_memory_ = 0; // of full chunks
     std::vector<Column> columns_;
     std::vector<Lane> lanes_;
     std::vector<std::vector<std::uint32_t>> patterns_;

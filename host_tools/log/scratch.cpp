@@ -25,7 +25,7 @@ std::string folder_of(const std::string &path) {
 }
 
 int unnamed_file(const std::string &folder) {
-    const int fd = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (fd >= 0) return fd;
     std::string name = folder + "/.spool.XXXXXX"; // a file system without O_TMPFILE
     const int named = mkostemp(name.data(), O_CLOEXEC);
@@ -46,9 +46,13 @@ void Scratch::fail() const {
                     "give a path that can be, with space for the log twice");
 }
 
-std::uint64_t Scratch::append(const void *bytes, std::size_t size) {
+void Scratch::open() {
     if (fd_ < 0) fd_ = unnamed_file(folder_of(path_));
     if (fd_ < 0) fail();
+}
+
+std::uint64_t Scratch::append(const void *bytes, std::size_t size) {
+    open();
     const std::uint64_t place = end_;
     const char *from = static_cast<const char *>(bytes);
     while (size > 0) {

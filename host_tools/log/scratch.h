@@ -10,11 +10,12 @@ namespace traction::log {
 
 class Scratch {
   public:
-    explicit Scratch(std::string path); // of the log; nothing is opened before the first append
+    explicit Scratch(std::string path); // of the log; nothing is opened before open or the first append
     ~Scratch();
     Scratch(const Scratch &) = delete;
     Scratch &operator=(const Scratch &) = delete;
 
+    void open();                                               // now, where it is not; throws FileError
     std::uint64_t append(const void *bytes, std::size_t size); // its place; throws FileError
     void read(std::uint64_t at, void *bytes, std::size_t size) const;
     const std::string &path() const { return path_; }

@@ -164,5 +164,19 @@ TEST(Spool, a_column_of_millionths_and_other_numbers_is_written_as_at_once) {
     }
 }
 
+// What no longer fits in memory waits on the disk, in the middle of a run.
+TEST(Spool, a_run_that_memory_does_not_hold_is_written_as_at_once) {
+    const test::File at_once("spool_at_once.csv", ""), grown("spool_grown.csv", "");
+    Spool memory, disk(grown.path());
+    constexpr int samples = 2 * RowSpool::memory_bytes / 26; // a row of one number: 16 bytes and 10
+    for (Spool *spool : {&memory, &disk}) {
+        const std::size_t column = spool->add("a.x_m");
+        for (int k = 0; k < samples; ++k) spool->put(column, k * 0.25, 1.0 / (k + 1));
+    }
+    write_csv(memory.take(), at_once.path());
+    disk.write({});
+    EXPECT_TRUE(at_once.text() == grown.text());
+}
+
 } // namespace
 } // namespace traction::log
