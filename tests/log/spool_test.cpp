@@ -6,6 +6,7 @@
 
 #include "files.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,6 +4,8 @@
 #include "sim/physics/effects/catalogue.h"
 #include "sim/plant/plant.h"
 
+#include <array>
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <bit>
