@@ -1,6 +1,9 @@
 #include "soft.h"
 #include "world.h"
 
+#include <algorithm>
+#include <array>
+
 namespace traction::sim {
 
 // Four wheels with a motor each, fixed in their heading, on two halves on a plane of one soil, no energy kept; and effects that make no
