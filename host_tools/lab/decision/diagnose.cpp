@@ -18,6 +18,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <utility>
 
 namespace traction::lab {
 
@@ -160,7 +161,7 @@ class Search {
         judge_beyond_range(trials, base_error);
         std::optional<Next> next;
         std::size_t winner = trials.size();
-        do { // what was refused stands in nobody's way: those that were not fitted because it explained more have their turn
+        for (bool sought_afar = !is_first || !(worst_error() > far_off);;) {
             std::stable_sort(trials.begin(), trials.end(),
                              [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
             for (std::size_t i = 0; i < trials.size() && !next; ++i) {
@@ -168,7 +169,11 @@ class Search {
                 next = with(trials[i], problem);
                 if (next) winner = i;
             }
-        } while (!next && refit_passing(trials, problem, screen));
+            if (next) break;
+            // what was refused stands in nobody's way: those that were not fitted because it explained more have their turn
+            if (refit_passing(trials, problem, screen)) continue;
+            if (std::exchange(sought_afar, true) || !refit_from_afar(trials, problem, screen)) break;
+        }
         if (next) prefer_stated(trials, winner, *next, problem, screen);
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
@@ -241,6 +246,38 @@ class Search {
         for (std::size_t i = 0; i < order.size() && i < static_cast<std::size_t>(options_.refits); ++i)
             any = refit_and_judge(*order[i], problem, screen) || any;
         return any;
+    }
+
+    // A missing law may have taken the baseline to where every small step is blind. Each law of one strength that moves the body is fitted
+    // from a part of its range, whatever its step and its scan said; whether one passes.
+    bool refit_from_afar(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
+        bool any = false;
+        for (Trial &t : trials) {
+            const Candidate c = t.candidate;
+            if (c.wheel >= 0 || c.strengths.size() != 1 || c.maximum.empty() || (c.touched & stage_motion) == 0) continue;
+            for (const double end : {c.maximum[0], std::min(0.0, c.minimum[0])}) {
+                if (end == 0) continue;
+                Trial afar = t;
+                afar.start = {part_of_range * end};
+                afar.start_change.resize(0);
+                if (refit_and_judge(afar, problem, screen) && (t.verdict != "passes" || afar.gain > t.gain))
+                    t = std::move(afar), any = true;
+            }
+        }
+        return any;
+    }
+
+    // The largest held-out error of a balance as the model stands, in units of its noise.
+    double worst_error() const {
+        const Eigen::VectorXd squares = held_.residual.cwiseQuotient(d_.stated_fit->noise_rows()).cwiseAbs2();
+        Eigen::Index row = 0;
+        double most = 0;
+        for (const Balance &b : data_.balance) {
+            const auto n = static_cast<Eigen::Index>(b.measured.size());
+            if (n > 0) most = std::max(most, squares.segment(row, n).mean());
+            row += n;
+        }
+        return std::sqrt(most);
     }
 
     bool refit_and_judge(Trial &t, Problem &problem, const Screen &screen) {
@@ -615,7 +652,9 @@ class Search {
     }
 
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
-    static constexpr double least_reduction = 9;    // three standard deviations of white noise: below it no rule can pass
+    // Times its noise, of a balance that is missed by far (uneven ground leaves up to six); of the catalogue's range: both assumed.
+    static constexpr double far_off = 8, part_of_range = 0.25;
+    static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
     const Model &stated_;
     const DiagnoseOptions &options_;

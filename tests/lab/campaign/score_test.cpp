@@ -142,6 +142,10 @@ TEST(Judge, what_is_true_of_the_sensors_is_no_false_name_and_no_answer) {
     EXPECT_EQ(line(judge({{"a", clean, answer("named", {"accel_delay"}), 0.5}}), "clean_named").value, 1);
     clean["chain"] = {{"accel_late_s", 0.02}};
     EXPECT_EQ(line(judge({{"a", clean, answer("named", {"accel_delay"}), 0.5}}), "clean_named").value, 0);
+    json hidden = seal("one", "accel_lag"); // a late accelerometer in which more of it is hidden: that is the question
+    hidden["chain"] = clean["chain"];
+    EXPECT_EQ(line(judge({{"a", hidden, answer("named", {"accel_lag"}), 0.5}}), "right_when_naming").value, 1);
+    EXPECT_EQ(line(judge({{"a", hidden, answer("named", {"accel_delay"}), 0.5}}), "right_when_naming").count, 0);
 }
 
 TEST(Judge, intervals_that_always_hold_the_truth_are_too_wide) {
