@@ -197,6 +197,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
 {
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     state->lean_q8 = input->lean_q8;
+    state->gyro_unknown = input->gyro_unknown;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->unheard_ticks = fresh ? 0 : state->unheard_ticks + (state->unheard_ticks < 1000 ? 1 : 0);

@@ -195,6 +195,7 @@ typedef struct {
     int32_t wheel_q20;
     int32_t wheel_ticks;
     int32_t lean_q8, lean_mean_q8; // of the last input, and over a third of a second
+    bool gyro_unknown;             // of the last input
     int32_t gyro_q8;               // r [2^-8 count] and m of (16)
     float bias_mean_m_s2;
     float gyro_doubt_m2_s2;                  // and what it adds to the variance
@@ -256,6 +257,7 @@ typedef struct {
     bool doppler_relieved;  // the values before this one told of an interfering line
     uint32_t elapsed_ticks; // since the call before; 0 counts as 1
     int32_t lean_q8;        // what the accelerometer is less by, lean.h [lean_m_s2_per_q8]: (12) and (13) want the force as it was felt
+    bool gyro_unknown;      // it has never stood: of the gyro about y the lean takes what is sudden alone, and (16) has nothing to learn
 } ground_speed_input_t;
 
 typedef struct {

@@ -49,6 +49,7 @@ static void build_sense(const float *v, sense_config_t *sense)
     sense->lean.gravity_q8 = fine ? (int32_t)(gravity_q8 + 0.5f) : 0;
     sense->lean.turn_q52 = fine ? (int32_t)turn_q52 : 0;
     sense->lean.sudden_q8 = fine ? (int32_t)(256.0f * 0.05f / v[ROVER_gyro_rad_s_per_count] + 0.5f) : 0; // 3 deg/s, assumed
+    sense->lean.calm_count = fine ? whole(0.035f / v[ROVER_gyro_rad_s_per_count]) + 1 : 0;               // 2 deg/s, assumed
     sense->lean.steep_q8 = fine ? (int32_t)(0.05f * gravity_q8 + 0.5f) : 0;                              // 3 deg, assumed
     for (int32_t i = 0; i < WHEEL_COUNT; i++) {
         sense->encoder_sign[i] = v[ROVER_encoder_sign_0 + i] < 0.0f ? -1 : 1;
