@@ -89,6 +89,7 @@ typedef struct {
     float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
     float doppler_noise_m_s;
     float doppler_accel_s2;
+    float deaf_noise_m2_s2, per_slow_s_m; // of a value below slow_m_s; 1/slow_m_s
     float doppler_spread_s;        // k of (11)
     float gate_sigma;              // innovations beyond this many sigma are refused
     int32_t gate_patience;         // refusals in a row after which (7) is believed

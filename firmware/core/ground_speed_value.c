@@ -39,6 +39,15 @@ static void watch_misfit(const ground_speed_config_t *config, ground_speed_state
     state->misfit = fixed_clamp(state->misfit * (1.0f + config->misfit_share * (limited - 1.0f)), 1.0f, config->misfit_max);
 }
 
+static const float deaf_at_most = 4.0f; // [1] of the ramp: as deaf as it gets below three quarters of it
+
+// What the radar's value is wrong by where its band-pass hardly lets the echo through.
+static float deaf_m2_s2(const ground_speed_config_t *config, float heard_m_s)
+{
+    const float below = fixed_clamp(deaf_at_most * (1.0f - heard_m_s * config->per_slow_s_m), 0.0f, 1.0f);
+    return below * config->deaf_noise_m2_s2;
+}
+
 ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
                                             const ground_speed_track_t *track, float accel_m_s2)
 {
@@ -50,7 +59,8 @@ ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config,
     const ground_speed_value_t out = {
         .speed_m_s = fixed_greater(less2, 0.0f) ? sqrtf(heard2 - less2) : heard, // (11)
         .noise_m2_s2 =
-            state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2,
+            state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2 +
+            deaf_m2_s2(config, heard),
     };
     return out;
 }
