@@ -65,10 +65,9 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
 {
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
     const bool heard = state->quiet == 0 && fixed_greater(state->value_heard_m_s, mean_m_s + 0.05f);
-    return state->unheard_ticks < SILENT_TICKS && !heard && state->rolls_ticks == 0 &&
+    return (state->accepted || state->quiet > 0) && state->unheard_ticks < SILENT_TICKS && !heard && state->rolls_ticks == 0 &&
            fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) && fixed_greater(config->slow_m_s, mean_m_s) &&
-           (state->quiet > 0 || fixed_greater(config->slow_m_s, state->value_heard_m_s)) &&
-           fixed_greater(config->apart_told_m_s, fabsf(state->apart_m_s));
+           (state->quiet > 0 || fixed_greater(config->slow_m_s, state->value_heard_m_s));
 }
 
 // Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
