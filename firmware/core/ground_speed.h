@@ -239,6 +239,7 @@ typedef struct {
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
     float value_cost;                    // e^2/S + ln S of the best
     float value_sign, value_wheel_m_s;
+    bool value_parts; // the wheels, when it came
 } ground_speed_state_t;
 
 typedef struct {

@@ -145,6 +145,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_change_m_s = window.change_m_s;
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
+    state->value_parts = input->wheels_part;
     state->value_wheel_m_s = ground_speed_hint(config, input, measured);
     if (!early) {
         ground_speed_remember(state);
