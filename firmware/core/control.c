@@ -124,7 +124,6 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .doppler_relieved = doppler.relieved,
         .elapsed_ticks = sense->elapsed_ticks,
         .lean_q8 = sense->lean_q8,
-        .gyro_unknown = sense->gyro_unknown,
     };
     const ground_speed_output_t speed = ground_speed_step(&config->ground_speed, &state->ground_speed, &input);
     trace->radar_speed_m_s = state->doppler_m_s;

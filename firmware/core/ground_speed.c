@@ -58,16 +58,21 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
 
 enum { SILENT_TICKS = 25 }; // two values missed
 
-static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f;
+static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most_m_s = 0.05f;
+static const float creep_alike = 4.0f; // [1]
 
-// (20)
+// (20): a wheel's word counts.
 static bool wheels_creep(const ground_speed_config_t *config, const ground_speed_state_t *state, float wheel_m_s)
 {
+    if (!fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) || state->unheard_ticks >= SILENT_TICKS || state->rolls_ticks > 0) {
+        return false;
+    }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
-    const bool heard = state->quiet == 0 && fixed_greater(state->value_heard_m_s, mean_m_s + 0.05f);
-    return (state->accepted || state->quiet > 0) && state->unheard_ticks < SILENT_TICKS && !heard && state->rolls_ticks == 0 &&
-           fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) && fixed_greater(config->slow_m_s, mean_m_s) &&
-           (state->quiet > 0 || fixed_greater(config->slow_m_s, state->value_heard_m_s));
+    if (!fixed_greater(config->slow_m_s, mean_m_s)) {
+        return false;
+    }
+    return state->quiet > 0 || (state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) &&
+                                !fixed_greater(state->value_heard_m_s, mean_m_s + beside_most_m_s));
 }
 
 // Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
@@ -80,7 +85,7 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     if (creeps) {
         ground_speed_track_t track = ground_speed_best_of(state);
         const float innovation = wheel_m_s - track.speed_m_s;
-        ground_speed_correct(config, &track, innovation, 0.0f, 4.0f * noise);
+        ground_speed_correct(config, &track, innovation, 0.0f, creep_alike * noise);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
         return;
@@ -219,7 +224,6 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
 {
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     state->lean_q8 = input->lean_q8;
-    state->gyro_unknown = input->gyro_unknown;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
     state->unheard_ticks = fresh ? 0 : state->unheard_ticks + (state->unheard_ticks < 1000 ? 1 : 0);

@@ -21,7 +21,7 @@ bool ground_speed_gyro_tells(const ground_speed_config_t *config, const ground_s
 
 static void move_by(ground_speed_state_t *state, float change_q8)
 {
-    state->gyro_q8 = state->gyro_unknown ? 0 : (int32_t)fixed_clamp((float)state->gyro_q8 + change_q8, -gyro_most_q8, gyro_most_q8);
+    state->gyro_q8 = (int32_t)fixed_clamp((float)state->gyro_q8 + change_q8, -gyro_most_q8, gyro_most_q8);
 }
 
 void ground_speed_gyro_lied(const ground_speed_config_t *config, ground_speed_state_t *state, float share)
@@ -46,7 +46,7 @@ void ground_speed_watch_gyro(const ground_speed_config_t *config, ground_speed_s
         state->p_bb += (creeps ? 2.0f * creeping : 2.0f) * config->gyro_runs_m2_s6 * config->tick_s * config->tick_s * ticks *
                        (float)state->gyro_alone_ticks;
     }
-    if (state->gyro_unknown || state->standstill || state->other_alive || !fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb)) {
+    if (state->standstill || state->other_alive || !fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb)) {
         state->bias_mean_m_s2 = state->bias_m_s2;
         state->gyro_doubt_m2_s2 = 0.0f;
         state->gyro_q8 -= state->standstill ? state->gyro_q8 / GIVE_BACK : 0;

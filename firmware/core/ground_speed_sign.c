@@ -143,7 +143,7 @@ static expected_t expect(const ground_speed_config_t *config, const ground_speed
 {
     move_side(config, state, side, ticks_ago);
     expected_t out;
-    out.value = ground_speed_value_for(config, state, &side->at, state->value_accel_m_s2);
+    out.value = ground_speed_value_for(config, state, &side->at, state->value_accel_m_s2 - side->at.bias_m_s2);
     out.middle_m_s = side->at.speed_m_s + state->value_tau_s * side->at.bias_m_s2 - state->value_change_m_s;
     out.spread_m2_s2 = ground_speed_spread_of(&side->at, state->value_tau_s) + out.value.noise_m2_s2;
     out.told = 4.0f * out.value.speed_m_s * out.middle_m_s / out.spread_m2_s2;

@@ -10,11 +10,13 @@ enum {
 
 static int32_t held(int32_t value, int32_t most) { return value < -most ? -most : value > most ? most : value; }
 
-bool lean_knows_rest(const lean_state_t *state) { return state->calm_known || state->stood_ticks >= STOOD_TICKS; }
-
 // A mean whose memory grows, by shifts, while it stands.
 static void learn_rest(lean_state_t *state, const lean_input_t *input)
 {
+    if (state->stood_ticks == 0 && !state->calm_known) { // nothing is known yet
+        state->ticks = 1;
+        state->log2_ticks = 0;
+    }
     state->stood_ticks += state->stood_ticks < STOOD_TICKS ? 1 : 0;
     for (int32_t i = 0; i < 3; i++) {
         state->rest_q8[i] += (input->gyro_count[i] * 256 - state->rest_q8[i]) >> state->log2_ticks;
@@ -40,17 +42,24 @@ static void take_calm(const lean_config_t *config, lean_state_t *state)
     state->calm_known = true;
 }
 
+static bool is_within(int32_t value, int32_t most) { return value <= most && value >= -most; }
+
 static void watch_calm(const lean_config_t *config, lean_state_t *state, const lean_input_t *input)
 {
-    bool calm = state->calm_ticks > 0;
-    for (int32_t i = 0; i < 3; i++) {
-        const int32_t apart = input->gyro_count[i] - state->calm_count[i];
-        calm = calm && apart <= config->calm_count && apart >= -config->calm_count;
-    }
-    state->calm_ticks = calm ? state->calm_ticks + 1 : 1;
-    for (int32_t i = 0; i < 3; i++) {
-        state->calm_count[i] = calm ? state->calm_count[i] : input->gyro_count[i];
-        state->calm_sum[i] = calm ? state->calm_sum[i] + input->gyro_count[i] - state->calm_count[i] : 0;
+    const int32_t x = input->gyro_count[0] - state->calm_count[0];
+    const int32_t y = input->gyro_count[1] - state->calm_count[1];
+    const int32_t z = input->gyro_count[2] - state->calm_count[2];
+    if (state->calm_ticks > 0 && is_within(x, config->calm_count) && is_within(y, config->calm_count) && is_within(z, config->calm_count)) {
+        state->calm_ticks++;
+        state->calm_sum[0] += x;
+        state->calm_sum[1] += y;
+        state->calm_sum[2] += z;
+    } else {
+        state->calm_ticks = 1;
+        for (int32_t i = 0; i < 3; i++) {
+            state->calm_count[i] = input->gyro_count[i];
+            state->calm_sum[i] = 0;
+        }
     }
     if (state->calm_ticks >= CALM_TICKS) {
         take_calm(config, state);
@@ -73,11 +82,10 @@ static int32_t high_of(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b 
 static int32_t turn_q32(const lean_config_t *config, const lean_state_t *state, const lean_input_t *input, int32_t i)
 {
     const int32_t apart_q8 = input->gyro_count[i] * 256 - state->rest_q8[i];
-    const int32_t rate_q8 = apart_q8 - (i == 1 ? input->moved_q8 : 0);
-    const bool sudden = apart_q8 > config->sudden_q8 || apart_q8 < -config->sudden_q8;
-    if (state->stood_ticks < STOOD_TICKS && !(state->calm_known && sudden)) {
+    if (state->stood_ticks < STOOD_TICKS && (!state->calm_known || is_within(apart_q8, config->sudden_q8))) {
         return 0;
     }
+    const int32_t rate_q8 = i == 1 ? apart_q8 - input->moved_q8 : apart_q8;
     const int32_t turn_q20 = high_of(rate_q8, config->turn_q52);
     const int32_t ticks = (int32_t)(input->elapsed_ticks < 16u ? input->elapsed_ticks : 16u); // longer gaps are for safety
     return held(turn_q20 * ticks, 1 << 18) * 4096;
@@ -85,9 +93,6 @@ static int32_t turn_q32(const lean_config_t *config, const lean_state_t *state, 
 
 void lean_step(const lean_config_t *config, lean_state_t *state, const lean_input_t *input)
 {
-    for (int32_t i = 0; state->ticks == 0 && i < 3; i++) {
-        state->rest_q8[i] = input->gyro_count[i] * 256;
-    }
     if (state->ticks < STANDING_TICKS) {
         state->ticks++;
         state->log2_ticks += (state->ticks >> state->log2_ticks) > 1 ? 1 : 0;

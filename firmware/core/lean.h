@@ -45,16 +45,14 @@ typedef struct {
     int32_t ticks;       // that the mean is of,
     int32_t log2_ticks;  // and the whole part of their logarithm
     int32_t stood_ticks; // it has stood for, at most a second
-    int32_t calm_ticks, calm_count[3], calm_sum[3]; // of the stretch under way: its samples, the first of them, and the sum of the others less it
+    int32_t calm_ticks, calm_count[3],
+        calm_sum[3];     // of the stretch under way: its samples, the first of them, and the sum of the others less it
     int32_t calms_apart; // stretches in a row that differed
     bool calm_known;     // there was one
 } lean_state_t;          // zeroed = reset
 
 // Any counts of 16 bits and their offsets. |lean_q8| stays below 2^26 - 2^17.
 void lean_step(const lean_config_t *config, lean_state_t *state, const lean_input_t *input);
-
-// The rover has stood for a second, or been calm for a while.
-bool lean_knows_rest(const lean_state_t *state);
 
 #ifdef __cplusplus
 }

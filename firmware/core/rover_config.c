@@ -142,7 +142,7 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .doppler_noise_m2_s2 = 3e-5f * (deaf * deaf),
         .doppler_noise_m_s = 5.8e-4f * beam->spread,
         .doppler_accel_s2 = 0.004f * (longer * longer),
-        .deaf_noise_m2_s2 = 4e-4f * (deaf * deaf),
+        .deaf_noise_m2_s2 = 4e-4f * (deaf * deaf), // (2 cm/s)^2
         .per_slow_s_m = 1.0f / (0.12f * deaf),
         .doppler_spread_s = beam->line ? 0.0f : 0.25f * longer,
         .gate_sigma = 3.5f,

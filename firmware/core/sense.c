@@ -194,7 +194,6 @@ static void measure_body(const sense_config_t *config, sense_state_t *state, con
     out->accel_x_m_s2 = state->accel_x_m_s2;
     out->level_m_s2 = state->level_m_s2;
     out->lean_q8 = state->lean.lean_q8;
-    out->gyro_unknown = !lean_knows_rest(&state->lean);
     out->gyro_z_rad_s = state->gyro_z_rad_s;
 }
 

@@ -74,7 +74,6 @@ typedef struct {
     float level_m_s2; // the same less what the gyro says of slopes since the start
     float gyro_z_rad_s;
     int32_t lean_q8;        // that, in units of level_m_s2_per_q8
-    bool gyro_unknown;      // it has not stood for a second: the lean takes what is sudden alone, lean.h (3)
     uint32_t elapsed_ticks; // since the frame before: 1, and what was missed; at most 1000
     uint32_t jumped;        // bit i: the speed of wheel i changed by more than encoder_jump_max: believe it only for another reason
     uint32_t usable;        // FRAME_* bits that are present and sane
