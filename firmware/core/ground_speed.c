@@ -58,11 +58,38 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
 
 enum { SILENT_TICKS = 25 }; // two values missed
 
+static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most_m_s = 0.05f;
+static const float creep_alike = 4.0f; // [1]
+
+// (20): a wheel's word counts.
+static bool wheels_creep(const ground_speed_config_t *config, const ground_speed_state_t *state, float wheel_m_s)
+{
+    if (!fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) || state->unheard_ticks >= SILENT_TICKS || state->rolls_ticks > 0) {
+        return false;
+    }
+    const float mean_m_s = fabsf(state->wheel_mean_m_s);
+    if (!fixed_greater(config->slow_m_s, mean_m_s)) {
+        return false;
+    }
+    return state->quiet > 0 || (state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) &&
+                                !fixed_greater(state->value_heard_m_s, mean_m_s + beside_most_m_s));
+}
+
 // Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
 static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
-    const float spread = config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
+    const bool creeps = wheels_creep(config, state, wheel_m_s);
+    const float spread =
+        creeps ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s) : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
+    if (creeps) {
+        ground_speed_track_t track = ground_speed_best_of(state);
+        const float innovation = wheel_m_s - track.speed_m_s;
+        ground_speed_correct(config, &track, innovation, 0.0f, creep_alike * noise);
+        ground_speed_keep_best(state, &track);
+        state->other_alive = false;
+        return;
+    }
     const bool denied = state->unheard_ticks < SILENT_TICKS && fixed_greater(fabsf(state->value_m_s - fabsf(wheel_m_s)), 2.0f * spread);
     const bool undecided = state->other_alive && state->unheard_ticks < SILENT_TICKS; // which sign it is, the radar tells
     if (!denied && !undecided && fixed_greater(state->p_vv, 1.2f * noise)) {

@@ -57,6 +57,11 @@
 //   |V(t) - V(t - 1 s) - b 1 s| > slow/2                                                (19)
 // What stood and is loud a second later was pushed, and felt it; else the values are a lamp's or a creep's remains, and for five seconds,
 // in which a line is learnt, it stands on. Less than half of it is the noise of a second, and what the bias lags (assumed).
+//   |R w| < slow,  d < slow,  d < |mean of R w| + 0.05 m/s:  v = R w + n,  var n = 4 (0.015 m/s + |R w|/5)^2, eight times a second  (20)
+// Where the radar's band-pass is deaf, wheels that creep as slowly are the better witness of speed and sign: their slip is a share of
+// little. Each tells the same again, hence 4 (assumed; on simulated rovers they are 1 cm/s off there). The radar's own values have a
+// variance of (2 cm/s)^2 more below 0.09 m/s, less up to slow (its errors on a second generator: 1.7 to 2.2 cm/s). (12) takes a body to
+// overtake its wheels 5 % later where they part and the slowest of them speaks: it is the inner one of a turn.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -89,57 +94,58 @@ typedef struct {
     float doppler_noise_m2_s2;      // R = trust (this + doppler_noise_m_s |v| + doppler_accel_s2 a^2)
     float doppler_noise_m_s;
     float doppler_accel_s2;
-    float doppler_spread_s;        // k of (11)
-    float gate_sigma;              // innovations beyond this many sigma are refused
-    int32_t gate_patience;         // refusals in a row after which (7) is believed
-    float jump_share;              // c of (4)
-    float jump_limit;              // |m| of (4) that tells of a jump of the bias
-    float jump_m2_s4;              // by how much its variance grows then
-    float agile_m2_s4;             // by how much the bias's variance grows per value of (7)
-    float agile_limit;             // of (7)
-    float agile_sure;              // of (7), where (10) tells of a slope, too
-    float apart_told_m_s;          // |X| beyond which it does
-    float agile_drift;             // what every value must tell more than
-    float agile_most;              // what one value tells at most
-    float apart_forget;            // of (10): T/0.25 s
-    float apart_share;             // of (10), squared
-    float apart_least_m_s;         // of (10): what slip makes
-    float apart_noise;             // of (10): Qv of its noise, nine times
-    float felt_share, felt_noise;  // of (14): c where X is nothing but noise, and var X over Qv
-    float roll_told_m_s;           // of (13): its limit
-    float slip_force_m_s2;         // of (13): the least force of wheels that slip
-    float roll_odds;               // 2 ln of the odds that (13) starts with
-    float roll_noise_m2_s2;        // Qv per tick of a speed that changes as the wheels' does
-    float roll_share;              // of a tick's rest that enters the bias
-    float roll_bias_m2_s4;         // its variance then
-    int32_t agile_values;          // after which (7) starts from the best anew
-    float misfit_share;            // c of (8)
-    float misfit_max;              // limit of (8)
-    int32_t quiet_needed;          // quiet Doppler values in a row that mean a speed too low to be heard
-    float lean_m_s2_per_q8;        // unit of the input's lean
-    int32_t lean_told_q8;          // of (13): a change of the lean that tells of the slope
-    float gyro_slow;               // of (16): T/t1
-    float gyro_learns_q8_s2_m;     // of (16): T/(g t1 t2) [2^-8 count of the gyro per m/s^2]
-    float gyro_turns;              // its offset in 2^-8 counts over the lean less its mean in lean_m_s2_per_q8
-    float gyro_runs_m2_s6;         // how fast a lean runs off that no radar value sees, squared
-    float gyro_sure_m_s2;          // of (16): |b - m| that noise makes
-    float gyro_steady_m2_s2;       // of (16): s^2
-    float quiet_noise_m2_s2;       // R of that speed, taken as 0
-    float still_m_s;               // rim speed below which the wheels are at rest
-    int32_t still_needed;          // ticks of rest before the rover can be standing
-    int32_t parked_needed;         // and before it is, where the radar tells of no speed
-    int32_t loud_needed;           // loud Doppler values in a row that end a standing
-    float standing_noise_m2_s2;    // R of speed 0 in each standing tick
-    float slow_m_s;                // |v| below which standing needs no quiet echo
-    float sign_sure;               // 2 ln of the odds beyond which one sign is taken alone
-    float wheel_spins;             // 2 ln of the odds that the sign of wheels has that outrun the radar's value
-    float wheel_odds, wheel_match; // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
-    float wheel_pull;              // 2 ln of the odds that they give per value while their speed agrees
-    int32_t against_values;        // values against which they turn before the other sign is asked anew
-    float against_odds;            // and the odds that it then starts with
-    float force_per_s2_m;          // 1/standard deviation of the device's bias, against which (12) is judged
-    float force_most, force_pull;  // of (12): at most; its share per value while both signs live
-    float wheel_noise_m_s;         // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
+    float deaf_noise_m2_s2, per_slow_s_m; // of a value below slow_m_s; 1/slow_m_s
+    float doppler_spread_s;               // k of (11)
+    float gate_sigma;                     // innovations beyond this many sigma are refused
+    int32_t gate_patience;                // refusals in a row after which (7) is believed
+    float jump_share;                     // c of (4)
+    float jump_limit;                     // |m| of (4) that tells of a jump of the bias
+    float jump_m2_s4;                     // by how much its variance grows then
+    float agile_m2_s4;                    // by how much the bias's variance grows per value of (7)
+    float agile_limit;                    // of (7)
+    float agile_sure;                     // of (7), where (10) tells of a slope, too
+    float apart_told_m_s;                 // |X| beyond which it does
+    float agile_drift;                    // what every value must tell more than
+    float agile_most;                     // what one value tells at most
+    float apart_forget;                   // of (10): T/0.25 s
+    float apart_share;                    // of (10), squared
+    float apart_least_m_s;                // of (10): what slip makes
+    float apart_noise;                    // of (10): Qv of its noise, nine times
+    float felt_share, felt_noise;         // of (14): c where X is nothing but noise, and var X over Qv
+    float roll_told_m_s;                  // of (13): its limit
+    float slip_force_m_s2;                // of (13): the least force of wheels that slip
+    float roll_odds;                      // 2 ln of the odds that (13) starts with
+    float roll_noise_m2_s2;               // Qv per tick of a speed that changes as the wheels' does
+    float roll_share;                     // of a tick's rest that enters the bias
+    float roll_bias_m2_s4;                // its variance then
+    int32_t agile_values;                 // after which (7) starts from the best anew
+    float misfit_share;                   // c of (8)
+    float misfit_max;                     // limit of (8)
+    int32_t quiet_needed;                 // quiet Doppler values in a row that mean a speed too low to be heard
+    float lean_m_s2_per_q8;               // unit of the input's lean
+    int32_t lean_told_q8;                 // of (13): a change of the lean that tells of the slope
+    float gyro_slow;                      // of (16): T/t1
+    float gyro_learns_q8_s2_m;            // of (16): T/(g t1 t2) [2^-8 count of the gyro per m/s^2]
+    float gyro_turns;                     // its offset in 2^-8 counts over the lean less its mean in lean_m_s2_per_q8
+    float gyro_runs_m2_s6;                // how fast a lean runs off that no radar value sees, squared
+    float gyro_sure_m_s2;                 // of (16): |b - m| that noise makes
+    float gyro_steady_m2_s2;              // of (16): s^2
+    float quiet_noise_m2_s2;              // R of that speed, taken as 0
+    float still_m_s;                      // rim speed below which the wheels are at rest
+    int32_t still_needed;                 // ticks of rest before the rover can be standing
+    int32_t parked_needed;                // and before it is, where the radar tells of no speed
+    int32_t loud_needed;                  // loud Doppler values in a row that end a standing
+    float standing_noise_m2_s2;           // R of speed 0 in each standing tick
+    float slow_m_s;                       // |v| below which standing needs no quiet echo
+    float sign_sure;                      // 2 ln of the odds beyond which one sign is taken alone
+    float wheel_spins;                    // 2 ln of the odds that the sign of wheels has that outrun the radar's value
+    float wheel_odds, wheel_match;        // 2 ln of the odds that the wheels' sign has; when their speed agrees with the radar's, too
+    float wheel_pull;                     // 2 ln of the odds that they give per value while their speed agrees
+    int32_t against_values;               // values against which they turn before the other sign is asked anew
+    float against_odds;                   // and the odds that it then starts with
+    float force_per_s2_m;                 // 1/standard deviation of the device's bias, against which (12) is judged
+    float force_most, force_pull;         // of (12): at most; its share per value while both signs live
+    float wheel_noise_m_s;                // standard deviation of the wheels' speed as the body's: this + wheel_slip |R w|
     float wheel_slip;
 } ground_speed_config_t;
 
@@ -237,6 +243,7 @@ typedef struct {
     float value_tau_s, value_change_m_s; // tau and the sum of (3)
     float value_cost;                    // e^2/S + ln S of the best
     float value_sign, value_wheel_m_s;
+    bool value_parts; // the wheels, when it came
 } ground_speed_state_t;
 
 typedef struct {

@@ -71,7 +71,7 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
                       ticks * state->speed_noise_m2_s2, config->agile_m2_s4);
     state->agile.q20 = q20;
     state->agile.ticks = 2;
-    const ground_speed_value_t value = ground_speed_value_for(config, state, at, state->value_accel_m_s2);
+    const ground_speed_value_t value = ground_speed_value_for(config, state, at, state->value_accel_m_s2 - at->bias_m_s2);
     const float spread = at->p_vv + value.noise_m2_s2;
     const float told = 4.0f * value.speed_m_s * at->speed_m_s / spread;
     const bool sure = fabsf(told) >= config->sign_sure;

@@ -70,14 +70,14 @@ ground_speed_past_t ground_speed_look_back(const ground_speed_config_t *config, 
 
 // --- ground_speed_value.c
 
-// The last value as a track sees it that moves on with the raw acceleration `accel`: its own smears the window, (11).
+// The last value as a track sees it whose own acceleration in the value's window is `own_accel`: it smears the window, (11).
 typedef struct {
     float speed_m_s;
     float noise_m2_s2;
 } ground_speed_value_t;
 
 ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
-                                            const ground_speed_track_t *track, float accel_m_s2);
+                                            const ground_speed_track_t *track, float own_accel_m_s2);
 // A track of which nothing is known but the last value with that sign, and a bias.
 ground_speed_track_t ground_speed_told(const ground_speed_config_t *config, const ground_speed_state_t *state, float sign, float bias_m_s2,
                                        float p_bb);

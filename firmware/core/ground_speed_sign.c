@@ -31,14 +31,14 @@ float ground_speed_hint(const ground_speed_config_t *config, const ground_speed_
 
 // What a body that its wheels push cannot do is overtake them: a radius and a radar's angle that are 10 % off, and a value's noise
 // (assumed).
-static const float overtaken_share = 0.1f;
+static const float overtaken_share = 0.1f, overtaken_parted = 0.15f; // the latter: by the slowest of wheels that part, as in a turn
 static const float overtaken_m_s = 0.02f;
 
 // g of (12): whether the wheels slip so fast that friction has no other direction.
-static float slips(const ground_speed_config_t *config, float slip_m_s, float wheel_m_s, float rim_m_s)
+static float slips(const ground_speed_config_t *config, float share, float slip_m_s, float wheel_m_s, float rim_m_s)
 {
     const bool overtakes = (slip_m_s < 0.0f) != (wheel_m_s < 0.0f) && fixed_greater(rim_m_s, config->still_m_s);
-    const float rolling = overtakes ? overtaken_m_s + overtaken_share * rim_m_s : config->wheel_noise_m_s + config->wheel_slip * rim_m_s;
+    const float rolling = overtakes ? overtaken_m_s + share * rim_m_s : config->wheel_noise_m_s + config->wheel_slip * rim_m_s;
     const float beyond = fabsf(slip_m_s) - rolling;
     return !fixed_greater(beyond, 0.0f) ? 0.0f : fixed_greater(beyond, rolling) ? 1.0f : beyond / rolling;
 }
@@ -53,12 +53,13 @@ float ground_speed_force_odds(const ground_speed_config_t *config, const ground_
     const float most = fixed_greater(told, config->force_most) ? config->force_most : told;
     const float forth = wheel_m_s - measured; // u of +, and of -
     const float back = wheel_m_s + measured;
+    const float share = state->value_parts ? overtaken_parted : overtaken_share;
     float odds = 0.0f;
     if ((forth < 0.0f) != (force_m_s2 < 0.0f)) {
-        odds -= most * slips(config, forth, wheel_m_s, rim);
+        odds -= most * slips(config, share, forth, wheel_m_s, rim);
     }
     if ((back < 0.0f) != (force_m_s2 < 0.0f)) {
-        odds += most * slips(config, back, wheel_m_s, rim);
+        odds += most * slips(config, share, back, wheel_m_s, rim);
     }
     return odds;
 }
@@ -142,7 +143,7 @@ static expected_t expect(const ground_speed_config_t *config, const ground_speed
 {
     move_side(config, state, side, ticks_ago);
     expected_t out;
-    out.value = ground_speed_value_for(config, state, &side->at, state->value_accel_m_s2);
+    out.value = ground_speed_value_for(config, state, &side->at, state->value_accel_m_s2 - side->at.bias_m_s2);
     out.middle_m_s = side->at.speed_m_s + state->value_tau_s * side->at.bias_m_s2 - state->value_change_m_s;
     out.spread_m2_s2 = ground_speed_spread_of(&side->at, state->value_tau_s) + out.value.noise_m2_s2;
     out.told = 4.0f * out.value.speed_m_s * out.middle_m_s / out.spread_m2_s2;

@@ -39,18 +39,30 @@ static void watch_misfit(const ground_speed_config_t *config, ground_speed_state
     state->misfit = fixed_clamp(state->misfit * (1.0f + config->misfit_share * (limited - 1.0f)), 1.0f, config->misfit_max);
 }
 
-ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
-                                            const ground_speed_track_t *track, float accel_m_s2)
+static const float deaf_at_most = 4.0f; // [1] as deaf as it gets below three quarters of slow_m_s
+
+// (20): what the radar's value is wrong by where its band-pass hardly lets the echo through.
+static float deaf_m2_s2(const ground_speed_config_t *config, float heard_m_s)
 {
-    const float own_accel = accel_m_s2 - track->bias_m_s2;
+    const float below = fixed_clamp(deaf_at_most * (1.0f - heard_m_s * config->per_slow_s_m), 0.0f, 1.0f);
+    return below * config->deaf_noise_m2_s2;
+}
+
+ground_speed_value_t ground_speed_value_for(const ground_speed_config_t *config, const ground_speed_state_t *state,
+                                            const ground_speed_track_t *track, float own_accel_m_s2)
+{
     const float heard = state->value_heard_m_s;
-    const float accel2 = fixed_clamp(own_accel * own_accel - track->p_bb, 0.0f, 100.0f);
+    const float accel2 = fixed_clamp(own_accel_m_s2 * own_accel_m_s2 - track->p_bb, 0.0f, 100.0f);
     const float heard2 = heard * heard;
     const float less2 = fixed_clamp(ground_speed_square(config->doppler_spread_s) * accel2, 0.0f, 0.5f * heard2);
+    float noise =
+        state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2;
+    if (fixed_greater(config->slow_m_s, heard)) {
+        noise += deaf_m2_s2(config, heard);
+    }
     const ground_speed_value_t out = {
         .speed_m_s = fixed_greater(less2, 0.0f) ? sqrtf(heard2 - less2) : heard, // (11)
-        .noise_m2_s2 =
-            state->value_trust * (config->doppler_noise_m2_s2 + config->doppler_noise_m_s * heard) + config->doppler_accel_s2 * accel2,
+        .noise_m2_s2 = noise,
     };
     return out;
 }
@@ -96,7 +108,6 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     ground_speed_track_t track = ground_speed_best_of(state);
     const bool rolls = state->rolls_ticks > 0;
     ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
-    own.accel_m_s2 = rolls ? track.bias_m_s2 : window.accel_m_s2;                  // a track that rolls has none of its own
     float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
     const bool early = input->doppler_late_s < 0.0f;
@@ -111,7 +122,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_accel_m_s2 = window.accel_m_s2;
     state->value_trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit * shorter;
     ground_speed_watch_radar(config, state);
-    const ground_speed_value_t value = ground_speed_value_for(config, state, &track, own.accel_m_s2);
+    const ground_speed_value_t value = ground_speed_value_for(config, state, &track, rolls ? 0.0f : own_accel);
     const float measured = value.speed_m_s;
     const float noise = value.noise_m2_s2;
     float spread = ground_speed_spread_of(&track, own.tau_s) + noise;
@@ -135,6 +146,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_change_m_s = window.change_m_s;
     state->value_cost = cost + ground_speed_ln_rough(spread);
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
+    state->value_parts = input->wheels_part;
     state->value_wheel_m_s = ground_speed_hint(config, input, measured);
     if (!early) {
         ground_speed_remember(state);

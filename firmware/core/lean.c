@@ -2,39 +2,76 @@
 
 enum {
     STANDING_TICKS = 256, // memory of (3) and (4) while it stands: 2.6 s, assumed
-    LOG2_STANDING_TICKS = 8,
-    MOVING_TICKS = 16384, // and of (3) before it ever stood: minutes, in which bumps and slopes cancel, assumed
-    OPEN_TICKS = 128,     // in which a mean takes all that comes: 1.3 s, assumed
     STOOD_TICKS = 100,    // 1 s of standing is enough, assumed
+    CALM_TICKS = 64,
+    CALMS_BELIEVED = 3,
     LEAN_MAX = (1 << 26) - (1 << 17)
 };
 
 static int32_t held(int32_t value, int32_t most) { return value < -most ? -most : value > most ? most : value; }
 
-// A mean whose memory grows, by shifts. A slope that begins before the rover ever stood moves it little.
-static void learn_rest(const lean_config_t *config, lean_state_t *state, const lean_input_t *input)
+// A mean whose memory grows, by shifts, while it stands.
+static void learn_rest(lean_state_t *state, const lean_input_t *input)
 {
-    const int32_t most = input->standing ? STANDING_TICKS : MOVING_TICKS;
-    state->stood_ticks += input->standing && state->stood_ticks < STOOD_TICKS ? 1 : 0;
-    if (state->ticks < most) {
-        state->ticks++;
-        state->log2_ticks += (state->ticks >> state->log2_ticks) > 1 ? 1 : 0;
-    } else if (state->ticks > most) {
-        state->ticks = STANDING_TICKS;
-        state->log2_ticks = LOG2_STANDING_TICKS;
+    if (state->stood_ticks == 0 && !state->calm_known) { // nothing is known yet
+        state->ticks = 1;
+        state->log2_ticks = 0;
     }
-    const int32_t limit = state->stood_ticks < STOOD_TICKS && state->ticks > OPEN_TICKS ? config->sudden_q8 : INT32_MAX;
+    state->stood_ticks += state->stood_ticks < STOOD_TICKS ? 1 : 0;
     for (int32_t i = 0; i < 3; i++) {
-        state->rest_q8[i] += held(input->gyro_count[i] * 256 - state->rest_q8[i], limit) >> state->log2_ticks;
+        state->rest_q8[i] += (input->gyro_count[i] * 256 - state->rest_q8[i]) >> state->log2_ticks;
+    }
+}
+
+// What a calm stretch tells: the first of all is believed, the others by a sixteenth; what differs three times in a row is believed, too.
+static void take_calm(const lean_config_t *config, lean_state_t *state)
+{
+    int32_t mean_q8[3];
+    bool differs = false;
+    for (int32_t i = 0; i < 3; i++) {
+        mean_q8[i] = state->calm_count[i] * 256 + state->calm_sum[i] * (256 / CALM_TICKS);
+        const int32_t apart = mean_q8[i] - state->rest_q8[i];
+        differs = differs || apart > config->sudden_q8 || apart < -config->sudden_q8;
+    }
+    state->calms_apart = differs ? state->calms_apart + 1 : 0;
+    const bool whole = !state->calm_known || state->calms_apart >= CALMS_BELIEVED;
+    for (int32_t i = 0; i < 3 && (whole || !differs); i++) {
+        state->rest_q8[i] = whole ? mean_q8[i] : state->rest_q8[i] + (mean_q8[i] - state->rest_q8[i]) / 16;
+    }
+    state->calms_apart = whole ? 0 : state->calms_apart;
+    state->calm_known = true;
+}
+
+static bool is_within(int32_t value, int32_t most) { return value <= most && value >= -most; }
+
+static void watch_calm(const lean_config_t *config, lean_state_t *state, const lean_input_t *input)
+{
+    const int32_t x = input->gyro_count[0] - state->calm_count[0];
+    const int32_t y = input->gyro_count[1] - state->calm_count[1];
+    const int32_t z = input->gyro_count[2] - state->calm_count[2];
+    if (state->calm_ticks > 0 && is_within(x, config->calm_count) && is_within(y, config->calm_count) && is_within(z, config->calm_count)) {
+        state->calm_ticks++;
+        state->calm_sum[0] += x;
+        state->calm_sum[1] += y;
+        state->calm_sum[2] += z;
+    } else {
+        state->calm_ticks = 1;
+        for (int32_t i = 0; i < 3; i++) {
+            state->calm_count[i] = input->gyro_count[i];
+            state->calm_sum[i] = 0;
+        }
+    }
+    if (state->calm_ticks >= CALM_TICKS) {
+        take_calm(config, state);
+        state->calm_ticks = 0;
     }
 }
 
 // A rover's own accelerations have no mean; what a gyro reads too much has. 2.6 s of memory, less while it stands for the first time.
 static void learn_felt(lean_state_t *state, const lean_input_t *input)
 {
-    const int32_t bits = state->log2_ticks < LOG2_STANDING_TICKS ? state->log2_ticks : LOG2_STANDING_TICKS;
     for (int32_t i = 0; input->accel && i < 2; i++) {
-        state->felt_q8[i] += (input->accel_count[i] * 256 - state->felt_q8[i]) >> bits;
+        state->felt_q8[i] += (input->accel_count[i] * 256 - state->felt_q8[i]) >> state->log2_ticks;
     }
 }
 
@@ -44,10 +81,11 @@ static int32_t high_of(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b 
 // Radians of this tick about axis i [2^-32], 1/4 at most: no rover turns so.
 static int32_t turn_q32(const lean_config_t *config, const lean_state_t *state, const lean_input_t *input, int32_t i)
 {
-    const int32_t rate_q8 = input->gyro_count[i] * 256 - state->rest_q8[i] - (i == 1 ? input->moved_q8 : 0);
-    if (state->stood_ticks < STOOD_TICKS && rate_q8 < config->sudden_q8 && rate_q8 > -config->sudden_q8) {
+    const int32_t apart_q8 = input->gyro_count[i] * 256 - state->rest_q8[i];
+    if (state->stood_ticks < STOOD_TICKS && (!state->calm_known || is_within(apart_q8, config->sudden_q8))) {
         return 0;
     }
+    const int32_t rate_q8 = i == 1 ? apart_q8 - input->moved_q8 : apart_q8;
     const int32_t turn_q20 = high_of(rate_q8, config->turn_q52);
     const int32_t ticks = (int32_t)(input->elapsed_ticks < 16u ? input->elapsed_ticks : 16u); // longer gaps are for safety
     return held(turn_q20 * ticks, 1 << 18) * 4096;
@@ -55,11 +93,14 @@ static int32_t turn_q32(const lean_config_t *config, const lean_state_t *state, 
 
 void lean_step(const lean_config_t *config, lean_state_t *state, const lean_input_t *input)
 {
-    for (int32_t i = 0; state->ticks == 0 && i < 3; i++) {
-        state->rest_q8[i] = input->gyro_count[i] * 256;
+    if (state->ticks < STANDING_TICKS) {
+        state->ticks++;
+        state->log2_ticks += (state->ticks >> state->log2_ticks) > 1 ? 1 : 0;
     }
-    if (input->standing || state->stood_ticks < STOOD_TICKS) {
-        learn_rest(config, state, input);
+    if (input->standing) {
+        learn_rest(state, input);
+    } else if (state->stood_ticks < STOOD_TICKS) {
+        watch_calm(config, state, input);
     }
     learn_felt(state, input);
     const int32_t along = state->felt_q8[0];

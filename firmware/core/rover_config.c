@@ -49,6 +49,7 @@ static void build_sense(const float *v, sense_config_t *sense)
     sense->lean.gravity_q8 = fine ? (int32_t)(gravity_q8 + 0.5f) : 0;
     sense->lean.turn_q52 = fine ? (int32_t)turn_q52 : 0;
     sense->lean.sudden_q8 = fine ? (int32_t)(256.0f * 0.05f / v[ROVER_gyro_rad_s_per_count] + 0.5f) : 0; // 3 deg/s, assumed
+    sense->lean.calm_count = fine ? whole(0.035f / v[ROVER_gyro_rad_s_per_count]) + 1 : 0;               // 2 deg/s, assumed
     sense->lean.steep_q8 = fine ? (int32_t)(0.05f * gravity_q8 + 0.5f) : 0;                              // 3 deg, assumed
     for (int32_t i = 0; i < WHEEL_COUNT; i++) {
         sense->encoder_sign[i] = v[ROVER_encoder_sign_0 + i] < 0.0f ? -1 : 1;
@@ -141,6 +142,8 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .doppler_noise_m2_s2 = 3e-5f * (deaf * deaf),
         .doppler_noise_m_s = 5.8e-4f * beam->spread,
         .doppler_accel_s2 = 0.004f * (longer * longer),
+        .deaf_noise_m2_s2 = 4e-4f * (deaf * deaf), // (2 cm/s)^2
+        .per_slow_s_m = 1.0f / (0.12f * deaf),
         .doppler_spread_s = beam->line ? 0.0f : 0.25f * longer,
         .gate_sigma = 3.5f,
         .gate_patience = 4,

@@ -20,9 +20,10 @@ void fft_power_flat(const int16_t sample[FFT_LENGTH], int32_t mean, uint64_t pow
 //   sense.step        |step| <= encoder_step_max, from a quotient         prove_step
 //   made, railed      a block holds no more than came, at most 64         prove_block
 //   safety.radar_sum  32 numbers of 10 bits                               prove_radar_dead
-//   log2_ticks        of at most 2^14                                     prove_lean
+//   log2_ticks        of at most 2^8                                      prove_lean
 // By proof_assumptions_test in every tick of arbitrary frames, because each is a relation between two numbers:
 //   rest_q8, lean_mean_q8, a gap's samples   a mean, and a point of a line, lie between their ends
+//   calm_sum                                 of a stretch: no more than calm_ticks times what a calm sample is off by, at most 63
 //   gyro_q8                                  x - x/10 is nearer to 0 than x
 //   clean, late_samples                      no more than is in the window; what came since a window that waits, for two ticks at most
 //   gyro_alone_ticks, rolls_ticks, rolls_wait, unheard_ticks, still_ticks, beyond, relief   counts that stop at their ends
@@ -41,7 +42,12 @@ static void relations(const control_config_t *config, control_state_t *state) {
     for (int n = 0; n < 3; n++) {
         state->sense.lean.rest_q8[n] = Frama_C_interval(-32768 * 256, 32767 * 256);
     }
-    state->sense.lean.log2_ticks = Frama_C_interval(0, 14);
+    //@ loop unroll 3;
+    for (int n = 0; n < 3; n++) {
+        state->sense.lean.calm_count[n] = Frama_C_interval(-32768, 32767);
+        state->sense.lean.calm_sum[n] = Frama_C_interval(-63 * config->sense.lean.calm_count, 63 * config->sense.lean.calm_count);
+    }
+    state->sense.lean.log2_ticks = Frama_C_interval(0, 8);
     state->ground_speed.lean_mean_q8 = Frama_C_interval(-66977792, 66977792);
     state->ground_speed.gyro_q8 = Frama_C_interval(-4194304, 4194304);
     state->sense.gyro_q8 = Frama_C_interval(-4194304, 4194304);

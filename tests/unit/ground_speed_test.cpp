@@ -391,6 +391,59 @@ TEST(GroundSpeed, what_stands_and_felt_no_push_stands_for_five_seconds_of_loud_v
     }
 }
 
+// (20): the rover creeps through zero as a slope begins that the accelerometer does not tell from braking; its wheels turn with it.
+TEST(GroundSpeed, wheels_that_creep_tell_the_speed_where_the_radar_is_deaf) {
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    for (const double sign : {1.0, -1.0}) {
+        ground_speed_state_t state;
+        ground_speed_reset(&config, &state);
+        double speed = 0;
+        for (int k = 0; k < 1200; ++k) {
+            speed = sign * (k < 600 ? -0.06 : k < 800 ? -0.06 + 0.0006 * (k - 600) : 0.06);
+            const double accel = k < 600 || k >= 800 ? 0 : -0.06 * sign; // it feels the opposite
+            const double heard = std::fmax(0.04, std::fabs(speed));      // what the band-pass leaves
+            const ground_speed_input_t input = k % 12 == 0 ? with_radar(accel, heard, false, speed) : only_accel(accel, speed);
+            const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
+            const double bound = k > 1000 ? 0.02 : k > 600 ? 0.1 : k > 300 ? 0.05 : 1; // from 600 on it turns round
+            EXPECT_NEAR(out.speed_m_s, speed, bound) << k;
+        }
+    }
+}
+
+// What lets no echo through tells no speed to a centimetre, however often.
+TEST(GroundSpeed, a_value_below_the_radars_band_is_known_the_less) {
+    const auto deviation = [](double heard_m_s, bool deaf) {
+        ground_speed_config_t config = rover_config_default().ground_speed;
+        if (!deaf) config.deaf_noise_m2_s2 = 0;
+        ground_speed_state_t state;
+        ground_speed_reset(&config, &state);
+        for (int k = 0; k < 600; ++k) { // the wheels turn fast: they are no witness of a creep
+            const ground_speed_input_t input = k % 12 == 0 ? with_radar(0, heard_m_s) : only_accel(0);
+            ground_speed_step(&config, &state, &input);
+        }
+        return std::sqrt(static_cast<double>(state.p_vv));
+    };
+    EXPECT_GT(deviation(0.06, true), 1.25 * deviation(0.06, false)); // R is seven times as large, and part of it is the accelerometer's
+    EXPECT_EQ(deviation(0.13, true), deviation(0.13, false));
+}
+
+// In a turn the inner wheels are slower than the body, uphill as well: they do not drag it.
+TEST(GroundSpeed, wheels_of_a_turn_on_a_slope_do_not_ask_for_the_other_sign) {
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    ground_speed_state_t state;
+    ground_speed_reset(&config, &state);
+    for (int k = 0; k < 800; ++k) {
+        ground_speed_input_t input = k % 12 == 0 ? with_radar(1.5, 0.574, false, 0.55) : only_accel(1.5, 0.55); // 9 deg up
+        input.wheels_part = k > 300;
+        input.slowest_m_s = k > 300 ? 0.497f : 0.0f;
+        const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
+        if (k > 300) {
+            EXPECT_FALSE(state.other_alive) << k;
+            EXPECT_NEAR(out.speed_m_s, 0.574, 0.03) << k;
+        }
+    }
+}
+
 // Values drawn from the model that the filter has: independent errors of variance R, windows of the Hann window's square.
 TEST(GroundSpeed, knows_its_own_uncertainty) {
     const ground_speed_config_t config = rover_config_default().ground_speed;

@@ -70,6 +70,39 @@ TEST(Lean, what_turns_from_the_first_tick_on_is_no_slope_before_it_has_stood) {
     EXPECT_LT(std::fabs(body.lean_m_s2()), 1e-6);
 }
 
+// (3): a slope that begins in the first second of a drive is no offset, and one that is far off and steady is one.
+TEST(Lean, what_turns_in_the_first_second_of_a_drive_does_not_run_on) {
+    for (const double rate : {0.14, -0.3}) { // 8 and 17 deg/s, for 0.6 s
+        Body body;
+        body.turn(0.3, 0, 0, 0);
+        body.turn(0.6, 0, rate, 0);
+        const double then = body.lean_m_s2();
+        EXPECT_LE(std::fabs(then), g * std::fabs(rate) * 0.6);
+        body.turn(60, 0, 0, 0);
+        EXPECT_NEAR(body.lean_m_s2(), then, 1e-6) << rate;
+    }
+}
+
+TEST(Lean, a_calm_stretch_of_a_drive_tells_the_offset) {
+    Body body;
+    body.offset_rad_s[1] = -0.1; // 6 deg/s
+    body.turn(0.7, 0, 0, 0);
+    body.turn(0.5, 0, -0.35, 0); // nose up, 10 deg
+    EXPECT_NEAR(body.lean_m_s2(), g * 0.175, 0.02 * g * 0.175);
+    body.turn(60, 0, 0, 0);
+    EXPECT_NEAR(body.lean_m_s2(), g * 0.175, 0.02 * g * 0.175);
+}
+
+TEST(Lean, an_offset_that_was_a_slope_is_given_up_after_three_stretches) {
+    Body body;
+    body.turn(0.7, 0, 0.2, 0); // steady from the first tick on: taken for an offset
+    EXPECT_EQ(body.state.lean_q8, 0);
+    body.turn(60, 0, 0, 0);
+    // 3 stretches of 0.64 s at a rate that is not there, and what is left of the one in which it ended
+    EXPECT_GT(std::fabs(body.lean_m_s2()), g * 0.2 * 1.9);
+    EXPECT_LT(std::fabs(body.lean_m_s2()), g * 0.2 * 2.6);
+}
+
 TEST(Lean, a_turn_on_a_side_slope_turns_gravity_into_the_axis) {
     for (const double side : {0.175, -0.175}) {
         Body body;
@@ -161,11 +194,15 @@ TEST(Lean, without_the_gyros_the_accelerometer_is_taken_as_it_is) {
     }
     frame.tick++;
     frame.gyro_y_count = 300;
-    sense_measure(&config, &state, &frame); // its first count is taken for its offset
+    for (int k = 0; k < 65; k++) { // a calm stretch: its offset
+        frame.tick++;
+        const sense_output_t out = sense_measure(&config, &state, &frame);
+        ASSERT_EQ(out.level_m_s2, out.accel_x_m_s2) << k;
+    }
     frame.tick++;
     frame.gyro_y_count = -1700;
     const sense_output_t out = sense_measure(&config, &state, &frame);
-    EXPECT_GT(out.accel_x_m_s2 - out.level_m_s2, 0.01f); // nose up at 1 rad/s for a tick: 0.098, of which half is learned as offset
+    EXPECT_NEAR(out.accel_x_m_s2 - out.level_m_s2, 0.0981f, 1e-3f); // nose up at 1 rad/s for a tick
 }
 
 TEST(Lean, the_papers_filter_has_none) { EXPECT_EQ(rover_config_paper().sense.lean.gravity_q8, 0); }

@@ -37,7 +37,11 @@ void hold(const control_config_t &config, const control_state_t &state, int tick
         ASSERT_LE(rest, 32767 * 256) << tick;
         ASSERT_GE(rest, -32768 * 256) << tick;
     }
-    ASSERT_LE(state.sense.lean.log2_ticks, 14) << tick;
+    for (const std::int32_t sum : state.sense.lean.calm_sum) {
+        ASSERT_LE(std::abs(sum), state.sense.lean.calm_ticks * config.sense.lean.calm_count) << tick;
+    }
+    ASSERT_LT(state.sense.lean.calm_ticks, 64) << tick;
+    ASSERT_LE(state.sense.lean.log2_ticks, 8) << tick;
     ASSERT_GE(state.sense.lean.log2_ticks, 0) << tick;
     ASSERT_LE(std::abs(state.ground_speed.lean_mean_q8), (1 << 26) - (1 << 17)) << tick;
     ASSERT_LE(state.safety.radar_samples, 31u) << tick;
