@@ -40,6 +40,7 @@ static sense_config_t sense_default() {
         .lean = {.turn_q52 = 87960936, // 0.0005 rad/s 0.01 s 2^52/256 is 87,960,930; a float of that size counts by eights
                  .gravity_q8 = 627840,
                  .sudden_q8 = 25600, // 256 9.81/0.004
+                 .calm_count = 71,   // 0.035 rad/s, and a count
                  .steep_q8 = 31392}, // a twentieth
         .encoder_sign = {1, 1, 1, 1},
         .current_offset_count = {2048, 2048, 2048, 2048},
@@ -87,6 +88,8 @@ static ground_speed_config_t ground_speed_default() {
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
         .doppler_accel_s2 = 0.004f,
+        .deaf_noise_m2_s2 = 4e-4f,     // (2 cm/s)^2
+        .per_slow_s_m = 1.0f / 0.12f,
         .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
         .gate_patience = 4,
