@@ -88,7 +88,7 @@ static ground_speed_config_t ground_speed_default() {
         .doppler_noise_m2_s2 = 3e-5f,
         .doppler_noise_m_s = 5.8e-4f,
         .doppler_accel_s2 = 0.004f,
-        .deaf_noise_m2_s2 = 4e-4f,     // (2 cm/s)^2
+        .deaf_noise_m2_s2 = 4e-4f, // (2 cm/s)^2
         .per_slow_s_m = 1.0f / 0.12f,
         .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
