@@ -33,12 +33,11 @@ static void take_calm(const lean_config_t *config, lean_state_t *state)
         const int32_t apart = mean_q8[i] - state->rest_q8[i];
         differs = differs || apart > config->sudden_q8 || apart < -config->sudden_q8;
     }
-    state->calms_apart = differs ? state->calms_apart + 1 : 0;
-    const bool whole = !state->calm_known || state->calms_apart >= CALMS_BELIEVED;
+    const bool whole = !state->calm_known || (differs && state->calms_apart >= CALMS_BELIEVED - 1);
+    state->calms_apart = !differs || whole ? 0 : state->calms_apart == 0 ? 1 : 2;
     for (int32_t i = 0; i < 3 && (whole || !differs); i++) {
         state->rest_q8[i] = whole ? mean_q8[i] : state->rest_q8[i] + (mean_q8[i] - state->rest_q8[i]) / 16;
     }
-    state->calms_apart = whole ? 0 : state->calms_apart;
     state->calm_known = true;
 }
 
