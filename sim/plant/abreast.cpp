@@ -190,22 +190,27 @@ inline void soft_here(const FourKnown &known, const FourCarriers &on, const Four
 }
 
 // The same operations for each wheel, none contracted: the same bits, however many go at once.
-#define TRACTION_FOUR_STEPS(name, attribute)                                                                                               \
-    attribute void stand_##name(const FourKnown &known, const FourCarriers &on, FourWheels &__restrict w) { stand_here(known, on, w); }    \
-    attribute void firm_##name(const FourKnown &known, const FourCarriers &on, const FourOrders &orders, FourWheels &__restrict w) {       \
+#define TRACTION_FOUR_IN_narrow __attribute__((flatten))
+#define TRACTION_FOUR_IN_avx2 __attribute__((target("avx2"), flatten))
+#define TRACTION_FOUR_STEPS(name)                                                                                                          \
+    TRACTION_FOUR_IN_##name void stand_##name(const FourKnown &known, const FourCarriers &on, FourWheels &__restrict w) {                  \
+        stand_here(known, on, w);                                                                                                          \
+    }                                                                                                                                      \
+    TRACTION_FOUR_IN_##name void firm_##name(const FourKnown &known, const FourCarriers &on, const FourOrders &orders,                     \
+                                             FourWheels &__restrict w) {                                                                   \
         firm_here(known, on, orders, w);                                                                                                   \
     }                                                                                                                                      \
-    attribute void slide_##name(const FourKnown &known, FourWheels &__restrict w) { slide_here(known, w); }                                \
-    attribute void soft_##name(const FourKnown &known, const FourCarriers &on, const FourOrders &orders, const FourGiven &given,           \
-                               FourWheels &__restrict w) {                                                                                 \
+    TRACTION_FOUR_IN_##name void slide_##name(const FourKnown &known, FourWheels &__restrict w) { slide_here(known, w); }                  \
+    TRACTION_FOUR_IN_##name void soft_##name(const FourKnown &known, const FourCarriers &on, const FourOrders &orders,                     \
+                                             const FourGiven &given, FourWheels &__restrict w) {                                           \
         soft_here(known, on, orders, given, w);                                                                                            \
     }                                                                                                                                      \
     constexpr FourSteps steps_##name{stand_##name, firm_##name, slide_##name, soft_##name};
 
-TRACTION_FOUR_STEPS(narrow, __attribute__((flatten)))
+TRACTION_FOUR_STEPS(narrow)
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define TRACTION_WIDE_VECTORS 1
-TRACTION_FOUR_STEPS(avx2, __attribute__((target("avx2"), flatten)))
+TRACTION_FOUR_STEPS(avx2)
 #endif
 
 } // namespace
