@@ -2,6 +2,7 @@
 
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/sideways.h"
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
@@ -44,10 +45,14 @@ json ask_lab(const std::string &log_file, const std::string &model_file, const s
     using clock = std::chrono::steady_clock;
     const auto since = [](clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); };
     const auto start = clock::now();
-    const lab::Model model = lab::read_model(model_file);
+    lab::Model model = lab::read_model(model_file);
     const log::Log log = log::read_csv(log_file, map_file);
     const double read_s = since(start);
-    const lab::Dataset data = lab::make_dataset(model, log);
+    lab::Dataset data = lab::make_dataset(model, log);
+    if (lab::drifts_sideways(model, data)) { // as open_session does
+        model.motion = lab::BodyMotion::planar;
+        data = lab::make_dataset(model, log);
+    }
     const lab::Diagnosis found = lab::diagnose(model, data, lab::DiagnoseOptions{});
 
     json answer = {{"schema", "traction.lab/1"}, {"verb", "diagnose"},      {"candidates", json::array()},

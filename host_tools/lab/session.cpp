@@ -1,12 +1,14 @@
 #include "session.h"
 
 #include "gate.h"
+#include "sideways.h"
 
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/join_runs.h"
 #include "host_tools/lab/inputs/long_log.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace traction::lab {
@@ -45,11 +47,14 @@ Session open_session(const Request &request, Model model) {
     for (const auto &[key, value] : log.header) // a map that says so makes the model's currents magnitudes
         if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1")
             session.model.unsigned_current = true;
-    if (request.repeat.empty()) {
-        session.data = make_dataset(session.model, log);
-    } else {
-        const log::Log repeat = checked_log(request, request.repeat, map_of(0), session.model, told, despite);
-        session.data = make_dataset(session.model, log, &repeat);
+    std::optional<log::Log> repeat;
+    if (!request.repeat.empty()) repeat = checked_log(request, request.repeat, map_of(0), session.model, told, despite);
+    const auto data = [&] { return make_dataset(session.model, log, repeat ? &*repeat : nullptr); };
+    session.data = data();
+    if (drifts_sideways(session.model, session.data)) {
+        session.model.motion = BodyMotion::planar;
+        session.data = data();
+        told.push_back(followed_sideways);
     }
     if (session.runs.size() > 1) {
         session.data.run_start_s = joined.start_s;

@@ -77,7 +77,7 @@ class Search {
         d_.limits = limits_of(problem);
         conclude();
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
-            name_nothing(d_, stated_, d->text);
+            name_nothing(d_, stated_, *d);
         return std::move(d_);
     }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "candidate.h"
+#include "doubt.h"
 #include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/inputs/dataset.h"
@@ -88,8 +89,8 @@ struct Diagnosis {
 
 Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOptions &options);
 
-// The verdict wrong_model: takes back every name, class and shape; the model stays as stated. `look_at`: what to look at (doubt.h).
-void name_nothing(Diagnosis &diagnosis, const Model &stated, const std::string &look_at);
+// The verdict wrong_model: takes back every name, class and shape; the model stays as stated.
+void name_nothing(Diagnosis &diagnosis, const Model &stated, const Doubt &doubt);
 
 // The sentence that ends a diagnosis; conclude() of diagnose.cpp puts it into `text`.
 std::string verdict_text(const Diagnosis &diagnosis);

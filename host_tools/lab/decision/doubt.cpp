@@ -244,7 +244,7 @@ double error_less(const Problem &fitted, const Eigen::VectorXd &squares) {
 // Data that the fit within the priors has itself moved grossly (the sheet's deviation was too wide to hold them), and without which it
 // describes the log notably worse: what uneven ground does to a soil's stiffness is less. A soil that is too soft also predicts better
 // because it does not follow the encoders' scatter ((1) of forward/rounding.h): what that may be is no evidence.
-std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first) {
+std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first, double &held_error) {
     Model before = stated, after = stated, held = stated;
     for (std::size_t i = 0; i < first.parameters.size(); ++i)
         store(after, first.parameters[i], first.theta[static_cast<Eigen::Index>(i)], 0);
@@ -267,6 +267,7 @@ std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first) {
     as_stated.fit({.iterations = 3, .ready = false});
     const Eigen::VectorXd smoothed = rounding_squares(first.data(), as_stated.physics()) - rounding_squares(first.data(), first.physics());
     if (!(overall_error(first) < notable * error_less(as_stated, smoothed))) out.clear(); // the log hardly asks for them: they wander
+    if (!out.empty()) held_error = overall_error(as_stated);
     return out;
 }
 
@@ -325,7 +326,8 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     for (std::size_t i = 0; i < first.parameters.size(); ++i) at_bound = at_bound || first.at_bound(i);
     const bool nothing_found = accepted == 0 && !(shape_gain > 0), far_off = nothing_found && after > never_nothing;
     Doubt out;
-    if (nothing_found) out.suspects = moved_grossly(stated, first);
+    out.error = before;
+    if (nothing_found) out.suspects = moved_grossly(stated, first, out.error);
     if (!at_bound && worst_of(first) < suspicious && !far_off && out.suspects.empty() && !(accepted >= 2 && before > 1.3 * after))
         return std::nullopt;
     const double left = after * (1 - shape_gain);

@@ -27,6 +27,7 @@ struct Suspect {
 struct Doubt {
     std::vector<Suspect> suspects; // one of these grossly different would describe the log; least error first; may be empty
     std::string text;              // what to look at
+    double error = 0; // of the model in units of noise, with the numbers that its fit alone moved grossly held at what is stated
 };
 
 // (1) of every balance of a fitted problem.

@@ -47,7 +47,7 @@ std::string verdict_text(const Diagnosis &d) {
     return text;
 }
 
-void name_nothing(Diagnosis &d, const Model &stated, const std::string &look_at) {
+void name_nothing(Diagnosis &d, const Model &stated, const Doubt &doubt) {
     for (CandidateResult &r : d.ranking)
         if (r.verdict == "named" || r.verdict == "class" || r.verdict == "nearest") r.verdict = "wrong_model", r.class_index.reset();
     if (d.ladder.size() > 1) d.ladder.resize(1);
@@ -58,8 +58,8 @@ void name_nothing(Diagnosis &d, const Model &stated, const std::string &look_at)
     d.kind = "wrong_model";
     char buffer[200];
     std::snprintf(buffer, sizeof buffer, "This model does not describe this log: its error is %.3g x noise, and no effect is named. ",
-                  d.ladder.empty() ? 0.0 : d.ladder.front().train);
-    d.text = buffer + look_at + ".";
+                  doubt.error);
+    d.text = buffer + doubt.text + ".";
 }
 
 } // namespace traction::lab

@@ -73,14 +73,17 @@ Eigen::VectorXd noise_weight(const Problem &problem) {
     return weight;
 }
 
-HeldOut held_out(const Problem &fitted) {
+HeldOut as_fitted(const Problem &fitted) {
     HeldOut out;
     cut(fitted.data(), out);
     out.residual = fitted.residual;
-    if (out.blocks < 2 || fitted.parameters.empty()) {
-        out.error = std::sqrt(out.residual.cwiseAbs2().dot(noise_weight(fitted)));
-        return out;
-    }
+    out.error = std::sqrt(out.residual.cwiseAbs2().dot(noise_weight(fitted)));
+    return out;
+}
+
+HeldOut held_out(const Problem &fitted) {
+    HeldOut out = as_fitted(fitted);
+    if (out.blocks < 2 || fitted.parameters.empty()) return out;
     Problem problem = fitted; // its forward model is moved about
     const SparseJacobian sparse(fitted.data(), fitted.jacobian);
     Eigen::MatrixXd whole = sparse.gram();

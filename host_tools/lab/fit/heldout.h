@@ -24,6 +24,9 @@ struct HeldOut {
 // The problem must be linearised at its optimum; it is left as it was. Costs about twenty predictions.
 HeldOut held_out(const Problem &problem);
 
+// The same without refits: every row as the fit to all of them leaves it. For two models with the same parameters.
+HeldOut as_fitted(const Problem &problem);
+
 // Fall of the held-out squares from one model to another on the same data, and its standard error over blocks.
 struct Fall {
     double sum = 0, error = 0;

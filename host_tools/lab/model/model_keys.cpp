@@ -6,8 +6,9 @@ namespace {
 
 // Priors are assumed: a brushed gear motor's data sheet holds within 2 to 3 % for its constant and winding, 10 % for friction; a soil is
 // known to 20 %; a tyre's radius under load to 0.5 %. Between the wheels of one machine: motors of one lot differ by 1.5 % in their magnets
-// and 3 % in windings and brushes, bearings and gears by 15 % in what they lose, tyres of one mould by 0.2 %.
-// An accelerometer's own low pass: MEMS data sheets offer 5 to 260 Hz, so up to some 30 ms and mostly 10; as much again until it is read.
+// and 3 % in windings and brushes, wheels with their rotors by 3 % in inertia, bearings and gears by 15 % in what they lose, tyres of one
+// mould by 0.2 %. Without the inertia's share 3 % between four wheels were named as encoders that miss counts. An accelerometer's own low
+// pass: MEMS data sheets offer 5 to 260 Hz, so up to some 30 ms and mostly 10; as much again until it is read.
 constexpr ModelKey rover[] = {
     {"mass_kg", "kg", 0, 0, 1e5, 0, 0},          {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},
     {"centre_height_m", "m", 0, 0, 10, 0, 0},    {"gravity_m_s2", "m/s^2", 9.81, 0, 30, 0, 0},
@@ -22,7 +23,7 @@ constexpr ModelKey motor[] = {
     {"torque_constant_Nm_A", "N m/A", 0, 0, 1e4, 0.02, 0, 0.015},
     {"back_emf_Vs_rad", "V s/rad", 0, 0, 1e4, 0.02, 0, 0.015},
     {"resistance_ohm", "ohm", 0, 0, 1e4, 0.05, 0, 0.03}, // limits of 10 % are two deviations; copper gains 5 % in 13 K
-    {"inertia_kg_m2", "kg m^2", 0, 0, 1e4, 0.05, 0},
+    {"inertia_kg_m2", "kg m^2", 0, 0, 1e4, 0.05, 0, 0.03},
     {"viscous_Nms", "N m s", 0, 0, 1e4, 0.1, 0, 0.15},
     {"coulomb_Nm", "N m", 0, 0, 1e4, 0.1, 0, 0.15},
     {"current_offset_A", "A", 0, -10, 10, 0, 0},

@@ -1,0 +1,79 @@
+// A skid steer that drifts outwards in its bends is followed sideways, whatever its model says of its motion; one that does not drift, or
+// whose log cannot show it, is not.
+#include "generator/generator.h"
+
+#include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/session.h"
+#include "host_tools/lab/sideways.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace traction::lab {
+namespace {
+
+Model sand() { return read_model("models/rover_sand.toml"); }
+
+// The simulated rover's sides are moved by the ground's forces alone: bends to the left and to the right, at two speeds.
+log::Log in_bends() {
+    std::string scenario = "duration_s = 40.0\nseed = 5\n[ground]\nsoil = \"sand\"\n";
+    for (const char *wheels : {"[3.0, 7.0, 3.0, 7.0]", "[8.0, 4.0, 8.0, 4.0]", "[9.0, 12.0, 9.0, 12.0]", "[6.0, 6.0, 6.0, 6.0]"})
+        scenario += std::string("[[drive]]\nfor_s = 10.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = ") + wheels + "\n";
+    return simulate(sim::parse_scenario(scenario, "bends.toml")).log;
+}
+
+const log::Log &bends() {
+    static const log::Log log = in_bends();
+    return log;
+}
+
+TEST(Sideways, ARoverThatDriftsInItsBendsIsFollowed) {
+    const Model model = sand();
+    EXPECT_TRUE(drifts_sideways(model, make_dataset(model, bends())));
+}
+
+TEST(Sideways, ARoverThatIsHeldOnItsLineIsNot) { // the generator's middle does not drift: v and yaw rate are all it has
+    for (const char *drive : {"curves", "spins"}) {
+        generator::GeneratorConfig config;
+        config.drive = drive, config.duration_s = 60, config.seed = 77;
+        const Model model = parse_model(generator::data_sheet(config), "sheet");
+        EXPECT_FALSE(drifts_sideways(model, make_dataset(model, generator::generate(config)))) << drive;
+    }
+}
+
+TEST(Sideways, WhatCannotShowItIsNotAsked) {
+    const Model model = sand();
+    log::Log blind = bends();
+    std::erase_if(blind.signals, [](const log::Signal &s) { return s.name == "imu.gyro_z_rad_s"; });
+    EXPECT_FALSE(drifts_sideways(model, make_dataset(model, blind))) << "no gyro";
+
+    Model rollers = model;
+    rollers.wheel[1].grips_sideways = false;
+    EXPECT_FALSE(drifts_sideways(rollers, make_dataset(rollers, bends()))) << "a wheel with rollers";
+
+    Model one_axle = model;
+    for (WheelSpec &w : one_axle.wheel) w.geometry.at("x_m").value = 0;
+    EXPECT_FALSE(drifts_sideways(one_axle, make_dataset(one_axle, bends()))) << "one axle";
+
+    Model planar = model;
+    planar.motion = BodyMotion::planar;
+    EXPECT_FALSE(drifts_sideways(planar, make_dataset(planar, bends()))) << "it is followed already";
+}
+
+TEST(Sideways, TheSessionSaysSoAndItsModelKeepsIt) {
+    Request request;
+    request.model = "models/rover_sand.toml", request.log = "bends.csv";
+    request.read = [](const std::string &, const std::string &, std::vector<log::Repair> &) { return bends(); };
+    const Session session = open_session(request);
+    EXPECT_EQ(session.model.motion, BodyMotion::planar);
+    EXPECT_EQ(std::count(session.data.messages.begin(), session.data.messages.end(), followed_sideways), 1);
+    EXPECT_TRUE(std::any_of(session.data.balance.begin(), session.data.balance.end(), [](const Balance &b) {
+        return b.kind == BalanceKind::camera_y;
+    })) << "the camera's sideways rows come with it";
+}
+
+} // namespace
+} // namespace traction::lab
