@@ -385,11 +385,12 @@ class Search {
         const bool by_priors = rival && tolerances_decide(scaled, noise, spared, options_.least_prior_reduction);
         const bool as_much = rival && (rival->explains_as_much() || !falls);
         if (!falls && !by_priors) return std::nullopt;
+        const std::size_t broken = newly_at_limits(before, compared); // before it moves: `spared` is of this fit too
         if (HeldOut own = held_out(problem); own.error < held_.error)
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
-        const bool pay = rival && tolerances_pay(spared, held.error, newly_at_limits(before, compared), options_.least_prior_reduction);
+        const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
         if (!pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
