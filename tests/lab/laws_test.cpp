@@ -58,6 +58,18 @@ TEST(Afar, a_law_that_took_the_fit_to_where_its_steps_are_blind_is_found) {
     EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
 }
 
+// What lies near explains a part: shear_peak was told, 7.0 to 6.7 times the noise, with the yaw rate at 21 times it.
+TEST(Afar, a_law_is_found_though_another_passes_that_leaves_a_signal_missed) {
+    const generator::BlindCase hidden = generator::draw_fleet_case(827283, "one");
+    ASSERT_EQ(hidden.config.hidden.front().name, "lateral_scrub");
+    const double truth = hidden.config.hidden.front().values.front().second;
+    const Answer a = ask(hidden.config);
+    ASSERT_EQ(a.d.effects, std::vector<std::string>{"lateral_scrub"}) << a.d.text;
+    EXPECT_LE(a.d.accepted.front().low[0], truth);
+    EXPECT_GE(a.d.accepted.front().high[0], truth);
+    EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
+}
+
 // Two of six clean logs of such sensors were told as accel_tilt with accel_scale.
 TEST(Sensors, an_accelerometer_filtered_and_late_as_such_parts_are_gets_no_name) {
     for (const Soil soil : {Soil::sand, Soil::concrete}) {

@@ -161,7 +161,8 @@ class Search {
         judge_beyond_range(trials, base_error);
         std::optional<Next> next;
         std::size_t winner = trials.size();
-        for (bool sought_afar = !is_first || !(worst_error() > far_off);;) {
+        bool sought_afar = !is_first || !(worst_error(held_) > far_off);
+        for (;;) {
             std::stable_sort(trials.begin(), trials.end(),
                              [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
             for (std::size_t i = 0; i < trials.size() && !next; ++i) {
@@ -174,6 +175,7 @@ class Search {
             if (refit_passing(trials, problem, screen)) continue;
             if (std::exchange(sought_afar, true) || !refit_from_afar(trials, problem, screen)) break;
         }
+        if (next && !sought_afar && worst_error(next->held) > far_off) prefer_from_afar(trials, winner, *next, problem, screen);
         if (next) prefer_stated(trials, winner, *next, problem, screen);
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
@@ -267,9 +269,9 @@ class Search {
         return any;
     }
 
-    // The largest held-out error of a balance as the model stands, in units of its noise.
-    double worst_error() const {
-        const Eigen::VectorXd squares = held_.residual.cwiseQuotient(d_.stated_fit->noise_rows()).cwiseAbs2();
+    // The largest held-out error of a balance, in units of its noise.
+    double worst_error(const HeldOut &held) const {
+        const Eigen::VectorXd squares = held.residual.cwiseQuotient(d_.stated_fit->noise_rows()).cwiseAbs2();
         Eigen::Index row = 0;
         double most = 0;
         for (const Balance &b : data_.balance) {
@@ -315,6 +317,22 @@ class Search {
         HeldOut held;
         std::string rival; // a tolerance that explains as much; empty: none does
     };
+
+    // What explains the most of that which is near may be no more than what a law that is seen from afar leaves of it: where with the
+    // winner a balance is still missed by far, those are asked too, and the one that predicts better stands in its place.
+    void prefer_from_afar(std::vector<Trial> &trials, std::size_t &winner, Next &next, Problem &problem, const Screen &screen) {
+        const double gain = trials[winner].gain;
+        if (!refit_from_afar(trials, problem, screen)) return;
+        std::size_t best = trials.size();
+        for (std::size_t i = 0; i < trials.size(); ++i)
+            if (trials[i].verdict == "passes" && trials[i].refitted && trials[i].gain > (best < trials.size() ? trials[best].gain : gain))
+                best = i;
+        if (best == trials.size()) return;
+        std::optional<Next> other = with(trials[best], problem);
+        if (!other || !(other->held.error < next.held.error)) return;
+        winner = best;
+        next = std::move(*other);
+    }
 
     // Of a class that a drive of one manner cannot tell apart, a law of a number that the model states comes first.
     void prefer_stated(std::vector<Trial> &trials, std::size_t &winner, Next &next, const Problem &before, const Screen &screen) {
