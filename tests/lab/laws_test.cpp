@@ -70,6 +70,17 @@ TEST(Afar, a_law_is_found_though_another_passes_that_leaves_a_signal_missed) {
     EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
 }
 
+// Beside the ripple the step led lost counts to 0.03 of a wheel's, where a wheel's radius explained more; alone they had been 0.107, and
+// from there they are 0.109.
+TEST(Rounds, a_size_that_one_round_was_sure_of_is_where_the_next_one_looks_too) {
+    generator::BlindCase hidden = generator::draw_case(841007, 120, "two");
+    hidden.config.apart = true;
+    ASSERT_EQ(hidden.config.hidden.front().name, "encoder_missed");
+    const Answer a = ask(hidden.config);
+    ASSERT_EQ(a.d.effects, (std::vector<std::string>{"torque_ripple", "encoder_missed on wheel 3"})) << a.d.text;
+    EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
+}
+
 // Two of six clean logs of such sensors were told as accel_tilt with accel_scale.
 TEST(Sensors, an_accelerometer_filtered_and_late_as_such_parts_are_gets_no_name) {
     for (const Soil soil : {Soil::sand, Soil::concrete}) {

@@ -177,6 +177,8 @@ class Search {
         }
         if (next && !sought_afar && worst_error(next->held) > far_off) prefer_from_afar(trials, winner, *next, problem, screen);
         if (next) prefer_stated(trials, winner, *next, problem, screen);
+        for (const Trial &t : trials)
+            if (t.refitted && t.verdict == "passes") earlier_.insert_or_assign(t.candidate.label(), Earlier{t.candidate.variant, t.value});
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
         if (!next) return std::nullopt;
@@ -284,12 +286,33 @@ class Search {
 
     bool refit_and_judge(Trial &t, Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
+        const Trial by_step = t;
         refit(t, problem, screen, d_.model, data_);
+        if (const auto found = earlier_.find(t.candidate.label()); found != earlier_.end() && lost(t, found->second)) {
+            Trial again = by_step;
+            again.start = found->second.value, again.start_change.resize(0);
+            refit(again, problem, screen, d_.model, data_);
+            if (again.error_reduction > t.error_reduction) t = std::move(again);
+        }
         if (t.assessment.projected.size() == 0)
             t.assessment.projected = screen.projected(columns.of(t.candidate).col(0)); // the step was the fit
         judge(t, screen.explainable(), options_);
         tick();
         return t.verdict == "passes";
+    }
+
+    // What passed in a round before, as it was found there.
+    struct Earlier {
+        std::vector<std::pair<std::string, double>> variant;
+        std::vector<double> value;
+    };
+
+    // Of a law that moves the body: this round's step has led to another size than the one that an earlier round was sure of.
+    static bool lost(const Trial &now, const Earlier &earlier) {
+        if (now.candidate.variant != earlier.variant || (now.candidate.touched & stage_motion) == 0) return false;
+        for (std::size_t j = 0; j < now.value.size(); ++j)
+            if (std::fabs(now.value[j] - earlier.value[j]) > elsewhere * std::fabs(earlier.value[j])) return true;
+        return false;
     }
 
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
@@ -673,13 +696,15 @@ class Search {
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
     // Times its noise, of a balance that is missed by far (uneven ground leaves up to six); of the catalogue's range: both assumed.
     static constexpr double far_off = 8, part_of_range = 0.25;
+    static constexpr double elsewhere = 0.5;     // of a size: a refit that ends so far from where it was sure is another one (assumed)
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
     const Model &stated_;
     const DiagnoseOptions &options_;
     Diagnosis d_;
     Columns::Cache cache_;
-    HeldOut held_; // of the model as it stands
+    HeldOut held_;                           // of the model as it stands
+    std::map<std::string, Earlier> earlier_; // by label
     int done_ = 0;
 };
 
