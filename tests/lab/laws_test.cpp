@@ -102,6 +102,19 @@ TEST(Rounding, what_only_smooths_the_encoders_noise_is_not_named) {
 }
 
 // E[(p(w + n) - p(w))^2] is quadratic in the count, and nothing where wheels roll on slippery ground: 0.3 N per unit of slip.
+// On concrete the fit with the law softens the ground too, which smooths: the law was refused for it (310 squares left of 346 asked for),
+// and a viscous_friction that is not there was named. On the ground as it was without the law 422 are gained, by no smoothing.
+TEST(Rounding, a_law_keeps_its_name_where_only_the_softer_ground_beside_it_smooths) {
+    generator::BlindCase hidden = generator::draw_case(852010, 120, "one");
+    hidden.config.apart = true;
+    ASSERT_EQ(hidden.config.hidden.front().name, "speed_resistance");
+    const double truth = hidden.config.hidden.front().values.front().second;
+    const Answer a = ask(hidden.config);
+    ASSERT_EQ(a.d.effects, std::vector<std::string>{"speed_resistance"}) << a.d.text;
+    EXPECT_LE(a.d.accepted.front().low[0], truth);
+    EXPECT_GE(a.d.accepted.front().high[0], truth);
+}
+
 TEST(Rounding, goes_with_the_square_of_the_count) {
     const GeneratorConfig config = rover(Soil::concrete, 7102);
     const Model model = parse_model(generator::data_sheet(config), "sheet");

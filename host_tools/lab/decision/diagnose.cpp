@@ -412,10 +412,22 @@ class Search {
         if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
             const Scatter scatter(before);
             const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
-            const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
-            scaled.sum -= smoothed.dot(weight);
-            noise.sum -= smoothed.dot(noise_weight(before));
-            t.smooths = !(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight));
+            const auto take_off = [&](const Problem &fit) {
+                const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, fit.physics())).cwiseProduct(scatter.part);
+                scaled.sum -= smoothed.dot(weight);
+                noise.sum -= smoothed.dot(noise_weight(before));
+            };
+            const double least = of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight);
+            take_off(compared);
+            t.smooths = false;
+            if (!(scaled.sum > least)) { // a softer ground beside it may be all that smooths: what does it explain on the ground as it was?
+                Problem on_ground = held_ground(compared, before);
+                const HeldOut there = held_out(on_ground);
+                scaled = fall_between(held_, there, weight), noise = fall_between(held_, there, noise_weight(before));
+                const double whole = scaled.sum;
+                take_off(on_ground);
+                t.smooths = !(scaled.sum > std::max(least_reduction, mostly * whole));
+            }
             if (t.smooths) return std::nullopt;
         }
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
@@ -435,6 +447,20 @@ class Search {
         if (!pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
+    }
+
+    // The fit with the soil's numbers where they stand without the candidate.
+    static Problem held_ground(const Problem &with, const Problem &before) {
+        Problem held = with;
+        for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+            if (before.parameters[i].owner != "soil") continue;
+            const double stays = before.theta[static_cast<Eigen::Index>(i)];
+            held.parameters[i].minimum = held.parameters[i].maximum = before.parameters[i].base + stays;
+            held.theta[static_cast<Eigen::Index>(i)] = stays;
+        }
+        held.jacobian.resize(0, 0);
+        held.gauss_newton(2);
+        return held;
     }
 
     // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
@@ -696,6 +722,7 @@ class Search {
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
     // Times its noise, of a balance that is missed by far (uneven ground leaves up to six); of the catalogue's range: both assumed.
     static constexpr double far_off = 8, part_of_range = 0.25;
+    static constexpr double mostly = 2.0 / 3;    // of a gain on the ground as it was, that smoothing must leave: assumed
     static constexpr double elsewhere = 0.5;     // of a size: a refit that ends so far from where it was sure is another one (assumed)
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
