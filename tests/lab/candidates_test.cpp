@@ -156,22 +156,11 @@ TEST(Candidates, are_every_effect_of_the_catalogue_on_all_wheels_and_on_each) {
     }
 }
 
-// The shares 1/variants of an effect's chance of a false alarm add up to the whole of it (a weighted Bonferroni): half for all wheels,
-// half for the single ones, as much for each.
-TEST(Candidates, share_the_chance_of_a_false_alarm_between_all_wheels_and_the_single_ones) {
-    std::map<std::string, double> whole, on_all;
-    std::map<std::string, std::set<int>> of_single;
+TEST(Candidates, count_all_that_are_like_them) {
+    std::map<std::string, int> count;
     const std::vector<Candidate> list = candidates(plain().model);
-    for (const Candidate &c : list) {
-        whole[c.effect] += 1.0 / c.variants;
-        if (c.wheel < 0) on_all[c.effect] += 1.0 / c.variants;
-        if (c.wheel >= 0) of_single[c.effect].insert(c.variants);
-    }
-    for (const auto &[effect, sum] : whole) {
-        EXPECT_NEAR(sum, 1, 1e-12) << effect; // sums of at most some hundred shares: rounding alone
-        EXPECT_NEAR(on_all[effect], of_single.count(effect) != 0 ? 0.5 : 1, 1e-12) << effect;
-    }
-    for (const auto &[effect, shares] : of_single) EXPECT_EQ(shares.size(), 1U) << effect;
+    for (const Candidate &c : list) ++count[c.effect];
+    for (const Candidate &c : list) EXPECT_EQ(c.variants, count[c.effect]) << c.label();
 }
 
 TEST(Candidates, leave_out_what_the_model_holds_and_what_would_be_its_second_copy) {

@@ -273,9 +273,7 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
                 c.effect = handle.name;
                 c.wheel = wheel;
                 c.variant = shape;
-                // half of the chance of a false alarm for all wheels, half for the single ones together: a weighted Bonferroni
-                const std::size_t shares = wheels.size() == 1 ? 1 : wheel < 0 ? 2 : 2 * (wheels.size() - 1);
-                c.variants = static_cast<int>(shapes.size() * shares);
+                c.variants = static_cast<int>(shapes.size() * wheels.size());
                 c.touched = handle.touched;
                 c.bounded = is_change_of_sheet(handle.name);
                 for (const auto &place : handle.strengths) {
