@@ -419,15 +419,13 @@ class Search {
             };
             const double least = of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight);
             take_off(compared);
-            t.smooths = false;
             if (!(scaled.sum > least)) { // a softer ground beside it may be all that smooths: what does it explain on the ground as it was?
                 Problem on_ground = held_ground(compared, before);
                 const HeldOut there = held_out(on_ground);
                 scaled = fall_between(held_, there, weight), noise = fall_between(held_, there, noise_weight(before));
-                const double whole = scaled.sum;
                 take_off(on_ground);
-                t.smooths = !(scaled.sum > std::max(least_reduction, mostly * whole));
             }
+            t.smooths = !(scaled.sum > least);
             if (t.smooths) return std::nullopt;
         }
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
@@ -722,7 +720,6 @@ class Search {
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
     // Times its noise, of a balance that is missed by far (uneven ground leaves up to six); of the catalogue's range: both assumed.
     static constexpr double far_off = 8, part_of_range = 0.25;
-    static constexpr double mostly = 2.0 / 3;    // of a gain on the ground as it was, that smoothing must leave: assumed
     static constexpr double elsewhere = 0.5;     // of a size: a refit that ends so far from where it was sure is another one (assumed)
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
