@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 namespace traction::lab {
 namespace {
@@ -632,6 +634,10 @@ TEST(Tolerances, pay_for_no_name_that_takes_a_stated_number_to_its_limit) {
         }
     }
     EXPECT_GT(stated, 10U); // of both sides of a sheet of more than five numbers
+    Problem gone = before;  // it was once asked of a fit that had been moved away, and counted nothing
+    const Problem kept = std::move(gone);
+    EXPECT_THROW(newly_at_limits(before, gone), std::logic_error); // NOLINT(bugprone-use-after-move)
+    EXPECT_EQ(newly_at_limits(before, kept), 0U);
 }
 
 // Four squared deviations of stated numbers widened by what is left (Birge): at three noises 4 * 9.

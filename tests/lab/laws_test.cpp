@@ -58,6 +58,29 @@ TEST(Afar, a_law_that_took_the_fit_to_where_its_steps_are_blind_is_found) {
     EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
 }
 
+// What lies near explains a part: shear_peak was told, 7.0 to 6.7 times the noise, with the yaw rate at 21 times it.
+TEST(Afar, a_law_is_found_though_another_passes_that_leaves_a_signal_missed) {
+    const generator::BlindCase hidden = generator::draw_fleet_case(827283, "one");
+    ASSERT_EQ(hidden.config.hidden.front().name, "lateral_scrub");
+    const double truth = hidden.config.hidden.front().values.front().second;
+    const Answer a = ask(hidden.config);
+    ASSERT_EQ(a.d.effects, std::vector<std::string>{"lateral_scrub"}) << a.d.text;
+    EXPECT_LE(a.d.accepted.front().low[0], truth);
+    EXPECT_GE(a.d.accepted.front().high[0], truth);
+    EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
+}
+
+// Beside the ripple the step led lost counts to 0.03 of a wheel's, where a wheel's radius explained more; alone they had been 0.107, and
+// from there they are 0.109.
+TEST(Rounds, a_size_that_one_round_was_sure_of_is_where_the_next_one_looks_too) {
+    generator::BlindCase hidden = generator::draw_case(841007, 120, "two");
+    hidden.config.apart = true;
+    ASSERT_EQ(hidden.config.hidden.front().name, "encoder_missed");
+    const Answer a = ask(hidden.config);
+    ASSERT_EQ(a.d.effects, (std::vector<std::string>{"torque_ripple", "encoder_missed on wheel 3"})) << a.d.text;
+    EXPECT_LT(a.d.ladder.back().heldout, 0.5 * a.d.ladder.front().heldout);
+}
+
 // Two of six clean logs of such sensors were told as accel_tilt with accel_scale.
 TEST(Sensors, an_accelerometer_filtered_and_late_as_such_parts_are_gets_no_name) {
     for (const Soil soil : {Soil::sand, Soil::concrete}) {
@@ -79,6 +102,19 @@ TEST(Rounding, what_only_smooths_the_encoders_noise_is_not_named) {
 }
 
 // E[(p(w + n) - p(w))^2] is quadratic in the count, and nothing where wheels roll on slippery ground: 0.3 N per unit of slip.
+// On concrete the fit with the law softens the ground too, which smooths: the law was refused for it (310 squares left of 346 asked for),
+// and a viscous_friction that is not there was named. On the ground as it was without the law 422 are gained, by no smoothing.
+TEST(Rounding, a_law_keeps_its_name_where_only_the_softer_ground_beside_it_smooths) {
+    generator::BlindCase hidden = generator::draw_case(852010, 120, "one");
+    hidden.config.apart = true;
+    ASSERT_EQ(hidden.config.hidden.front().name, "speed_resistance");
+    const double truth = hidden.config.hidden.front().values.front().second;
+    const Answer a = ask(hidden.config);
+    ASSERT_EQ(a.d.effects, std::vector<std::string>{"speed_resistance"}) << a.d.text;
+    EXPECT_LE(a.d.accepted.front().low[0], truth);
+    EXPECT_GE(a.d.accepted.front().high[0], truth);
+}
+
 TEST(Rounding, goes_with_the_square_of_the_count) {
     const GeneratorConfig config = rover(Soil::concrete, 7102);
     const Model model = parse_model(generator::data_sheet(config), "sheet");

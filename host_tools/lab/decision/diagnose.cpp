@@ -161,7 +161,8 @@ class Search {
         judge_beyond_range(trials, base_error);
         std::optional<Next> next;
         std::size_t winner = trials.size();
-        for (bool sought_afar = !is_first || !(worst_error() > far_off);;) {
+        bool sought_afar = !is_first || !(worst_error(held_) > far_off);
+        for (;;) {
             std::stable_sort(trials.begin(), trials.end(),
                              [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
             for (std::size_t i = 0; i < trials.size() && !next; ++i) {
@@ -174,7 +175,10 @@ class Search {
             if (refit_passing(trials, problem, screen)) continue;
             if (std::exchange(sought_afar, true) || !refit_from_afar(trials, problem, screen)) break;
         }
+        if (next && !sought_afar && worst_error(next->held) > far_off) prefer_from_afar(trials, winner, *next, problem, screen);
         if (next) prefer_stated(trials, winner, *next, problem, screen);
+        for (const Trial &t : trials)
+            if (t.refitted && t.verdict == "passes") earlier_.insert_or_assign(t.candidate.label(), Earlier{t.candidate.variant, t.value});
         if (is_first) note_not_excited(trials);
         record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
         if (!next) return std::nullopt;
@@ -267,9 +271,9 @@ class Search {
         return any;
     }
 
-    // The largest held-out error of a balance as the model stands, in units of its noise.
-    double worst_error() const {
-        const Eigen::VectorXd squares = held_.residual.cwiseQuotient(d_.stated_fit->noise_rows()).cwiseAbs2();
+    // The largest held-out error of a balance, in units of its noise.
+    double worst_error(const HeldOut &held) const {
+        const Eigen::VectorXd squares = held.residual.cwiseQuotient(d_.stated_fit->noise_rows()).cwiseAbs2();
         Eigen::Index row = 0;
         double most = 0;
         for (const Balance &b : data_.balance) {
@@ -282,12 +286,33 @@ class Search {
 
     bool refit_and_judge(Trial &t, Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
+        const Trial by_step = t;
         refit(t, problem, screen, d_.model, data_);
+        if (const auto found = earlier_.find(t.candidate.label()); found != earlier_.end() && lost(t, found->second)) {
+            Trial again = by_step;
+            again.start = found->second.value, again.start_change.resize(0);
+            refit(again, problem, screen, d_.model, data_);
+            if (again.error_reduction > t.error_reduction) t = std::move(again);
+        }
         if (t.assessment.projected.size() == 0)
             t.assessment.projected = screen.projected(columns.of(t.candidate).col(0)); // the step was the fit
         judge(t, screen.explainable(), options_);
         tick();
         return t.verdict == "passes";
+    }
+
+    // What passed in a round before, as it was found there.
+    struct Earlier {
+        std::vector<std::pair<std::string, double>> variant;
+        std::vector<double> value;
+    };
+
+    // Of a law that moves the body: this round's step has led to another size than the one that an earlier round was sure of.
+    static bool lost(const Trial &now, const Earlier &earlier) {
+        if (now.candidate.variant != earlier.variant || (now.candidate.touched & stage_motion) == 0) return false;
+        for (std::size_t j = 0; j < now.value.size(); ++j)
+            if (std::fabs(now.value[j] - earlier.value[j]) > elsewhere * std::fabs(earlier.value[j])) return true;
+        return false;
     }
 
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
@@ -315,6 +340,22 @@ class Search {
         HeldOut held;
         std::string rival; // a tolerance that explains as much; empty: none does
     };
+
+    // What explains the most of that which is near may be no more than what a law that is seen from afar leaves of it: where with the
+    // winner a balance is still missed by far, those are asked too, and the one that predicts better stands in its place.
+    void prefer_from_afar(std::vector<Trial> &trials, std::size_t &winner, Next &next, Problem &problem, const Screen &screen) {
+        const double gain = trials[winner].gain;
+        if (!refit_from_afar(trials, problem, screen)) return;
+        std::size_t best = trials.size();
+        for (std::size_t i = 0; i < trials.size(); ++i)
+            if (trials[i].verdict == "passes" && trials[i].refitted && trials[i].gain > (best < trials.size() ? trials[best].gain : gain))
+                best = i;
+        if (best == trials.size()) return;
+        std::optional<Next> other = with(trials[best], problem);
+        if (!other || !(other->held.error < next.held.error)) return;
+        winner = best;
+        next = std::move(*other);
+    }
 
     // Of a class that a drive of one manner cannot tell apart, a law of a number that the model states comes first.
     void prefer_stated(std::vector<Trial> &trials, std::size_t &winner, Next &next, const Problem &before, const Screen &screen) {
@@ -371,10 +412,20 @@ class Search {
         if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
             const Scatter scatter(before);
             const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
-            const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, compared.physics())).cwiseProduct(scatter.part);
-            scaled.sum -= smoothed.dot(weight);
-            noise.sum -= smoothed.dot(noise_weight(before));
-            t.smooths = !(scaled.sum > of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight));
+            const auto take_off = [&](const Problem &fit) {
+                const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, fit.physics())).cwiseProduct(scatter.part);
+                scaled.sum -= smoothed.dot(weight);
+                noise.sum -= smoothed.dot(noise_weight(before));
+            };
+            const double least = of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight);
+            take_off(compared);
+            if (!(scaled.sum > least)) { // a softer ground beside it may be all that smooths: what does it explain on the ground as it was?
+                Problem on_ground = held_ground(compared, before);
+                const HeldOut there = held_out(on_ground);
+                scaled = fall_between(held_, there, weight), noise = fall_between(held_, there, noise_weight(before));
+                take_off(on_ground);
+            }
+            t.smooths = !(scaled.sum > least);
             if (t.smooths) return std::nullopt;
         }
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
@@ -385,14 +436,29 @@ class Search {
         const bool by_priors = rival && tolerances_decide(scaled, noise, spared, options_.least_prior_reduction);
         const bool as_much = rival && (rival->explains_as_much() || !falls);
         if (!falls && !by_priors) return std::nullopt;
+        const std::size_t broken = newly_at_limits(before, compared); // before it moves: `spared` is of this fit too
         if (HeldOut own = held_out(problem); own.error < held_.error)
             held = std::move(own);
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
-        const bool pay = rival && tolerances_pay(spared, held.error, newly_at_limits(before, compared), options_.least_prior_reduction);
+        const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
         if (!pay && !falls_notably(held)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
+    }
+
+    // The fit with the soil's numbers where they stand without the candidate.
+    static Problem held_ground(const Problem &with, const Problem &before) {
+        Problem held = with;
+        for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+            if (before.parameters[i].owner != "soil") continue;
+            const double stays = before.theta[static_cast<Eigen::Index>(i)];
+            held.parameters[i].minimum = held.parameters[i].maximum = before.parameters[i].base + stays;
+            held.theta[static_cast<Eigen::Index>(i)] = stays;
+        }
+        held.jacobian.resize(0, 0);
+        held.gauss_newton(2);
+        return held;
     }
 
     // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
@@ -654,13 +720,15 @@ class Search {
     static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
     // Times its noise, of a balance that is missed by far (uneven ground leaves up to six); of the catalogue's range: both assumed.
     static constexpr double far_off = 8, part_of_range = 0.25;
+    static constexpr double elsewhere = 0.5;     // of a size: a refit that ends so far from where it was sure is another one (assumed)
     static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
     const Dataset &data_;
     const Model &stated_;
     const DiagnoseOptions &options_;
     Diagnosis d_;
     Columns::Cache cache_;
-    HeldOut held_; // of the model as it stands
+    HeldOut held_;                           // of the model as it stands
+    std::map<std::string, Earlier> earlier_; // by label
     int done_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace traction::lab {
@@ -107,6 +108,7 @@ bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, dou
 }
 
 std::size_t newly_at_limits(const Problem &before, const Problem &with) {
+    if (with.parameters.empty()) throw std::logic_error("newly_at_limits: asked of a fit that holds nothing, or that was moved away");
     std::size_t count = 0;
     for (std::size_t i = 0; i < with.parameters.size(); ++i) {
         const FreeParameter &p = with.parameters[i];
