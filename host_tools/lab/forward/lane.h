@@ -14,7 +14,7 @@ namespace traction::lab {
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi" // all is inline: no number goes from function to function in a register
+#pragma GCC diagnostic ignored "-Wpsabi" // a number goes to another function in memory
 #define TRACTION_LANE_INLINE [[gnu::always_inline]] inline
 #endif
 
@@ -24,6 +24,9 @@ struct Lane {
     Four of;
 
     Lane() = default;
+    // Its own: so that it goes from function to function in memory, whatever vectors either of them was compiled for.
+    TRACTION_LANE_INLINE Lane(const Lane &other) : of(other.of) {}
+    TRACTION_LANE_INLINE Lane &operator=(const Lane &other) { return of = other.of, *this; }
     TRACTION_LANE_INLINE Lane(const Four &four) : of(four) {}
     TRACTION_LANE_INLINE explicit Lane(double all) : of{all, all, all, all} {}
     TRACTION_LANE_INLINE Lane(double a, double b, double c, double d) : of{a, b, c, d} {}

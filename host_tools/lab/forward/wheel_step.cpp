@@ -154,7 +154,8 @@ void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     const bool lags = state_[0].sigma > 0;
     f.slip = slip_now(lags, f.slip_before, f.lag_1_m, f.rim, v);
     f.side_slip = side_slip_now(sideways_ && lags, f.side_slip_before, f.lag_1_m, f.rim, v, side_v);
-    Lane Fm = sim::strength_sliding<law::Library>(f.Fm, b, Lane(f.rim - v));
+    Lane Fm = f.Fm;
+    if (b.sliding_loss_s_m != 0) Fm = sim::strength_sliding<law::Library>(Fm, b, Lane(f.rim - v));
     if (b.shear_peak != 0) Fm = sim::strength_slipping<Lane>(Fm, b, f.slip, Lane(1 / f.per_sc)); // else four divisions for nothing
     const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.slip, f.side_slip, f.grip, sideways_);
     f.traction = traction, f.side = side;
