@@ -4,7 +4,9 @@
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <array>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include <bit>
 #include <cstdint>

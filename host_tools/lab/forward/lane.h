@@ -2,7 +2,6 @@
 // in the same order, hence the same bits, where it has not (wheel_step.cpp chooses).
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -55,7 +54,7 @@ TRACTION_LANE_INLINE Lane larger_of(const Lane &a, const Lane &b) { return b.of 
 TRACTION_LANE_INLINE Lane smaller_of(const Lane &a, const Lane &b) { return b.of < a.of ? b.of : a.of; }
 TRACTION_LANE_INLINE Lane abs(const Lane &x) {
     constexpr std::int64_t size = 0x7fffffffffffffff;
-    return Lane(std::bit_cast<Lane::Four>(std::bit_cast<Lane::Bits>(x.of) & Lane::Bits{size, size, size, size}));
+    return Lane(__builtin_bit_cast(Lane::Four, __builtin_bit_cast(Lane::Bits, x.of) & Lane::Bits{size, size, size, size}));
 }
 TRACTION_LANE_INLINE Lane sqrt(const Lane &x) {
 #if defined(__SSE2__)
@@ -66,8 +65,8 @@ TRACTION_LANE_INLINE Lane sqrt(const Lane &x) {
 #endif
 }
 
-// e^x = 2^n e^g, g = x - n ln 2 within half of ln 2, ln 2 in two parts; e^g = 1 + 2 g P(g^2) / (Q(g^2) - g P(g^2))  (Cephes, exp.c:
-// Moshier). To within two units of the last place; x is taken within -708 and 709, beyond which a double would end.
+// e^x = 2^n e^g, g = x - n ln 2 within half of ln 2, ln 2 in two parts; e^g = 1 + 2 g P(g^2) / (Q(g^2) - g P(g^2))  (the
+// Cephes library, Moshier). To within two units of the last place; x is taken within -708 and 709, beyond which a double would end.
 TRACTION_LANE_INLINE Lane exp(const Lane &x) {
     constexpr double per_ln_2 = 1.4426950408889634073599, ln_2_high = 0.693145751953125, ln_2_low = 1.42860682030941723212e-6;
     constexpr double p0 = 1.26177193074810590878e-4, p1 = 3.02994407707441961300e-2, p2 = 9.99999999999999999910e-1;
@@ -79,8 +78,8 @@ TRACTION_LANE_INLINE Lane exp(const Lane &x) {
     const Lane g = within - n * ln_2_high - n * ln_2_low, g2 = g * g;
     const Lane p = ((p0 * g2 + p1) * g2 + p2) * g, q = ((q0 * g2 + q1) * g2 + q2) * g2 + q3;
     const Lane grown = 2 * (p / (q - p)) + 1;
-    const auto power = std::bit_cast<Lane::Bits>(rounded.of) << 52; // what is left of it is n, times the place of the exponent
-    return Lane(std::bit_cast<Lane::Four>(std::bit_cast<Lane::Bits>(grown.of) + power));
+    const Lane::Bits power = __builtin_bit_cast(Lane::Bits, rounded.of) << 52; // what is left of it is n, times the place of the exponent
+    return Lane(__builtin_bit_cast(Lane::Four, __builtin_bit_cast(Lane::Bits, grown.of) + power));
 }
 
 #if defined(__GNUC__)
