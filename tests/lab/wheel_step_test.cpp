@@ -4,7 +4,13 @@
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <array>
 #include <gtest/gtest.h>
+#include <limits>
+
+#include <bit>
+#include <cstdint>
+#include <random>
 
 namespace traction::lab {
 namespace {
@@ -49,6 +55,59 @@ TEST(WheelStep, slip_across_comes_over_the_relaxation_length) {
         step.commit();
     }
     EXPECT_NEAR(left, std::exp(-static_cast<double>(data.count) * reach), 0.1); // of the length's own law, first order in reach = 0.08
+}
+
+TEST(Lane, exp_is_the_exponential_and_ends_where_a_double_would) {
+    std::mt19937_64 random(20261125);
+    std::uniform_real_distribution<double> any(-700, 700), small(-2, 2);
+    for (int i = 0; i < 20000; ++i) {
+        const double x[4] = {any(random), small(random), -std::fabs(small(random)) * 1e-6, i == 0 ? 0.0 : any(random)};
+        const Lane y = exp(Lane(x[0], x[1], x[2], x[3]));
+        for (std::size_t j = 0; j < 4; ++j)
+            EXPECT_NEAR(y[j] / std::exp(x[j]), 1, 4.5e-16) << x[j]; // two units of the last place, of 2.2e-16 at most
+    }
+    const Lane ends = exp(Lane(-1e5, -708, 709, -std::numeric_limits<double>::infinity()));
+    for (const std::size_t j : {0, 1, 3}) EXPECT_TRUE(ends[j] > 0 && ends[j] < 1e-307) << ends[j]; // nothing beside one
+    EXPECT_TRUE(std::isfinite(ends[2]));
+    EXPECT_TRUE(std::isnan(larger_of(Lane(std::nan("")), Lane(0.0))[0])); // what is no number stays none
+}
+
+// Every law that acts where four wheels go side by side, on either body motion, at rest, sliding, forward and backward.
+TEST(WheelStep, wide_vectors_give_the_same_bits_and_one_wheel_after_the_other_the_same_forces) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> any(-1, 1);
+    Dataset data = rolling(0.3, 3);
+    for (const BodyMotion motion : {BodyMotion::longitudinal, BodyMotion::planar})
+        for (const bool effects : {false, true}) {
+            Model model = sliding("sand");
+            model.motion = motion;
+            Physics physics = make_physics(model);
+            if (effects) {
+                physics.body.slip_sinkage = 0.1, physics.body.speed_resistance_s_m = 0.1, physics.body.squared_resistance_s2_m2 = 0.1;
+                physics.body.sliding_loss_s_m = 0.3, physics.body.shear_peak = 0.4, physics.body.relaxation_m = 0.05;
+                physics.body.multi_pass = 0.2, physics.body.heavy_resistance = 0.1, physics.body.heavy_length_m = 5,
+                physics.body.scrub = 0.2;
+            }
+            WheelStep narrow(data, physics), wide(data, physics);
+            EXPECT_FALSE(narrow.widen(false));
+            if (!wide.widen(true)) GTEST_SKIP() << "this processor has no wide vectors";
+            for (int i = 0; i < 500; ++i) {
+                for (WheelInput &w : data.wheel) w.speed_rad_s[1] = i % 7 == 0 ? 0 : 10 * any(random);
+                const Eigen::Vector3d q(i % 5 == 0 ? 0 : any(random), motion == BodyMotion::planar ? 0.1 * any(random) : 0, any(random));
+                std::array<Eigen::Vector3d, most_wheels> of_narrow, of_wide;
+                for (WheelStep *step : {&narrow, &wide}) step->prepare(1, q[0], 0.5 * q[2], 1.0, 1.0);
+                const Eigen::Vector3d a = narrow.forces(q, &of_narrow), b = wide.forces(q, &of_wide);
+                for (Eigen::Index c = 0; c < 3; ++c) EXPECT_EQ(std::bit_cast<std::uint64_t>(a[c]), std::bit_cast<std::uint64_t>(b[c]));
+                Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+                for (std::size_t w = 0; w < 4; ++w) {
+                    EXPECT_EQ(of_narrow[w], of_wide[w]);
+                    EXPECT_EQ(narrow.state(w).slip, wide.state(w).slip);
+                    sum += narrow.force(w, q);
+                }
+                EXPECT_LT((sum - a).cwiseAbs().maxCoeff(), 1e-11); // tens of newtons, rounded in another order
+                for (WheelStep *step : {&narrow, &wide}) step->commit();
+            }
+        }
 }
 
 TEST(WheelStep, in_a_turn_the_outer_wheels_carry_what_the_height_of_the_mass_asks) {

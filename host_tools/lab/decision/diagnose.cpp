@@ -573,16 +573,17 @@ class Search {
     void test_shapes(const Problem &first, Problem &last) {
         // of the model with no name: a shape that would take the last name's place must be worth a word by itself
         std::optional<std::optional<UnknownShape>> alone;
+        ShapeScores of_first;
         const auto may_take_its_place = [&] {
             if (d_.accepted.size() > 1) return true;
-            if (!alone) alone = find_unknown(first, first, {}, options_).shape;
+            if (!alone) alone = find_unknown(first, first, {}, options_, of_first).shape;
             return alone->has_value();
         };
         for (bool again = true; again;) {
             again = false;
             std::vector<Candidate> named;
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
-            ShapeFindings findings = find_unknown(first, last, named, options_);
+            ShapeFindings findings = find_unknown(first, last, named, options_, of_first);
             if (findings.shape) d_.unknown = findings.shape;
             std::vector<std::size_t> &rest = findings.replaced;
             for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);

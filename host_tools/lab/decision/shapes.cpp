@@ -14,19 +14,19 @@
 
 namespace traction::lab {
 
-namespace {
-
-constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spent on shapes of one wheel or axle
-constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
-constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
-
 struct ShapeScore {
     Candidate candidate;
     Assessment assessment;
     double p_value = 1, balance_fall = 0;
     SparseJacobian columns;
 };
+
+namespace {
+
+constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
+constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spent on shapes of one wheel or axle
+constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
+constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 // Several shapes of equally many coefficients side by side: one pass serves them all.
 class StackedTerm : public Term {
@@ -396,10 +396,15 @@ class Smoothing {
 
 } // namespace
 
-ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options) {
+ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options,
+                           ShapeScores &of_first) {
     const std::size_t named_count = named.size();
     ShapeFindings findings;
     Problem at_last = last, at_first = first; // their forward models are moved about
+    const auto beside_first = [&](const Screen &screen) -> const std::vector<ShapeScore> & {
+        if (!of_first) of_first = std::make_shared<const std::vector<ShapeScore>>(all_shapes(at_first, screen));
+        return *of_first;
+    };
     const Screen last_screen(at_last);
     const Scatter scatter(last); // slow on stiff ground (at a steady speed counts beat with samples): it stands in few blocks, like a law
     const double least = named_count > 0 ? 0.05 : options.least_shape_gain;
@@ -410,7 +415,10 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
                                        last_screen.heldout_error() ||
                (s.balance_fall > 0.15 + scatter.share && s.p_value < 1e-4);
     };
-    const std::vector<ShapeScore> scores = all_shapes(at_last, last_screen, named_count > 0);
+    const bool alone = &first == &last && named_count == 0;
+    std::vector<ShapeScore> of_last;
+    if (!alone) of_last = all_shapes(at_last, last_screen, named_count > 0);
+    const std::vector<ShapeScore> &scores = alone ? beside_first(last_screen) : of_last;
     const ShapeScore *best = nullptr;
     double best_gain = 0;
     Smoothing smoothing(last, scatter);
@@ -442,7 +450,7 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     at_last.linearise();
     const Screen named_screen(at_last);
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
-    for (const ShapeScore &s : all_shapes(at_first, first_screen)) {
+    for (const ShapeScore &s : beside_first(first_screen)) {
         if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > 0.95 * named_gain)) continue;
         const std::vector<std::size_t> replaced = explained_by_shape(last, named, s.candidate.effect, scores);
         if (replaced.empty()) continue;

@@ -4,6 +4,7 @@
 
 #include "diagnose.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,11 @@ struct ShapeFindings {
     std::optional<UnknownShape> cause; // that shape
 };
 
-// `first`: the baseline; `last`: with all that was named.
-ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options);
+struct ShapeScore;
+using ShapeScores = std::shared_ptr<const std::vector<ShapeScore>>;
+
+// `first`: the baseline; `last`: with all that was named. `of_first`: all shapes beside the baseline, found when first asked for.
+ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options,
+                           ShapeScores &of_first);
 
 } // namespace traction::lab

@@ -128,9 +128,12 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
     double best = screen.error();
     const double before = best;
     double too_large = std::numeric_limits<double>::infinity(); // from where on the error only rises
+    std::vector<double> seen;                                   // where sizes end at the same bound
     for (const double wanted : sizes) {
         const double size = clamped(c, 0, wanted);
         if (std::fabs(size) < 0.1 * c.of_interest[0] || std::fabs(size) > too_large) continue;
+        if (std::find(seen.begin(), seen.end(), size) != seen.end()) continue;
+        seen.push_back(size);
         Physics moved = at;
         c.strengths[0].add(moved, size);
         Eigen::VectorXd change;

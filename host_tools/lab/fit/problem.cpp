@@ -124,11 +124,19 @@ bool Problem::at_bound(std::size_t i) const {
     return x < low + slack || x > high - slack;
 }
 
+// As it stands, by the present scales. Who changes a parameter's bounds or the Jacobian itself resizes it.
+bool Problem::is_linearised() const {
+    return jacobian.rows() == measured_.size() && jacobian.cols() == theta.size() && linear_at_.size() == theta.size() &&
+           linear_at_ == theta && linear_scale_ == row_scale;
+}
+
 void Problem::linearise() {
     const Physics at = physics();
     put_off_ = false;
     update_residual();
+    if (is_linearised()) return;
     jacobian.resize(measured_.size(), theta.size());
+    linear_at_ = theta, linear_scale_ = row_scale;
     std::vector<std::size_t> beside, shared; // of the motion, to be had in one pass; sums of what is each wheel's own
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         if (forward_.has_linear_base() && !own_of(parameters, i).empty())
@@ -390,6 +398,7 @@ void Problem::quick_fit(const Problem &base, int iterations) {
     keep_scales(base);
     const Eigen::Index n = base.theta.size(), all = theta.size(), rows = measured_.size();
     jacobian.resize(rows, all);
+    linear_at_.resize(0); // in part alone
     jacobian.leftCols(n) = base.jacobian;
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(all, all);
     normal.topLeftCorner(n, n) = base.jacobian.transpose() * base.jacobian;

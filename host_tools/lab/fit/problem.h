@@ -103,8 +103,10 @@ class Problem {
     Physics base_;
     Forward forward_;
     Eigen::VectorXd measured_;
-    bool put_off_ = false;  // the last linearisation of a fit
-    bool has_base_ = false; // the forward model has a base, at:
+    bool is_linearised() const;
+    bool put_off_ = false;                     // the last linearisation of a fit
+    Eigen::VectorXd linear_at_, linear_scale_; // where the Jacobian was taken as a whole, and by which row_scale
+    bool has_base_ = false;                    // the forward model has a base, at:
     Eigen::VectorXd base_theta_;
 };
 

@@ -307,6 +307,7 @@ double Screen::best_balance_fall(const Eigen::MatrixXd &columns, const Assessmen
 }
 
 std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
+    if (!in_noise && !heldout_of_balance_.empty()) return heldout_of_balance_;
     const Eigen::VectorXd noise = problem_.noise_rows();
     const Dataset &data = problem_.data();
     std::vector<double> sum(data.balance.size(), 0);
@@ -327,6 +328,7 @@ std::vector<double> Screen::heldout_by_balance(bool in_noise) const {
             sum[balance_of_row[static_cast<std::size_t>(row)]] += e * e;
         }
     }
+    if (!in_noise) heldout_of_balance_ = sum;
     return sum;
 }
 

@@ -122,6 +122,7 @@ class Screen {
     Blocks fine_, coarse_;
     std::vector<std::pair<double, double>> block_times_;
     Eigen::VectorXd block_error_;
+    mutable std::vector<double> heldout_of_balance_; // once it was asked for
     double base_error_ = 0, base_penalty_ = 0, base_deviations_ = 0, error_ = 0, noise_squares_ = 0;
 };
 

@@ -28,7 +28,7 @@ bool shares_leads(const Physics &physics) {
 // Of a piecewise constant voltage up to a time; times asked for one after the other are found at once.
 class VoltageIntegral {
   public:
-    VoltageIntegral(const std::vector<double> &t_s, std::vector<double> sum_Vs) : t_(t_s), sum_(std::move(sum_Vs)) {}
+    VoltageIntegral(const std::vector<double> &t_s, const std::vector<double> &sum_Vs) : t_(t_s), sum_(sum_Vs) {}
     double operator()(double at) {
         while (j_ + 2 < t_.size() && t_[j_ + 1] <= at) ++j_;
         while (j_ > 0 && t_[j_] > at) --j_;
@@ -36,8 +36,7 @@ class VoltageIntegral {
     }
 
   private:
-    const std::vector<double> &t_;
-    std::vector<double> sum_;
+    const std::vector<double> &t_, &sum_;
     std::size_t j_ = 0;
 };
 
@@ -58,22 +57,38 @@ void low_pass(std::vector<double> &x, double lag) {
     }
 }
 
+// None of the motor's and the gear's laws that bend or turn about.
+bool is_smooth(const WheelPhysics &p) {
+    return p.stribeck_Nm == 0 && p.wear_in_Nm == 0 && p.reverse_Nm == 0 && p.churning_Nms2 == 0 && p.ripple_cos_Nm == 0 &&
+           p.ripple_sin_Nm == 0 && p.speed_loss_s == 0;
+}
+
 std::size_t parts_of(double row_s) { return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(row_s / voltage_part_s))); }
 
 } // namespace
 
-Forward::Forward(const Dataset &data) : data_(&data) {
-    for (const Balance &balance : data.balance) {
+Forward::Forward(const Dataset &data) : data_(&data), base_motion_(std::make_shared<Motion>()) {
+    const auto of_current = [](const Balance &b) {
+        return b.kind == BalanceKind::current_torque || b.kind == BalanceKind::current_voltage;
+    };
+    for (std::size_t i = 0; i < data.balance.size(); ++i) {
+        const Balance &balance = data.balance[i];
         first_row_.push_back(row_count_);
-        windows_.emplace_back(data, balance);
+        std::size_t same = 0;
+        while (same < i && !(of_current(balance) && of_current(data.balance[same]) && balance.t0_s == data.balance[same].t0_s &&
+                             balance.t1_s == data.balance[same].t1_s))
+            ++same;
+        windows_of_.push_back(same < i ? windows_of_[same] : windows_.size());
+        if (same == i) windows_.emplace_back(data, balance);
         row_count_ += balance.measured.size();
     }
     base_current_.resize(data.wheel.size());
     mean_voltage_.resize(data.wheel.size());
+    voltage_integral_.resize(data.wheel.size());
 }
 
 void Forward::rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const {
-    windows_[balance].mean(
+    windows_[windows_of_[balance]].mean(
         series, delay_s, adding,
         out.segment(static_cast<Eigen::Index>(first_row_[balance]), static_cast<Eigen::Index>(data_->balance[balance].measured.size())));
 }
@@ -83,24 +98,35 @@ const Eigen::VectorXd &Forward::mean_voltage(std::size_t balance, double delay_s
     const Balance &b = data_->balance[balance];
     const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
     auto &[known, other] = mean_voltage_[static_cast<std::size_t>(b.wheel)];
-    const auto is_it = [&](const MeanVoltage &m) { return m.mean_V.size() != 0 && m.delay_s == delay_s && m.lag_s == lag_s; };
-    if (is_it(known)) return known.mean_V;
+    const auto is_it = [&](const auto &m) { return m && m->delay_s == delay_s && m->lag_s == lag_s; };
+    if (is_it(known)) return known->mean_V;
     std::swap(known, other);
-    if (is_it(known)) return known.mean_V;
-    known = {delay_s, lag_s, Eigen::VectorXd(static_cast<Eigen::Index>(b.measured.size()))};
-    VoltageIntegral integral_to(in.voltage_t_s, data_->voltage_integral(in, lag_s));
+    if (is_it(known)) return known->mean_V;
+    MeanVoltage made{delay_s, lag_s, Eigen::VectorXd(static_cast<Eigen::Index>(b.measured.size()))};
+    VoltageIntegral integral_to(in.voltage_t_s, voltage_integral(static_cast<std::size_t>(b.wheel), lag_s));
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const double t0 = b.t0_s[r] - delay_s - lag_s, t1 = std::max(b.t1_s[r] - delay_s - lag_s, t0 + 1e-6), from = integral_to(t0);
-        known.mean_V[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
+        made.mean_V[static_cast<Eigen::Index>(r)] = (integral_to(t1) - from) / (t1 - t0);
     }
-    return known.mean_V;
+    known = std::make_shared<const MeanVoltage>(std::move(made));
+    return known->mean_V;
+}
+
+// Of a wheel's motor, at the log's own times.
+const std::vector<double> &Forward::voltage_integral(std::size_t wheel, double lag_s) const {
+    const WheelInput &in = data_->wheel[wheel];
+    if (in.duty.empty() || (lag_s == 0 && !in.voltage_integral_Vs.empty())) return in.voltage_integral_Vs;
+    auto &[known, other] = voltage_integral_[wheel];
+    if (!known || known->lag_s != lag_s) std::swap(known, other);
+    if (!known || known->lag_s != lag_s) known = std::make_shared<const SumVoltage>(SumVoltage{lag_s, data_->voltage_integral(in, lag_s)});
+    return known->sum_Vs;
 }
 
 // The same over parts of each row.
 std::vector<double> Forward::voltage_parts(std::size_t balance, double delay_s, double lag_s) const {
     const Balance &b = data_->balance[balance];
     const WheelInput &in = data_->wheel[static_cast<std::size_t>(b.wheel)];
-    VoltageIntegral integral_to(in.voltage_t_s, data_->voltage_integral(in, lag_s));
+    VoltageIntegral integral_to(in.voltage_t_s, voltage_integral(static_cast<std::size_t>(b.wheel), lag_s));
     std::vector<double> out;
     for (std::size_t r = 0; r < b.measured.size(); ++r) {
         const std::size_t parts = parts_of(b.t1_s[r] - b.t0_s[r]);
@@ -130,8 +156,8 @@ void Forward::dead_zone(const Physics &physics, std::size_t wheel, std::size_t b
             const double x = std::clamp((t - d.start_s) / d.step_s, 0.0, last);
             const auto k = static_cast<std::size_t>(x);
             const double f = x - static_cast<double>(k);
-            const double per_V = electric_.per_V[k] + f * (electric_.per_V[k + 1] - electric_.per_V[k]),
-                         lost = electric_.lost[k] + f * (electric_.lost[k + 1] - electric_.lost[k]);
+            const double per_V = electric_->per_V[k] + f * (electric_->per_V[k + 1] - electric_->per_V[k]),
+                         lost = electric_->lost[k] + f * (electric_->lost[k + 1] - electric_->lost[k]);
             const double free = per_V * voltage[at] - lost - offset,
                          most = per_V * sim::law::voltage_gain(1, physics.body.voltage_gain) * p.dead_voltage_V;
             taken += sim::law::bridge_dead_time_V(most, free, bridge_current_A);
@@ -169,19 +195,19 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     if (!(KG > 0)) return;
     const double per_N = factor * radius / KG, gain = count_gain(p);
     const bool by_load = sim::load_friction_Nm(p, 1, 1) != 0;
-    const std::vector<double> &now = shaft_traction(physics, motion, wheel, shaft_now_),
-                              &before = shaft_traction(physics, base_motion_, wheel, shaft_before_);
-    series_.resize(data_->count);
+    const std::vector<double> &now = shaft_traction(physics, motion, wheel, *shaft_now_),
+                              &before = shaft_traction(physics, *base_motion_, wheel, *shaft_before_);
+    series_->resize(data_->count);
     for (std::size_t k = 0; k < data_->count; ++k) {
-        series_[k] = per_N * (now[k] - before[k]);
+        (*series_)[k] = per_N * (now[k] - before[k]);
         if (by_load) { // in proportion to the load: its slope
             const double speed = data_->wheel[wheel].speed_rad_s[k];
-            series_[k] += per_N * sim::load_friction_Nm(p, 1, gain * speed) * (std::fabs(now[k]) - std::fabs(before[k])) *
-                          soft_sign(speed, friction_share * data_->standstill_rad_s);
+            (*series_)[k] += per_N * sim::load_friction_Nm(p, 1, gain * speed) * (std::fabs(now[k]) - std::fabs(before[k])) *
+                             soft_sign(speed, friction_share * data_->standstill_rad_s);
         }
-        if (physics.unsigned_current && base_current_[wheel][k] < 0) series_[k] = -series_[k];
+        if (physics.unsigned_current && base_current_[wheel][k] < 0) (*series_)[k] = -(*series_)[k];
     }
-    rows_of(balance, series_, current_delay_s(physics.body), true, out);
+    rows_of(balance, *series_, current_delay_s(physics.body), true, out);
 }
 
 Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const {
@@ -213,7 +239,7 @@ void Forward::share_leads(const Physics &physics, const Motion &motion) const {
     if (!shares_leads(physics)) return;
     std::vector<std::vector<double>> current(physics.wheel.size());
     for (std::size_t i = 0; i < physics.wheel.size(); ++i)
-        if (is_motor(physics, i)) electric_series(physics, motion, i, current[i], electric_);
+        if (is_motor(physics, i)) electric_series(physics, motion, i, current[i], *electric_);
     lead_current_ = std::move(current);
 }
 
@@ -236,31 +262,42 @@ void Forward::electric_series(const Physics &physics, const Motion &motion, std:
             terms.push_back(&term);
     current.resize(d.count);
     for (auto *series : {&out.reading, &out.lost, &out.per_V, &out.shaft}) series->resize(d.count);
-    const bool heats = physics.wheel[wheel].heating_K_W != 0;
-    if (heats || !terms.empty() || !lead_current_.empty())
-        electric_steps<false>(physics, motion, wheel, terms, current, out);
+    const WheelPhysics &p = physics.wheel[wheel];
+    const bool drives = sim::motor_constant(p.KG, p, 0) > 0 && sim::circuit_ohm(p.Ra, p) > 0;
+    if (p.heating_K_W != 0 || !terms.empty() || !lead_current_.empty())
+        electric_steps<false, false>(physics, motion, wheel, terms, current, out);
+    else if (drives && !physics.unsigned_current && is_smooth(p))
+        electric_steps<true, true>(physics, motion, wheel, terms, current, out);
     else
-        electric_steps<true>(physics, motion, wheel, terms, current, out);
+        electric_steps<true, false>(physics, motion, wheel, terms, current, out);
 }
 
-// cold: nothing heats, no lead is shared, and there are no terms: then most of it is the same at every step.
-template <bool cold>
+// cold: nothing heats, no lead is shared, and there are no terms: then most of it is the same at every step. smooth: cold, and no law of
+// the motor that has a branch or a library's function in it: then several steps go at once.
+template <bool cold, bool smooth>
 void Forward::electric_steps(const Physics &physics, const Motion &motion, std::size_t wheel, const std::vector<const ExtraTerm *> &terms,
                              std::vector<double> &current, ElectricSeries &out) const {
     const Dataset &d = *data_;
-    const WheelPhysics p = physics.wheel[wheel]; // a copy: what is written below cannot change it
+    WheelPhysics p = physics.wheel[wheel]; // a copy: what is written below cannot change it
+    if (smooth)                            // as they are already: so that the compiler knows
+        p.stribeck_Nm = p.wear_in_Nm = p.reverse_Nm = p.churning_Nms2 = p.ripple_cos_Nm = p.ripple_sin_Nm = p.speed_loss_s = 0;
     const WheelInput &in = d.wheel[wheel];
-    const std::vector<double> &traction = shaft_traction(physics, motion, wheel, shaft_now_);
+    const double *const traction = shaft_traction(physics, motion, wheel, *shaft_now_).data();
+    const double *const speed_rad_s = in.speed_rad_s.data(), *const accel_rad_s2 = in.accel_rad_s2.data(),
+                        *const angle_rad = in.angle_rad.data();
+    double *const __restrict winding_A = current.data(), *const __restrict shaft_Nm = out.shaft.data(),
+                             *const __restrict reading_A = out.reading.data(), *const __restrict per_V_A = out.per_V.data(),
+                             *const __restrict lost_A = out.lost.data();
     const double gain = count_gain(p), radius = rolling_radius(p), soft_rad_s = friction_share * d.standstill_rad_s, start_s = d.start_s;
     const double by_voltage = sim::law::voltage_gain(1, physics.body.voltage_gain);
-    const bool unsigned_current = physics.unsigned_current;
+    const bool unsigned_current = !smooth && physics.unsigned_current;
     double heat_K = 0;
     for (std::size_t k = 0, count = d.count; k < count; ++k) {
-        const double w = gain * in.speed_rad_s[k], dw = gain * in.accel_rad_s2[k];
+        const double w = gain * speed_rad_s[k], dw = gain * accel_rad_s2[k];
         double KG = sim::motor_constant(p.KG, p, heat_K), ke = sim::motor_constant(p.ke, p, heat_K);
         double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
         if (!cold && !lead_current_.empty()) u_lost += sim::law::shared_lead_V(p.shared_ohm, current_of_others(physics, wheel, k));
-        const double viscous = sim::viscous_friction_Nm(p.b, p, std::fabs(w)), angle = gain * in.angle_rad[k];
+        const double viscous = sim::viscous_friction_Nm(p.b, p, std::fabs(w)), angle = gain * angle_rad[k];
         const double friction = sim::dry_friction_Nm<law::Library>(viscous + p.t0, p, w, radius * traction[k], d.time(k) - start_s);
         const double side = soft_sign(w, soft_rad_s);
         double gear = friction * side, current_factor = sim::law::current_gain(1, p.current_gain);
@@ -284,14 +321,14 @@ void Forward::electric_steps(const Physics &physics, const Motion &motion, std::
                     current_factor *= 1 + f;
             }
         }
-        const double I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
-        current[k] = I;
-        out.shaft[k] = radius * traction[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
+        const double I = smooth || KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
+        winding_A[k] = I;
+        shaft_Nm[k] = radius * traction[k] + gear; // the shaft sensor's: friction of the wheel's own bearing included
         const double I_read = sim::law::current_offset(current_factor * I + p.current_offset0, p.current_offset_A);
-        out.reading[k] = unsigned_current ? std::fabs(I_read) : I_read;
-        const double ohm = sim::circuit_ohm(Ra, p), per_V = ohm > 0 ? current_factor / ohm : 0;
-        out.per_V[k] = per_V / by_voltage;
-        out.lost[k] = sim::law::current_offset(per_V * (u_lost + ke * w) - p.current_offset0, -p.current_offset_A);
+        reading_A[k] = unsigned_current ? std::fabs(I_read) : I_read;
+        const double ohm = sim::circuit_ohm(Ra, p), per_V = smooth || ohm > 0 ? current_factor / ohm : 0;
+        per_V_A[k] = per_V / by_voltage;
+        lost_A[k] = sim::law::current_offset(per_V * (u_lost + ke * w) - p.current_offset0, -p.current_offset_A);
         if (!cold) heat_K += d.step_s / p.heating_time_s * sim::heating_gap_K(p, I, p.Ra, heat_K);
     }
 }
@@ -305,19 +342,19 @@ void Forward::electrical(const Physics &physics, const Motion &motion, std::size
     const bool with_torque = torque_balance < d.balance.size(), with_voltage = voltage_balance < d.balance.size(),
                with_bench = bench_balance < d.balance.size();
     if (!with_torque && !with_voltage && !with_bench) return;
-    electric_series(physics, motion, wheel, current, electric_);
-    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_.reading, current_delay_s(physics.body), false, out);
+    electric_series(physics, motion, wheel, current, *electric_);
+    if (with_torque && (stages & stage_torque) != 0) rows_of(torque_balance, electric_->reading, current_delay_s(physics.body), false, out);
     if (with_voltage && (stages & (stage_voltage | stage_torque)) != 0) {
         const Eigen::VectorXd &voltage = mean_voltage(voltage_balance, current_delay_s(physics.body), command_delay_s(physics.body));
         auto rows = out.segment(static_cast<Eigen::Index>(first_row_[voltage_balance]), voltage.size());
-        rows_of(voltage_balance, electric_.per_V, current_delay_s(physics.body), false, out);
+        rows_of(voltage_balance, electric_->per_V, current_delay_s(physics.body), false, out);
         const Eigen::VectorXd through = rows.cwiseProduct(voltage);
-        rows_of(voltage_balance, electric_.lost, current_delay_s(physics.body), false, out);
+        rows_of(voltage_balance, electric_->lost, current_delay_s(physics.body), false, out);
         rows = through - rows;
         if (physics.wheel[wheel].dead_voltage_V != 0) dead_zone(physics, wheel, voltage_balance, rows);
         if (physics.unsigned_current) rows = rows.cwiseAbs();
     }
-    if (with_bench) rows_of(bench_balance, electric_.shaft, 0, false, out);
+    if (with_bench) rows_of(bench_balance, electric_->shaft, 0, false, out);
 }
 
 // A Doppler radar whose window holds several speeds reads one that leans to the faster: the mean and a share of their range.
@@ -336,7 +373,7 @@ void Forward::lead(std::size_t balance, const std::vector<double> &series, doubl
 void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const {
     const Dataset &d = *data_;
     const BodyPhysics &b = physics.body;
-    std::vector<double> &x = series_;
+    std::vector<double> &x = *series_;
     x.resize(d.count);
     Signals s;
     const auto factor = [&](TermTarget target, std::size_t k) {
@@ -398,15 +435,15 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
 
 Eigen::VectorXd Forward::predict(const Physics &physics) {
     if (data_->count < 3) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
-    integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr, false);
-    return observe(physics, scratch_);
+    integrate(*data_, physics, *scratch_, have_base_ ? base_motion_.get() : nullptr, false);
+    return observe(physics, *scratch_);
 }
 
 Eigen::VectorXd Forward::predict(const Physics &physics, unsigned touched) {
-    if (base_motion_.tangent.empty() || physics.unsigned_current || (touched & stage_motion) == 0) return predict(physics);
-    integrate(*data_, physics, scratch_, &base_motion_, false);
+    if (base_motion_->tangent.empty() || physics.unsigned_current || (touched & stage_motion) == 0) return predict(physics);
+    integrate(*data_, physics, *scratch_, base_motion_.get(), false);
     Eigen::VectorXd out = base_prediction_;
-    observe_beside(physics, scratch_, touched, -1, out);
+    observe_beside(physics, *scratch_, touched, -1, out);
     return out;
 }
 
@@ -419,7 +456,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
         const WheelPhysics &p = physics.wheel[i];
         const bool whole = electric && (wheel < 0 || shared || motor_of(physics, static_cast<std::size_t>(wheel)) == i);
         if (whole || (moves && (terms || shared || sim::needs_any(p, sim::needs_heat))))
-            electrical(physics, motion, i, stages, current_, out);
+            electrical(physics, motion, i, stages, *current_, out);
         else if (moves)
             torque_of_traction(physics, motion, i, out);
     }
@@ -429,7 +466,7 @@ void Forward::observe_beside(const Physics &physics, const Motion &motion, unsig
 Eigen::VectorXd Forward::observe(const Physics &physics, const Motion &motion) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
     share_leads(physics, motion);
-    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, motion, i, stage_torque | stage_voltage, current_, out);
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i) electrical(physics, motion, i, stage_torque | stage_voltage, *current_, out);
     sensors(physics, motion, out);
     return out;
 }
@@ -437,24 +474,25 @@ Eigen::VectorXd Forward::observe(const Physics &physics, const Motion &motion) c
 void Forward::set_base(const Physics &physics) {
     base_prediction_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
     if (data_->count < 3) return;
-    integrate(*data_, physics, scratch_, have_base_ ? &base_motion_ : nullptr, true);
-    std::swap(base_motion_, scratch_);
+    integrate(*data_, physics, *scratch_, have_base_ ? base_motion_.get() : nullptr, true);
+    if (base_motion_.use_count() != 1) base_motion_ = std::make_shared<Motion>();
+    std::swap(*base_motion_, *scratch_);
     have_base_ = true;
     base_physics_ = physics;
-    linear_base_ = !base_motion_.tangent.empty() && has_neighbours(physics, physics);
-    share_leads(physics, base_motion_);
+    linear_base_ = !base_motion_->tangent.empty() && has_neighbours(physics, physics);
+    share_leads(physics, *base_motion_);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i)
-        electrical(physics, base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
-    sensors(physics, base_motion_, base_prediction_);
+        electrical(physics, *base_motion_, i, stage_torque | stage_voltage, base_current_[i], base_prediction_);
+    sensors(physics, *base_motion_, base_prediction_);
 }
 
 Eigen::VectorXd Forward::predict_from_base(const Physics &physics, unsigned touched, int wheel) {
     if (data_->count < 3) return base_prediction_;
     const bool moves = (touched & stage_motion) != 0;
     if (moves && !is_neighbour(physics, touched)) return predict(physics);
-    if (moves) neighbour(*data_, physics, base_motion_, wheel, has_electric_terms(physics), scratch_);
+    if (moves) neighbour(*data_, physics, *base_motion_, wheel, has_electric_terms(physics), *scratch_);
     Eigen::VectorXd out = base_prediction_;
-    observe_beside(physics, moves ? scratch_ : base_motion_, touched, wheel, out);
+    observe_beside(physics, moves ? *scratch_ : *base_motion_, touched, wheel, out);
     return out;
 }
 
@@ -465,14 +503,14 @@ bool Forward::is_neighbour(const Physics &physics, unsigned touched) const {
 Eigen::MatrixXd Forward::predict_neighbours(const std::vector<Physics> &moved, const std::vector<unsigned> &touched,
                                             const std::vector<int> &wheel) {
     std::vector<Beside> list;
-    beside_.resize(std::max(beside_.size(), moved.size()));
-    for (std::size_t i = 0; i < moved.size(); ++i) list.push_back({&moved[i], wheel[i], has_electric_terms(moved[i]), &beside_[i]});
-    neighbours(*data_, base_motion_, list);
+    beside_->resize(std::max(beside_->size(), moved.size()));
+    for (std::size_t i = 0; i < moved.size(); ++i) list.push_back({&moved[i], wheel[i], has_electric_terms(moved[i]), &(*beside_)[i]});
+    neighbours(*data_, *base_motion_, list);
     Eigen::MatrixXd columns(base_prediction_.size(), static_cast<Eigen::Index>(moved.size()));
     Eigen::VectorXd out;
     for (std::size_t i = 0; i < moved.size(); ++i) {
         out = base_prediction_;
-        observe_beside(moved[i], beside_[i], touched[i], wheel[i], out);
+        observe_beside(moved[i], (*beside_)[i], touched[i], wheel[i], out);
         columns.col(static_cast<Eigen::Index>(i)) = out;
     }
     return columns;

@@ -15,10 +15,27 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace traction::lab {
+
+// What is written before it is read, call by call: a copy begins without it, for it is megabytes.
+template <typename T> class Scratch {
+  public:
+    Scratch() = default;
+    Scratch(const Scratch &) {}
+    Scratch &operator=(const Scratch &) { return *this; }
+    Scratch(Scratch &&) noexcept = default;
+    Scratch &operator=(Scratch &&) noexcept = default;
+    ~Scratch() = default;
+    T &operator*() { return here_; }
+    T *operator->() { return &here_; }
+
+  private:
+    T here_;
+};
 
 // True where no wheel's current remembers or bends: the torque balance follows the tractions, the voltage balance does not.
 bool plain_currents(const Physics &physics);
@@ -50,12 +67,14 @@ class Forward {
     Eigen::MatrixXd shaped_electric(const Physics &base, const std::vector<ElectricSeries> &unit, const Term &term,
                                     std::size_t count) const;
     void set_base(const Physics &physics);
+    // Of the same data: its motion is the first guess, and what follows from delays alone need not be found again.
     void start_near(const Forward &other) {
         base_motion_ = other.base_motion_, have_base_ = other.have_base_;
-    } // its motion is the first guess
+        windows_ = other.windows_, mean_voltage_ = other.mean_voltage_, voltage_integral_ = other.voltage_integral_;
+    }
     const Eigen::VectorXd &base() const { return base_prediction_; }
     bool has_linear_base() const { return linear_base_; }
-    const Motion &motion() const { return base_motion_; }
+    const Motion &motion() const { return *base_motion_; }
     const std::vector<std::vector<double>> &winding_current_A() const { return base_current_; } // per wheel, torque balance
 
     std::size_t rows() const { return row_count_; }
@@ -69,7 +88,7 @@ class Forward {
                     Eigen::VectorXd &out) const;
     void electric_series(const Physics &physics, const Motion &motion, std::size_t wheel, std::vector<double> &current,
                          ElectricSeries &out) const;
-    template <bool cold>
+    template <bool cold, bool smooth>
     void electric_steps(const Physics &physics, const Motion &motion, std::size_t wheel, const std::vector<const ExtraTerm *> &terms,
                         std::vector<double> &current, ElectricSeries &out) const;
     // The traction at the motor's own wheel that would brake the motor as its wheels do together, each by its radius; where it turns no
@@ -88,6 +107,7 @@ class Forward {
     void rows_of(std::size_t balance, const std::vector<double> &series, double delay_s, bool adding, Eigen::VectorXd &out) const;
     const Eigen::VectorXd &mean_voltage(std::size_t balance, double delay_s, double lag_s) const;
     std::vector<double> voltage_parts(std::size_t balance, double delay_s, double lag_s) const;
+    const std::vector<double> &voltage_integral(std::size_t wheel, double lag_s) const;
     void dead_zone(const Physics &physics, std::size_t wheel, std::size_t balance, Eigen::Ref<Eigen::VectorXd> rows) const;
     std::size_t balance_of(BalanceKind kind, std::size_t wheel) const; // balance.size() when there is none
 
@@ -95,17 +115,25 @@ class Forward {
     std::size_t row_count_ = 0;
     std::vector<std::size_t> first_row_;
     Physics base_physics_;
-    Motion base_motion_, scratch_;
-    mutable std::vector<double> series_, current_, shaft_now_, shaft_before_;
-    mutable ElectricSeries electric_;
+    std::shared_ptr<Motion> base_motion_; // of several copies, until one of them moves on: never written where another has it too
+    Scratch<Motion> scratch_;
+    mutable Scratch<std::vector<double>> series_, current_, shaft_now_, shaft_before_;
+    mutable Scratch<ElectricSeries> electric_;
     mutable std::vector<std::vector<double>> lead_current_; // per wheel, where leads are shared
-    std::vector<Motion> shaped_, beside_;
-    mutable std::vector<Windows> windows_; // per balance
+    Scratch<std::vector<Motion>> shaped_, beside_;
+    mutable std::vector<Windows> windows_;
+    std::vector<std::size_t> windows_of_; // per balance: currents are read in the same windows, at one delay
     struct MeanVoltage {
         double delay_s = 0, lag_s = 0;
         Eigen::VectorXd mean_V;
     };
-    mutable std::vector<std::pair<MeanVoltage, MeanVoltage>> mean_voltage_; // per wheel: the one asked for last, and the one before it
+    struct SumVoltage {
+        double lag_s = 0;
+        std::vector<double> sum_Vs;
+    };
+    template <typename T> using LastTwo = std::pair<std::shared_ptr<const T>, std::shared_ptr<const T>>; // the one asked for last first
+    mutable std::vector<LastTwo<MeanVoltage>> mean_voltage_;                                             // per wheel
+    mutable std::vector<LastTwo<SumVoltage>> voltage_integral_;                                          // per wheel
     std::vector<std::vector<double>> base_current_;
     Eigen::VectorXd base_prediction_;
     bool have_base_ = false, linear_base_ = false; // linear: its neighbours follow from its tangents

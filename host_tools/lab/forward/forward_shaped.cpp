@@ -13,7 +13,7 @@ bool plain_currents(const Physics &physics) {
 Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, const Term &term, std::size_t coefficients,
                                 bool each_wheel) {
     const Dataset &d = *data_;
-    const Motion &m = base_motion_;
+    const Motion &m = *base_motion_;
     const std::size_t wheels = base.wheel.size(), count = each_wheel ? wheels * coefficients : coefficients;
     std::vector<double> share(d.count * wheels * count, 0);
     Signals s;
@@ -29,13 +29,13 @@ Eigen::MatrixXd Forward::shaped(const Physics &base, const UnitResponse &unit, c
             term.weights(s, coefficients, &share[(k * wheels + i) * count + (each_wheel ? i * coefficients : 0)]);
         }
     }
-    shaped_.resize(count);
-    neighbours_shaped(d, base, m, unit, share, shaped_);
+    shaped_->resize(count);
+    neighbours_shaped(d, base, m, unit, share, *shaped_);
     Eigen::MatrixXd columns(base_prediction_.size(), static_cast<Eigen::Index>(count));
     for (std::size_t j = 0; j < count; ++j) {
         Eigen::VectorXd out = base_prediction_;
-        for (std::size_t i = 0; i < wheels; ++i) torque_of_traction(base, shaped_[j], i, out);
-        sensors(base, shaped_[j], out);
+        for (std::size_t i = 0; i < wheels; ++i) torque_of_traction(base, (*shaped_)[j], i, out);
+        sensors(base, (*shaped_)[j], out);
         columns.col(static_cast<Eigen::Index>(j)) = out - base_prediction_;
     }
     return columns;
@@ -50,8 +50,8 @@ std::vector<Forward::ElectricSeries> Forward::electric_unit(const Physics &base,
     std::vector<double> current;
     for (std::size_t i = 0; i < unit.size(); ++i) {
         if (!is_motor(base, i)) continue;
-        electric_series(base, base_motion_, i, current, plain);
-        electric_series(moved, base_motion_, i, current, unit[i]);
+        electric_series(base, *base_motion_, i, current, plain);
+        electric_series(moved, *base_motion_, i, current, unit[i]);
         for (std::size_t k = 0; k < data_->count; ++k) {
             unit[i].reading[k] = (unit[i].reading[k] - plain.reading[k]) / size;
             unit[i].lost[k] = (unit[i].lost[k] - plain.lost[k]) / size;
@@ -71,7 +71,7 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
     for (std::size_t i = 0; i < unit.size(); ++i) {
         if (!is_motor(base, i)) continue;
         for (std::size_t k = 0; k < d.count; ++k) {
-            Signals s = signals_of(base, base_motion_, i, k);
+            Signals s = signals_of(base, *base_motion_, i, k);
             s.I = base_current_[i].empty() ? 0 : base_current_[i][k];
             term.weights(s, count, &weight[k * count]);
         }

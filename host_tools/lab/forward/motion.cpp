@@ -142,11 +142,8 @@ class Solver {
     void differentiate(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path, double away, Motion &m) {
         StepTangent &t = m.tangent[k];
         const Vector3d at = rate_; // the search ended here
-        std::array<double, most_wheels> traction{}, slip{}, side{};
         for (std::size_t i = 0; i < step_.wheels(); ++i) {
-            traction[i] = step_.state(i).traction;
-            slip[i] = step_.state(i).slip;
-            side[i] = step_.state(i).side_slip;
+            found_[i] = step_.state(i);
             m.wheel[i].force[k] = force_[i];
         }
         for (std::size_t i = 0; i < step_.wheels(); ++i)
@@ -158,10 +155,10 @@ class Solver {
             moved[c] += step_speed;
             if (free[c]) J.col(c) -= implicit_step_ * (rate(moved) - at) / step_speed;
             for (std::size_t i = 0; i < step_.wheels(); ++i) {
-                m.wheel[i].traction_by_speed[k][c] = free[c] ? (step_.state(i).traction - traction[i]) / step_speed : 0;
+                m.wheel[i].traction_by_speed[k][c] = free[c] ? (step_.state(i).traction - found_[i].traction) / step_speed : 0;
                 if (!step_.lags(i)) continue;
-                m.wheel[i].slip_by_speed[k][c] = free[c] ? (step_.state(i).slip - slip[i]) / step_speed : 0;
-                m.wheel[i].side_by_speed[k][c] = free[c] ? (step_.state(i).side_slip - side[i]) / step_speed : 0;
+                m.wheel[i].slip_by_speed[k][c] = free[c] ? (step_.state(i).slip - found_[i].slip) / step_speed : 0;
+                m.wheel[i].side_by_speed[k][c] = free[c] ? (step_.state(i).side_slip - found_[i].side_slip) / step_speed : 0;
             }
         }
         t.inverse = J.inverse();
@@ -171,14 +168,18 @@ class Solver {
         step_.prepare(k, v_before, accel_before + step_accel, path, away);
         t.rate_by_accel = (rate(q) - at) / step_accel;
         for (std::size_t i = 0; i < step_.wheels(); ++i)
-            m.wheel[i].traction_by_accel[k] = (step_.state(i).traction - traction[i]) / step_accel;
+            m.wheel[i].traction_by_accel[k] = (step_.state(i).traction - found_[i].traction) / step_accel;
         if (step_.feels_path()) {
             step_.prepare(k, v_before, accel_before, path + step_path, away + step_path);
             t.rate_by_path = (rate(q) - at) / step_path;
         }
         for (std::size_t i = 0; i < step_.wheels(); ++i)
-            m.wheel[i].traction_by_path[k] = step_.feels_path() ? (step_.state(i).traction - traction[i]) / step_path : 0;
-        step_.prepare(k, v_before, accel_before, path, away);
+            m.wheel[i].traction_by_path[k] = step_.feels_path() ? (step_.state(i).traction - found_[i].traction) / step_path : 0;
+        if (!step_.has_terms()) {
+            for (std::size_t i = 0; i < step_.wheels(); ++i) step_.restore(i, found_[i]);
+            return;
+        }
+        step_.prepare(k, v_before, accel_before, path, away); // a term may look at the traction as it was
         rate(q);
     }
 
@@ -258,6 +259,7 @@ class Solver {
     Vector3d right_ = Vector3d::Zero(), rate_ = Vector3d::Zero();
     Vector3d at_ = Vector3d::Zero(), left_ = Vector3d::Zero(); // where the residual was taken last, and what it is there
     std::array<Vector3d, most_wheels> force_{};
+    std::array<WheelStep::State, most_wheels> found_; // at the step's end, while its derivatives are taken
     Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
     double implicit_step_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
 };

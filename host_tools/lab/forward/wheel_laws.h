@@ -7,17 +7,14 @@
 #pragma once
 
 #include "host_tools/lab/model/model.h"
+#include "lane.h"
 
 #include "sim/physics/effects/acting.h"
-
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 
 namespace traction::lab {
-
-using Lane = Eigen::Array<double, 4, 1>;
 
 inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
                                                // would be too stiff for any step; assumed
@@ -27,26 +24,26 @@ inline constexpr double most_side_slip = 4; // a lagging one stays within: beyon
 namespace law {
 
 inline double magnitude(double x) { return std::fabs(x); }
-inline Lane magnitude(const Lane &x) { return x.abs(); }
+TRACTION_LANE_INLINE Lane magnitude(const Lane &x) { return abs(x); }
 inline double larger(double a, double b) { return std::max(a, b); }
-inline Lane larger(const Lane &a, const Lane &b) { return a.max(b); }
-inline Lane larger(const Lane &a, double b) { return a.max(b); }
+TRACTION_LANE_INLINE Lane larger(const Lane &a, const Lane &b) { return larger_of(a, b); }
+TRACTION_LANE_INLINE Lane larger(const Lane &a, double b) { return larger_of(a, Lane(b)); }
 inline double within(double x, double low, double high) { return std::clamp(x, low, high); }
-inline Lane within(const Lane &x, double low, double high) { return x.max(low).min(high); }
+TRACTION_LANE_INLINE Lane within(const Lane &x, double low, double high) { return smaller_of(larger_of(x, Lane(low)), Lane(high)); }
 inline double root(double x) { return std::sqrt(x); }
-inline Lane root(const Lane &x) { return x.sqrt(); }
+TRACTION_LANE_INLINE Lane root(const Lane &x) { return sqrt(x); }
 inline double falling(double x) { return std::exp(-x); }
-inline Lane falling(const Lane &x) { return (-x).exp(); }
+TRACTION_LANE_INLINE Lane falling(const Lane &x) { return lab::exp(-x); }
 // By sc, of which four wheels side by side carry the inverse: a division for each would cost.
 inline double by(double x, double sc) { return x / sc; }
-inline Lane by(const Lane &x, const Lane &per_sc) { return x * per_sc; }
+TRACTION_LANE_INLINE Lane by(const Lane &x, const Lane &per_sc) { return x * per_sc; }
 
 // What the effects' laws take theirs from (sim/physics/effects/laws.h): a fit need not repeat on another machine, it must be fast.
 struct Library {
     static double exp(double x) { return std::exp(x); }
     static double sin(double x) { return std::sin(x); }
     static double cos(double x) { return std::cos(x); }
-    static Lane exp(const Lane &x) { return x.exp(); }
+    static Lane exp(const Lane &x) { return lab::exp(x); }
 };
 
 } // namespace law
@@ -60,7 +57,7 @@ template <typename T> inline T plain_slip(const T &rim, const T &v) {
 }
 
 inline double slip_of(double rim, double v) { return plain_slip(rim, v); }
-inline Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v); }
+TRACTION_LANE_INLINE Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v); }
 
 // (2); h_1_m: 0 where it does not lag.
 template <typename T> inline T lagging_slip(const T &slip_before, const T &h_1_m, const T &rim, const T &v) {

@@ -1,5 +1,7 @@
 #include "wheel_step.h"
 
+#include "sim/physics/terramechanics.h"
+
 #include <Eigen/Dense>
 
 namespace traction::lab {
@@ -32,6 +34,7 @@ T resistance(const T &known, const sim::WheelEffectsOf<T> &wheel, const sim::Bod
 
 WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data), p_(physics), n_(physics.wheel.size()) {
     sideways_ = p_.motion == BodyMotion::planar;
+    widen(true);
     loads();
     followers();
     const BodyPhysics &b = p_.body;
@@ -57,22 +60,27 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
     gather();
 }
 
+bool WheelStep::widen(bool wide) {
+    static const bool has_wide = sim::has(sim::Vectors::avx2);
+    return wide_ = wide && has_wide;
+}
+
 void WheelStep::gather() {
     bool all_grip = true, all_lag = true, none_lags = true;
     for (std::size_t i = 0; i < n_; ++i) {
         const WheelPhysics &w = p_.wheel[i];
         const State &s = state_[i];
         Four &four = four_[i / 4];
-        const auto at = static_cast<Eigen::Index>(i % 4);
-        four.c[at] = s.c, four.s[at] = s.s, four.x[at] = s.x, four.y[at] = s.y, four.per_sc[at] = 1 / s.plain_sc;
-        four.grip[at] = w.grip, four.resistance[at] = w.crr, four.lateral[at] = w.lateral + p_.body.scrub;
+        const std::size_t at = i % 4;
+        four.c.set(at, s.c), four.s.set(at, s.s), four.x.set(at, s.x), four.y.set(at, s.y), four.per_sc.set(at, 1 / s.plain_sc);
+        four.grip.set(at, w.grip), four.resistance.set(at, w.crr), four.lateral.set(at, w.lateral + p_.body.scrub);
         for (std::size_t field = 0; field < sim::WheelEffects::all().size(); ++field)
-            (four.effects.*sim::WheelEffectsOf<Lane>::all()[field])[at] = w.*sim::WheelEffects::all()[field];
-        four.per_speed_m[at] = s.radius * s.gain, four.adhesion[at] = w.adhesion, four.mu[at] = w.mu;
-        four.load_0[at] = w.load > 0 ? w.load : s.load_0, four.load_per_accel[at] = w.load > 0 ? 0 : s.load_per_accel;
-        four.load_per_side[at] = w.load > 0 ? 0 : s.load_per_side;
-        four.load_per_twist[at] = w.load > 0 ? 0 : s.load_per_twist;
-        four.lag_1_m[at] = s.lag_1_m;
+            (four.effects.*sim::WheelEffectsOf<Lane>::all()[field]).set(at, w.*sim::WheelEffects::all()[field]);
+        four.per_speed_m.set(at, s.radius * s.gain), four.adhesion.set(at, w.adhesion), four.mu.set(at, w.mu);
+        four.load_0.set(at, w.load > 0 ? w.load : s.load_0), four.load_per_accel.set(at, w.load > 0 ? 0 : s.load_per_accel);
+        four.load_per_side.set(at, w.load > 0 ? 0 : s.load_per_side);
+        four.load_per_twist.set(at, w.load > 0 ? 0 : s.load_per_twist);
+        four.lag_1_m.set(at, s.lag_1_m);
         all_grip = all_grip && p_.grips_sideways[i];
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
     }
@@ -115,9 +123,9 @@ void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
     s.Fm = std::max(0.0, (w.adhesion + w.mu * s.load) * (even_ ? 1 : strength(i, v_before)));
     s.sc = s.plain_sc;
     if (p_.body.heavy_resistance != 0) s.resistance_here = sim::resistance_here(p_.body, path_ + w.x);
-    const auto at = static_cast<Eigen::Index>(i % 4);
-    four_[i / 4].resistance_here[at] = s.resistance_here;
-    four_[i / 4].rim[at] = s.rim, four_[i / 4].load[at] = s.load, four_[i / 4].Fm[at] = s.Fm;
+    Four &four = four_[i / 4];
+    four.resistance_here.set(i % 4, s.resistance_here);
+    four.rim.set(i % 4, s.rim), four.load.set(i % 4, s.load), four.Fm.set(i % 4, s.Fm);
 }
 
 // As prepare_wheel() has it.
@@ -126,27 +134,28 @@ void WheelStep::prepare_four(std::size_t g, std::size_t k, double v_before) {
     const std::size_t first = 4 * g, count = std::min<std::size_t>(4, n_ - first);
     const auto speed = [&](std::size_t at) { return at < count ? data_.wheel[first + at].speed_rad_s[k] : 0; };
     f.rim = f.per_speed_m * Lane(speed(0), speed(1), speed(2), speed(3));
-    f.load = (f.load_0 + f.load_per_accel * accel_ + f.load_per_side * side_accel_ + f.load_per_twist * twist_).max(0.0);
+    f.load = larger_of(f.load_0 + f.load_per_accel * accel_ + f.load_per_side * side_accel_ + f.load_per_twist * twist_, Lane(0.0));
     f.Fm = f.adhesion + f.mu * f.load;
-    for (std::size_t i = 0; i < count && !even_; ++i) f.Fm[static_cast<Eigen::Index>(i)] *= strength(first + i, v_before);
-    f.Fm = f.Fm.max(0.0);
+    for (std::size_t i = 0; i < count && !even_; ++i) f.Fm.set(i, f.Fm[i] * strength(first + i, v_before));
+    f.Fm = larger_of(f.Fm, Lane(0.0));
     for (std::size_t i = 0; i < count; ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
         State &s = state_[first + i];
-        s.rim = f.rim[at], s.load = f.load[at], s.Fm = f.Fm[at], s.sc = s.plain_sc;
-        if (p_.body.heavy_resistance != 0)
-            f.resistance_here[at] = s.resistance_here = sim::resistance_here(p_.body, path_ + p_.wheel[first + i].x);
+        s.rim = f.rim[i], s.load = f.load[i], s.Fm = f.Fm[i], s.sc = s.plain_sc;
+        if (p_.body.heavy_resistance == 0) continue;
+        s.resistance_here = sim::resistance_here(p_.body, path_ + p_.wheel[first + i].x);
+        f.resistance_here.set(i, s.resistance_here);
     }
 }
 
 // As pull() has it, for wheels that grip sideways and feel no terms and no play.
-inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
+void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     const BodyPhysics &b = p_.body;
     f.v = v;
     const bool lags = state_[0].sigma > 0;
     f.slip = slip_now(lags, f.slip_before, f.lag_1_m, f.rim, v);
     f.side_slip = side_slip_now(sideways_ && lags, f.side_slip_before, f.lag_1_m, f.rim, v, side_v);
-    Lane Fm = sim::strength_sliding<law::Library>(f.Fm, b, Lane(f.rim - v));
+    Lane Fm = f.Fm;
+    if (b.sliding_loss_s_m != 0) Fm = sim::strength_sliding<law::Library>(Fm, b, Lane(f.rim - v));
     if (b.shear_peak != 0) Fm = sim::strength_slipping<Lane>(Fm, b, f.slip, Lane(1 / f.per_sc)); // else four divisions for nothing
     const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.slip, f.side_slip, f.grip, sideways_);
     f.traction = traction, f.side = side;
@@ -154,14 +163,8 @@ inline void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) co
     f.rolling = resist * soft_sign(v, resist_speed_m_s);
 }
 
-Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < n_ && !plain_; ++i) {
-        const Eigen::Vector3d one = force(i, q);
-        if (each != nullptr) (*each)[i] = one;
-        sum += one;
-    }
-    if (!plain_) return sum;
+Eigen::Vector3d WheelStep::plain_forces(const Eigen::Vector3d &q, Each *each) {
+    double sum_x = 0, sum_y = 0, sum_moment = 0;
     for (std::size_t g = 0; 4 * g < n_; ++g) {
         Four &f = four_[g];
         const Lane vx = q[0] - f.y * q[2], vy = q[1] + f.x * q[2];
@@ -173,13 +176,34 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
         Lane moment = f.x * fy - f.y * fx;
         if (!sideways_) moment -= scrub * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
-            const auto at = static_cast<Eigen::Index>(i % 4);
+            const std::size_t at = i % 4;
             State &s = state_[i];
             s.v = f.v[at], s.side_v = side_v[at], s.slip = f.slip[at], s.side_slip = f.side_slip[at], s.traction = f.traction[at],
             s.rolling = f.rolling[at];
             if (each != nullptr) (*each)[i] = {fx[at], sideways_ ? fy[at] : 0, moment[at]};
         }
-        sum += Eigen::Vector3d(fx.sum(), sideways_ ? fy.sum() : 0, moment.sum());
+        sum_x += fx.sum(), sum_y += sideways_ ? fy.sum() : 0, sum_moment += moment.sum();
+    }
+    return {sum_x, sum_y, sum_moment};
+}
+
+// The same operations, none contracted: the same bits.
+[[gnu::flatten]] Eigen::Vector3d WheelStep::narrow_forces(const Eigen::Vector3d &q, Each *each) { return plain_forces(q, each); }
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+[[gnu::target("avx2"), gnu::flatten]] Eigen::Vector3d WheelStep::wide_forces(const Eigen::Vector3d &q, Each *each) {
+    return plain_forces(q, each);
+}
+#else
+Eigen::Vector3d WheelStep::wide_forces(const Eigen::Vector3d &q, Each *each) { return narrow_forces(q, each); }
+#endif
+
+Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Vector3d, most_wheels> *each) {
+    if (plain_) return wide_ ? wide_forces(q, each) : narrow_forces(q, each);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < n_; ++i) {
+        const Eigen::Vector3d one = force(i, q);
+        if (each != nullptr) (*each)[i] = one;
+        sum += one;
     }
     return sum;
 }

@@ -38,8 +38,8 @@ class WheelStep {
     Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                       // the step is found: slip and play become the next step's memory
     void remember(std::size_t i, double slip, double side_slip) {
-        state_[i].slip_before = four_[i / 4].slip_before[static_cast<Eigen::Index>(i % 4)] = slip;
-        state_[i].side_slip_before = four_[i / 4].side_slip_before[static_cast<Eigen::Index>(i % 4)] = side_slip;
+        state_[i].slip_before = slip, four_[i / 4].slip_before.set(i % 4, slip);
+        state_[i].side_slip_before = side_slip, four_[i / 4].side_slip_before.set(i % 4, side_slip);
     }
 
     // Where the chassis is two halves: what turns one against the other, half the difference of their pulls a step before.
@@ -55,25 +55,38 @@ class WheelStep {
         double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
     };
     const State &state(std::size_t i) const { return state_[i]; }
+    // Back to a state of the same step that was had before, its memory left alone.
+    void restore(std::size_t i, const State &s) {
+        State &to = state_[i];
+        to.load = s.load, to.v = s.v, to.side_v = s.side_v, to.slip = s.slip, to.side_slip = s.side_slip, to.play = s.play;
+        to.traction = s.traction, to.rolling = s.rolling, to.side = s.side;
+    }
     std::size_t wheels() const { return n_; }
+    bool widen(bool wide); // vectors as wide as four numbers, or not: the same bits; what was chosen, for the processor may have none
     bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slips are carried from step to step: a relaxation length
     bool has_play() const { return play_; }
+    bool has_terms() const { return motion_terms_; }
     bool feels_path() const { return feels_path_; } // some force depends on the path travelled
 
   private:
     // Four wheels side by side; where there are fewer, the last carry nothing.
     struct Four {
-        Lane c = Lane::Ones(), s = Lane::Zero(), x = Lane::Zero(), y = Lane::Zero(), grip = Lane::Zero(), resistance = Lane::Zero(),
-             resistance_here = Lane::Zero(), lateral = Lane::Zero();
+        Lane c = Lane(1.0), s = Lane(0.0), x = Lane(0.0), y = Lane(0.0), grip = Lane(0.0), resistance = Lane(0.0),
+             resistance_here = Lane(0.0), lateral = Lane(0.0);
         sim::WheelEffectsOf<Lane> effects;
-        Lane per_sc = Lane::Ones(), lag_1_m = Lane::Zero(), slip_before = Lane::Zero(), side_slip_before = Lane::Zero();
-        Lane per_speed_m = Lane::Zero(), adhesion = Lane::Zero(), mu = Lane::Zero(), load_0 = Lane::Zero(), load_per_accel = Lane::Zero(),
-             load_per_side = Lane::Zero(), load_per_twist = Lane::Zero();
-        Lane rim = Lane::Zero(), load = Lane::Zero(), Fm = Lane::Zero();
+        Lane per_sc = Lane(1.0), lag_1_m = Lane(0.0), slip_before = Lane(0.0), side_slip_before = Lane(0.0);
+        Lane per_speed_m = Lane(0.0), adhesion = Lane(0.0), mu = Lane(0.0), load_0 = Lane(0.0), load_per_accel = Lane(0.0),
+             load_per_side = Lane(0.0), load_per_twist = Lane(0.0);
+        Lane rim = Lane(0.0), load = Lane(0.0), Fm = Lane(0.0);
         Lane v, slip, side_slip, traction, rolling, side;
     };
+    using Each = std::array<Eigen::Vector3d, most_wheels>;
     void gather();
-    void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
+    // Where nothing asks for each wheel by itself; of the widest vectors that the processor has.
+    [[gnu::always_inline]] inline void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
+    [[gnu::always_inline]] inline Eigen::Vector3d plain_forces(const Eigen::Vector3d &q, Each *each);
+    Eigen::Vector3d narrow_forces(const Eigen::Vector3d &q, Each *each);
+    Eigen::Vector3d wide_forces(const Eigen::Vector3d &q, Each *each);
     void prepare_wheel(std::size_t i, std::size_t k, double v_before);
     void prepare_four(std::size_t g, std::size_t k, double v_before);
     double strength(std::size_t i, double v_before) const;
@@ -94,6 +107,7 @@ class WheelStep {
     double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, side_accel_ = 0, twist_ = 0, yaw_ = 0, yaw_rate_ = 0;
     std::array<Four, most_wheels / 4> four_;
     bool sideways_ = false; // the body moves sideways as the forces have it, on wheels that grip
+    bool wide_ = false;     // the processor has vectors as wide as four numbers
     bool plain_ = false;    // the wheels' forces need no more than `four_`
     bool even_ = false;     // the ground is as strong everywhere
     bool motion_terms_ = false, play_ = false, lags_ = false, feels_path_ = false;

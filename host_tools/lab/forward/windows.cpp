@@ -23,26 +23,28 @@ void Windows::add_row(double x0, double x1, Weights &to) const {
     for (std::size_t i = 0; i < n + 2; ++i) w[i] /= width;
 }
 
-void Windows::build(double delay_s, Weights &to) const {
+std::shared_ptr<const Windows::Weights> Windows::build(double delay_s) const {
     const double last = static_cast<double>(data_->count - 1);
-    const std::size_t known = to.weight.size();
-    to.row.clear(), to.row.reserve(balance_->measured.size());
-    to.weight.clear(), to.weight.reserve(known > 0 ? known + known / 16 : 4 * balance_->measured.size());
+    const auto made = std::make_shared<Weights>();
+    Weights &to = *made;
+    const std::size_t known = before_ ? before_->weight.size() : 0;
+    to.row.reserve(balance_->measured.size());
+    to.weight.reserve(known > 0 ? known + known / 16 : 4 * balance_->measured.size());
     for (std::size_t r = 0; r < balance_->measured.size(); ++r)
         add_row(std::clamp((balance_->t0_s[r] - delay_s - data_->start_s) / data_->step_s, 0.0, last),
                 std::clamp((balance_->t1_s[r] - delay_s - data_->start_s) / data_->step_s, 0.0, last), to);
     to.delay_s = delay_s;
-    to.built = true;
+    return made;
 }
 
 void Windows::mean(const std::vector<double> &series, double delay_s, bool adding, Eigen::Ref<Eigen::VectorXd> out) {
-    if (!now_.built || delay_s != now_.delay_s) {
+    if (!now_ || delay_s != now_->delay_s) {
         std::swap(now_, before_);
-        if (!now_.built || delay_s != now_.delay_s) build(delay_s, now_);
+        if (!now_ || delay_s != now_->delay_s) now_ = build(delay_s);
     }
-    for (std::size_t r = 0; r < now_.row.size(); ++r) {
-        const Row &row = now_.row[r];
-        const double *s = &series[row.first], *w = &now_.weight[row.weight];
+    for (std::size_t r = 0; r < now_->row.size(); ++r) {
+        const Row &row = now_->row[r];
+        const double *s = &series[row.first], *w = &now_->weight[row.weight];
         double sum = 0;
         for (std::size_t i = 0; i < row.count; ++i) sum += w[i] * s[i];
         double &to = out[static_cast<Eigen::Index>(r)];

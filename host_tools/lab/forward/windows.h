@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <vector>
 
 namespace traction::lab {
@@ -28,14 +29,13 @@ class Windows {
         std::vector<Row> row;
         std::vector<double> weight;
         double delay_s = 0;
-        bool built = false;
     };
-    void build(double delay_s, Weights &to) const;
+    std::shared_ptr<const Weights> build(double delay_s) const;
     void add_row(double x0, double x1, Weights &to) const;
 
     const Dataset *data_;
     const Balance *balance_;
-    Weights now_, before_; // the one asked for last, and the other
+    std::shared_ptr<const Weights> now_, before_; // the one asked for last, and the other; of all copies
 };
 
 } // namespace traction::lab
