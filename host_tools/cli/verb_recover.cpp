@@ -25,14 +25,9 @@ void run_recover(const RecoverOptions &options, Outcome &outcome) {
         std::printf("%llu bytes at the end are of a block that was being written; they are not in the log\n", lost);
     std::printf("%s: %llu samples up to %.6g s, `ended: interrupted` in its header; %s may be removed\n", options.out.c_str(),
                 static_cast<unsigned long long>(done.samples), done.last_s, options.part.c_str());
-    outcome.json = {{"schema", "traction.recover/1"},
-                    {"in", options.part},
-                    {"out", options.out},
-                    {"samples", done.samples},
-                    {"last_s", done.last_s},
-                    {"lost_at", done.lost_at},
-                    {"lost_bytes", done.lost_bytes},
-                    {"damage", done.damage}};
+    outcome.json = {{"schema", "traction.recover/1"}, {"in", options.part},    {"out", options.out},
+                    {"samples", done.samples},        {"last_s", done.last_s}, {"lost_at", done.lost_at},
+                    {"lost_bytes", done.lost_bytes},  {"damage", done.damage}};
     if (!done.damage.empty()) outcome.exit_code = exit_negative;
 }
 

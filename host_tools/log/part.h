@@ -3,9 +3,9 @@
 //   "traction-part 1\n"                          16 bytes
 //   blocks, each BlockHead and then its payload  appended whole, in the order in which they come
 //
-// Numbers lie as in memory (little-endian). Both checks are CRC-32C: of a payload, and of the head's first 16 bytes; so a block that was cut
-// is told from one that was damaged. A block is written when it is needed: names and patterns before the rows that refer to them, by the
-// order in which they came, from 0.
+// Numbers lie as in memory (little-endian). Both checks are CRC-32C: of a payload, and of the head's first 16 bytes; so a block that was
+// cut is told from one that was damaged. A block is written when it is needed: names and patterns before the rows that refer to them, by
+// the order in which they came, from 0.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ enum class Kind : std::uint32_t {
     header = 1,  // text, a line "key: value" each: what is known of the log at its beginning
     columns = 2, // text, a line each: "- " or "0 " (left out where it never held anything but 0), then the name
     pattern = 3, // uint32 each: the columns of a row
-    rows = 4,    // uint32 lanes, uint32 bytes of each, then their rows (row_spool.h), to be merged by time; a column goes on from what it held
+    rows = 4, // uint32 lanes, uint32 bytes of each, then their rows (row_spool.h), to be merged by time; a column goes on from what it held
     samples = 5, // uint32 columns; of each uint32 its number, uint32 count; then of each its times and its values, double
 };
 

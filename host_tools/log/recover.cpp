@@ -94,11 +94,21 @@ class Reading {
 
     void take(std::uint32_t kind, std::string_view payload) {
         switch (static_cast<part::Kind>(kind)) {
-        case part::Kind::header: take_header(Bytes(payload)); return;
-        case part::Kind::columns: take_columns(Bytes(payload)); return;
-        case part::Kind::pattern: take_pattern(Bytes(payload)); return;
-        case part::Kind::rows: take_rows(Bytes(payload)); return;
-        case part::Kind::samples: take_samples(Bytes(payload)); return;
+        case part::Kind::header:
+            take_header(Bytes(payload));
+            return;
+        case part::Kind::columns:
+            take_columns(Bytes(payload));
+            return;
+        case part::Kind::pattern:
+            take_pattern(Bytes(payload));
+            return;
+        case part::Kind::rows:
+            take_rows(Bytes(payload));
+            return;
+        case part::Kind::samples:
+            take_samples(Bytes(payload));
+            return;
         }
         throw Damage("it is of a kind that this version does not know");
     }
@@ -141,15 +151,21 @@ class Reading {
         std::vector<LaneRows> lanes;
         for (const std::uint32_t size : sizes) lanes.emplace_back(block.take(size));
         for (;;) {
-            const auto first = std::min_element(lanes.begin(), lanes.end(), [](const LaneRows &a, const LaneRows &b) { return a.t_s() < b.t_s(); });
+            const auto first =
+                std::min_element(lanes.begin(), lanes.end(), [](const LaneRows &a, const LaneRows &b) { return a.t_s() < b.t_s(); });
             if (first == lanes.end() || first->t_s() == never) return;
             take_row(*first);
             first->next();
         }
     }
     void take_row(LaneRows &row) {
-        row.each_change([this](std::uint32_t column, std::int32_t whole) { held_[known(column)] = {Held::millionths, whole, 0}; },
-                        [this](std::uint32_t column, double value) { held_[known(column)] = {Held::number, 0, value}; });
+        row.each_change(
+            [this](std::uint32_t column, std::int32_t whole) {
+                held_[known(column)] = {Held::millionths, whole, 0};
+            },
+            [this](std::uint32_t column, double value) {
+                held_[known(column)] = {Held::number, 0, value};
+            });
         need(row.pattern() < patterns_.size(), "it names a pattern that there is not");
         for (const std::uint32_t column : patterns_[row.pattern()]) {
             const Held &held = held_[column];

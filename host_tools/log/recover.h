@@ -1,8 +1,8 @@
 // recover.h - a whole log from the part (part.h) that a run left which was killed, or whose machine lost its power, before it wrote one.
 //
-// It is the log that the run would have written at the last block that stands, whole, and says so: header `ended: interrupted`. A block that
-// was being written when the run ended is left out. A damaged one ends the log, for rows go on from those before; what lies behind it is
-// lost, and told.
+// It is the log that the run would have written at the last block that stands, whole, and says so: header `ended: interrupted`. A block
+// that was being written when the run ended is left out. A damaged one ends the log, for rows go on from those before; what lies behind it
+// is lost, and told.
 #pragma once
 
 #include <cstddef>

@@ -31,9 +31,7 @@ void RowSpool::make_room(Lane &lane) const {
     lane.bytes.resize(2 * chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t)));
 }
 
-void RowSpool::start_lane() {
-    make_room(lanes_.emplace_back());
-}
+void RowSpool::start_lane() { make_room(lanes_.emplace_back()); }
 
 void RowSpool::refuse(std::size_t column, double t_s, double value) {
     if (refused_.empty()) refused_.push_back({column, columns_[column].count, columns_[column].last_s, t_s, value});
@@ -65,7 +63,8 @@ void RowSpool::put_in_new_row(std::size_t column, double t_s, double value) {
 }
 
 void RowSpool::put_millionths_in_new_row(std::size_t column, double t_s, std::int32_t millionths) {
-    if (Lane *lane = new_row(column, t_s, millionths / 1e6); lane != nullptr) add_millionths(columns_[column], *lane, column, t_s, millionths);
+    if (Lane *lane = new_row(column, t_s, millionths / 1e6); lane != nullptr)
+        add_millionths(columns_[column], *lane, column, t_s, millionths);
 }
 
 void RowSpool::change(Lane &lane, std::size_t column, std::uint64_t bits) {
@@ -323,8 +322,7 @@ class RowSpool::Rows {
 };
 
 void RowSpool::write(const std::map<std::string, std::string> &header) {
-    for (const Refused &one : refused_)
-        check_sample(names_[one.column], one.index, one.before_s, one.t_s, one.value, scratch_.path());
+    for (const Refused &one : refused_) check_sample(names_[one.column], one.index, one.before_s, one.t_s, one.value, scratch_.path());
     for (Lane &lane : lanes_) close_row(lane);
     std::vector<std::string> names;
     for (std::size_t i = 0; i < columns_.size(); ++i)

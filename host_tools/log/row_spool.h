@@ -24,7 +24,7 @@ class RowSpool {
     using RowHead = part::RowHead;
 
   public:
-    static constexpr std::size_t chunk_bytes = 32768;     // of a lane, filled in memory; where nobody says that an instant is over, twice that
+    static constexpr std::size_t chunk_bytes = 32768; // of a lane, filled in memory; where nobody says that an instant is over, twice that
     static constexpr std::size_t memory_bytes = 8u << 20; // of full chunks, two or three minutes: what comes after them is read back
 
     RowSpool(std::string path, Scratch::Name name) : scratch_(std::move(path), name) {}
@@ -60,7 +60,7 @@ class RowSpool {
     static constexpr std::size_t copied = 16; // bytes at a time, of a short row
     static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
     struct Lane;
-    struct Column { // asked at every sample: one line of the processor's cache
+    struct Column {                                                         // asked at every sample: one line of the processor's cache
         std::uint64_t bits = 0;                                             // of the last value
         std::int64_t millionths = std::numeric_limits<std::int64_t>::max(); // or, where it came as such, it; none: it did not
         double last_s = -std::numeric_limits<double>::infinity();

@@ -116,7 +116,8 @@ void Scratch::read(std::uint64_t at, void *bytes, std::size_t size) const {
 }
 
 void Scratch::remove() {
-    struct stat named {}, ours {};
+    struct stat named {
+    }, ours{};
     if (part_.empty() || ::lstat(part_.c_str(), &named) != 0 || ::fstat(fd_, &ours) != 0) return;
     if (named.st_dev == ours.st_dev && named.st_ino == ours.st_ino) ::unlink(part_.c_str());
     part_.clear();

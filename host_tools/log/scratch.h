@@ -31,9 +31,9 @@ class Scratch {
     std::uint64_t append(part::Kind kind, std::span<const std::string_view> pieces);
     std::uint64_t append(part::Kind kind, std::string_view payload) { return append(kind, {&payload, 1}); }
     void read(std::uint64_t at, void *bytes, std::size_t size) const;
-    bool lasts() const { return !part_.empty(); }       // it is open, and has a name
-    const std::string &part() const { return part_; }   // that name
-    void remove();                                // the part: the log stands
+    bool lasts() const { return !part_.empty(); }     // it is open, and has a name
+    const std::string &part() const { return part_; } // that name
+    void remove();                                    // the part: the log stands
     const std::string &path() const { return path_; }
 
   private:

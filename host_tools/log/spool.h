@@ -1,5 +1,5 @@
-// spool.h - a log that is being made: it waits on the disk (scratch.h), so that memory does not grow with the run, and under a name, LOG.part,
-// so that a run which is killed leaves what it had (recover.h).
+// spool.h - a log that is being made: it waits on the disk (scratch.h), so that memory does not grow with the run, and under a name,
+// LOG.part, so that a run which is killed leaves what it had (recover.h).
 //
 // A CSV is kept in rows (row_spool.h); a ULog in columns, because its topics and types are known only at the end.
 #pragma once
@@ -18,7 +18,8 @@ namespace traction::log {
 
 class Spool {
   public:
-    static constexpr std::size_t block = 2048; // samples of a column that are kept in memory, 32 kB; where nobody says that an instant is over, twice that
+    static constexpr std::size_t block =
+        2048; // samples of a column that are kept in memory, 32 kB; where nobody says that an instant is over, twice that
 
     // path: where the log will be written; empty: everything stays in memory, for take.
     explicit Spool(std::string path = "", Scratch::Name name = Scratch::Name::part);

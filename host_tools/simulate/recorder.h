@@ -26,7 +26,7 @@ class Recorder {
     void add_camera(std::span<const sim::Pose> poses);
     // Columns that never held anything but 0 are left out where 0 is what absence means.
     void begin(const std::map<std::string, std::string> &header) { spool_.begin(header); } // log::Spool's
-    void tick_is_over() { spool_.instant_is_over(); } // log::Spool's
+    void tick_is_over() { spool_.instant_is_over(); }                                      // log::Spool's
     void put_by() { spool_.put_by(); }
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }

@@ -182,7 +182,8 @@ TEST_P(Recover, a_run_that_is_killed_at_any_instant_leaves_what_it_had) {
             for (int k = 0;; ++k) run.step(k);
         }
         const std::string part = log_.path() + ".part";
-        for (int wait = 0; wait < 5000 && (!std::filesystem::exists(part) || std::filesystem::file_size(part) < 20000); ++wait) usleep(1000);
+        for (int wait = 0; wait < 5000 && (!std::filesystem::exists(part) || std::filesystem::file_size(part) < 20000); ++wait)
+            usleep(1000);
         usleep(static_cast<useconds_t>(random() % 20000));
         kill(child, SIGKILL);
         ASSERT_EQ(waitpid(child, nullptr, 0), child);
@@ -275,8 +276,9 @@ TEST(Part, content_that_cannot_be_is_told) {
         return text.append(reinterpret_cast<const char *>(&value), sizeof value);
     };
     const auto lane = [&](const std::string &rows) { return words({1, static_cast<std::uint32_t>(rows.size())}) + rows; };
-    const std::string good = std::string(part::magic) + block(part::Kind::columns, "- a.x_m\n- b.x_m\n") + block(part::Kind::pattern, words({0})) +
-                             block(part::Kind::pattern, words({1})) + block(part::Kind::rows, lane(row(1, 0, 0, 5)));
+    const std::string good = std::string(part::magic) + block(part::Kind::columns, "- a.x_m\n- b.x_m\n") +
+                             block(part::Kind::pattern, words({0})) + block(part::Kind::pattern, words({1})) +
+                             block(part::Kind::rows, lane(row(1, 0, 0, 5)));
     const test::File out("part_content.csv", "");
     const auto told = [&](const std::string &more) {
         const test::File file("part_content.part", good + more);
@@ -285,20 +287,20 @@ TEST(Part, content_that_cannot_be_is_told) {
     EXPECT_EQ(told("").damage, "");
     EXPECT_EQ(told(block(part::Kind::rows, lane(row(2, 0, 0, 6)))).samples, 2u);
     for (const std::string &bad : {
-             block(part::Kind::rows, lane(row(2, 2, 0, 6))),                 // a pattern that is not
-             block(part::Kind::rows, lane(row(2, 0, 2, 6))),                 // a column that is not
-             block(part::Kind::rows, lane(row(2, 1, 0, 6))),                 // a sample of b, which holds nothing
-             block(part::Kind::rows, lane(row(std::nan(""), 0, 0, 6))),      // no time
-             block(part::Kind::rows, lane(row(2, 0, 0, 6).substr(0, 20))),   // half a row
-             block(part::Kind::rows, words({2, 16}) + row(2, 0, 0, 6)),      // half a list of lanes
-             block(part::Kind::rows, words({0xffffffffu, 16})),              // lanes without end
-             block(part::Kind::rows, words({1, 0xffffffffu})),               // a lane beyond its end
-             block(part::Kind::rows, ""),                                    // nothing
+             block(part::Kind::rows, lane(row(2, 2, 0, 6))),                       // a pattern that is not
+             block(part::Kind::rows, lane(row(2, 0, 2, 6))),                       // a column that is not
+             block(part::Kind::rows, lane(row(2, 1, 0, 6))),                       // a sample of b, which holds nothing
+             block(part::Kind::rows, lane(row(std::nan(""), 0, 0, 6))),            // no time
+             block(part::Kind::rows, lane(row(2, 0, 0, 6).substr(0, 20))),         // half a row
+             block(part::Kind::rows, words({2, 16}) + row(2, 0, 0, 6)),            // half a list of lanes
+             block(part::Kind::rows, words({0xffffffffu, 16})),                    // lanes without end
+             block(part::Kind::rows, words({1, 0xffffffffu})),                     // a lane beyond its end
+             block(part::Kind::rows, ""),                                          // nothing
              block(part::Kind::samples, words({1, 2, 1}) + std::string(16, '\0')), // a column that is not
              block(part::Kind::samples, words({1, 0, 9}) + std::string(16, '\0')), // more samples than there are
-             block(part::Kind::columns, "c.x_m\n"),                          // neither kept nor left out
-             block(part::Kind::columns, "- c.x_m"),                          // no end
-             block(part::Kind::pattern, words({7})),                         // of a column that is not
+             block(part::Kind::columns, "c.x_m\n"),                                // neither kept nor left out
+             block(part::Kind::columns, "- c.x_m"),                                // no end
+             block(part::Kind::pattern, words({7})),                               // of a column that is not
              block(part::Kind::header, "no value\n"),
              block(static_cast<part::Kind>(9), "of a later version"),
          }) {
@@ -324,8 +326,8 @@ TEST(Part, is_no_log_and_says_what_makes_one) {
 }
 
 TEST(Part, its_check_is_crc_32c_by_words_and_by_bytes) {
-    EXPECT_EQ(part::crc_after(0, "123456789", 9), 0xe3069283u); // RFC 3720, appendix B.4, and every list of CRCs
-    EXPECT_EQ(part::crc_after(0, std::string(32, '\0').data(), 32), 0x8a9136aau);  // RFC 3720, B.4
+    EXPECT_EQ(part::crc_after(0, "123456789", 9), 0xe3069283u);                   // RFC 3720, appendix B.4, and every list of CRCs
+    EXPECT_EQ(part::crc_after(0, std::string(32, '\0').data(), 32), 0x8a9136aau); // RFC 3720, B.4
     EXPECT_EQ(part::crc_after(0, std::string(32, '\xff').data(), 32), 0x62a8ab43u);
     std::mt19937 random(3);
     std::string bytes(300, ' ');
