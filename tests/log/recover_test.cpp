@@ -6,6 +6,9 @@
 
 #include "files.h"
 
+#include <algorithm>
+#include <map>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
