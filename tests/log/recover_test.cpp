@@ -7,9 +7,9 @@
 #include "files.h"
 
 #include <algorithm>
-#include <map>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <map>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
