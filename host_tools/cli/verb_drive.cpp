@@ -189,6 +189,7 @@ void record(const DriveOptions &o, Outcome &outcome) {
     const StopSignal signals("\ntraction: ending; what was received is written\n");
     drive::Operator link(o.host, o.key, o.system);
     drive::Telemetry log(o.record);
+    log.begin(header_of(link));
     const auto row = [&](const std::string &line) {
         if (!o.live.empty()) log::write_file(line + '\n', "-");
     };

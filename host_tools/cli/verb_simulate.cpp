@@ -245,6 +245,10 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     if (!arguments.live.empty()) live.emplace();
     if (live) options.after_tick = [&live](const trace_t &trace) { live->row(trace); };
 
+    for (const std::string &path : {arguments.out, arguments.truth})
+        if (!path.empty() && std::filesystem::exists(path + ".part"))
+            std::printf("note: %s.part is what an earlier run had when it was ended; traction recover makes a log of it\n", path.c_str());
+
     const auto start = std::chrono::steady_clock::now();
     outcome.json = {{"schema", "traction.simulate/1"}, {"scenario", scenario.name}, {"runs", nlohmann::json::array()}};
     const auto count = static_cast<long>(last - first + 1);

@@ -12,7 +12,7 @@ namespace traction::drive {
 
 namespace {
 
-constexpr double listen_period_s = 0.02, between_rows_s = 0.1, between_silent_rows_s = 0.5;
+constexpr double listen_period_s = 0.02, between_rows_s = 0.1, between_silent_rows_s = 0.5, put_by_period_s = 1;
 constexpr std::uint32_t backwards = 1u << 31; // a difference of the rover's clock, which wraps
 
 std::string wheel_name(std::size_t wheel, const char *quantity) { return "wheel" + std::to_string(wheel) + quantity; }
@@ -116,8 +116,12 @@ Received record(Operator &link, Telemetry &log, double seconds, const std::funct
         received.rows = log.rows();
     });
     const double until_s = link.now_s() + seconds;
-    double told_s = -1, shown_s = -1;
+    double told_s = -1, shown_s = -1, put_by_s = link.now_s();
     while (link.now_s() < until_s && !stopped()) {
+        if (link.now_s() - put_by_s >= put_by_period_s) { // whatever ends this program, a second is lost
+            log.put_by();
+            put_by_s = link.now_s();
+        }
         try {
             link.listen(listen_period_s);
         } catch (const log::FileError &) { // the network is gone; it may come back

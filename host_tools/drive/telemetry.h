@@ -32,6 +32,8 @@ class Telemetry {
 
     // heard_s: this machine's clock. False: older than what was there, or the same again; it is left out.
     bool add(const Status &status, double heard_s);
+    void begin(const std::map<std::string, std::string> &header) { log_.begin(header); } // log::Spool's
+    void put_by() { log_.put_by(); }
     std::size_t rows() const { return rows_; }
     double last_s() const { return last_s_; }                     // of the log, 0 before the first
     void write(const std::map<std::string, std::string> &header); // throws log::LogError

@@ -1,4 +1,5 @@
 #include "map.h"
+#include "part.h"
 #include "read.h"
 #include "table.h"
 #include "ulog.h"
@@ -107,6 +108,9 @@ Log read_csv(const std::string &path, const std::string &map_path, std::vector<R
     const std::size_t before = repairs.size();
     const FileBytes bytes(path, limits.bytes);
     Log log;
+    if (part::begins_as_part(bytes.view()))
+        throw LogError(path, 0, 0, "is no log yet: it is what a run has written, or had when it was ended, before its log was made",
+                       "where that run is over: traction recover " + path + " --out LOG.csv");
     if (begins_as_ulog(bytes.view())) {
         if (!map_path.empty()) throw LogError(path, 0, 0, "is a ULog: a map is for a foreign CSV", "leave --map out");
         return read_ulog(bytes.view(), path, limits, repairs);

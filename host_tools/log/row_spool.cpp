@@ -13,30 +13,25 @@ namespace traction::log {
 std::size_t RowSpool::add(const std::string &name, bool absent_is_zero) {
     if (columns_.size() > std::numeric_limits<std::uint16_t>::max())
         throw LogError(scratch_.path(), 0, 0, "too many signals for a CSV", "write a ULog (.ulg)");
-    Column fresh;
-    fresh.name = name;
-    fresh.absent_is_zero = absent_is_zero;
-    columns_.push_back(std::move(fresh));
+    columns_.emplace_back().absent_is_zero = absent_is_zero;
+    names_.push_back(name);
     for (Lane &lane : lanes_) make_room(lane);
     if (lanes_.empty()) start_lane();
+    columns_.back().lane = &lanes_.front();
     return columns_.size() - 1;
 }
 
 void RowSpool::make_room(Lane &lane) const {
-    const std::size_t count = columns_.size();
+    const std::size_t count = columns_.size() + copied;
     lane.columns.resize(count);
     lane.whole_columns.resize(count);
     lane.whole_values.resize(count);
     lane.changed_columns.resize(count);
     lane.changed_bits.resize(count);
-    lane.bytes.resize(chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t)));
+    lane.bytes.resize(2 * chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t)));
 }
 
-void RowSpool::start_lane() {
-    Lane fresh;
-    make_room(fresh);
-    lanes_.push_back(std::move(fresh));
-}
+void RowSpool::start_lane() { make_room(lanes_.emplace_back()); }
 
 void RowSpool::refuse(std::size_t column, double t_s, double value) {
     if (refused_.empty()) refused_.push_back({column, columns_[column].count, columns_[column].last_s, t_s, value});
@@ -49,17 +44,27 @@ RowSpool::Lane *RowSpool::new_row(std::size_t column, double t_s, double value) 
         refuse(column, t_s, value);
         return nullptr;
     }
-    if (!(lanes_[to.lane].now_s <= t_s)) {
+    if (!(to.lane->now_s <= t_s)) {
         const auto fits = std::find_if(lanes_.begin(), lanes_.end(), [t_s](const Lane &lane) { return lane.now_s <= t_s; });
-        to.lane = static_cast<std::size_t>(fits - lanes_.begin());
         if (fits == lanes_.end()) start_lane();
+        to.lane = fits == lanes_.end() ? &lanes_.back() : &*fits;
     }
-    Lane &lane = lanes_[to.lane];
+    Lane &lane = *to.lane;
     if (lane.now_s < t_s) {
         close_row(lane);
+        if (lane.used >= 2 * chunk_bytes) put_by();
         lane.now_s = t_s;
     }
     return &lane;
+}
+
+void RowSpool::put_in_new_row(std::size_t column, double t_s, double value) {
+    if (Lane *lane = new_row(column, t_s, value); lane != nullptr) add_number(columns_[column], *lane, column, t_s, value);
+}
+
+void RowSpool::put_millionths_in_new_row(std::size_t column, double t_s, std::int32_t millionths) {
+    if (Lane *lane = new_row(column, t_s, millionths / 1e6); lane != nullptr)
+        add_millionths(columns_[column], *lane, column, t_s, millionths);
 }
 
 void RowSpool::change(Lane &lane, std::size_t column, std::uint64_t bits) {
@@ -80,7 +85,8 @@ void RowSpool::change(Lane &lane, std::size_t column, std::uint64_t bits) {
 void RowSpool::close_row(Lane &lane) {
     if (lane.size == 0) return;
     const auto is_this = [&lane](const std::vector<std::uint32_t> &pattern) {
-        return pattern.size() == lane.size && std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
+        if (pattern.size() != lane.size || pattern[0] != lane.columns[0]) return false;
+        return lane.size == 1 || std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
     };
     if (lane.pattern >= patterns_.size() || !is_this(patterns_[lane.pattern])) {
         lane.pattern = static_cast<std::uint32_t>(std::find_if(patterns_.begin(), patterns_.end(), is_this) - patterns_.begin());
@@ -90,9 +96,13 @@ void RowSpool::close_row(Lane &lane) {
     const RowHead head{lane.now_s, lane.pattern, static_cast<std::uint16_t>(lane.whole), static_cast<std::uint16_t>(lane.changed)};
     char *to = lane.bytes.data() + lane.used;
     const auto put = [&to](const void *from, std::size_t size) {
-        std::memcpy(to, from, size);
+        if (size <= copied)
+            std::memcpy(to, from, copied); // no call; what is too much is written over, and there is room
+        else
+            std::memcpy(to, from, size);
         to += size;
     };
+    static_assert(sizeof head == copied);
     put(&head, sizeof head);
     put(lane.whole_columns.data(), lane.whole * sizeof lane.whole_columns[0]);
     put(lane.whole_values.data(), lane.whole * sizeof lane.whole_values[0]);
@@ -100,15 +110,52 @@ void RowSpool::close_row(Lane &lane) {
     put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
     lane.used += head.size();
     lane.size = lane.whole = lane.changed = 0;
-    if (lane.used < chunk_bytes) return;
-    if (in_memory_ + lane.used <= memory_bytes) {
-        if (in_memory_ == 0) scratch_.open(); // who cannot write there learns it now, not at the end
-        in_memory_ += lane.used;
-        lane.chunks.push_back({{lane.bytes.data(), lane.bytes.data() + lane.used}, 0, lane.used});
-    } else {
-        lane.chunks.push_back({{}, scratch_.append(lane.bytes.data(), lane.used), lane.used});
+    full_ = full_ || lane.used >= chunk_bytes;
+}
+
+// What the part's reader must know before the rows that come.
+void RowSpool::tell_new_names() {
+    if (told_columns_ == 0) scratch_.append(part::Kind::header, part::header_text(header_));
+    std::string text;
+    for (; told_columns_ < columns_.size(); ++told_columns_)
+        text += part::column_line(names_[told_columns_], columns_[told_columns_].absent_is_zero);
+    if (!text.empty()) scratch_.append(part::Kind::columns, text);
+    for (; told_patterns_ < patterns_.size(); ++told_patterns_)
+        scratch_.append(part::Kind::pattern, part::bytes_of(patterns_[told_patterns_]));
+}
+
+// All lanes at once: a block is there or not, and a column that has changed its lane needs both. Of a row that is closed here the rest may
+// still come: it is another row of the same time, and goes on in it when the log is written.
+void RowSpool::put_by() {
+    for (Lane &lane : lanes_) close_row(lane);
+    full_ = false;
+    std::vector<std::uint32_t> sizes{static_cast<std::uint32_t>(lanes_.size())};
+    std::vector<std::string_view> pieces{{}};
+    std::size_t size = 0;
+    for (const Lane &lane : lanes_) {
+        sizes.push_back(static_cast<std::uint32_t>(lane.used));
+        pieces.emplace_back(lane.bytes.data(), lane.used);
+        size += lane.used;
     }
-    lane.used = 0;
+    if (size == 0) return;
+    pieces[0] = part::bytes_of(sizes);
+    scratch_.open(); // who cannot write there learns it now, not at the end
+    const bool held = in_memory_ + size <= memory_bytes;
+    std::uint64_t place = 0;
+    if (scratch_.lasts() || !held) {
+        tell_new_names();
+        place = scratch_.append(part::Kind::rows, pieces) + pieces[0].size();
+    }
+    if (held) in_memory_ += size;
+    for (Lane &lane : lanes_) {
+        if (lane.used == 0) continue;
+        if (held)
+            lane.chunks.push_back({{lane.bytes.data(), lane.bytes.data() + lane.used}, 0, lane.used});
+        else
+            lane.chunks.push_back({{}, place, lane.used});
+        place += lane.used;
+        lane.used = 0;
+    }
 }
 
 // One lane, row after row.
@@ -198,11 +245,11 @@ class RowSpool::Rows {
             if (now_s == never) break;
             const std::vector<std::uint32_t> *cells = nullptr;
             for (Reader &reader : readers_) {
-                if (reader.t_s() != now_s) continue;
-                reader.each_change([this](std::uint32_t column, std::int32_t millionths) { show(column, millionths, log::put_millionths); },
-                                   [this](std::uint32_t column, double value) { show(column, value, put_number); });
-                cells = cells == nullptr ? &cells_[reader.pattern()] : together(*cells, cells_[reader.pattern()]);
-                reader.next();
+                for (; reader.t_s() == now_s; reader.next()) {
+                    reader.each_change([this](std::uint32_t column, std::int32_t whole) { show(column, whole, log::put_millionths); },
+                                       [this](std::uint32_t column, double value) { show(column, value, put_number); });
+                    cells = cells == nullptr ? &cells_[reader.pattern()] : together(*cells, cells_[reader.pattern()]);
+                }
             }
             if (!cells->empty()) put_row(now_s, *cells);
         }
@@ -211,17 +258,22 @@ class RowSpool::Rows {
 
   private:
     static constexpr std::uint32_t left_out = static_cast<std::uint32_t>(-1);
-    static constexpr std::string_view commas = ",,,,,,,,,,,,,,,,";
-    struct Shown { // the text of what a column holds
-        std::array<char, number_room> text;
-        std::size_t size;
+    static constexpr std::size_t many_commas = 96, few_commas = 16;
+    static constexpr auto commas = [] {
+        std::array<char, many_commas> all{};
+        all.fill(',');
+        return all;
+    }();
+    struct Shown { // the text of what a column holds, a comma before it
+        std::array<char, number_room + 8> text{','};
+        std::size_t size = 0;
     };
     template <typename Value> void show(std::uint32_t column, Value value, char *(*put)(char *, Value)) {
         if (shown_of_[column] == left_out) return;
         Shown &shown = shown_[shown_of_[column]];
-        shown.size = static_cast<std::size_t>(put(shown.text.data(), value) - shown.text.data());
+        shown.size = static_cast<std::size_t>(put(shown.text.data() + 1, value) - shown.text.data());
     }
-    // No column is in two lanes at one time: its times go up.
+    // No column is in two rows of one time: its times go up.
     const std::vector<std::uint32_t> *together(const std::vector<std::uint32_t> &a, const std::vector<std::uint32_t> &b) {
         std::vector<std::uint32_t> both(a.size() + b.size());
         std::merge(a.begin(), a.end(), b.begin(), b.end(), both.begin());
@@ -233,7 +285,7 @@ class RowSpool::Rows {
         char *to = put_number(to_, now_s);
         std::size_t at = 0;
         for (const std::uint32_t cell : cells) {
-            to = put_commas(to, cell + 1 - at);
+            if (cell != at) to = put_commas(to, cell - at);
             at = cell + 1;
             const Shown &shown = shown_[cell];
             std::memcpy(to, shown.text.data(), number_room); // as many bytes always: quicker, and there is room
@@ -244,8 +296,10 @@ class RowSpool::Rows {
         to_ = to;
     }
     static char *put_commas(char *to, std::size_t count) {
-        if (count <= commas.size())
-            std::memcpy(to, commas.data(), commas.size());
+        if (count <= few_commas)
+            std::memcpy(to, commas.data(), few_commas); // no call, as above
+        else if (count <= many_commas)
+            std::memcpy(to, commas.data(), many_commas);
         else
             std::memset(to, ',', count);
         return to + count;
@@ -268,16 +322,16 @@ class RowSpool::Rows {
 };
 
 void RowSpool::write(const std::map<std::string, std::string> &header) {
-    for (const Refused &one : refused_)
-        check_sample(columns_[one.column].name, one.index, one.before_s, one.t_s, one.value, scratch_.path());
+    for (const Refused &one : refused_) check_sample(names_[one.column], one.index, one.before_s, one.t_s, one.value, scratch_.path());
     for (Lane &lane : lanes_) close_row(lane);
     std::vector<std::string> names;
-    for (const Column &column : columns_)
-        if (!column.left_out()) names.push_back(column.name);
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+        if (!columns_[i].left_out()) names.push_back(names_[i]);
     WholeFile file(scratch_.path());
     file.write(csv_head(header, names, scratch_.path()));
     Rows(*this, file).write();
     file.keep();
+    scratch_.remove();
 }
 
 } // namespace traction::log

@@ -3,13 +3,16 @@
 // Samples of one time are one row: its time once, which columns it has (a pattern, of which a run has a few), and the values that are not
 // what their column held before; most are whole millionths (recorder.h) and kept as such, from which their digits come. What is kept, and
 // read back, goes on from where it was: it stays in the processor's cache, where a block of every column does not. Samples whose time lies
-// before the row that their column's lane is at go to another lane; the lanes are merged when the log is written.
+// before the row that their column's lane is at go to another lane; the lanes are merged when the log is written. What is kept goes to a
+// part too, as it is (part.h), when a lane has a chunk full and an instant is over.
 #pragma once
 
 #include "scratch.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <string>
@@ -18,63 +21,54 @@
 namespace traction::log {
 
 class RowSpool {
-  public:
-    static constexpr std::size_t chunk_bytes = 32768;     // of a lane, filled in memory
-    static constexpr std::size_t memory_bytes = 8u << 20; // of full chunks, two or three minutes: what comes after them waits on the disk
+    using RowHead = part::RowHead;
 
-    explicit RowSpool(std::string path) : scratch_(std::move(path)) {}
+  public:
+    static constexpr std::size_t chunk_bytes = 32768; // of a lane, filled in memory; where nobody says that an instant is over, twice that
+    static constexpr std::size_t memory_bytes = 8u << 20; // of full chunks, two or three minutes: what comes after them is read back
+
+    RowSpool(std::string path, Scratch::Name name) : scratch_(std::move(path), name) {}
 
     // A new column; its number. absent_is_zero: left out where it never held anything but 0.
     std::size_t add(const std::string &name, bool absent_is_zero);
     // A sample, t_s in s. Times of a column go up; the first that does not, or is no number, is refused by write. Throws FileError.
     void put(std::size_t column, double t_s, double value) {
         Column &to = columns_[column];
-        Lane *lane = &lanes_[to.lane];
-        if (!(t_s == lane->now_s && t_s > to.last_s)) lane = new_row(column, t_s, value);
-        if (lane == nullptr) return;
-        to.last_s = t_s;
-        ++to.count;
-        lane->columns[lane->size++] = static_cast<std::uint32_t>(column);
-        const auto bits = std::bit_cast<std::uint64_t>(value);
-        if (bits != to.bits || to.millionths != none) change(*lane, column, bits);
+        if (Lane &lane = *to.lane; t_s == lane.now_s && t_s > to.last_s)
+            add_number(to, lane, column, t_s, value);
+        else
+            put_in_new_row(column, t_s, value);
     }
     // The same of the value millionths/1e6.
     void put_millionths(std::size_t column, double t_s, std::int32_t millionths) {
         Column &to = columns_[column];
-        Lane *lane = &lanes_[to.lane];
-        if (!(t_s == lane->now_s && t_s > to.last_s)) lane = new_row(column, t_s, millionths / 1e6);
-        if (lane == nullptr) return;
-        to.last_s = t_s;
-        ++to.count;
-        lane->columns[lane->size++] = static_cast<std::uint32_t>(column);
-        if (millionths == to.millionths) return;
-        to.millionths = millionths;
-        to.all_zero = to.all_zero && millionths == 0;
-        lane->whole_columns[lane->whole] = static_cast<std::uint16_t>(column);
-        lane->whole_values[lane->whole++] = millionths;
+        if (Lane &lane = *to.lane; t_s == lane.now_s && t_s > to.last_s)
+            add_millionths(to, lane, column, t_s, millionths);
+        else
+            put_millionths_in_new_row(column, t_s, millionths);
     }
-    // The log, whole or not at all, in the order of write_csv. Throws LogError of what was refused, FileError.
+    void begin(const std::map<std::string, std::string> &header) { header_ = header; } // before the first sample: for the part
+    const std::string &part() const { return scratch_.part(); }
+    void instant_is_over() { // all that is of one instant is there: a good place for a block's end. Throws FileError.
+        if (full_) put_by();
+    }
+    void put_by(); // what is there goes to the part. Throws FileError.
+    // The log, whole or not at all, in the order of write_csv; then the part goes. Throws LogError of what was refused, FileError.
     void write(const std::map<std::string, std::string> &header);
 
   private:
+    static constexpr std::size_t copied = 16; // bytes at a time, of a short row
     static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
-    struct Column {
+    struct Lane;
+    struct Column {                                                         // asked at every sample: one line of the processor's cache
         std::uint64_t bits = 0;                                             // of the last value
         std::int64_t millionths = std::numeric_limits<std::int64_t>::max(); // or, where it came as such, it; none: it did not
         double last_s = -std::numeric_limits<double>::infinity();
-        std::size_t count = 0, lane = 0;
+        std::size_t count = 0;
+        Lane *lane = nullptr;
         bool absent_is_zero = false, all_zero = true;
-        std::string name;
+        std::array<char, 64 - 5 * sizeof(std::uint64_t) - 2> unused{}; // an index is a shift
         bool left_out() const { return count == 0 || (absent_is_zero && all_zero); }
-    };
-    struct RowHead { // a row as it is kept: this, the columns that changed to whole millionths, their values, the other ones, theirs
-        double t_s;
-        std::uint32_t pattern;
-        std::uint16_t whole, changed;
-        std::size_t size() const {
-            return sizeof *this + whole * (sizeof(std::uint16_t) + sizeof(std::int32_t)) +
-                   changed * (sizeof(std::uint16_t) + sizeof(std::uint64_t));
-        }
     };
     struct Chunk {
         std::vector<char> bytes; // empty: on the disk, at
@@ -84,12 +78,12 @@ class RowSpool {
     struct Lane {
         double now_s = -std::numeric_limits<double>::infinity(); // of the row that is open
         std::size_t size = 0, whole = 0, changed = 0;            // of it
-        std::vector<std::uint32_t> columns;                      // in the order in which they came; room for all
+        std::vector<std::uint32_t> columns;                      // in the order in which they came; room for all, and `copied`
         std::vector<std::uint16_t> whole_columns, changed_columns;
         std::vector<std::int32_t> whole_values;
         std::vector<std::uint64_t> changed_bits;
         std::uint32_t pattern = 0; // of the row before
-        std::vector<char> bytes;   // a chunk and a row
+        std::vector<char> bytes;   // a chunk and a row, and `copied`
         std::size_t used = 0;      // of them
         std::vector<Chunk> chunks; // full ones
     };
@@ -99,17 +93,42 @@ class RowSpool {
     };
     class Reader;
     class Rows;
+    static void add(Column &to, Lane &lane, std::size_t column, double t_s) {
+        to.last_s = t_s;
+        ++to.count;
+        lane.columns[lane.size++] = static_cast<std::uint32_t>(column);
+    }
+    void add_number(Column &to, Lane &lane, std::size_t column, double t_s, double value) {
+        add(to, lane, column, t_s);
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        if (bits != to.bits || to.millionths != none) change(lane, column, bits);
+    }
+    static void add_millionths(Column &to, Lane &lane, std::size_t column, double t_s, std::int32_t millionths) {
+        add(to, lane, column, t_s);
+        if (millionths == to.millionths) return;
+        to.millionths = millionths;
+        to.all_zero = to.all_zero && millionths == 0;
+        lane.whole_columns[lane.whole] = static_cast<std::uint16_t>(column);
+        lane.whole_values[lane.whole++] = millionths;
+    }
+    void put_in_new_row(std::size_t column, double t_s, double value); // not in the same row of its lane as what came before
+    void put_millionths_in_new_row(std::size_t column, double t_s, std::int32_t millionths);
     Lane *new_row(std::size_t column, double t_s, double value);
     void change(Lane &lane, std::size_t column, std::uint64_t bits);
     void close_row(Lane &lane);
     void start_lane();
+    void tell_new_names();
     void make_room(Lane &lane) const;
     void refuse(std::size_t column, double t_s, double value);
 
     Scratch scratch_;
+    std::map<std::string, std::string> header_;
     std::size_t in_memory_ = 0; // of full chunks
+    std::size_t told_columns_ = 0, told_patterns_ = 0;
+    bool full_ = false; // a lane has a chunk
     std::vector<Column> columns_;
-    std::vector<Lane> lanes_;
+    std::vector<std::string> names_;
+    std::deque<Lane> lanes_; // columns point at them
     std::vector<std::vector<std::uint32_t>> patterns_;
     std::vector<Refused> refused_; // one at most
 };

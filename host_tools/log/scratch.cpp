@@ -1,8 +1,10 @@
 #include "scratch.h"
 
 #include "log.h"
+#include "replaced_by.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -35,31 +37,70 @@ int unnamed_file(const std::string &folder) {
 
 } // namespace
 
-Scratch::Scratch(std::string path) : path_(std::move(path)) {}
+Scratch::Scratch(std::string path, Name name) : path_(std::move(path)), name_(name) {}
 
 Scratch::~Scratch() {
     if (fd_ >= 0) close(fd_);
 }
 
 void Scratch::fail() const {
+    const std::string left = part_.empty() ? "" : "; what was recorded until now: traction recover " + part_;
     throw FileError(path_, 0, 0, std::string("cannot be written: ") + std::strerror(errno),
-                    "give a path that can be, with space for the log twice");
+                    "give a path that can be, with space for the log twice" + left);
+}
+
+// False: it cannot be created (errno).
+bool Scratch::open_part() {
+    const std::string target = replaced_by(path_);
+    if (target.empty()) return true;
+    for (int number = 1; number < 1000; ++number) {
+        const std::string part = target + (number == 1 ? "" : '.' + std::to_string(number)) + ".part";
+        fd_ = ::open(part.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (fd_ < 0 && errno == EEXIST) continue;
+        if (fd_ < 0) return errno == ENAMETOOLONG;
+        struct stat old {};
+        if (::stat(target.c_str(), &old) == 0) (void)::fchmod(fd_, old.st_mode & 0777); // as the log will have them
+        (void)::flock(fd_, LOCK_EX | LOCK_NB);                                          // its writer goes on: recover waits
+        part_ = part;
+        synced_ = std::chrono::steady_clock::now();
+        put(part::magic.data(), part::magic.size());
+        return true;
+    }
+    return false;
 }
 
 void Scratch::open() {
+    if (fd_ >= 0) return;
+    if (name_ == Name::part && !open_part()) fail();
     if (fd_ < 0) fd_ = unnamed_file(folder_of(path_));
     if (fd_ < 0) fail();
 }
 
-std::uint64_t Scratch::append(const void *bytes, std::size_t size) {
-    open();
-    const std::uint64_t place = end_;
+void Scratch::put(const void *bytes, std::size_t size) {
     const char *from = static_cast<const char *>(bytes);
     while (size > 0) {
         const ssize_t done = pwrite(fd_, from, size, static_cast<off_t>(end_));
         if (done < 0 && errno == EINTR) continue;
         if (done <= 0) fail();
         from += done, size -= static_cast<std::size_t>(done), end_ += static_cast<std::uint64_t>(done);
+    }
+}
+
+std::uint64_t Scratch::append(part::Kind kind, std::span<const std::string_view> pieces) {
+    open();
+    part::BlockHead head{static_cast<std::uint32_t>(kind), 0, 0, 0, 0};
+    for (const std::string_view piece : pieces) {
+        head.size += static_cast<std::uint32_t>(piece.size());
+        head.payload_check = part::crc_after(head.payload_check, piece.data(), piece.size());
+    }
+    head.check = part::head_check(head);
+    put(&head, sizeof head);
+    const std::uint64_t place = end_;
+    for (const std::string_view piece : pieces) put(piece.data(), piece.size());
+    if (!lasts()) return place;
+    if (const auto now = std::chrono::steady_clock::now(); now - synced_ >= sync_every) {
+        synced_ = now;
+        if (::fdatasync(fd_) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EINTR) fail();
     }
     return place;
 }
@@ -72,6 +113,14 @@ void Scratch::read(std::uint64_t at, void *bytes, std::size_t size) const {
         if (done <= 0) fail();
         to += done, size -= static_cast<std::size_t>(done), at += static_cast<std::uint64_t>(done);
     }
+}
+
+void Scratch::remove() {
+    struct stat named {
+    }, ours{};
+    if (part_.empty() || ::lstat(part_.c_str(), &named) != 0 || ::fstat(fd_, &ours) != 0) return;
+    if (named.st_dev == ours.st_dev && named.st_ino == ours.st_ino) ::unlink(part_.c_str());
+    part_.clear();
 }
 
 } // namespace traction::log

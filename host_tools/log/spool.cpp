@@ -8,8 +8,22 @@
 
 namespace traction::log {
 
-Spool::Spool(std::string path) : path_(std::move(path)), scratch_(path_) {
-    if (!path_.empty() && !names_a_ulog(path_)) rows_ = std::make_unique<RowSpool>(path_);
+Spool::Spool(std::string path, Scratch::Name name) : path_(std::move(path)), scratch_(path_, name) {
+    if (!path_.empty() && !names_a_ulog(path_)) rows_ = std::make_unique<RowSpool>(path_, name);
+}
+
+void Spool::begin(const std::map<std::string, std::string> &header) {
+    if (rows_)
+        rows_->begin(header);
+    else
+        header_ = header;
+}
+
+void Spool::put_by() {
+    if (rows_)
+        rows_->put_by();
+    else if (!path_.empty())
+        keep_blocks();
 }
 
 std::size_t Spool::add(const std::string &name, bool absent_is_zero, std::size_t reserve) {
@@ -26,14 +40,39 @@ void Spool::put_in_column(std::size_t column, double t_s, double value) {
     to.signal.t_s.push_back(t_s);
     to.signal.value.push_back(value);
     to.all_zero = to.all_zero && value == 0;
-    if (!path_.empty() && to.signal.value.size() == block) keep_block(to);
+    if (path_.empty() || to.signal.value.size() < block) return;
+    full_ = true;
+    if (to.signal.value.size() == 2 * block) keep_blocks();
 }
 
-void Spool::keep_block(Column &column) {
-    column.blocks.push_back(scratch_.append(column.signal.t_s.data(), block * sizeof(double)));
-    scratch_.append(column.signal.value.data(), block * sizeof(double));
-    column.signal.t_s.clear();
-    column.signal.value.clear();
+// All columns at once, so that the part has them to one instant.
+void Spool::keep_blocks() {
+    full_ = false;
+    std::vector<std::uint32_t> counts(1);
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+        if (const std::size_t count = columns_[i].signal.value.size(); count > 0)
+            counts.insert(counts.end(), {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(count)});
+    counts[0] = static_cast<std::uint32_t>(counts.size() / 2);
+    if (counts[0] == 0) return;
+    if (told_columns_ == 0) scratch_.append(part::Kind::header, part::header_text(header_));
+    std::string names;
+    for (; told_columns_ < columns_.size(); ++told_columns_)
+        names += part::column_line(columns_[told_columns_].signal.name, columns_[told_columns_].absent_is_zero);
+    if (!names.empty()) scratch_.append(part::Kind::columns, names);
+    std::vector<std::string_view> pieces{part::bytes_of(counts)};
+    for (const Column &column : columns_) {
+        pieces.push_back(part::bytes_of(column.signal.t_s));
+        pieces.push_back(part::bytes_of(column.signal.value));
+    }
+    std::uint64_t place = scratch_.append(part::Kind::samples, pieces) + pieces[0].size();
+    for (Column &column : columns_) {
+        const std::size_t count = column.signal.value.size();
+        if (count == 0) continue;
+        column.blocks.push_back({place, count});
+        place += 2 * count * sizeof(double);
+        column.signal.t_s.clear();
+        column.signal.value.clear();
+    }
 }
 
 void Spool::load(const Column &column, std::size_t number, std::vector<double> &into) const {
@@ -42,8 +81,8 @@ void Spool::load(const Column &column, std::size_t number, std::vector<double> &
         into.insert(into.end(), column.signal.value.begin(), column.signal.value.end());
         return;
     }
-    into.resize(2 * block);
-    scratch_.read(column.blocks[number], into.data(), into.size() * sizeof(double));
+    into.resize(2 * column.blocks[number].count);
+    scratch_.read(column.blocks[number].place, into.data(), into.size() * sizeof(double));
 }
 
 Log Spool::take() {
@@ -101,6 +140,19 @@ class Spool::Again : public UlogColumn {
 };
 
 void Spool::write(const std::map<std::string, std::string> &header) {
+    try {
+        write_log(header);
+    } catch (const FileError &error) {
+        const std::string part = rows_ ? rows_->part() : scratch_.part();
+        if (part.empty()) throw;
+        const std::string said = error.what(), begins = error.file + ": "; // log.cpp
+        const std::size_t from = said.starts_with(begins) ? begins.size() : 0;
+        throw FileError(error.file, 0, 0, said.substr(from, said.rfind("; to mend: ") - from),
+                        error.mend + "; what was recorded: traction recover " + part);
+    }
+}
+
+void Spool::write_log(const std::map<std::string, std::string> &header) {
     if (rows_) {
         rows_->write(header);
         return;
@@ -109,6 +161,7 @@ void Spool::write(const std::map<std::string, std::string> &header) {
     for (const Column &column : columns_)
         if (!column.left_out()) columns.push_back(std::make_unique<Again>(*this, column));
     write_ulog(header, columns, path_);
+    scratch_.remove();
 }
 
 } // namespace traction::log

@@ -1,4 +1,5 @@
-// spool.h - a log that is being made: what is older than a block waits on the disk (scratch.h), so that memory does not grow with the run.
+// spool.h - a log that is being made: it waits on the disk (scratch.h), so that memory does not grow with the run, and under a name,
+// LOG.part, so that a run which is killed leaves what it had (recover.h).
 //
 // A CSV is kept in rows (row_spool.h); a ULog in columns, because its topics and types are known only at the end.
 #pragma once
@@ -17,10 +18,12 @@ namespace traction::log {
 
 class Spool {
   public:
-    static constexpr std::size_t block = 2048; // samples of a column that are kept in memory; 32 kB
+    static constexpr std::size_t block =
+        2048; // samples of a column that are kept in memory, 32 kB; where nobody says that an instant is over, twice that
 
-    // path: where the log will be written; empty: everything stays in memory, for take. Throws FileError.
-    explicit Spool(std::string path = "");
+    // path: where the log will be written; empty: everything stays in memory, for take.
+    explicit Spool(std::string path = "", Scratch::Name name = Scratch::Name::part);
+    void begin(const std::map<std::string, std::string> &header); // before the first sample: what is known of the log already, for the part
     // A new column; its number. absent_is_zero: left out where it never held anything but 0. reserve: samples that are expected.
     std::size_t add(const std::string &name, bool absent_is_zero = false, std::size_t reserve = 0);
     // A sample. Times of a column go up. Throws FileError.
@@ -38,28 +41,46 @@ class Spool {
             put_in_column(column, t_s, millionths / 1e6);
     }
 
+    // All that is of one instant is there: the part may end here, and what is made of it. Throws FileError.
+    void instant_is_over() {
+        if (rows_)
+            rows_->instant_is_over();
+        else if (full_)
+            put_by();
+    }
+    // What there is goes to the part now, where a log grows slowly. Nothing without a path. Throws FileError.
+    void put_by();
+
     // The columns that hold something, as a log in memory; the spool is empty after it. Only without a path.
     Log take();
     // The columns that hold something, as a log under the path: CSV (write_csv's bytes), or ULog (write_ulog's) where it ends in .ulg.
-    // Throws LogError.
+    // Then its part goes; it stays where the log cannot be written. Throws LogError.
     void write(const std::map<std::string, std::string> &header);
 
   private:
+    struct Block { // on the disk: times, then as many values
+        std::uint64_t place;
+        std::size_t count;
+    };
     struct Column {
-        Signal signal;                     // what is not on the disk
-        std::vector<std::uint64_t> blocks; // places on the disk, each of `block` times and as many values
+        Signal signal; // what is not on the disk
+        std::vector<Block> blocks;
         bool absent_is_zero = false, all_zero = true;
         bool left_out() const { return (blocks.empty() && signal.value.empty()) || (absent_is_zero && all_zero); }
     };
     class Reader;
     class Again;
+    void write_log(const std::map<std::string, std::string> &header);
     void put_in_column(std::size_t column, double t_s, double value);
-    void keep_block(Column &column);
+    void keep_blocks();
     void load(const Column &column, std::size_t number, std::vector<double> &into) const; // times, then values
 
     std::string path_;
     std::unique_ptr<RowSpool> rows_; // CSV
     std::vector<Column> columns_;    // everything else
+    std::map<std::string, std::string> header_;
+    std::size_t told_columns_ = 0;
+    bool full_ = false; // a column has a block
     Scratch scratch_;
 };
 

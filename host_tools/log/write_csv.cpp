@@ -28,16 +28,23 @@ char *put_pair(char *to, std::uint64_t number) {
     return to + 2;
 }
 
-char *put_whole(char *to, std::uint64_t number) {
-    char digits[20], *first = digits + sizeof digits;
-    for (; number >= 100; number /= 100) put_pair(first -= 2, number % 100);
-    if (number >= 10)
-        put_pair(first -= 2, number);
-    else
-        *--first = static_cast<char>('0' + number);
-    const auto size = static_cast<std::size_t>(digits + sizeof digits - first);
-    std::memcpy(to, first, size);
-    return to + size;
+// Below 10000.
+char *put_four(char *to, std::uint32_t number) {
+    if (number >= 1000) return put_pair(put_pair(to, number / 100), number % 100);
+    if (number >= 100) {
+        *to = static_cast<char>('0' + number / 100);
+        return put_pair(to + 1, number % 100);
+    }
+    if (number >= 10) return put_pair(to, number);
+    *to = static_cast<char>('0' + number);
+    return to + 1;
+}
+
+char *put_whole(char *to, std::uint32_t number) {
+    if (number < 10000) return put_four(to, number);
+    const std::uint32_t above = number / 10000, below = number % 10000;
+    to = above < 10000 ? put_four(to, above) : put_pair(put_pair(put_four(to, above / 10000), above / 100 % 100), above % 100);
+    return put_pair(put_pair(to, below / 100), below % 100);
 }
 
 // Below a thousandth, 1 to 999 millionths: as std::to_chars, the shorter of 0.000123 and 1.23e-04, the first where they are equal.
@@ -60,33 +67,44 @@ char *put_small(char *to, std::uint64_t millionths) {
     return to + 2 + places;
 }
 
-// Nearly every value is a whole number of millionths (recorder.h), and a time of the radar's of billionths: its digits are those of a whole
-// number. No two decimals of 15 digits are the same double, so no shorter text reads back to it: the text is that of std::to_chars. Where
-// that would write an exponent, or in doubt, it does the work (null).
+// Nearly every value is a count or a whole number of millionths (recorder.h), and a time of the radar's of billionths: its digits are those
+// of a whole number. No two decimals of 15 digits are the same double, so no shorter text reads back to it: the text is that of
+// std::to_chars. Where that would write an exponent, or in doubt, it does the work (null).
 char *put_decimals(char *to, double value) {
     const double size = std::fabs(value);
-    if (size == 0 && !std::signbit(value)) {
-        *to = '0';
-        return to + 1;
+    if (size < 1e5) {
+        const auto count = static_cast<std::uint32_t>(size);
+        if (static_cast<double>(count) == size) {
+            if (std::signbit(value)) {
+                if (count == 0) return nullptr; // -0
+                *to++ = '-';
+            }
+            return put_whole(to, count);
+        }
     }
     if (!(size >= 1e-6 && size < 1e9)) return nullptr;
-    const auto whole = static_cast<std::uint64_t>(size * 1e6 + 0.5);
-    std::uint64_t above = whole / 1000000, below = whole % 1000000 * 1000; // billionths
-    if (static_cast<double>(whole) / 1e6 != size) {
-        if (!(size >= 1e-3 && size < 1e6)) return nullptr;
-        const auto finer = static_cast<std::uint64_t>(size * 1e9 + 0.5);
+    std::uint32_t above = 0, below = 0; // billionths
+    if (size >= 1e-3 && size < 1e6) {
+        const auto finer = static_cast<std::uint64_t>(size * 1e9 + 0.5); // whole millionths among them: the same quotient, rounded once
         if (static_cast<double>(finer) / 1e9 != size) return nullptr;
-        above = finer / 1000000000, below = finer % 1000000000;
-    } else if (below == 0 && above >= 100000 && above % 10 == 0) {
-        return nullptr; // 1e+05 is shorter
+        above = static_cast<std::uint32_t>(finer / 1000000000), below = static_cast<std::uint32_t>(finer % 1000000000);
+    } else {
+        const auto whole = static_cast<std::uint64_t>(size * 1e6 + 0.5);
+        if (static_cast<double>(whole) / 1e6 != size) return nullptr;
+        if (whole < 1000) {
+            if (value < 0) *to++ = '-';
+            return put_small(to, whole);
+        }
+        above = static_cast<std::uint32_t>(whole / 1000000), below = static_cast<std::uint32_t>(whole % 1000000) * 1000;
     }
+    if (below == 0 && above >= 100000 && above % 10 == 0) return nullptr; // 1e+05 is shorter
     if (value < 0) *to++ = '-';
-    if (size < 1e-3) return put_small(to, whole);
     to = put_whole(to, above);
     if (below == 0) return to;
     *to++ = '.';
-    to = put_pair(put_pair(put_pair(put_pair(to, below / 10000000), below / 100000 % 100), below / 1000 % 100), below / 10 % 100);
-    *to++ = static_cast<char>('0' + below % 10);
+    const std::uint32_t first = below / 100000, last = below % 100000; // four digits, and five
+    to = put_pair(put_pair(put_pair(put_pair(to, first / 100), first % 100), last / 1000), last / 10 % 100);
+    *to++ = static_cast<char>('0' + last % 10);
     while (to[-1] == '0') --to;
     return to;
 }

@@ -1,5 +1,7 @@
 #include "write_file.h"
 
+#include "replaced_by.h"
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -71,10 +73,7 @@ bool is_standard_output(const std::string &path) {
     return ::stat(path.c_str(), &info) == 0 && !S_ISCHR(info.st_mode) && same_file(info, standard_output);
 }
 
-namespace {
-
-// What is to be replaced when `path` is written; empty when it is written to in place.
-std::string target_of(const std::string &path) {
+std::string replaced_by(const std::string &path) {
     namespace fs = std::filesystem;
     if (is_standard_output(path)) return "";
     struct stat info {};
@@ -99,6 +98,8 @@ std::string target_of(const std::string &path) {
     if (none) refuse(path, none.value());
     return (folder / name).string();
 }
+
+namespace {
 
 // "<folder>/.<name>" with an ending, the name cut where a file system allows 255 bytes.
 std::string beside(const std::string &target, const std::string &ending) {
@@ -193,7 +194,7 @@ std::shared_ptr<Lock> lock_of(const std::string &target, const std::string &path
 
 } // namespace
 
-Claim::Claim(const std::string &path) : target_(target_of(path)), lock_(target_.empty() ? nullptr : lock_of(target_, path)) {}
+Claim::Claim(const std::string &path) : target_(replaced_by(path)), lock_(target_.empty() ? nullptr : lock_of(target_, path)) {}
 
 WholeFile::WholeFile(const std::string &path) : path_(path), claim_(path) {
     fd_ = claim_.target().empty() ? open_in_place(path) : open_temporary(claim_.target(), path, temporary_);

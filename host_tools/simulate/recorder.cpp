@@ -16,9 +16,11 @@ void Recorder::put_tidy(std::size_t column, double t_s, float value) {
         constexpr double round_by = 6755399441055744.0; // 1.5 * 2^52: nearbyint without a call
         spool_.put_millionths(column, t_s, static_cast<std::int32_t>((millionths + round_by) - round_by));
     } else {
-        put(column, t_s, std::nearbyint(millionths) / 1e6 + 0.0);
+        put_large(column, t_s, millionths);
     }
 }
+
+void Recorder::put_large(std::size_t column, double t_s, double millionths) { put(column, t_s, std::nearbyint(millionths) / 1e6 + 0.0); }
 
 std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
     return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
@@ -237,6 +239,7 @@ void TruthRecorder::add(const sim::Truth &truth) {
         if (sim::steers(layout_, i)) put(truth.slot(i).steer_rad);
     if (layout_.rocker)
         for (const double value : {truth.rocker_rad[0], truth.rocker_rad[1], truth.bogie_rad[0], truth.bogie_rad[1]}) put(value);
+    spool_.instant_is_over();
 }
 
 } // namespace traction

@@ -25,6 +25,9 @@ class Recorder {
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
     void add_camera(std::span<const sim::Pose> poses);
     // Columns that never held anything but 0 are left out where 0 is what absence means.
+    void begin(const std::map<std::string, std::string> &header) { spool_.begin(header); } // log::Spool's
+    void tick_is_over() { spool_.instant_is_over(); }                                      // log::Spool's
+    void put_by() { spool_.put_by(); }
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 
@@ -32,6 +35,7 @@ class Recorder {
     std::size_t column(const std::string &name, bool absent_is_zero = false);
     void put(std::size_t column, double t_s, double value) { spool_.put(column, t_s, value); }
     void put_tidy(std::size_t column, double t_s, float value);
+    void put_large(std::size_t column, double t_s, double millionths); // 2e9 of them, and more
     void add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
     void add_frame(double t_s, const sensor_frame_t &frame);
     void add_command(double t_s, const command_t &command);
@@ -66,6 +70,8 @@ class TruthRecorder {
     // steer stand
     explicit TruthRecorder(const std::string &path = "", bool on_terrain = false, const sim::LayoutParameters &layout = {});
     void add(const sim::Truth &truth);
+    void begin(const std::map<std::string, std::string> &header) { spool_.begin(header); } // log::Spool's
+    void put_by() { spool_.put_by(); }
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 

@@ -88,6 +88,11 @@ class Session : public Link {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
     }
+    // What the logs' headers will say, for what a killed run leaves.
+    void begin(const SimulationResult &result) {
+        recorder_.begin(result.log.header);
+        truth_.begin(result.truth.header);
+    }
     bool over() override { return interrupted_ = interrupted_ || (options_.stopped && options_.stopped()); }
     void command(const sensor_frame_t &frame, command_t &command) override { command = person_.command_at(frame.tick); }
     void log(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) override {
@@ -96,11 +101,17 @@ class Session : public Link {
             camera_faults_.apply(world_.camera(), poses_);
             recorder_.add(frame, command, trace);
             recorder_.add_camera(poses_);
+            recorder_.tick_is_over();
         }
         if (options_.truth || !options_.truth_path.empty()) truth_.add(world_.truth());
         if (frames_) frames_->add(frame, command);
         if (options_.after_tick) options_.after_tick(trace);
-        if (++ticks_ % 100 == 0 && options_.after_second) options_.after_second();
+        if (++ticks_ % 100 != 0) return;
+        if (options_.realtime) { // a chunk fills slowly
+            recorder_.put_by();
+            truth_.put_by();
+        }
+        if (options_.after_second) options_.after_second();
     }
     // What was recorded goes into the result, or under its path; the headers stand in result already.
     void take(SimulationResult &result) {
@@ -154,6 +165,9 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     const hal::SimHalConfig config = hal::world_of(scenario, effects, seed);
     hal::SimRover rover(scenario, effects, config);
     Session session(scenario, options, rover.world(), seed, config.ticks);
+    write_header(scenario, seed, result.log);
+    if (options.truth || !options.truth_path.empty()) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
+    session.begin(result);
     pace_hal_t pace{};
     const hal_t world = rover.hal();
     const daemon_result_t run =
@@ -163,8 +177,6 @@ SimulationResult simulate(const sim::Scenario &scenario, const SimulateOptions &
     result.ticks = run.ticks;
     result.faults = run.faults;
     result.self_test = run.self_test;
-    write_header(scenario, seed, result.log);
-    if (options.truth || !options.truth_path.empty()) result.truth.header = {{"scenario", scenario.name}, {"seed", std::to_string(seed)}};
     session.take(result);
     return result;
 }

@@ -17,6 +17,10 @@ std::uint64_t mix(std::uint64_t x) {
 
 double squared(double x_m, double y_m) { return x_m * x_m + y_m * y_m; }
 
+std::uint64_t cell_at(std::int64_t column, std::int64_t row) {
+    return (static_cast<std::uint64_t>(column) << 32) | (static_cast<std::uint64_t>(row) & 0xffffffffu);
+}
+
 // Far enough from both ends to be found.
 bool is_left(const RutPiece &piece, double x_m, double y_m, double width_m) {
     const double far2 = width_m * width_m;
@@ -28,26 +32,23 @@ bool is_left(const RutPiece &piece, double x_m, double y_m, double width_m) {
 // A piece lies in the cell of its second end: whatever is near enough to count lies in the nine cells around.
 RutMemory::RutMemory(double width_m) : width_m_(width_m), cell_m_(width_m + 2 * RutTrace::piece_m) {}
 
-std::uint64_t RutMemory::cell(double x_m, double y_m, int right, int up) const {
-    const auto index = [this](double place_m, int more) {
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(place_m / cell_m_)) + more) & 0xffffffffu;
-    };
-    return (index(x_m, right) << 32) | index(y_m, up);
-}
+std::int64_t RutMemory::index(double place_m) const { return static_cast<std::int64_t>(std::floor(place_m / cell_m_)); }
 
 void RutMemory::add(const RutPiece &piece) {
-    near_[cell(piece.x1_m, piece.y1_m, 0, 0)].push_back(static_cast<std::uint32_t>(pieces_.size()));
+    near_[cell_at(index(piece.x1_m), index(piece.y1_m))].push_back(static_cast<std::uint32_t>(pieces_.size()));
     pieces_.push_back(piece);
     longest_m_ = std::max(longest_m_, std::sqrt(squared(piece.x1_m - piece.x0_m, piece.y1_m - piece.y0_m)));
+    deepest_m_ = std::max({deepest_m_, piece.depth0_m, piece.depth1_m});
 }
 
 double RutMemory::depth(double x_m, double y_m) const {
     double found = 0;
     const double reach2 = width_m_ * width_m_;
-    const double far_m = 1.0001 * (width_m_ + longest_m_), far2 = far_m * far_m; // of its second end: no piece reaches so far
-    for (int right = -1; right <= 1; ++right)
-        for (int up = -1; up <= 1; ++up) {
-            const auto list = near_.find(cell(x_m, y_m, right, up));
+    double far_m = 1.0001 * (width_m_ + longest_m_), far2 = far_m * far_m; // of its second end: no piece reaches so far
+    const std::int64_t column = index(x_m), row = index(y_m);
+    for (const std::int64_t right : {0, -1, 1}) // its own cell first
+        for (const std::int64_t up : {0, -1, 1}) {
+            const auto list = near_.find(cell_at(column + right, row + up));
             if (list == near_.end()) continue;
             for (const std::uint32_t i : list->second) {
                 const RutPiece &p = pieces_[i];
@@ -58,7 +59,10 @@ double RutMemory::depth(double x_m, double y_m) const {
                 const double apart2 = squared(x_m - (p.x0_m + share * dx), y_m - (p.y0_m + share * dy));
                 if (apart2 >= reach2) continue;
                 const double overlap = 1 - std::sqrt(apart2) / width_m_; // (1)
-                found = std::max(found, overlap * (p.depth0_m + share * (p.depth1_m - p.depth0_m)));
+                const double here = overlap * (p.depth0_m + share * (p.depth1_m - p.depth0_m));
+                if (!(here > found)) continue;
+                found = here;
+                far_m = 1.0001 * (width_m_ * (1 - found / deepest_m_) + longest_m_), far2 = far_m * far_m; // beyond, none is deeper by (1)
             }
         }
     return found;

@@ -29,8 +29,8 @@ class RutMemory {
     std::uint64_t hash() const;
 
   private:
-    std::uint64_t cell(double x_m, double y_m, int right, int up) const;
-    double width_m_, cell_m_, longest_m_ = 0;
+    std::int64_t index(double place_m) const; // of a cell
+    double width_m_, cell_m_, longest_m_ = 0, deepest_m_ = 0;
     std::vector<RutPiece> pieces_;
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> near_; // where to look; the answer does not depend on it
 };

@@ -132,7 +132,7 @@ case "$first_code $second_code" in
     *) bad "two runs with one name exit $first_code and $second_code" ;;
 esac
 
-# a run that is ended by the loss of its terminal leaves nothing
+# a run that is ended by the loss of its terminal leaves no log, and what makes one
 "$cli" simulate cruise --realtime --out ended.csv >/dev/null 2>&1 &
 run=$!
 for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do [ -e .ended.csv.lock ] && break; sleep 0.2; done
@@ -142,7 +142,15 @@ for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do [ -e .ended.csv.
 kill -HUP $run
 wait $run 2>/dev/null
 [ $? -eq 0 ] && bad "a killed run exits 0"
-ls -A | grep -q "ended.csv" && bad "a killed run leaves $(ls -A | grep ended.csv)"
+left=$(ls -A | grep "ended.csv" | tr '\n' ' ')
+[ -z "$left" ] || [ "$left" = "ended.csv.part " ] || bad "a killed run leaves $left"
+"$cli" simulate cruise --realtime --out ended.csv >/dev/null 2>&1 &
+run=$!
+for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do [ -s ended.csv.part ] && break; sleep 0.2; done
+kill -HUP $run
+wait $run 2>/dev/null
+gives 0 "ended: interrupted" recover ended.csv.part --out ended.csv # a run at the clock's pace keeps what it has every second
+rm -f ended.csv.part
 
 # a full disk: a small file system of its own, where the system lets us make one
 mkdir tiny
@@ -151,12 +159,13 @@ if [ "$(id -u)" -eq 0 ] && unshare -m true 2>/dev/null; then
         echo old >tiny/run.csv
         "$1" simulate cruise --out tiny/run.csv >/dev/null 2>stderr.txt
         code=$?
-        [ "$(ls -A tiny)" = run.csv ] && [ "$(cat tiny/run.csv)" = old ] || exit 5
+        [ "$(ls -A tiny | tr "\n" " ")" = "run.csv run.csv.part " ] && [ "$(cat tiny/run.csv)" = old ] || exit 5
+        "$1" recover tiny/run.csv.part --out saved.csv >/dev/null || exit 6
         exit $code' sh "$cli"
     code=$?
     case $code in
         77) ;; # no mounts here
-        4) grep -q "tiny/run.csv: cannot be written: No space left on device" stderr.txt || bad "a full disk is told as $(cat stderr.txt)" ;;
+        4) grep -q "tiny/run.csv: cannot be written: No space left on device.* traction recover .*tiny/run.csv.part" stderr.txt || bad "a full disk is told as $(cat stderr.txt)" ;;
         *) bad "a full disk ends with $code" ;;
     esac
 fi

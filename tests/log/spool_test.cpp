@@ -9,9 +9,12 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -105,6 +108,7 @@ TEST(Spool, refuses_what_cannot_stand_in_a_log) {
         spool.put(column, t_s, value);
         spool.put(column, 2e9, 1); // what is right after it does not mend it
         EXPECT_THROW(spool.write({}), LogError) << t_s << ' ' << value;
+        std::remove((kept.path() + ".part").c_str()); // it stays where no log was made
         EXPECT_EQ(kept.text(), "as it was") << "nothing half-written";
     }
 }
@@ -113,7 +117,7 @@ TEST(Spool, tells_where_it_cannot_write) {
     Spool spool("/nowhere/at/all.csv");
     const std::size_t column = spool.add("wheel0.speed_rad_s");
     try {
-        for (std::size_t k = 0; k <= Spool::block; ++k) spool.put(column, static_cast<double>(k), 1);
+        for (std::size_t k = 0; k <= 2 * Spool::block; ++k) spool.put(column, static_cast<double>(k), 1);
         FAIL() << "a folder that is not there";
     } catch (const FileError &error) {
         EXPECT_NE(std::string(error.what()).find("/nowhere/at/all.csv"), std::string::npos) << error.what();
@@ -134,6 +138,31 @@ TEST(Spool, millionths_are_written_as_their_number) {
         for (const std::int32_t off : {-1, 0, 1}) expect_same(n + off), expect_same(-(n + off));
     }
     expect_same(std::numeric_limits<std::int32_t>::max());
+}
+
+// Numbers take ways of their own to their digits: counts, millionths, billionths. All end where the library's shortest text does.
+TEST(Spool, numbers_are_written_as_the_library_writes_them) {
+    const auto expect_same = [](double value) {
+        char ours[number_room], theirs[64];
+        const std::string a(ours, put_number(ours, value)), b(theirs, std::to_chars(theirs, theirs + sizeof theirs, value).ptr);
+        ASSERT_EQ(a, b);
+    };
+    const auto expect_around = [&](double value) {
+        for (const double size : {std::nextafter(value, 0.0), value, std::nextafter(value, 1e300)}) expect_same(size), expect_same(-size);
+    };
+    for (int n = 0; n < 130000; ++n) expect_around(n);
+    for (double power = 1e-12; power < 1e18; power *= 10)
+        for (const double by : {1.0, 1.5, 9.0, 9.99, 9.999999, 1.000001, 1.000000001}) expect_around(power * by);
+    for (int n = 1; n < 60000; ++n) expect_around(n / 512.0), expect_around(n / 640.0), expect_around(n / 100.0), expect_around(n / 1e9);
+    std::mt19937_64 random(20261125);
+    for (int i = 0; i < 300000; ++i) {
+        const auto bits = random();
+        expect_same(static_cast<double>(bits % 2000000000) / 1e6);
+        expect_same(static_cast<double>(bits % 1000000000000000) / 1e9);
+        expect_same(static_cast<double>(bits % 1000000) / 1e9);
+        expect_same(static_cast<double>(static_cast<std::int32_t>(bits)));
+        if (const auto any = std::bit_cast<double>(bits); std::isfinite(any)) expect_same(any);
+    }
 }
 
 TEST(Spool, a_column_of_millionths_and_other_numbers_is_written_as_at_once) {

@@ -8,7 +8,7 @@ build=${4:-$root/build/host}
 command -v python3 > /dev/null || { echo "mutate_sim: skipped, needs python3 (apt: python3)"; exit 0; }
 [ -f "$build/build.ninja" ] || { echo "mutate_sim: $build is not configured; to mend: cmake --preset host" >&2; exit 3; }
 # the quickest first: what an early one notices costs no later one
-judges="hinge_test sensor_effects_test soil_law_test sensors_test plant_soft_test layout_test math_test steering_test rocker_test
+judges="hinge_test abreast_test sensor_effects_test soil_law_test sensors_test plant_soft_test layout_test math_test steering_test rocker_test
   plant_numerics_test radar_test soft_oracle_test plant_effects_test effects_test plant_oracle_test terrain_test invariance_test"
 # shellcheck disable=SC2086 # a list of targets
 said=$(ninja -C "$build" $judges 2>&1) || {

@@ -177,6 +177,17 @@ class Runs:
             return
         self.judge(verb, label, json.loads(file.read_text(encoding="utf-8")))
 
+    def killed(self) -> Path:
+        """What a simulation leaves that is killed."""
+        part = self.work / "killed.csv.part"
+        words = [self.cli, "simulate", "cruise", "--realtime", "--out", "killed.csv"]
+        with subprocess.Popen(words, cwd=self.work, env=self.environment, stdout=subprocess.DEVNULL) as run:
+            until = time.monotonic() + 60
+            while (not part.exists() or part.stat().st_size < 5000) and time.monotonic() < until:
+                time.sleep(0.1)
+            run.kill()
+        return part
+
     def lab(self) -> None:
         gravel = ("--model", "rover_gravel", "run.csv")
         self.run("simulate", "cruise", "--out", "run.csv", "--hide", "3", "--seal", "seal.json", codes=(0, 1))
@@ -196,6 +207,7 @@ class Runs:
         self.run("export", "--model", "rover_gravel", "--firmware", "firmware.toml")
         self.run("replay", "run.csv")
         self.run("convert", "run.csv", "--out", "converted.csv")
+        self.run("recover", str(self.killed()), "--out", "recovered.csv")
         self.run("plot", "run.csv", "--signals", "estimate.speed_m_s", "--out", "plot.svg")
         self.run("speed", "run.csv", "--reference", "estimate.speed_m_s")
         self.run("calibrate", "run.csv", "--truth", "wheels")
