@@ -46,7 +46,7 @@ TEST(Tolerance, wheels_share_a_value_and_differ_by_their_own) {
     EXPECT_EQ(count_of(list, "torque_constant_Nm_A", true), 4U); // by default
     EXPECT_EQ(count_of(list, "radius_m", true), 4U);
     EXPECT_EQ(count_of(list, "resistance_ohm", true), 0U);
-    EXPECT_EQ(count_of(list, "inertia_kg_m2", true), 0U);
+    EXPECT_EQ(count_of(list, "inertia_kg_m2", true), 4U); // by default
     EXPECT_EQ(count_of(list, "viscous_Nms", true) + count_of(list, "viscous_Nms", false), 0U);
     for (const FreeParameter &p : list) EXPECT_TRUE(!p.own || p.key != "coulomb_Nm" || std::fabs(p.prior - 0.004) < 1e-15);
     Physics physics = make_physics(model);

@@ -32,8 +32,8 @@ bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, dou
 
 // Numbers that lie six stated deviations off, their limit, in `with` and not in `before` (an effect may fix what it stands for). A name
 // that the stated tolerances alone speak for must not break one itself: from one contradiction with the sheet to another nothing is
-// explained (prior-data conflict: Evans and Moshonov 2006, Bayesian Analysis 1, 893-914). Throws std::logic_error for a `with` that holds no
-// parameter, as one that was moved away.
+// explained (prior-data conflict: Evans and Moshonov 2006, Bayesian Analysis 1, 893-914). Throws a logic_error for a `with` that holds
+// no parameter, as one that was moved away.
 std::size_t newly_at_limits(const Problem &before, const Problem &with);
 
 // What the tolerances gain is reason enough for a name by which the error hardly falls: more than `least` squared stated deviations, and
