@@ -82,12 +82,13 @@ endfunction()
 # code within seconds. The rest runs in the host build, and under sanitizers in the preset sanitize.
 set(TRACTION_SANITIZED_LABELS unit hal replay)
 set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
-    lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score lab_generator_physics svg_test)
+    lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score svg_test)
 
-# traction_test(NAME LABEL label SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the emulator
-# when cross-compiling.
+# traction_test(NAME LABEL label [NIGHTLY pattern...] SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the
+# emulator when cross-compiling. What the patterns name takes long beside what it adds: every night, with all the rest, as NAME_whole
+# (ctest --preset host -C nightly), so that the daily suite stays under ten minutes.
 function(traction_test name)
-  cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS;NIGHTLY" ${ARGN})
   if(TRACTION_SANITIZE AND NOT TRACTION_SANITIZE_EVERY AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
     return()
   endif()
@@ -105,4 +106,10 @@ function(traction_test name)
     math(EXPR T_TIMEOUT "4 * ${T_TIMEOUT}") # the sanitizers' price
   endif()
   set_tests_properties(${name} PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT} COST ${T_TIMEOUT}) # the long ones first
+  if(T_NIGHTLY)
+    list(JOIN T_NIGHTLY ":" patterns)
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT "GTEST_FILTER=-${patterns}")
+    add_test(NAME ${name}_whole CONFIGURATIONS nightly COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${name}_whole PROPERTIES LABELS "${T_LABEL};long" TIMEOUT 1800)
+  endif()
 endfunction()

@@ -68,14 +68,15 @@ void declared_wheels(const log::Log &log, const Machine &machine, std::vector<Fi
     const auto told = log.header.find("rover.wheels");
     if (told == log.header.end() || machine.wheel_y_m.empty() || !machine.on_ground) return;
     const int wheels = std::atoi(told->second.c_str());
-    const std::string model = std::to_string(machine.wheel_y_m.size());
-    if (wheels == static_cast<int>(machine.wheel_y_m.size())) return;
-    findings.push_back({.id = "wheels",
-                        .severity = Severity::error,
-                        .signal = "",
-                        .text = "the log's rover drives " + told->second + " wheels (header rover.wheels), the model has " + model,
-                        .mend = "use a model of that rover; none is made here for other than four wheels",
-                        .value = static_cast<double>(wheels)});
+    const std::size_t driven = machine.wheel_y_m.size() - machine.free_wheels;
+    if (wheels == static_cast<int>(driven)) return;
+    findings.push_back(
+        {.id = "wheels",
+         .severity = Severity::error,
+         .signal = "",
+         .text = "the log's rover drives " + told->second + " wheels (header rover.wheels), the model has " + std::to_string(driven),
+         .mend = "use a model of that rover; traction rover --model makes one of four wheels, or of two and a caster",
+         .value = static_cast<double>(wheels)});
 }
 
 // Its two motors (header `rover.drives`) against the model: the wheels of a side that have none would be taken to stand.

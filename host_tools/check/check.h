@@ -33,6 +33,7 @@ struct Machine {
     double counts_per_turn = std::numeric_limits<double>::quiet_NaN(); // of an encoder, at the wheel
     std::vector<double> wheel_y_m = {};                                // to the left of the middle; empty: 0, 2 left and 1, 3 right
     std::vector<int> motor_of_wheel = {}; // of each, the wheel whose motor turns it; empty: every wheel has its own
+    std::size_t free_wheels = 0;          // of them, those that no motor turns
     bool wheels_point_forward = true;     // false (omni): wheel speeds are not compared with the body's
     bool on_ground = true;                // false: wheels in the air
     bool rolls_freely = true;             // false: a bench imposes slip, so speed over ground says nothing of the radius

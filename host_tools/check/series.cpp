@@ -295,14 +295,21 @@ void add_ground_speed(Grid &grid, const Machine &machine) {
 
 } // namespace
 
+namespace {
+
+// Wheels are told by their number where some may have no speed in the log; else by their order.
+bool by_number(const Machine &machine) { return !machine.motor_of_wheel.empty() || machine.free_wheels > 0; }
+
+} // namespace
+
 bool knows_sides(const Grid &grid, const Machine &machine) {
-    if (machine.motor_of_wheel.empty()) return machine.wheel_y_m.size() == grid.wheel.size();
+    if (!by_number(machine)) return machine.wheel_y_m.size() == grid.wheel.size();
     return std::all_of(grid.wheel.begin(), grid.wheel.end(),
                        [&](const Wheel &wheel) { return wheel.index < static_cast<int>(machine.wheel_y_m.size()); });
 }
 
 double left_of(const Grid &grid, const Machine &machine, std::size_t i) {
-    return machine.wheel_y_m[machine.motor_of_wheel.empty() ? i : static_cast<std::size_t>(grid.wheel[i].index)];
+    return machine.wheel_y_m[by_number(machine) ? static_cast<std::size_t>(grid.wheel[i].index) : i];
 }
 
 Grid make_grid(const log::Log &log, const Machine &machine) {

@@ -31,8 +31,9 @@ check::Machine machine_of(const Model &model) {
     machine.rolls_freely = model.motion != BodyMotion::imposed;
     for (const WheelSpec &wheel : model.wheel) {
         const auto heading = wheel.geometry.find("heading_rad");
-        if (!wheel.grips_sideways || (heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01))
-            machine.wheels_point_forward = false;
+        const bool askew = heading != wheel.geometry.end() && std::fabs(heading->second.value) > 0.01;
+        if (wheel.driven && (!wheel.grips_sideways || askew)) machine.wheels_point_forward = false;
+        machine.free_wheels += wheel.driven ? 0 : 1;
         const auto y = wheel.geometry.find("y_m");
         machine.wheel_y_m.push_back(y != wheel.geometry.end() ? y->second.value : 0);
     }

@@ -14,24 +14,22 @@ namespace {
 constexpr double bend_m_s2 = 0.03;      // v r: less than that, and the middle drifts by less than a hundredth of what slip lets it
 constexpr double share_of_bends = 0.02; // of the samples, at least
 
-// Two axles or more, and wheels that all hold sideways.
+// Wheels that hold sideways, before or behind the middle: a skid steer's, or the one axle of a machine whose middle lies elsewhere.
 bool may_drift(const Model &model) {
-    double front = -1e9, rear = 1e9;
-    for (const WheelSpec &w : model.wheel) {
-        if (!w.grips_sideways) return false;
-        front = std::max(front, parameter(w.geometry, "x_m")), rear = std::min(rear, parameter(w.geometry, "x_m"));
-    }
-    return front - rear > 1e-3;
+    return std::any_of(model.wheel.begin(), model.wheel.end(),
+                       [](const WheelSpec &w) { return w.grips_sideways && std::fabs(parameter(w.geometry, "x_m")) > 1e-3; });
 }
 
 bool has_bends(const Model &model, const Dataset &data) {
     std::size_t bends = 0;
     for (std::size_t k = 0; k < data.count; ++k) {
-        double speed = 0;
-        for (std::size_t i = 0; i < model.wheel.size(); ++i)
-            speed +=
-                parameter(model.wheel[i].geometry, "radius_m") * data.wheel[i].speed_rad_s[k] / static_cast<double>(model.wheel.size());
-        if (std::fabs(speed * data.yaw_rate_rad_s[k]) > bend_m_s2) ++bends;
+        double speed = 0, turning = 0;
+        for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+            if (data.wheel[i].rolls_freely) continue;
+            speed += parameter(model.wheel[i].geometry, "radius_m") * data.wheel[i].speed_rad_s[k];
+            ++turning;
+        }
+        if (std::fabs(speed * data.yaw_rate_rad_s[k]) > bend_m_s2 * turning) ++bends;
     }
     return static_cast<double>(bends) > share_of_bends * static_cast<double>(data.count);
 }

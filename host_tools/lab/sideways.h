@@ -1,8 +1,9 @@
-// sideways.h - whether a skid steer is followed sideways through its bends (motion = "planar") although its model says "longitudinal".
+// sideways.h - whether a rover is followed sideways through its bends (motion = "planar") although its model says "longitudinal".
 //
 // In a bend a skid steer's middle drifts outwards until the side forces are M v r, and front and rear wheels meet the ground at different
-// angles: pull and currents differ by that. No number is added, so the log alone decides: both motions are fitted, and the sideways one is
-// taken where the weighted squares it leaves are less, by more than the standard error of that over blocks of 5 s.
+// angles: pull and currents differ by that. So does the middle of a machine with one axle before or behind it. No number is added, so the
+// log alone decides: both motions are fitted, and the sideways one is taken where the weighted squares it leaves are less, by more than the
+// standard error of that over blocks of 5 s.
 #pragma once
 
 #include "host_tools/lab/inputs/dataset.h"
@@ -12,7 +13,8 @@
 
 namespace traction::lab {
 
-// `data`: of `model`. Asked of logs that turn while they move, with a yaw rate, and of wheels of two axles or more that all grip sideways.
+// `data`: of `model`. Asked of logs that turn while they move, with a yaw rate, and where a wheel before or behind the middle
+// grips sideways.
 bool drifts_sideways(const Model &model, const Dataset &data);
 
 // What is told of a model whose motion was changed so.

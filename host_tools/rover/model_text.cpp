@@ -43,6 +43,21 @@ std::string wheel_table(const sim::RoverDescription &rover, std::size_t i) {
     return text;
 }
 
+// Two driven wheels, and a ball that rolls freely any way: its bearing beside the ground's resistance.
+std::string wheel_tables_with_caster(const sim::RoverDescription &rover, const sim::LayoutParameters &layout, double ground_rolling) {
+    const double y = rover.at("body", "half_track_m");
+    std::string text;
+    for (std::size_t i = 0; i < 2; ++i) {
+        text += "\n[[wheel]]\nname = \"" + std::string(i == 0 ? "left" : "right") + "\"\nx_m = " + number(layout.axle_m) +
+                "\ny_m = " + number(i == 0 ? y : -y) + "\n";
+        if (rover.wheel[i].radius_m) text += "radius_m = { value = " + number(*rover.wheel[i].radius_m) + ", unit = \"m\" }\n";
+    }
+    return text + "\n[[wheel]]\nname = \"caster\"\ndriven = false\ngrips_sideways = false\nx_m = " + number(layout.caster_m) +
+           "\ny_m = 0\nradius_m = " + number(layout.caster_radius_m) +
+           "\n[wheel.soil]\nrolling_coefficient = { value = " + number(ground_rolling + layout.caster_rolling) +
+           ", unit = \"1\", prior = 0.01, source = \"the ground's and its bearing's\" }\n";
+}
+
 std::string soil_tables(const sim::RoverDescription &rover, const sim::Soil &soil) {
     const std::string source = "soil library: " + soil.name;
     const auto line = [&](const char *key, double value, const char *unit, const std::string &more) {
@@ -71,17 +86,19 @@ std::string model_text(const sim::RoverDescription &rover, const std::string &so
         for (const sim::Soil &known : sim::soil_library()) names += (names.empty() ? "" : ", ") + known.name;
         throw std::invalid_argument("--soil = " + soil_name + ": no such soil; use one of: " + names);
     }
-    if (rover.layout().kind != sim::Layout::four)
-        throw std::invalid_argument("--model: the lab's models have four wheels on two axles, " + rover.name +
+    const sim::LayoutParameters layout = rover.layout();
+    const bool caster = layout.kind == sim::Layout::caster;
+    if (layout.kind != sim::Layout::four && !caster)
+        throw std::invalid_argument("--model: the lab's models have four wheels on two axles, or two and a caster; " + rover.name +
                                     " has not; leave --model out");
-    if (!sim::steered_axles(rover.layout()).empty())
+    if (!sim::steered_axles(layout).empty())
         throw std::invalid_argument("--model: the wheels of \"" + rover.name +
                                     "\" steer, and the lab's models have wheels that keep the body's heading; leave --model out");
     const double mass = rover.at("body", "mass_kg"), length = rover.at("body", "length_m"), width = rover.at("body", "width_m");
     std::string text = "# Made by traction rover from " + rover.name +
                        ".\nformat = \"traction.model/1\"\nname = " + quoted(rover.name + " on " + soil_name) +
                        "\n\n[rover]\nmotion = \"longitudinal\"\n";
-    if (!rover.layout().rigid && !rover.layout().rocker) text += "halves = true # left and right turn against each other\n";
+    if (!caster && !layout.rigid && !layout.rocker) text += "halves = true # left and right turn against each other\n";
     if (rover.drives[0] >= 0) text += "drives = [" + std::to_string(rover.drives[0]) + ", " + std::to_string(rover.drives[1]) + "]\n";
     text += from_key(rover, "mass_kg", "body", "mass_kg", 0);
     text += "yaw_inertia_kg_m2 = { value = " + number(mass / 12 * (length * length + width * width)) +
@@ -95,7 +112,10 @@ std::string model_text(const sim::RoverDescription &rover, const std::string &so
     text += from_key(rover, "coulomb_Nm", "motor", "coulomb_Nm", 0.07);
     text += soil_tables(rover, *soil);
     text += "\n[wheels]\n" + from_key(rover, "radius_m", "wheels", "radius_m", 0.005) + from_key(rover, "width_m", "wheels", "width_m", 0);
-    for (std::size_t i = 0; i < sim::wheel_count; i++) text += wheel_table(rover, i);
+    if (caster)
+        text += wheel_tables_with_caster(rover, layout, soil->rolling_coefficient);
+    else
+        for (std::size_t i = 0; i < sim::wheel_count; i++) text += wheel_table(rover, i);
     text += "\n[sensors.encoder]\ncounts_per_turn = " + number(rover.encoder_counts_per_turn()) +
             "\n\n[sensors.radar]\nwindow_s = " + number(rover.at("radar", "window_samples") / rover.at("radar", "rate_Hz")) +
             "\n\n[sensors.camera]\nnoise_m = 1e-3\n";

@@ -5,6 +5,7 @@
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/lab/sideways.h"
+#include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
 
 #include <gtest/gtest.h>
@@ -51,8 +52,8 @@ TEST(Sideways, WhatCannotShowItIsNotAsked) {
     EXPECT_FALSE(drifts_sideways(model, make_dataset(model, blind))) << "no gyro";
 
     Model rollers = model;
-    rollers.wheel[1].grips_sideways = false;
-    EXPECT_FALSE(drifts_sideways(rollers, make_dataset(rollers, bends()))) << "a wheel with rollers";
+    for (WheelSpec &w : rollers.wheel) w.grips_sideways = false;
+    EXPECT_FALSE(drifts_sideways(rollers, make_dataset(rollers, bends()))) << "wheels with rollers";
 
     Model one_axle = model;
     for (WheelSpec &w : one_axle.wheel) w.geometry.at("x_m").value = 0;
@@ -61,6 +62,18 @@ TEST(Sideways, WhatCannotShowItIsNotAsked) {
     Model planar = model;
     planar.motion = BodyMotion::planar;
     EXPECT_FALSE(drifts_sideways(planar, make_dataset(planar, bends()))) << "it is followed already";
+}
+
+// Two driven wheels and a caster: the wheels do not drift, the middle does, for it lies behind them.
+TEST(Sideways, OneAxleAwayFromTheMiddleIsFollowedToo) {
+    const sim::RoverDescription rover = sim::read_rover_file("rovers/two_wheels.toml");
+    std::string text = "duration_s = 40.0\nseed = 5\n[ground]\nsoil = \"concrete\"\n";
+    for (const char *wheels : {"[3.0, 7.0, 3.0, 7.0]", "[8.0, 4.0, 8.0, 4.0]", "[9.0, 12.0, 9.0, 12.0]", "[6.0, 6.0, 6.0, 6.0]"})
+        text += std::string("[[drive]]\nfor_s = 10.0\nmode = \"wheel_speed\"\nwheel_speed_rad_s = ") + wheels + "\n";
+    sim::Scenario scenario = sim::parse_scenario(text, "bends.toml");
+    sim::set_rover(scenario, rover);
+    const Model model = parse_model(traction::model_text(rover, "concrete"), "two and caster");
+    EXPECT_TRUE(drifts_sideways(model, make_dataset(model, simulate(scenario).log)));
 }
 
 TEST(Sideways, TheSessionSaysSoAndItsModelKeepsIt) {

@@ -282,6 +282,7 @@ Eigen::VectorXd Problem::row_variance(std::size_t b, const Eigen::VectorXd &squa
         F(r, 5) = speed_range(t0, t1) * speed_range(t0, t1);
         for (std::size_t i = 0; i < m.wheel.size(); ++i) {
             if (balance.wheel >= 0 && static_cast<std::size_t>(balance.wheel) != data_->motor_of(i)) continue;
+            if (data_->wheel[i].rolls_freely) continue; // without traction and slip
             const double traction = m.wheel[i].traction_N[k], slip = m.wheel[i].slip[k];
             F(r, 1) += traction * traction;
             F(r, 2) += data_->wheel[i].accel_rad_s2[k] * data_->wheel[i].accel_rad_s2[k];

@@ -52,6 +52,7 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         s.sigma = sim::law::relaxation_length_m(w.relaxation, b.relaxation_m);
         s.lag_1_m = s.sigma > 0 ? data_.step_s / s.sigma : 0;
         s.plain_sc = std::max(1e-4, sim::law::shear_stiffness(w.sc, b.shear_change));
+        s.free = data_.wheel[i].rolls_freely;
         play_ = play_ || w.play_rad > 0;
         lags_ = lags_ || s.sigma > 0;
     }
@@ -66,7 +67,7 @@ bool WheelStep::widen(bool wide) {
 }
 
 void WheelStep::gather() {
-    bool all_grip = true, all_lag = true, none_lags = true;
+    bool all_grip = true, all_lag = true, none_lags = true, none_free = true;
     for (std::size_t i = 0; i < n_; ++i) {
         const WheelPhysics &w = p_.wheel[i];
         const State &s = state_[i];
@@ -82,10 +83,12 @@ void WheelStep::gather() {
         four.load_per_twist.set(at, w.load > 0 ? 0 : s.load_per_twist);
         four.lag_1_m.set(at, s.lag_1_m);
         all_grip = all_grip && p_.grips_sideways[i];
+        none_free = none_free && !s.free;
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
     }
     even_ = sim::even_strength(p_.body);
-    plain_ = (p_.motion == BodyMotion::longitudinal || sideways_) && all_grip && (all_lag || none_lags) && !motion_terms_ && !play_;
+    plain_ =
+        (p_.motion == BodyMotion::longitudinal || sideways_) && all_grip && (all_lag || none_lags) && none_free && !motion_terms_ && !play_;
 }
 
 void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first,
@@ -241,6 +244,7 @@ void WheelStep::nudge(std::size_t i, const Eigen::Vector3d &change, double tract
     const double vx = change[0] - s.y * change[2], vy = change[1] + s.x * change[2];
     s.v += vx * s.c + vy * s.s;
     s.side_v += vy * s.c - vx * s.s;
+    if (s.free) s.rim = s.v;
     s.slip = slip_at(s, s.v);
     s.side_slip = side_slip_at(s, s.v, s.side_v);
     s.traction += traction_N;
@@ -252,6 +256,7 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     const BodyPhysics &b = p_.body;
     s.v = v;
     s.side_v = side_v;
+    if (s.free) s.rim = v;
     s.slip = slip_at(s, v);
     s.side_slip = p_.grips_sideways[i] ? side_slip_at(s, v, side_v) : 0;
     double Fm = sim::strength_sliding<law::Library>(s.Fm, b, s.rim - v), sc = s.sc, extra = 0, extra_rolling = 0;

@@ -53,6 +53,7 @@ class WheelStep {
         double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1, resistance_here = 0;
         double slip_before = 0, side_slip_before = 0, play_before = 0;
         double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
+        bool free = false; // its rim is as fast as it moves over the ground
     };
     const State &state(std::size_t i) const { return state_[i]; }
     // Back to a state of the same step that was had before, its memory left alone.
@@ -60,6 +61,7 @@ class WheelStep {
         State &to = state_[i];
         to.load = s.load, to.v = s.v, to.side_v = s.side_v, to.slip = s.slip, to.side_slip = s.side_slip, to.play = s.play;
         to.traction = s.traction, to.rolling = s.rolling, to.side = s.side;
+        if (to.free) to.rim = s.v;
     }
     std::size_t wheels() const { return n_; }
     bool widen(bool wide); // vectors as wide as four numbers, or not: the same bits; what was chosen, for the processor may have none

@@ -172,7 +172,7 @@ struct Builder : InputBuilder {
         const auto b = std::min(data.count - 1, static_cast<std::size_t>((t1 - data.start_s) / data.step_s));
         double sum = 0, n = 0;
         for (std::size_t i = 0; i < data.wheel.size(); ++i)
-            for (std::size_t k = a; k <= b; ++k, ++n)
+            for (std::size_t k = a; k <= b && !data.wheel[i].rolls_freely; ++k, ++n)
                 sum += std::fabs(data.wheel[i].speed_rad_s[k]) * parameter(model.wheel[i].geometry, "radius_m");
         return n > 0 ? sum / n : 0;
     }

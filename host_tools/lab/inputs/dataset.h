@@ -53,7 +53,8 @@ struct WheelInput {
     std::vector<double> voltage_V;                        // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
     std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged
-    int turns_with = -1;                                  // the wheel whose motor turns this one: its motion is that wheel's; -1: its own
+    bool rolls_freely = false; // without a motor, its speed not in the log: it turns as fast as it moves over the ground
+    int turns_with = -1;       // the wheel whose motor turns this one: its motion is that wheel's; -1: its own
 };
 
 struct Dataset {

@@ -178,7 +178,10 @@ void InputBuilder::wheel_motion(std::size_t i) {
     double scale = 0;
     const log::Signal *s = motion_signal(i, scale);
     if (s == nullptr) {
-        say("wheel " + std::to_string(i) + " has no speed in the log: taken as standing still, its balances are left out");
+        input.rolls_freely = !model.wheel[i].driven;
+        say("wheel " + std::to_string(i) +
+            (input.rolls_freely ? " has no motor and no speed in the log: taken to roll freely"
+                                : " has no speed in the log: taken as standing still, its balances are left out"));
         input.angle_rad.assign(data.count, 0);
         input.speed_rad_s = input.accel_rad_s2 = input.angle_rad;
         return;

@@ -228,10 +228,8 @@ TEST(Gate, a_sound_log_of_the_simulator_gets_no_name_by_stated_deviations_alone)
     EXPECT_NE(d.kind, "wrong_model");
 }
 
-TEST(Gate, a_wrong_model_gets_no_name) {
+void expect_no_name(const std::vector<std::string> &asked) {
     for (const Row &row : wrong_models()) {
-        static const std::vector<std::string> asked = {"mass x 2",         "mass x 5", "radius x 2", "friction x 20", "ground without grip",
-                                                       "one wheel of four"};
         if (std::find(asked.begin(), asked.end(), row.name) == asked.end()) continue;
         const Outcome end = judge(sound("plant"), row, false);
         EXPECT_TRUE(end.good()) << row.name << ": " << end.end << " " << end.text;
@@ -241,6 +239,12 @@ TEST(Gate, a_wrong_model_gets_no_name) {
                                                                       : "";
         EXPECT_NE(end.text.find(cause), std::string::npos) << row.name << ": " << end.text;
     }
+}
+
+TEST(Gate, a_wrong_model_gets_no_name) { expect_no_name({"mass x 2", "ground without grip"}); }
+
+TEST(Gate, every_wrong_model_gets_no_name) { // what the daily test leaves out
+    expect_no_name({"mass x 5", "radius x 2", "friction x 20", "one wheel of four"});
 }
 
 } // namespace

@@ -1,0 +1,139 @@
+// A wheel that no motor turns and whose speed nobody measures: it rolls freely. The usual machine of two driven wheels and a caster, as a
+// model, through the gate, and in logs of the simulated one.
+#include "host_tools/check/check.h"
+#include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/forward/wheel_step.h"
+#include "host_tools/lab/gate.h"
+#include "host_tools/lab/session.h"
+#include "host_tools/rover/rover.h"
+#include "host_tools/simulate/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+namespace {
+
+constexpr std::size_t caster = 2;
+
+Model two_and_caster() { return parse_model(traction::model_text(sim::read_rover_file("rovers/two_wheels.toml"), "sand"), "two and caster"); }
+
+log::Log driven(const std::string &effect, double seconds) {
+    sim::Scenario scenario = sim::read_scenario("scenarios/identification.toml");
+    sim::set_rover(scenario, sim::read_rover_file("rovers/two_wheels.toml"));
+    scenario.duration_s = seconds;
+    SimulateOptions options;
+    options.seed = 4;
+    if (!effect.empty()) options.effects.push_back(sim::parse_effect(effect));
+    return simulate(scenario, options).log;
+}
+
+const log::Log &clean() {
+    static const log::Log log = driven("", 120);
+    return log;
+}
+
+Session opened(const log::Log &log, const Model &model) {
+    Request request;
+    request.log = "drive.csv";
+    request.read = [&log](const std::string &, const std::string &, std::vector<log::Repair> &) { return log; };
+    return open_session(request, model);
+}
+
+// Driven wheels at w_rad_s, the caster's speed not known.
+Dataset rolling(double w_rad_s) {
+    Dataset data;
+    data.count = 3;
+    data.wheel.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const bool known = i != caster;
+        data.wheel[i].speed_rad_s.assign(data.count, known ? w_rad_s : 0);
+        data.wheel[i].accel_rad_s2.assign(data.count, 0), data.wheel[i].angle_rad.assign(data.count, 0);
+        data.wheel[i].rolls_freely = !known;
+    }
+    data.yaw_rate_rad_s.assign(data.count, 0);
+    return data;
+}
+
+TEST(Caster, drags_by_its_rolling_resistance_alone_at_any_speed) {
+    const Model model = two_and_caster();
+    const Physics physics = make_physics(model);
+    const Dataset data = rolling(7);
+    WheelStep step(data, physics);
+    for (const double v : {-0.6, -0.1, 0.05, 0.4, 0.9}) {
+        step.prepare(1, v, 0, 0, 0);
+        const double weight = physics.body.mass * physics.body.gravity, borne = weight * 0.03 / 0.15; // the lever's, of its description
+        EXPECT_NEAR(step.state(caster).load, borne, 1e-9);
+        const Eigen::Vector3d force = step.force(caster, {v, 0, 0});
+        EXPECT_EQ(step.state(caster).slip, 0);
+        EXPECT_EQ(step.state(caster).traction, 0);
+        EXPECT_NEAR(force[0], -0.07 * borne * v / std::hypot(v, 5e-3), 1e-9); // sand's 0.05 and its bearing's 0.02
+        EXPECT_NE(step.force(0, {v, 0, 0})[0], 0);                            // the others go on slipping
+        EXPECT_NE(step.state(0).slip, 0);
+        step.nudge(caster, {0.01, 0, 0}, 0);
+        EXPECT_EQ(step.state(caster).slip, 0);
+    }
+}
+
+TEST(Caster, of_a_wheel_that_grips_sideways_holds_sideways_and_does_not_pull) {
+    Model model = two_and_caster();
+    model.motion = BodyMotion::planar;
+    model.wheel[caster].grips_sideways = true;
+    const Physics physics = make_physics(model);
+    const Dataset data = rolling(7);
+    WheelStep step(data, physics);
+    step.prepare(1, 0.4, 0, 0, 0);
+    for (const double aside : {-0.05, 0.05}) {
+        const Eigen::Vector3d force = step.force(caster, {0.4, aside, 0});
+        EXPECT_EQ(step.state(caster).traction, 0);
+        EXPECT_LT(force[1] * aside, 0);
+    }
+}
+
+TEST(Caster, is_told_and_a_motors_wheel_without_a_speed_is_told_otherwise) {
+    const auto told = [](const Model &model, const std::string &words) {
+        const Dataset data = make_dataset(model, clean());
+        return std::count_if(data.messages.begin(), data.messages.end(),
+                             [&](const std::string &m) { return m.find(words) != std::string::npos; });
+    };
+    const Model model = two_and_caster();
+    EXPECT_EQ(told(model, "wheel 2 has no motor and no speed in the log: taken to roll freely"), 1);
+    EXPECT_EQ(told(model, "taken as standing still"), 0);
+    Model driven_by_it = model;
+    driven_by_it.wheel[caster].driven = true;
+    EXPECT_EQ(told(driven_by_it, "wheel 2 has no speed in the log: taken as standing still"), 1);
+    EXPECT_EQ(told(driven_by_it, "taken to roll freely"), 0);
+}
+
+TEST(Caster, its_log_passes_the_gate_with_its_own_model_and_not_with_that_of_four_driven_wheels) {
+    const auto wheels = [](const Model &model) {
+        const check::Report report = check::check(clean(), {}, machine_of(model));
+        return std::count_if(report.findings.begin(), report.findings.end(),
+                             [](const check::Finding &f) { return f.severity == check::Severity::error; });
+    };
+    EXPECT_EQ(wheels(two_and_caster()), 0);
+    EXPECT_GT(wheels(read_model("models/rover_sand.toml")), 0);
+}
+
+TEST(Caster, a_clean_drive_gets_no_name) {
+    const Session session = opened(clean(), two_and_caster());
+    const Diagnosis d = diagnose(session.model, session.data, {});
+    EXPECT_TRUE(d.effects.empty()) << d.text;
+    EXPECT_FALSE(d.unknown) << d.text;
+}
+
+TEST(Caster, a_hidden_effect_is_named_as_it_is) {
+    const Session session = opened(driven("slip_sinkage:coefficient=0.2", 120), two_and_caster());
+    const Diagnosis d = diagnose(session.model, session.data, {});
+    ASSERT_EQ(d.effects, std::vector<std::string>{"slip_sinkage"}) << d.text;
+    const double half = 0.5 * (d.accepted.front().high[0] - d.accepted.front().low[0]);
+    EXPECT_NEAR(d.accepted.front().value[0], 0.2, 1.5 * half); // half the 95 % interval is two deviations: three
+}
+
+} // namespace
+} // namespace traction::lab
