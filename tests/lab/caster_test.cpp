@@ -21,7 +21,9 @@ namespace {
 
 constexpr std::size_t caster = 2;
 
-Model two_and_caster() { return parse_model(traction::model_text(sim::read_rover_file("rovers/two_wheels.toml"), "sand"), "two and caster"); }
+Model two_and_caster() {
+    return parse_model(traction::model_text(sim::read_rover_file("rovers/two_wheels.toml"), "sand"), "two and caster");
+}
 
 log::Log driven(const std::string &effect, double seconds) {
     sim::Scenario scenario = sim::read_scenario("scenarios/identification.toml");

@@ -71,7 +71,11 @@ TEST(SecondRover, a_clean_drive_is_explained) {
     const Model model = heavy_on_sand();
     const Diagnosis d = diagnose(model, make_dataset(model, driven(heavy(), "")), {});
     EXPECT_TRUE(d.effects.empty()) << d.text;
-    // the header's signs are used: without them two wheels seem to turn against the drive
+}
+
+// Without them two wheels seem to turn against the drive.
+TEST(SecondRover, the_headers_signs_are_used) {
+    const Model model = heavy_on_sand();
     log::Log log = driven(heavy(), "");
     const double error = compare(model, make_dataset(model, log), true).adjusted;
     log.header.erase("firmware.encoder_sign_1");
