@@ -1,0 +1,81 @@
+// ground_speed_any.h - any track and any past, for the tests of ground_speed's parts: each equation of ground_speed.h against one of its own in double.
+#pragma once
+
+#include "firmware/core/rover_config.h"
+#include "tests/unit/clutter.h"
+
+#include <cmath>
+#include <cstdint>
+
+extern "C" {
+#include "firmware/core/ground_speed_parts.h"
+}
+
+namespace any_state {
+
+inline double wide(float x) { return static_cast<double>(x); }
+inline float narrow(double x) { return static_cast<float>(x); }
+inline double square(double x) { return x * x; }
+
+struct Any : clutter::Random {
+    double between(double low, double high) { return low + (high - low) * uniform(); }
+    double log_between(double low, double high) { return low * std::pow(high / low, uniform()); }
+    bool one_in(int n) { return next() % static_cast<unsigned>(n) == 0; }
+    double either() { return one_in(2) ? -1 : 1; }
+
+    ground_speed_track_t track(double v_max = 2, double b_max = 2) {
+        const double vv = log_between(1e-5, 1), bb = log_between(1e-5, 1);
+        return {narrow(between(-v_max, v_max)), narrow(between(-b_max, b_max)), narrow(vv), narrow(between(-0.95, 0.95) * std::sqrt(vv * bb)), narrow(bb)};
+    }
+
+    // A past of more than a ring's length: an acceleration that wanders, and noise.
+    ground_speed_state_t past(const ground_speed_config_t &config) {
+        ground_speed_state_t state;
+        ground_speed_reset(&config, &state);
+        state.integral_q20[0] = static_cast<int32_t>(next()); // V may wrap anywhere
+        const double noise = log_between(0.02, 3);
+        double accel = between(-2, 2);
+        const int ticks = 260 + static_cast<int>(next() % 300);
+        for (int k = 0; k < ticks; ++k) {
+            accel += 0.2 * normal() - 0.02 * accel;
+            ground_speed_integrate(&config, &state, narrow(accel + noise * normal()));
+        }
+        const ground_speed_track_t best = track();
+        ground_speed_keep_best(&state, &best);
+        state.speed_noise_m2_s2 = narrow(log_between(4e-6, 4e-4));
+        state.wheel_m_s = narrow(between(-1, 1));
+        state.wheel_mean_m_s = narrow(wide(state.wheel_m_s) + between(-0.1, 0.1));
+        return state;
+    }
+
+    // And the last value, as it came.
+    void value(const ground_speed_config_t &config, ground_speed_state_t &state) {
+        state.value_heard_m_s = narrow(between(0.02, 1.5));
+        state.value_m_s = state.value_heard_m_s;
+        state.value_accel_m_s2 = narrow(between(-2, 2));
+        state.value_trust = narrow(one_in(2) ? 1 : log_between(1, 30));
+        state.value_noise_m2_s2 = narrow(log_between(3e-5, 1e-2));
+        state.value_tau_s = narrow(wide(config.window->tau_s) + between(0, 0.1));
+        state.value_change_m_s = narrow(between(-0.3, 0.3));
+        state.value_sign = narrow(either());
+        state.value_cost = narrow(between(-10, 5));
+        state.value_wheel_m_s = narrow(between(-1.2, 1.2));
+        state.value_parts = one_in(3);
+    }
+};
+
+// V `back` ticks before the newest one [m/s]; of V alone only differences mean something.
+inline double passed(const ground_speed_state_t &state, int newer_back, int older_back) {
+    const auto at = [&](int back) {
+        return static_cast<uint32_t>(state.integral_q20[(state.head + 4 * GROUND_SPEED_HISTORY - back) % GROUND_SPEED_HISTORY]);
+    };
+    return static_cast<double>(static_cast<int32_t>(at(newer_back) - at(older_back))) / 1048576.0;
+}
+
+// Mean and variance of h . [v, b], h = [1, tau].
+inline double mean_of(const ground_speed_track_t &t, double tau) { return wide(t.speed_m_s) + tau * wide(t.bias_m_s2); }
+inline double spread_of(const ground_speed_track_t &t, double tau) {
+    return wide(t.p_vv) + 2 * tau * wide(t.p_vb) + tau * tau * wide(t.p_bb);
+}
+
+} // namespace any_state
