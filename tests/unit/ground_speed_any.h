@@ -1,4 +1,5 @@
-// ground_speed_any.h - any track and any past, for the tests of ground_speed's parts: each equation of ground_speed.h against one of its own in double.
+// ground_speed_any.h - any track and any past, for the tests of ground_speed's parts: each equation of ground_speed.h against one of its
+// own in double.
 #pragma once
 
 #include "firmware/core/rover_config.h"
@@ -6,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 extern "C" {
 #include "firmware/core/ground_speed_parts.h"
@@ -25,20 +27,23 @@ struct Any : clutter::Random {
 
     ground_speed_track_t track(double v_max = 2, double b_max = 2) {
         const double vv = log_between(1e-5, 1), bb = log_between(1e-5, 1);
-        return {narrow(between(-v_max, v_max)), narrow(between(-b_max, b_max)), narrow(vv), narrow(between(-0.95, 0.95) * std::sqrt(vv * bb)), narrow(bb)};
+        return {narrow(between(-v_max, v_max)), narrow(between(-b_max, b_max)), narrow(vv),
+                narrow(between(-0.95, 0.95) * std::sqrt(vv * bb)), narrow(bb)};
     }
 
-    // A past of more than a ring's length: an acceleration that wanders, and noise.
+    // A past of a ring's length: an acceleration that wanders, and noise.
     ground_speed_state_t past(const ground_speed_config_t &config) {
         ground_speed_state_t state;
         ground_speed_reset(&config, &state);
-        state.integral_q20[0] = static_cast<int32_t>(next()); // V may wrap anywhere
-        const double noise = log_between(0.02, 3);
+        auto V = static_cast<uint32_t>(next()); // it may wrap anywhere
+        const double noise = 3.5 * log_between(0.02, 3);
         double accel = between(-2, 2);
-        const int ticks = 260 + static_cast<int>(next() % 300);
-        for (int k = 0; k < ticks; ++k) {
-            accel += 0.2 * normal() - 0.02 * accel;
-            ground_speed_integrate(&config, &state, narrow(accel + noise * normal()));
+        state.head = static_cast<int32_t>(next() % GROUND_SPEED_HISTORY);
+        for (int k = 0; k < GROUND_SPEED_HISTORY; ++k) {
+            const double u = uniform() - 0.5, w = std::fmod(1021 * u, 0.5);
+            accel += 0.5 * u - 0.02 * accel;
+            V += static_cast<uint32_t>(static_cast<int32_t>((accel + noise * w) * 0.01 * 1048576));
+            state.integral_q20[(state.head + 1 + k) % GROUND_SPEED_HISTORY] = static_cast<int32_t>(V);
         }
         const ground_speed_track_t best = track();
         ground_speed_keep_best(&state, &best);

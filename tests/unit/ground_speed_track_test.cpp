@@ -31,7 +31,7 @@ TEST(GroundSpeedTrack, what_is_in_bounds_is_left_alone_and_what_is_beyond_is_bro
     const double v_max = wide(ours().speed_max_m_s), b_max = wide(ours().bias_max_m_s2);
     Any any{{1}};
     int left_alone = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 2500; ++k) {
         const double vv = any.log_between(1e-10, 100), bb = any.log_between(1e-10, 1000), r = any.between(-1.1, 1.1);
         const ground_speed_track_t was = {narrow(any.between(-2, 2) * v_max), narrow(any.between(-2, 2) * b_max), narrow(vv),
                                           narrow(r * std::sqrt(vv * bb)), narrow(bb)};
@@ -55,9 +55,10 @@ TEST(GroundSpeedTrack, what_is_in_bounds_is_left_alone_and_what_is_beyond_is_bro
 // F P F', F = [1 -t; 0 1].
 TEST(GroundSpeedTrack, moves_by_the_change_less_its_bias_and_its_covariance_with_it) {
     Any any{{2}};
-    for (int k = 0; k < 2000; ++k) {
+    for (int k = 0; k < 800; ++k) {
         const ground_speed_track_t was = any.track();
-        const double t = any.between(0, 0.5), change = any.between(-0.5, 0.5), q = any.log_between(1e-6, 1e-3), qb = any.log_between(1e-6, 0.5);
+        const double t = any.between(0, 0.5), change = any.between(-0.5, 0.5), q = any.log_between(1e-6, 1e-3),
+                     qb = any.log_between(1e-6, 0.5);
         ground_speed_track_t is = was;
         ground_speed_move(&ours(), &is, narrow(change), narrow(t), narrow(q), narrow(qb));
         expect_track(is, wide(was.speed_m_s) + change - t * wide(was.bias_m_s2), wide(was.bias_m_s2), any_state::spread_of(was, -t) + q,
@@ -68,7 +69,7 @@ TEST(GroundSpeedTrack, moves_by_the_change_less_its_bias_and_its_covariance_with
 // The best linear estimate: (I - k h) P (I - k h)' + k R k', with k = P h'/(h P h' + R), whatever form the firmware has.
 TEST(GroundSpeedTrack, is_corrected_as_the_best_linear_estimate_is) {
     Any any{{3}};
-    for (int k = 0; k < 2000; ++k) {
+    for (int k = 0; k < 800; ++k) {
         const ground_speed_track_t was = any.track();
         const double tau = any.one_in(4) ? 0 : any.between(0, 0.4), R = any.log_between(1e-5, 1e-1), e = any.between(-0.5, 0.5);
         const double vv = wide(was.p_vv), vb = wide(was.p_vb), bb = wide(was.p_bb), S = vv + 2 * tau * vb + tau * tau * bb + R;
@@ -78,7 +79,8 @@ TEST(GroundSpeedTrack, is_corrected_as_the_best_linear_estimate_is) {
         ground_speed_correct(&ours(), &is, narrow(e), narrow(tau), narrow(R));
         const double bias = std::clamp(wide(was.bias_m_s2) + kb * e, -3.0, 3.0);
         expect_track(is, wide(was.speed_m_s) + kv * e, bias, a * a * vv + 2 * a * b * vb + b * b * bb + kv * kv * R,
-                     a * c * vv + (a * d + b * c) * vb + b * d * bb + kv * kb * R, c * c * vv + 2 * c * d * vb + d * d * bb + kb * kb * R, 10);
+                     a * c * vv + (a * d + b * c) * vb + b * d * bb + kv * kb * R, c * c * vv + 2 * c * d * vb + d * d * bb + kb * kb * R,
+                     10);
         EXPECT_NEAR(ground_speed_spread_of(&was, narrow(tau)), any_state::spread_of(was, tau), eps * (vv + bb));
     }
 }
@@ -177,7 +179,7 @@ TEST(GroundSpeedTrack, what_a_window_remembers_is_its_weighted_mean_of_the_past)
 TEST(GroundSpeedTrack, a_value_is_less_and_less_sure_where_the_track_accelerates_or_the_radar_is_deaf) {
     ground_speed_config_t config = ours();
     Any any{{7}};
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 2500; ++k) {
         ground_speed_state_t state = {};
         any.value(config, state);
         if (any.one_in(2)) state.value_heard_m_s = narrow(any.between(0, 0.2));
@@ -214,9 +216,10 @@ TEST(GroundSpeedTrack, the_papers_filter_is_a_mean_by_variances_with_the_wheels_
     for (int k = 0; k < 500; ++k) {
         ground_speed_state_t state = any.past(paper);
         const double v = wide(state.speed_m_s), P = wide(state.p_vv), R = wide(paper.doppler_noise_m2_s2);
-        const double d = any.between(0, 1), wheel = any.one_in(5) ? 0 : any.between(-1, 1), z = wheel < 0 ? -d : d;
+        const double d = any.between(-0.5, 15), wheel = any.one_in(5) ? 0 : any.between(-1, 1);
+        const double z = (wheel < 0 ? -1 : 1) * std::clamp(d, 0.0, wide(paper.speed_max_m_s)); // a magnitude, of no more than there is
         ground_speed_update_paper(&paper, &state, narrow(d), narrow(wheel));
-        EXPECT_NEAR(state.speed_m_s, (v * R + z * P) / (P + R), eps);
+        EXPECT_NEAR(state.speed_m_s, (v * R + z * P) / (P + R), eps * 10);
         EXPECT_NEAR(state.p_vv, P * R / (P + R), eps * P);
         EXPECT_EQ(state.p_vb, 0);
         EXPECT_EQ(state.p_bb, 0);
@@ -228,7 +231,7 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
     const ground_speed_config_t &config = ours();
     Any any{{10}};
     int refused = 0, jumped = 0, believed = 0, relieved = 0, early_refused = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 2500; ++k) {
         ground_speed_state_t state = any.past(config);
         state.speed_m_s = narrow(any.either() * any.between(1.0, 1.5));
         state.bias_m_s2 = narrow(any.between(-1, 1));
@@ -242,16 +245,18 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         state.refused = static_cast<int32_t>(any.next() % static_cast<unsigned>(config.gate_patience + 1));
         state.relieved = any.one_in(2);
         state.slide.held = 3;
+        state.agile_left = 2;
         const double late = any.one_in(4) ? -0.12 : any.one_in(2) ? 0 : 0.034;
         const ground_speed_past_t window = ground_speed_look_back(&config, &state, narrow(late));
         const ground_speed_track_t was = ground_speed_best_of(&state);
         const double tau = wide(window.tau_s), middle = any_state::mean_of(was, tau) - wide(window.change_m_s);
+        const double scatter = any.one_in(2) ? 0.3 : 0.05;
         ground_speed_input_t input = {};
         input.doppler_fresh = true;
         input.doppler_late_s = narrow(late);
         input.doppler_trust = narrow(any.one_in(2) ? 0 : any.log_between(0.5, 20));
         input.doppler_misfit = narrow(any.between(0, 0.5));
-        input.doppler_m_s = narrow(std::clamp(std::fabs(middle) * (1 + 0.1 * any.normal()), wide(config.slow_m_s), 3.0));
+        input.doppler_m_s = narrow(std::clamp(std::fabs(middle) * (1 + scatter * any.normal()), wide(config.slow_m_s), 3.0));
         input.doppler_relieved = any.one_in(3);
         input.wheels_part = any.one_in(2);
         input.wheel_m_s = narrow(any.either() * any.between(0.1, 1));
@@ -266,9 +271,11 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
             early_refused++;
             continue;
         }
-        const double heard = wide(input.doppler_m_s), trust = std::fmax(1, wide(input.doppler_trust)) * wide(before.misfit) * (late < 0 ? 2.5 : 1);
+        const double heard = wide(input.doppler_m_s),
+                     trust = std::fmax(1, wide(input.doppler_trust)) * wide(before.misfit) * (late < 0 ? 2.5 : 1);
         const double z = std::sqrt(heard * heard - std::fmin(square(wide(config.doppler_spread_s)) * a2, heard * heard / 2));
-        const double R = trust * (wide(config.doppler_noise_m2_s2) + wide(config.doppler_noise_m_s) * heard) + wide(config.doppler_accel_s2) * a2;
+        const double R =
+            trust * (wide(config.doppler_noise_m2_s2) + wide(config.doppler_noise_m_s) * heard) + wide(config.doppler_accel_s2) * a2;
         const double S = any_state::spread_of(was, tau) + R, sign = middle < 0 ? -1 : 1, e = sign * z - middle, cost = e * e / S;
         EXPECT_NEAR(state.value_heard_m_s, heard, 1e-6);
         EXPECT_NEAR(state.value_m_s, z, 1e-5);
@@ -280,14 +287,28 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         EXPECT_EQ(state.value_parts, input.wheels_part);
         EXPECT_EQ(state.value_wheel_m_s, ground_speed_hint(&config, &input, state.value_m_s));
         EXPECT_NEAR(state.alike_m_s, 0.75 * wide(before.alike_m_s) + 0.25 * wide(input.doppler_misfit) * heard, eps);
-        EXPECT_EQ(state.slide.held, late < 0 ? 3 : input.doppler_relieved && !before.relieved && cost > 4 ? 1 : 4); // a full window is remembered
         if (std::fabs(cost - 4) < 0.01 || std::fabs(cost - 12.25) < 0.03 || std::fabs(middle) < 0.3) continue;
-        if (input.doppler_relieved && !before.relieved && cost > 4) { // what was believed was the line's
+        const bool anew = input.doppler_relieved && !before.relieved && cost > 4; // what was believed was the line's
+        EXPECT_EQ(state.slide.held, (anew ? 0 : 3) + (late < 0 ? 0 : 1));         // a full window is remembered
+        if (anew) {
             EXPECT_TRUE(state.relieved);
             EXPECT_FALSE(state.refused);
             EXPECT_TRUE(state.accepted);
             EXPECT_EQ(state.misfit, 1);
-            EXPECT_NEAR(std::fabs(any_state::mean_of(ground_speed_best_of(&state), tau) - wide(window.change_m_s)), z, 0.5 * std::sqrt(R) + 0.02);
+            EXPECT_EQ(state.rolls_ticks, 0);
+            EXPECT_EQ(state.agile_left, 0);
+            ground_speed_track_t at = {was.speed_m_s, window.accel_m_s2, 1, 0, 1}; // (1 m/s)^2, (1 m/s^2)^2, as if it rolled along
+            const double m = any_state::mean_of(at, tau) - wide(window.change_m_s), spread = 1 + tau * tau + R;
+            const double nearest = (m < 0 ? -z : z) - m, share = nearest * std::fabs(nearest) / spread;
+            EXPECT_NEAR(state.value_cost, std::fabs(share) + wide(ground_speed_ln_rough(narrow(spread))), 1e-3);
+            const double sided = 0.75 * wide(before.one_sided) + 0.25 * std::clamp(share, -4.0, 4.0);
+            if (std::fabs(std::fabs(sided) - 2) < 1e-3 || std::fabs(m) < 1e-3) continue;
+            if (std::fabs(sided) > 2) at.p_bb += config.jump_m2_s4;
+            ground_speed_correct(&config, &at, narrow(wide(state.value_sign) * z - m), narrow(tau), narrow(R));
+            EXPECT_NEAR(state.speed_m_s, at.speed_m_s, 1e-4);
+            EXPECT_NEAR(state.bias_m_s2, at.bias_m_s2, 1e-4);
+            EXPECT_NEAR(state.p_vv, at.p_vv, 1e-4);
+            EXPECT_NEAR(state.p_bb, at.p_bb, 1e-4);
             relieved++;
             continue;
         }
@@ -302,7 +323,8 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
             EXPECT_EQ(state.speed_m_s, before.speed_m_s);
             EXPECT_EQ(state.p_vv, before.p_vv);
             EXPECT_EQ(state.misfit, before.misfit);
-            EXPECT_NEAR(state.value_cost, cost + std::log(S), 0.07 + 1e-3 * cost); // the logarithm is rough: 0.06
+            EXPECT_NEAR(state.value_cost, cost + wide(ground_speed_ln_rough(narrow(S))), 1e-3 * (1 + cost));
+            EXPECT_EQ(state.value_sign, narrow(sign));
             EXPECT_EQ(state.waits, 2);
             refused++;
             continue;
@@ -327,6 +349,9 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         const double spread = any_state::spread_of(from, tau) + R;
         const double kv = (wide(from.p_vv) + tau * wide(from.p_vb)) / spread, kb = (wide(from.p_vb) + tau * wide(from.p_bb)) / spread;
         // (9): sure of its sign where 4 z |m|/S is beyond 18; else the wheels may have another
+        const double told =
+            cost > 12.25 ? e * e / spread : cost; // a value that is believed against the gate is judged by what is known then
+        EXPECT_NEAR(state.value_cost, told + wide(ground_speed_ln_rough(narrow(cost > 12.25 ? spread : S))), 1e-3 * (1 + told));
         if (4 * z * std::fabs(middle) / (cost > 12.25 ? spread : S) > 18.1) {
             EXPECT_EQ(state.value_sign, narrow(sign));
         }
@@ -334,7 +359,7 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         EXPECT_NEAR(state.speed_m_s, wide(was.speed_m_s) + kv * moved, 1e-4 * std::fabs(kv * moved) + 3 * eps) << k;
         EXPECT_NEAR(state.bias_m_s2, std::clamp(wide(was.bias_m_s2) + kb * moved, -3.0, 3.0), 1e-4 * std::fabs(kb * moved) + 3 * eps) << k;
     }
-    EXPECT_GT(std::min({refused, jumped, believed, relieved, early_refused}), 20)
+    EXPECT_GT(std::min({refused, jumped, believed, relieved, early_refused}), 10)
         << refused << ' ' << jumped << ' ' << believed << ' ' << relieved << ' ' << early_refused;
 }
 
@@ -371,7 +396,7 @@ TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgo
     const ground_speed_config_t &config = ours();
     Any any{{12}};
     int leapt = 0;
-    for (int k = 0; k < 2000; ++k) {
+    for (int k = 0; k < 800; ++k) {
         ground_speed_state_t state = any.past(config);
         const int n = 1 + static_cast<int>(any.next() % 14);
         state.wheel_ticks = n;
@@ -411,7 +436,8 @@ TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgo
         EXPECT_NEAR(was.felt_trust, trust, 1e-4);
         const double within = 1 - X * X / (16 * noise), tau = 4 * wide(config.window->tau_s);
         const double felt = within > 0 ? 2 * (1 - std::exp(-tau)) * trust * X * within * within : 0;
-        EXPECT_NEAR(state.felt_m_s, input.accel_valid && !input.wheels_part ? felt : 0, 0.03 * std::fabs(felt) + eps); // 1 - exp(-x) within 0.03
+        EXPECT_NEAR(state.felt_m_s, input.accel_valid && !input.wheels_part ? felt : 0,
+                    0.03 * std::fabs(felt) + eps); // 1 - exp(-x) within 0.03
     }
     EXPECT_GT(leapt, 100);
 }
@@ -433,7 +459,8 @@ TEST(GroundSpeedTrack, the_long_mean_of_what_they_part_by_follows_the_short_one_
     }
 }
 
-// A slope of `back` begins under wheels that roll on: the accelerometer feels 1 m/s^2 for 0.2 s, the wheels nothing. Radar and wheels agree.
+// A slope of `back` begins under wheels that roll on: the accelerometer feels 1 m/s^2 for 0.2 s, the wheels nothing. Radar and wheels
+// agree.
 ground_speed_state_t slope_begins(double back, double felt_m_s2 = 1) {
     ground_speed_state_t state;
     ground_speed_reset(&ours(), &state);
@@ -469,20 +496,20 @@ TEST(GroundSpeedTrack, where_a_slope_begins_under_rolling_wheels_their_word_is_t
         using I = ground_speed_input_t &;
         // with its bias at 0.4 of it, what pushes (1 m/s^2, against the slip that it would be) is left the accelerometer's surprise
         EXPECT_TRUE(begins([](S, I) {}));
-        EXPECT_FALSE(begins([](S, I input) { input.doppler_fresh = true; }));        // a value's tick is dear
-        EXPECT_FALSE(begins([](S state, I) { state.p_bb = 0.1f; }));                 // a bias that is not known to 0.3 m/s^2
+        EXPECT_FALSE(begins([](S, I input) { input.doppler_fresh = true; })); // a value's tick is dear
+        EXPECT_FALSE(begins([](S state, I) { state.p_bb = 0.1f; }));          // a bias that is not known to 0.3 m/s^2
         EXPECT_TRUE(begins([](S state, I) { state.p_bb = 0.08f; }));
         EXPECT_FALSE(begins([](S state, I) { state.rolls_wait = 5; }));
-        EXPECT_FALSE(begins([](S state, I) { state.other_alive = true; }));          // two signs
+        EXPECT_FALSE(begins([](S state, I) { state.other_alive = true; })); // two signs
         EXPECT_FALSE(begins([](S, I input) { input.accel_valid = false; }));
         EXPECT_FALSE(begins([](S, I input) { input.wheels_part = true; }));
         EXPECT_FALSE(begins([&](S state, I) { state.apart_m_s = narrow(back * 0.09); })); // 0.1 m/s is the limit
-        EXPECT_FALSE(begins([](S state, I) { state.apart_m2_s2 = 0.04f; }));         // the body sways
-        EXPECT_FALSE(begins([](S, I) {}, 0.2));                                      // its accelerometer tells of less than friction
-        EXPECT_FALSE(begins([](S, I) {}, -1));                                       // it feels a push along the slip: that is slip
-        EXPECT_FALSE(begins([&](S state, I) { state.bias_m_s2 = narrow(0.8 * back); })); // the bias knows of it: the wheels depart
+        EXPECT_FALSE(begins([](S state, I) { state.apart_m2_s2 = 0.04f; }));              // the body sways
+        EXPECT_FALSE(begins([](S, I) {}, 0.2));                                           // its accelerometer tells of less than friction
+        EXPECT_FALSE(begins([](S, I) {}, -1));                                            // it feels a push along the slip: that is slip
+        EXPECT_FALSE(begins([&](S state, I) { state.bias_m_s2 = narrow(0.8 * back); }));  // the bias knows of it: the wheels depart
         EXPECT_TRUE(begins([&](S state, I) { state.bias_m_s2 = narrow(0.6 * back); }));
-        EXPECT_FALSE(begins([](S state, I) { state.value_beside_m_s = 0.07f; }));    // the radar leaves the wheels: 6 (3e-5 + 2.9e-4)
+        EXPECT_FALSE(begins([](S state, I) { state.value_beside_m_s = 0.07f; })); // the radar leaves the wheels: 6 (3e-5 + 2.9e-4)
         EXPECT_TRUE(begins([](S state, I) { state.value_beside_m_s = 0.035f; }));
         EXPECT_TRUE(begins([](S state, I) { state.value_beside_m_s = 0.07f, state.beside_mean_m_s = 0.05f; }));
         // a lean that has just told of the slope: it is slip, unless the radar has stayed with the wheels for two values
@@ -507,7 +534,7 @@ TEST(GroundSpeedTrack, wheels_whose_word_is_taken_carry_the_speed_and_the_rest_i
         ground_speed_watch_wheels(&config, &state, &input);
         ASSERT_GT(state.rolls_ticks, 0);
         const double X = 0.96 * (back * 0.17 - 0.1 * 0.01); // (10) of one tick in which V has not moved
-        EXPECT_EQ(state.rolls_ticks, 60); // more than a window
+        EXPECT_EQ(state.rolls_ticks, 60);                   // more than a window
         EXPECT_TRUE(state.other_alive);
         EXPECT_EQ(state.odds, config.roll_odds);
         EXPECT_EQ(state.other.at.speed_m_s, was.speed_m_s); // the one that believes the accelerometer
@@ -543,7 +570,7 @@ TEST(GroundSpeedTrack, wheels_whose_word_is_taken_carry_the_speed_and_the_rest_i
             EXPECT_EQ(state.apart_m_s, 0);
         }
         EXPECT_NEAR(state.bias_m_s2, back, 0.12); // the wheels' 0.1 m/s^2 is the body's
-        state.rolls_ticks = 5; // the other has won
+        state.rolls_ticks = 5;                    // the other has won
         state.gyro_tried = true;
         state.apart_m_s = 1;
         ground_speed_no_rolling(&state);
@@ -559,7 +586,7 @@ TEST(GroundSpeedTrack, the_radars_value_beside_the_wheels_is_averaged_and_refute
     const ground_speed_config_t &config = ours();
     Any any{{14}};
     int refuted = 0, denied = 0, stood = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 2500; ++k) {
         ground_speed_state_t state = any.past(config);
         any.value(config, state);
         state.wheel_mean_m_s = narrow(any.either() * (wide(state.value_heard_m_s) + any.between(-0.15, 0.15)));
@@ -575,20 +602,22 @@ TEST(GroundSpeedTrack, the_radars_value_beside_the_wheels_is_averaged_and_refute
         const ground_speed_state_t was = state;
         const double beside = wide(was.value_heard_m_s) - std::fabs(wide(was.wheel_mean_m_s));
         const double left2 = square(beside - wide(was.beside_mean_m_s));
-        const double R = wide(was.value_trust) * (wide(config.doppler_noise_m2_s2) + wide(config.doppler_noise_m_s) * wide(was.value_heard_m_s));
+        const double R =
+            wide(was.value_trust) * (wide(config.doppler_noise_m2_s2) + wide(config.doppler_noise_m_s) * wide(was.value_heard_m_s));
         const double limit = 6 * (R + (was.rolls_ticks > 0 ? 9e-4 : 0)); // slip changes by 3 cm/s where a slope begins
         if (std::fabs(left2 / limit - 1) < 1e-3) continue;
         ground_speed_watch_radar(&config, &state);
         EXPECT_NEAR(state.value_beside_m_s, beside, 1e-6);
         if (was.rolls_ticks > 0) {
             EXPECT_EQ(state.beside_mean_m_s, was.beside_mean_m_s);
-            EXPECT_EQ(state.odds < -50, left2 > limit) << k;
+            EXPECT_EQ(state.odds<-50, left2> limit) << k;
             EXPECT_EQ(state.gyro_denied, was.gyro_denied);
             refuted += left2 > limit ? 1 : 0;
             continue;
         }
         EXPECT_EQ(state.odds, was.odds);
-        const double mean = was.accepted && was.slide.held > 0 ? 0.75 * wide(was.beside_mean_m_s) + 0.25 * wide(was.value_beside_m_s) : beside;
+        const double mean =
+            was.accepted && was.slide.held > 0 ? 0.75 * wide(was.beside_mean_m_s) + 0.25 * wide(was.value_beside_m_s) : beside;
         EXPECT_NEAR(state.beside_mean_m_s, mean, 1e-6);
         const double told = square(wide(was.apart_m_s)) - square(wide(config.roll_told_m_s)) - 112 * wide(was.speed_noise_m2_s2);
         const bool leant = std::abs(was.lean_q8 - was.lean_mean_q8) > config.lean_told_q8;
@@ -621,7 +650,7 @@ TEST(GroundSpeedTrack, the_bias_that_runs_against_a_lean_is_learned_as_the_gyros
     Any any{{15}};
     int learned = 0, near = 0, alone = 0, unknown = 0, stands = 0;
     const double q8_per_m_s2 = 256 / (9.81 * 1.0) / wide(rover_config_default().sense.gyro_rad_s_per_count); // of g r, per rad/s
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 2500; ++k) {
         ground_speed_state_t state = any.past(config);
         state.bias_m_s2 = narrow(any.between(-3, 3));
         state.bias_mean_m_s2 = narrow(wide(state.bias_m_s2) + any.between(-0.2, 0.2));
@@ -681,7 +710,7 @@ TEST(GroundSpeedTrack, the_bias_that_runs_against_a_lean_is_learned_as_the_gyros
         EXPECT_NEAR(state.gyro_q8, r, 2 + 1e-4 * std::fabs(r)) << k;
         learned++;
     }
-    EXPECT_GT(std::min({learned, near, alone, unknown, stands}), 100);
+    EXPECT_GT(std::min({learned, near, alone, unknown, stands}), 20);
     ground_speed_state_t state = {};
     state.gyro_q8 = 4194000;
     state.lean_q8 = -2000000;
