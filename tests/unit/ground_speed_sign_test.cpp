@@ -1,5 +1,5 @@
-// Which sign, and which track: ground_speed_sign.c, _held.c, _slide.c, _jump.c against (7), (9), (12), (15), (17), (18) of ground_speed.h in
-// double, from any state. How a track moves and is corrected is held by ground_speed_track_test.
+// Which sign, and which track: ground_speed_sign.c, _held.c, _slide.c, _jump.c against (7), (9), (12), (15), (17), (18) of ground_speed.h
+// in double, from any state. How a track moves and is corrected is held by ground_speed_track_test.
 #include "tests/unit/ground_speed_any.h"
 
 #include <gtest/gtest.h>
@@ -186,7 +186,8 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
         state.value_change_m_s = narrow(any.between(-0.05, 0.05));
         state.speed_m_s = narrow(wide(state.value_sign) * wide(state.value_m_s) + any.between(-0.1, 0.1));
         state.other.at = any.track(1, 0.5);
-        state.other.at.speed_m_s = narrow(any.one_in(4) ? wide(state.speed_m_s) + any.between(-0.1, 0.1) : -wide(state.speed_m_s) + any.between(-0.2, 0.2));
+        state.other.at.speed_m_s =
+            narrow(any.one_in(4) ? wide(state.speed_m_s) + any.between(-0.1, 0.1) : -wide(state.speed_m_s) + any.between(-0.2, 0.2));
         state.other.ticks = 3 + static_cast<int32_t>(any.next() % 12);
         state.other.q20 = state.integral_q20[(state.head + GROUND_SPEED_HISTORY - state.other.ticks) % GROUND_SPEED_HISTORY];
         state.other_alive = true;
@@ -201,14 +202,16 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
         ground_speed_move(&config, &at, narrow(passed(was, 1, was.other.ticks)), narrow(0.01 * n), narrow(n * wide(was.speed_noise_m2_s2)),
                           narrow(n * wide(config.bias_noise_m2_s4)));
         const ground_speed_value_t value = ground_speed_value_for(&config, &was, &at, was.value_accel_m_s2 - at.bias_m_s2);
-        const double z = wide(value.speed_m_s), m = mean_of(at, tau) - wide(was.value_change_m_s), S = spread_of(at, tau) + wide(value.noise_m2_s2);
+        const double z = wide(value.speed_m_s), m = mean_of(at, tau) - wide(was.value_change_m_s),
+                     S = spread_of(at, tau) + wide(value.noise_m2_s2);
         const double told = 4 * z * m / S, sign = std::fabs(told) >= 18 ? (m < 0 ? -1 : 1) : -wide(was.value_sign), e = sign * z - m;
         ground_speed_correct(&config, &at, narrow(e), was.value_tau_s, value.noise_m2_s2);
         const int with = with_wheels(was);
         const double force = force_odds(was), cost = e * e / S + wide(ground_speed_ln_rough(narrow(S)));
         double odds = wide(was.odds);
         if (was.rolls && with < 0 && odds > 4) odds = 4, anew++; // (18)
-        odds += std::clamp(cost - wide(was.value_cost), -12.0, 12.0) + with * (was.rolls ? 3.0 : 0.5) + 0.25 * (was.speed_m_s < 0 ? -force : force);
+        odds += std::clamp(cost - wide(was.value_cost), -12.0, 12.0) + with * (was.rolls ? 3.0 : 0.5) +
+                0.25 * (was.speed_m_s < 0 ? -force : force);
         if (near(std::fabs(told), 18, 1e-2) || near(odds, 0, 1e-2) || near(std::fabs(odds), 18, 1e-2)) continue;
         if (near(wide(was.value_m_s), 1.15 * std::fabs(wide(was.value_wheel_m_s)))) continue;
         ground_speed_update_other(&config, &state);
@@ -254,7 +257,8 @@ TEST(GroundSpeedSign, wheels_roll_that_stay_with_the_radar_and_have_not_parted_f
         any.value(ours(), state);
         const double rim = std::fabs(wide(state.wheel_mean_m_s));
         state.beside_mean_m_s = narrow(any.between(-0.03 - 0.14 * rim, 0.015 + 0.08 * rim));
-        state.value_beside_m_s = narrow(any.one_in(3) ? wide(state.beside_mean_m_s) + any.between(-0.3, 0.3) : any.between(-0.03 - 0.14 * rim, 0.015 + 0.08 * rim));
+        state.value_beside_m_s = narrow(any.one_in(3) ? wide(state.beside_mean_m_s) + any.between(-0.3, 0.3)
+                                                      : any.between(-0.03 - 0.14 * rim, 0.015 + 0.08 * rim));
         state.parted_values = any.one_in(2) ? 0 : static_cast<int32_t>(any.next() % 25);
         const ground_speed_state_t was = state;
         const double left2 = square(wide(was.value_beside_m_s) - wide(was.beside_mean_m_s)), may = 16 * wide(was.value_noise_m2_s2) + 4e-4;
@@ -298,7 +302,9 @@ TEST(GroundSpeedSign, a_sign_is_held_from_the_sixth_sure_value_on_and_each_doubt
         }
         using S = ground_speed_state_t &;
         const auto holds = [&](const std::function<void(S)> &but, int at = 3) {
-            return drives(way, 8, [&](S state, int k) { if (k == at) but(state); }).held_sign != 0;
+            return drives(way, 8, [&](S state, int k) {
+                       if (k == at) but(state);
+                   }).held_sign != 0;
         };
         EXPECT_TRUE(holds([](S) {}));
         EXPECT_FALSE(holds([](S state) { state.other_alive = true; }));
@@ -323,7 +329,8 @@ TEST(GroundSpeedSign, a_sign_is_held_from_the_sixth_sure_value_on_and_each_doubt
         EXPECT_FALSE(holds([&](S state) { state.value_wheel_m_s = narrow(0.44 * way); }, 7)); // 1.1 times
         EXPECT_TRUE(holds([&](S state) { state.value_wheel_m_s = narrow(0.47 * way); }, 7));
         EXPECT_FALSE(holds([](S state) { state.value_wheel_m_s = -state.value_wheel_m_s; }, 7));
-        EXPECT_FALSE(holds([](S state) { state.value_heard_m_s = 0.12f, state.held_level_m_s = 0.12f, state.value_wheel_m_s *= 0.24f; }, 7)); // slow
+        EXPECT_FALSE(
+            holds([](S state) { state.value_heard_m_s = 0.12f, state.held_level_m_s = 0.12f, state.value_wheel_m_s *= 0.24f; }, 7)); // slow
         // its level is the mean of the values: half a second's
         const ground_speed_state_t state = drives(way, 7, [](S s, int k) { s.value_heard_m_s = k == 6 ? 0.54f : 0.5f; });
         EXPECT_NEAR(state.held_level_m_s, 0.51, 1e-6);
@@ -442,7 +449,8 @@ TEST(GroundSpeedSign, a_line_through_zero_is_found_where_it_fits_and_the_straigh
             const Line line = fit(newer);
             if (line.left < best.left) best = line;
         }
-        const double R = noise_of(dd.back() + dd.front()), chi2 = best.left / R, told = fit(0).left / noise_of(dd.back() - dd.front()) - chi2;
+        const double R = noise_of(dd.back() + dd.front()), chi2 = best.left / R,
+                     told = fit(0).left / noise_of(dd.back() - dd.front()) - chi2;
         const bool went = was.slide.sign[(was.slide.newest + 7 - count) % 6] * narrow(way) < 0;
         const bool close = near(told, 8, 0.05) || near(chi2, 3 * (count - 2), 0.02);
         const bool is = !went && dips(dd) && told > 8 && chi2 < 3 * (count - 2);
@@ -596,7 +604,8 @@ TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells)
         EXPECT_EQ(state.other.q20, state.integral_q20[state.head]);
         split++;
     }
-    EXPECT_GT(std::min({began, taken, split, sooner, waited}), 20) << began << ' ' << taken << ' ' << split << ' ' << sooner << ' ' << waited;
+    EXPECT_GT(std::min({began, taken, split, sooner, waited}), 20)
+        << began << ' ' << taken << ' ' << split << ' ' << sooner << ' ' << waited;
 }
 
 } // namespace
