@@ -1,5 +1,5 @@
-// What ground_speed.c does in a tick: prediction, standing, the wheels' witness, the standard deviation, and who sees a value when. From any
-// state, against ground_speed.h in double.
+// What ground_speed.c does in a tick: prediction, standing, the wheels' witness, the standard deviation, and who sees a value when. From
+// any state, against ground_speed.h in double.
 #include "tests/unit/ground_speed_any.h"
 
 #include <gtest/gtest.h>
@@ -108,7 +108,8 @@ TEST(GroundSpeedTick, predicts_through_busy_ticks_and_missed_ones) {
 
 TEST(GroundSpeedTick, what_is_no_number_is_no_measurement) {
     Any any{{32}};
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
         ground_speed_state_t state = calm(any), like = state;
         ground_speed_input_t input = same(state, bad), zero = same(state, 0);
         input.doppler_fresh = true;
@@ -129,6 +130,43 @@ TEST(GroundSpeedTick, what_is_no_number_is_no_measurement) {
     }
 }
 
+TEST(GroundSpeedTick, counts_and_the_estimate_stop_at_their_ends) {
+    Any any{{40}};
+    for (const bool paper : {false, true}) {
+        const ground_speed_config_t config = paper ? rover_config_paper().ground_speed : ours();
+        for (const double way : {1.0, -1.0}) {
+            for (const int32_t count : {998, 999, 1000}) {
+                ground_speed_state_t state = calm(any);
+                state.speed_m_s = narrow(way) * config.speed_max_m_s;
+                state.unheard_ticks = state.still_ticks = state.other.ticks = state.agile.ticks = state.wheel_ticks = state.behind_ticks =
+                    count;
+                state.standstill = paper; // the paper's knows no standing
+                state.less_m_s = 0.01f;
+                ground_speed_input_t input = same(state, 50 * way);
+                input.wheel_m_s = 0;
+                input.busy = true;
+                ground_speed_state_t rests = state;
+                ground_speed_step(&config, &rests, &input);
+                EXPECT_EQ(rests.still_ticks, std::min(1000, count + 1));
+                input.wheel_m_s = 1;
+                const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
+                EXPECT_EQ(state.speed_m_s, narrow(way) * config.speed_max_m_s);
+                if (paper) {
+                    EXPECT_FALSE(out.standstill);
+                    EXPECT_EQ(out.speed_m_s, state.speed_m_s - 0.01f);
+                }
+                const int32_t next = std::min(1000, count + 1);
+                EXPECT_EQ(state.unheard_ticks, next);
+                EXPECT_EQ(state.still_ticks, 0);
+                EXPECT_EQ(state.other.ticks, next);
+                EXPECT_EQ(state.agile.ticks, next);
+                EXPECT_EQ(state.wheel_ticks, next);
+                EXPECT_EQ(state.behind_ticks, next);
+            }
+        }
+    }
+}
+
 // --- standing
 
 // Whether it stands, by the words of docs/firmware.md and (19). `felt_m_s`: what the accelerometer felt within the last second.
@@ -139,7 +177,7 @@ bool stands(const ground_speed_state_t &s, double felt_m_s) {
     if (!silent && s.loud >= 3) { // three loud values end it, unless it stood and has felt no push: then not before five seconds of them
         return s.standstill && s.loud < 40 && std::fabs(felt_m_s) <= slow / 2;
     }
-    if (s.quiet >= 3) return true; // three quiet echoes
+    if (s.quiet >= 3) return true;                                                                 // three quiet echoes
     if (s.heard && std::fabs(wide(s.speed_m_s)) < slow && wide(s.p_vv) < slow * slow) return true; // a low speed that is known to as much
     return s.still_ticks >= 100 && (silent || s.loud == 0); // at rest for a second, and nothing tells of a speed
 }
@@ -157,7 +195,8 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
         input.accel_x_m_s2 = state.bias_m_s2;
         const int64_t bias_q20 = std::llround(wide(state.bias_m_s2) * 0.01 * 1048576), step = std::llround(felt * 1048576 / 99);
         for (int i = 0; i < GROUND_SPEED_HISTORY; ++i) { // V of a bias and a push; the tick makes the hundredth
-            state.integral_q20[(state.head + GROUND_SPEED_HISTORY - i) % GROUND_SPEED_HISTORY] = static_cast<int32_t>(-i * (bias_q20 + (i <= 99 ? step : 0)));
+            state.integral_q20[(state.head + GROUND_SPEED_HISTORY - i) % GROUND_SPEED_HISTORY] =
+                static_cast<int32_t>(-i * (bias_q20 + (i <= 99 ? step : 0)));
         }
         input.wheel_m_s = narrow(any.either() * (any.one_in(8) ? 1.01 : 0.99) * wide(ours().still_m_s));
         state.still_ticks = one_of({0, 22, 23, 24, 25, 97, 98, 99, 500, 1000});
@@ -196,7 +235,8 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
             EXPECT_NEAR(out.std_m_s, std::sqrt(P * share + wide(now.gyro_doubt_m2_s2)), 1e-4); // whatever spectra were unlike
         }
         (is ? stood : moved) += 1;
-        if (now.still_ticks >= 25 && now.loud >= 3 && now.loud < 40 && now.standstill && now.unheard_ticks < 100) (is ? unfelt : pushed) += 1;
+        if (now.still_ticks >= 25 && now.loud >= 3 && now.loud < 40 && now.standstill && now.unheard_ticks < 100)
+            (is ? unfelt : pushed) += 1;
     }
     EXPECT_GT(std::min({stood, moved, pushed, unfelt}), 50);
 }
@@ -305,7 +345,9 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         const bool undecided = !silence && was.other_alive; // which sign it is, the radar tells
         const double P = was.rolls_ticks > 0 ? wide(was.p_vv) + wide(ours().roll_noise_m2_s2) : wide(was.p_vv) + 1e-6 * 0.01;
         const double predicted = P + wide(was.speed_noise_m2_s2);
-        if (std::fabs(predicted / (1.2 * spread * spread) - 1) < 1e-3 || std::fabs(std::fabs(wide(was.value_m_s) - std::fabs(w)) - 2 * spread) < 1e-5) continue;
+        if (std::fabs(predicted / (1.2 * spread * spread) - 1) < 1e-3 ||
+            std::fabs(std::fabs(wide(was.value_m_s) - std::fabs(w)) - 2 * spread) < 1e-5)
+            continue;
         const bool asks = !denies && !undecided && predicted > 1.2 * spread * spread;
         const double R = (creeps ? 4 : 1) * spread * spread, gain = creeps || asks ? predicted / (predicted + R) : 0;
         EXPECT_NEAR(state.speed_m_s, wide(was.speed_m_s) + gain * (w - wide(was.speed_m_s)), 1e-4) << k;
@@ -339,8 +381,8 @@ TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
         const double unseen = q * wide(config.window->tau_ticks) * (1 - taken);
         const double told = square(wide(state.apart_m_s)) - least2 - 112 * q, shaken = wide(state.apart_m2_s2) - least2 - 112 * q / 9;
         const double apart2 = std::clamp(std::fmax(told, shaken), 0.0, wide(config.speed_max_m_s));
-        const double variance = wide(state.p_vv) + unseen + apart2 + square(wide(state.alike_m_s)) + (state.other_alive ? wide(state.doubt_m2_s2) : 0) +
-                                wide(state.gyro_doubt_m2_s2);
+        const double variance = wide(state.p_vv) + unseen + apart2 + square(wide(state.alike_m_s)) +
+                                (state.other_alive ? wide(state.doubt_m2_s2) : 0) + wide(state.gyro_doubt_m2_s2);
         EXPECT_NEAR(out.std_m_s, std::sqrt(variance), 1e-5 + 1e-5 * std::sqrt(variance)) << k;
         EXPECT_NEAR(out.speed_m_s, wide(state.speed_m_s) - wide(state.felt_m_s) - (state.other_alive ? 0.03 : 0), eps);
         seen[0] += taken > 0 ? 1 : 0, seen[1] += told > 0 && told > shaken ? 1 : 0, seen[2] += shaken > 0 && shaken > told ? 1 : 0;

@@ -363,6 +363,17 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         << refused << ' ' << jumped << ' ' << believed << ' ' << relieved << ' ' << early_refused;
 }
 
+TEST(GroundSpeedTrack, a_value_is_a_magnitude_of_no_more_than_there_is) {
+    Any any{{16}};
+    for (const double said : {-1.0, 0.0, 0.03, 0.5, 1e6}) {
+        ground_speed_state_t state = any.past(ours());
+        ground_speed_input_t input = {};
+        input.doppler_m_s = narrow(said);
+        ground_speed_update_doppler(&ours(), &state, &input);
+        EXPECT_EQ(state.value_heard_m_s, narrow(std::clamp(said, 0.0, wide(ours().speed_max_m_s))));
+    }
+}
+
 TEST(GroundSpeedTrack, a_quiet_echo_pulls_the_windows_mean_to_zero_unless_it_is_a_fade) {
     Any any{{11}};
     int fades = 0;
