@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 namespace {
+
+double wide(float x) { return static_cast<double>(x); }
 
 constexpr double unit = 268435456.0; // 2^28
 using Powers = std::array<double, FFT_BINS>;
@@ -318,6 +321,170 @@ TEST(DopplerSpectrum, what_was_relieved_keeps_its_kind_and_old_lines_are_forgott
     state.due = 1;
     doppler_step(&config, &state, nullptr, 0);
     for (const std::uint32_t word : state.line) EXPECT_EQ(word, 0u);
+}
+
+// The search begins at every fourth grid speed, or at the largest power: either must reach both ends, where there is no parabola.
+TEST(DopplerSpectrum, both_ends_of_every_grid_are_heard) {
+    for (const doppler_template_t *radar :
+         {&doppler_template_mdu1130, &doppler_template_dj_radar_2, &doppler_template_dj_radar_3, &doppler_template_drs1000}) {
+        doppler_config_t config = rover_config_default().doppler;
+        config.beam = radar;
+        for (const bool from_peak : {radar->from_peak, false, true}) {
+            for (const int end : {0, 1, 2, 3, 5, 6, radar->speeds - 4, radar->speeds - 3, radar->speeds - 2, radar->speeds - 1}) {
+                doppler_template_t own = *radar; // whichever search finds it
+                config.beam = &own;
+                doppler_state_t state = {};
+                state.full = true;
+                state.pending = true;
+                double least = 1e300;
+                int nearest = 0;
+                std::vector<double> powers;
+                for (int k = 0; k < radar->bins; k++) powers.push_back(1.0 / (radar->inverse[end * radar->bins + k] + 1e-3));
+                double total = 0, most = 0;
+                int peak = 0;
+                for (const double power : powers) total += power;
+                for (int k = 0; k < radar->bins; k++) {
+                    state.power[radar->first_bin + k] =
+                        static_cast<std::uint64_t>(powers[static_cast<std::size_t>(k)] / total * 1e6 * unit);
+                    if (powers[static_cast<std::size_t>(k)] > most) most = powers[static_cast<std::size_t>(k)], peak = k;
+                }
+                own.from_peak = from_peak;
+                if (from_peak && !radar->from_peak)
+                    own.start[peak] = static_cast<std::int8_t>(end < 6 ? end - 3 : end + 3); // beyond the grid, too
+                for (int i = 0; i < radar->speeds; i++) {
+                    double J = radar->volume[i];
+                    for (int k = 0; k < radar->bins; k++)
+                        J += powers[static_cast<std::size_t>(k)] / total * radar->inverse[i * radar->bins + k];
+                    if (J < least) least = J, nearest = i;
+                }
+                const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+                const double steps = radar->line ? (wide(out.speed_m_s) - wide(radar->speed_m_s[nearest])) / wide(radar->log_step)
+                                                 : std::log(wide(out.speed_m_s) / wide(radar->speed_m_s[nearest])) / wide(radar->log_step);
+                if (radar->from_peak && !from_peak) continue; // narrower than four steps: that search misses them
+                EXPECT_NEAR(steps, 0, nearest == 0 || nearest == radar->speeds - 1 ? 1e-3 : 0.55) << end << ' ' << from_peak;
+            }
+        }
+    }
+}
+
+// Of a window of half the length, whose samples stand twice, the bins above the band hold images: they tell of nothing.
+TEST(DopplerSpectrum, a_halved_window_knows_nothing_beyond_its_band) {
+    const doppler_config_t config = rover_config_default().doppler;
+    Powers powers = echo(beam().speeds - 1, 2e4, 0);
+    for (int k = end_of_band(); k < FFT_BINS; k++) powers[static_cast<std::size_t>(k)] = 1e5;
+    for (const bool halved : {true, false}) {
+        doppler_state_t state = with(powers);
+        state.pending = true;
+        state.halved = halved;
+        const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+        EXPECT_EQ(out.beyond, !halved);
+        if (halved) {
+            EXPECT_EQ(out.trust, 1);
+            EXPECT_NEAR(out.speed_m_s / (2 * beam().speed_m_s[beam().speeds - 1]), 1, 1e-3);
+        }
+    }
+}
+
+// What a line leaves that was taken off, an eighth of it, or a line that is not known well enough: no value, where it is half of what is
+// heard, within four bins of its place.
+TEST(DopplerSpectrum, the_rest_of_a_line_is_no_value) {
+    const doppler_config_t config = rover_config_default().doppler;
+    std::uint32_t random = 7;
+    const auto uniform = [&] { return (random = random * 1664525u + 1013904223u) / 4294967296.0; };
+    int rests = 0, values = 0, weak = 0;
+    for (int round = 0; round < 600; round++) {
+        const int bin = 1 + static_cast<int>(uniform() * 60);
+        Powers powers{};
+        for (std::size_t k = 0; k < FFT_BINS; k++) powers[k] = k < static_cast<std::size_t>(end_of_band()) ? 2e4 * uniform() : 0;
+        const double boost = std::exp(4 * uniform() - 1);
+        for (int k = std::max(0, bin - 4); k <= bin + 4; k++)
+            powers[static_cast<std::size_t>(k)] *= k == bin - 4 || k == bin + 4 ? 3 * boost : boost;
+        doppler_state_t state = with(powers);
+        state.pending = true;
+        double near = 0, energy = 0;
+        for (int k = std::max(0, bin - 4); k <= bin + 4; k++) near += powers[static_cast<std::size_t>(k)];
+        for (int k = beam().first_bin; k < end_of_band(); k++) energy += powers[static_cast<std::size_t>(k)];
+        if (std::fabs(2 * near / energy - 1) < 1e-3) continue;
+        const bool known = round % 2 == 0;
+        const double loud = 0.6 + uniform(); // of an eighth of its power: a^2/2 counts^2, of which each is 12288 * 2^28 in all bins
+        if (known) {
+            state.tone.found = true;
+            state.tone.turn =
+                (static_cast<std::uint32_t>(bin) << 24) + (round % 4 == 0 ? 0x600000u : 0u) - (round % 4 == 2 ? 0x700000u : 0u);
+            const double a = std::sqrt(2 * 8 * loud * energy / 12288) * 32;
+            state.tone.a_re = static_cast<std::int32_t>(a * 0.6);
+            state.tone.a_im = static_cast<std::int32_t>(a * -0.8);
+            if (std::fabs(loud - 1) < 2e-2) continue;
+        } else {
+            state.young_bin = bin;
+        }
+        const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+        if (out.quiet) {
+            EXPECT_FALSE(out.rest);
+            continue;
+        }
+        const bool rest = 2 * near > energy && (!known || loud > 1);
+        EXPECT_EQ(out.rest, rest) << bin << ' ' << known << ' ' << 2 * near / energy << ' ' << loud;
+        EXPECT_EQ(out.spoilt, rest || out.strange);
+        (rest ? rests : values) += 1;
+        weak += known && loud < 1 && 2 * near > energy ? 1 : 0;
+    }
+    EXPECT_GT(std::min({rests, values, weak}), 20);
+}
+
+// Until the search inside the echo has its 32 blocks and four more, what is as narrow as a line at 32 Hz or more is one.
+TEST(DopplerSpectrum, a_young_line_is_a_narrow_one_where_no_echo_is_narrow) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int bin : {12, 15, 16, 17, 30, 70, 100, 125})
+        for (const bool narrow : {true, false}) {
+            Powers powers{};
+            for (double &power : powers) power = 500;
+            add_line(powers, bin, 1e5);
+            for (int j = -8; j <= 8 && !narrow; j++)
+                if (bin + j < FFT_BINS) powers[static_cast<std::size_t>(bin + j)] += 3e4;
+            doppler_state_t state = with(powers);
+            state.weigh_young = true;
+            state.young_bin = 99;
+            doppler_step(&config, &state, nullptr, 0);
+            EXPECT_FALSE(state.weigh_young);
+            EXPECT_EQ(state.young_bin, narrow && bin >= 16 ? bin : 0) << bin;
+        }
+    for (const std::uint32_t next : {0u, 36u * 64u - 1u, 36u * 64u, 100000u})
+        for (const bool halved : {false, true}) {
+            doppler_state_t state = with(echo(60, 2e4, 10));
+            state.pending = true;
+            state.halved = halved;
+            state.tone.next = next;
+            state.young_bin = 20;
+            doppler_step(&config, &state, nullptr, 0);
+            EXPECT_EQ(state.weigh_young, next < 36 * 64 && !halved) << next; // asked anew at every value
+            EXPECT_EQ(state.young_bin, state.weigh_young ? 20 : 0);
+        }
+}
+
+TEST(DopplerSpectrum, just_a_third_of_all_is_not_more_than_half_of_the_others_and_a_relief_ends_with_its_values) {
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = {};
+    state.full = true;
+    const int others = end_of_band() - 5;
+    for (int k = 0; k < FFT_BINS; k++) state.power[k] = static_cast<std::uint64_t>((k == 20 ? 50.0 * others - 400 : 100.0) * unit);
+    state.line[0] = 1u << 20;
+    state.weigh_lines = true;
+    doppler_step(&config, &state, nullptr, 0);
+    EXPECT_FALSE(state.weigh_lines);
+    EXPECT_FALSE(state.relief_masked);
+    state.power[20] += 1024;
+    state.weigh_lines = true;
+    doppler_step(&config, &state, nullptr, 0);
+    EXPECT_TRUE(state.relief_masked);
+    EXPECT_GE(state.relief * config.hop, FFT_LENGTH); // a window that is rid of the line wholly has come by then
+    for (int left = state.relief - 1; left >= -1; left--) {
+        state.pending = true;
+        state.weigh_lines = false;
+        doppler_step(&config, &state, nullptr, 0);
+        EXPECT_EQ(state.relief, std::max(0, left));
+        EXPECT_EQ(state.relief_masked, left > 0);
+    }
 }
 
 } // namespace

@@ -63,14 +63,17 @@ int when(const std::function<void(Rover &)> &cause, uint32_t fault, int most = 4
 }
 
 TEST(SafetySteps, each_sensor_has_its_latch_and_its_wheel_after_its_patience) {
-    const uint32_t lost[] = {FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_CURRENT_LOST, FAULT_CURRENT_LOST,
-                             FAULT_CURRENT_LOST, FAULT_CURRENT_LOST, FAULT_BATTERY_LOST, FAULT_ACCEL_LOST,   FAULT_GYRO_LOST,    FAULT_RADAR_LOST};
+    const uint32_t lost[] = {FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_ENCODER_LOST, FAULT_ENCODER_LOST,
+                             FAULT_CURRENT_LOST, FAULT_CURRENT_LOST, FAULT_CURRENT_LOST, FAULT_CURRENT_LOST,
+                             FAULT_BATTERY_LOST, FAULT_ACCEL_LOST,   FAULT_GYRO_LOST,    FAULT_RADAR_LOST};
     for (uint32_t bit = 0; bit < 12; ++bit) {
         for (const bool absurd : {false, true}) {
             const uint32_t fault = absurd ? static_cast<uint32_t>(FAULT_ABSURD_SENSOR) : lost[bit];
             const auto spoil = [&](Rover &rover) {
-                if (absurd) rover.input.absurd = 1u << bit;
-                else rover.input.usable &= ~(1u << bit);
+                if (absurd)
+                    rover.input.absurd = 1u << bit;
+                else
+                    rover.input.usable &= ~(1u << bit);
             };
             EXPECT_EQ(when(spoil, fault), 8) << bit; // 7 bad ticks are forgiven: 80 ms
             Rover rover;
@@ -194,13 +197,15 @@ TEST(SafetySteps, currents_are_integrated_wheel_by_wheel) {
                 x[i] = std::fmax(0, x[i] + (I * I - 1.5 * 1.5) * 0.01); // (1) [A^2 s]
                 const bool is_over = x[i] > 8;
                 if (k % 4 == static_cast<int>(i)) { // (2), one wheel a tick: 4 T
-                    const double Ra = 3.24, C = 4 * 0.01 * Ra / wide(rover.config.heating_K_A2), R = 0.04 / C / (1 - wide(rover.config.keeping));
+                    const double Ra = 3.24, C = 4 * 0.01 * Ra / wide(rover.config.heating_K_A2),
+                                 R = 0.04 / C / (1 - wide(rover.config.keeping));
                     rise[i] += 0.04 * (I * I * Ra - rise[i] / R) / C;
                 }
                 const bool is_hot = rise[i] > limit_K;
                 stall[i] = std::fabs(I) > 1.4 && k % 300 < 220 ? stall[i] + 0.01 : 0;
                 const bool is_stalled = stall[i] > 1.0;
-                close = close || std::fabs(x[i] - 8) < 1e-2 || std::fabs(rise[i] - limit_K) < 1e-2 || std::fabs(std::fabs(I) - 1.4) < 1e-4 ||
+                close = close || std::fabs(x[i] - 8) < 1e-2 || std::fabs(rise[i] - limit_K) < 1e-2 ||
+                        std::fabs(std::fabs(I) - 1.4) < 1e-4 ||
                         std::fabs(stall[i] - 1) < 1e-3; // a hundredth of a second, as a sum of floats
                 if (is_over) faults |= FAULT_OVER_CURRENT;
                 if (is_hot) faults |= FAULT_OVER_TEMPERATURE;
@@ -246,7 +251,7 @@ TEST(SafetySteps, a_battery_is_low_for_half_a_second_or_gone_for_thirty_millisec
     EXPECT_NEAR(at(5.39, FAULT_LOW_BATTERY), 51, 1);
     EXPECT_EQ(at(5.41, FAULT_LOW_BATTERY), 0);
     EXPECT_NEAR(at(4.33, FAULT_LOW_BATTERY), 51, 1);
-    EXPECT_EQ(at(4.31, FAULT_BROWN_OUT), 3); // 0.8 of 5.4 V, more than two ticks
+    EXPECT_EQ(at(4.31, FAULT_BROWN_OUT), 3);                                     // 0.8 of 5.4 V, more than two ticks
     EXPECT_EQ(at(std::numeric_limits<double>::quiet_NaN(), FAULT_BROWN_OUT), 0); // a NaN is above every number
     EXPECT_EQ(at(-std::numeric_limits<double>::quiet_NaN(), FAULT_BROWN_OUT), 3);
 }
