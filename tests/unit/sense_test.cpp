@@ -301,7 +301,7 @@ TEST(Sense, any_frames_give_what_a_memory_of_all_of_them_gives) {
             frame.gyro_z_count = static_cast<std::int16_t>(next() % 20 == 0 ? (next() % 2 == 0 ? INT16_MIN : INT16_MAX)
                                                                             : static_cast<int>(next() % 8000) - 4000);
             scalar(FRAME_GYRO, std::abs(frame.gyro_z_count) < 32767, model.gyro, frame.gyro_z_count * 0.0005);
-            frame.radar_samples = static_cast<std::uint8_t>(next() % 20 == 0 ? 65 : next() % 7);
+            frame.radar_samples = static_cast<std::uint8_t>(next() % 20 == 0 ? 64 + next() % 2 : next() % 7);
             for (auto &count : frame.radar_count) count = 1023;
             const auto bad = static_cast<std::size_t>(next() % 64);
             frame.radar_count[bad] = 1024;
@@ -332,7 +332,7 @@ TEST(Sense, any_frames_give_what_a_memory_of_all_of_them_gives) {
             if ((expected.usable & FRAME_ACCEL) != 0) {
                 EXPECT_NEAR(out.level_m_s2, model.accel - lean.lean_q8 * 0.004 / 256, 1e-4);
             }
-            state.standing = k > 50 && k < 120;
+            state.standing = k > 20 && k < 140; // long enough to know its gyros
             state.gyro_q8 = k > 150 ? 700 : 0;
             frame.gyro_x_count = static_cast<std::int16_t>(next() % 20 == 0 ? INT16_MAX : static_cast<int>(next() % 400) - 200);
             frame.gyro_y_count = static_cast<std::int16_t>(next() % 20 == 0 ? INT16_MIN : static_cast<int>(next() % 400) - 200);
