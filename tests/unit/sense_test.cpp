@@ -175,7 +175,7 @@ struct Model {
     long good[WHEEL_COUNT] = {}, step[WHEEL_COUNT] = {};
     std::size_t when[WHEEL_COUNT] = {}; // of the last good count
     double since_us[WHEEL_COUNT] = {}, speed[WHEEL_COUNT] = {}, current[WHEEL_COUNT] = {}, battery = 0, accel = 0, gyro = 0;
-    bool seen[WHEEL_COUNT] = {}, stepped[WHEEL_COUNT] = {};
+    bool seen[WHEEL_COUNT] = {}, stepped[WHEEL_COUNT] = {}, counted[WHEEL_COUNT] = {};
     double q = 2 * M_PI / 6000;
 
     explicit Model(const sense_config_t &of) : config(of) {}
@@ -192,6 +192,7 @@ struct Model {
         auto &p = place[i];
         const auto silent = static_cast<long>(p.size()) - 1 - static_cast<long>(when[i]) + n;
         since_us[i] += us;
+        counted[i] = here;
         if (here && (!seen[i] || silent > 1000)) { // it begins anew
             p.assign(SENSE_RING, said);            // as if it had always been there
             when[i] = SENSE_RING - 1, good[i] = said, step[i] = 0, speed[i] = 0, since_us[i] = 0;
