@@ -462,6 +462,35 @@ TEST(DopplerSpectrum, a_young_line_is_a_narrow_one_where_no_echo_is_narrow) {
         }
 }
 
+// What is beside a line's five bins, up to eight away, may be louder than the others by a sixteenth of the line, and by what noise spreads:
+// 13 of their means for all bins together. And it stands out by eight.
+TEST(DopplerSpectrum, a_line_has_a_quiet_ring) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int bin : {16, 17, 40, 100, 122, 125})
+        for (const double loud : {1e4, 1e6})
+            for (const double times : {0.9, 1.1}) {
+                Powers powers{};
+                for (double &power : powers) power = 500;
+                for (int j = -2; j <= 2; j++) powers[static_cast<std::size_t>(bin + j)] = j == 0 ? 1.5 * loud : loud;
+                const int from = std::max(8, bin - 8), to = std::min(FFT_BINS - 1, bin + 8), ring = to - from + 1 - 5;
+                for (int k = from; k <= to; k++)
+                    if (std::abs(k - bin) > 2) powers[static_cast<std::size_t>(k)] = 500 + times * (5.5 * loud / 16 + 13 * 500) / ring;
+                doppler_state_t state = with(powers);
+                state.weigh_young = true;
+                doppler_step(&config, &state, nullptr, 0);
+                EXPECT_EQ(state.young_bin > 0, times < 1) << bin << ' ' << loud;
+            }
+    for (const double loud : {3900.0, 4100.0}) {
+        Powers powers{};
+        for (double &power : powers) power = 500;
+        powers[50] = loud;
+        doppler_state_t state = with(powers);
+        state.weigh_young = true;
+        doppler_step(&config, &state, nullptr, 0);
+        EXPECT_EQ(state.young_bin, loud > 4000 ? 50 : 0);
+    }
+}
+
 TEST(DopplerSpectrum, just_a_third_of_all_is_not_more_than_half_of_the_others_and_a_relief_ends_with_its_values) {
     const doppler_config_t config = rover_config_default().doppler;
     doppler_state_t state = {};

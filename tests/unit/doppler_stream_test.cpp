@@ -330,4 +330,44 @@ TEST(DopplerStream, lines_are_looked_at_once_a_value_and_only_in_that_windows_po
     }
 }
 
+// However far off the rate is, and for however long: what is owed is held, not forgotten.
+TEST(DopplerStream, a_rate_that_is_far_off_is_refused_for_good) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int a_tick : {0, 1, 2, 3, 8, 11, 20, 64}) {
+        doppler_state_t state = {};
+        doppler_arrival_t arrival = {1, 1, 5};
+        doppler_missing(&config, &state, &arrival);
+        double owed = 0; // 5.12 a tick should come; a 512th is forgotten
+        for (int tick = 0; tick < 3000; tick++) {
+            arrival.sequence = state.next_sequence;
+            arrival.count = a_tick;
+            EXPECT_EQ(doppler_missing(&config, &state, &arrival), 0); // none is lost: they are numbered
+            owed = std::clamp((owed + 5.12 - a_tick) * (511.0 / 512), -256.0, 256.0);
+            EXPECT_NEAR(state.owed_q8 / 256.0, owed, 0.05 + 1e-2 * std::fabs(owed)) << a_tick << ' ' << tick; // 5.12 is 1310/256
+            if (tick > 200) {
+                EXPECT_GT(std::abs(state.owed_q8), 32 * 256) << a_tick;
+            }
+        }
+    }
+}
+
+// Five ticks' samples a call are rid of the line, 24 at least and 64 at most; none before the window is full, none twice.
+TEST(DopplerStream, a_line_is_taken_off_a_few_samples_a_call) {
+    for (const int per_tick_q8 : {300, 1311, 2000, 9000}) {
+        doppler_config_t config = rover_config_default().doppler;
+        config.per_tick_q8 = per_tick_q8;
+        doppler_state_t state = {};
+        state.full = true;
+        state.filled = 192;
+        const int some = std::clamp(5 * per_tick_q8 / 256, 24, 64);
+        int clean = 0;
+        for (int call = 0; call < 12; call++) {
+            doppler_step(&config, &state, nullptr, 0);
+            clean = std::min(192, clean + some);
+            EXPECT_EQ(state.clean, clean) << per_tick_q8 << ' ' << call;
+            EXPECT_EQ(state.tone.next, static_cast<std::uint32_t>(clean));
+        }
+    }
+}
+
 } // namespace
