@@ -33,39 +33,39 @@ struct Any : clutter::Random {
 
     // A past of a ring's length: an acceleration that wanders, and noise.
     ground_speed_state_t past(const ground_speed_config_t &config) {
-        ground_speed_state_t state;
-        ground_speed_reset(&config, &state);
+        ground_speed_state_t made;
+        ground_speed_reset(&config, &made);
         auto V = static_cast<uint32_t>(next()); // it may wrap anywhere
         const double noise = 3.5 * log_between(0.02, 3);
         double accel = between(-2, 2);
-        state.head = static_cast<int32_t>(next() % GROUND_SPEED_HISTORY);
+        made.head = static_cast<int32_t>(next() % GROUND_SPEED_HISTORY);
         for (int k = 0; k < GROUND_SPEED_HISTORY; ++k) {
             const double u = uniform() - 0.5, w = std::fmod(1021 * u, 0.5);
             accel += 0.5 * u - 0.02 * accel;
             V += static_cast<uint32_t>(static_cast<int32_t>((accel + noise * w) * 0.01 * 1048576));
-            state.integral_q20[(state.head + 1 + k) % GROUND_SPEED_HISTORY] = static_cast<int32_t>(V);
+            made.integral_q20[(made.head + 1 + k) % GROUND_SPEED_HISTORY] = static_cast<int32_t>(V);
         }
         const ground_speed_track_t best = track();
-        ground_speed_keep_best(&state, &best);
-        state.speed_noise_m2_s2 = narrow(log_between(4e-6, 4e-4));
-        state.wheel_m_s = narrow(between(-1, 1));
-        state.wheel_mean_m_s = narrow(wide(state.wheel_m_s) + between(-0.1, 0.1));
-        return state;
+        ground_speed_keep_best(&made, &best);
+        made.speed_noise_m2_s2 = narrow(log_between(4e-6, 4e-4));
+        made.wheel_m_s = narrow(between(-1, 1));
+        made.wheel_mean_m_s = narrow(wide(made.wheel_m_s) + between(-0.1, 0.1));
+        return made;
     }
 
     // And the last value, as it came.
-    void value(const ground_speed_config_t &config, ground_speed_state_t &state) {
-        state.value_heard_m_s = narrow(between(0.02, 1.5));
-        state.value_m_s = state.value_heard_m_s;
-        state.value_accel_m_s2 = narrow(between(-2, 2));
-        state.value_trust = narrow(one_in(2) ? 1 : log_between(1, 30));
-        state.value_noise_m2_s2 = narrow(log_between(3e-5, 1e-2));
-        state.value_tau_s = narrow(wide(config.window->tau_s) + between(0, 0.1));
-        state.value_change_m_s = narrow(between(-0.3, 0.3));
-        state.value_sign = narrow(either());
-        state.value_cost = narrow(between(-10, 5));
-        state.value_wheel_m_s = narrow(between(-1.2, 1.2));
-        state.value_parts = one_in(3);
+    void value(const ground_speed_config_t &config, ground_speed_state_t &made) {
+        made.value_heard_m_s = narrow(between(0.02, 1.5));
+        made.value_m_s = made.value_heard_m_s;
+        made.value_accel_m_s2 = narrow(between(-2, 2));
+        made.value_trust = narrow(one_in(2) ? 1 : log_between(1, 30));
+        made.value_noise_m2_s2 = narrow(log_between(3e-5, 1e-2));
+        made.value_tau_s = narrow(wide(config.window->tau_s) + between(0, 0.1));
+        made.value_change_m_s = narrow(between(-0.3, 0.3));
+        made.value_sign = narrow(either());
+        made.value_cost = narrow(between(-10, 5));
+        made.value_wheel_m_s = narrow(between(-1.2, 1.2));
+        made.value_parts = one_in(3);
     }
 };
 

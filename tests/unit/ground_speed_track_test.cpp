@@ -144,7 +144,7 @@ TEST(GroundSpeedTrack, noise_is_the_mean_square_of_bends_and_enters_by_an_eighth
 // (3) from its definition: w_j less V at the window's end, which lies between two ticks.
 TEST(GroundSpeedTrack, what_a_window_remembers_is_its_weighted_mean_of_the_past) {
     Any any{{6}};
-    for (const uint8_t radar : {0, 1, 2, 3}) {
+    for (const std::size_t radar : {0u, 1u, 2u, 3u}) {
         ground_speed_config_t config = ours();
         const doppler_template_t *beams[] = {&doppler_template_mdu1130, &doppler_template_dj_radar_2, &doppler_template_dj_radar_3,
                                              &doppler_template_drs1000};
