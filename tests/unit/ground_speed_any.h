@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
 
 extern "C" {
 #include "firmware/core/ground_speed_parts.h"
