@@ -491,6 +491,23 @@ TEST(DopplerSpectrum, a_line_has_a_quiet_ring) {
     }
 }
 
+// What lines leave is weighed in the same two parts as what there was: up to bin 95, and from 96 on, each by its mean.
+TEST(DopplerSpectrum, what_lines_leave_is_an_echo_beyond_the_band_from_three_times_the_bands_mean_on) {
+    for (const bool far : {false, true})
+        for (const double times : {0.99, 1.01}) {
+            Powers powers{};
+            for (std::size_t k = 0; k < FFT_BINS; k++) {
+                const bool in = k < static_cast<std::size_t>(end_of_band()), spare = k >= 96;
+                powers[k] = in ? 1e4 : spare == far ? 3e4 * times : far ? 5e3 : 1e4;
+            }
+            const int line = 60, width = 96 - end_of_band();
+            for (int k = end_of_band(); k < 96 && !far; k++) // what is taken is counted as nothing in the mean
+                if (std::abs(k - line) > 2) powers[static_cast<std::size_t>(k)] = 3e4 * times * width / (width - 5);
+            for (int j = -2; j <= 2; j++) powers[static_cast<std::size_t>(line + j)] = j == 0 ? 4e7 : 1e7;
+            EXPECT_EQ(look_outside(powers).outside_lines, times < 1) << far;
+        }
+}
+
 TEST(DopplerSpectrum, just_a_third_of_all_is_not_more_than_half_of_the_others_and_a_relief_ends_with_its_values) {
     const doppler_config_t config = rover_config_default().doppler;
     doppler_state_t state = {};

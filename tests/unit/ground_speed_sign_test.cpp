@@ -544,6 +544,16 @@ TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells)
         const double to_now = passed(state, 0, 2) + wide(state.value_change_m_s); // V from the window's middle to now
         EXPECT_NEAR(fixed_wrap_difference(state.integral_q20[state.head], middle) / 1048576.0, to_now, 2e-6);
         state.agile.q20 = middle - static_cast<int32_t>(moved * 1048576);
+        if (any.one_in(3)) { // just sure of its sign, or just not
+            ground_speed_track_t at = state.agile.at;
+            const double n = state.agile.ticks - 2;
+            ground_speed_move(&config, &at, narrow(moved), narrow(n * 0.01), narrow(n * wide(state.speed_noise_m2_s2)), config.agile_m2_s4);
+            const ground_speed_value_t value = ground_speed_value_for(&config, &state, &at, state.value_accel_m_s2 - at.bias_m_s2);
+            const double S = wide(at.p_vv) + wide(value.noise_m2_s2),
+                         v = any.either() * any.between(16, 21) * S / (4 * wide(value.speed_m_s));
+            state.agile.at.speed_m_s += narrow(v - wide(at.speed_m_s));
+            state.agile_sum = 25;
+        }
         const ground_speed_state_t was = state;
         const ground_speed_track_t best = ground_speed_best_of(&was);
         ground_speed_update_agile(&config, &state);

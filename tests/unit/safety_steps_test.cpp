@@ -247,13 +247,14 @@ TEST(SafetySteps, a_stall_lasts_a_second_and_each_bound_is_its_own) {
 }
 
 TEST(SafetySteps, a_battery_is_low_for_half_a_second_or_gone_for_thirty_milliseconds) {
-    const auto at = [](double volt, uint32_t fault) { return when([&](Rover &r) { r.input.battery_V = narrow(volt); }, fault); };
-    EXPECT_NEAR(at(5.39, FAULT_LOW_BATTERY), 51, 1);
-    EXPECT_EQ(at(5.41, FAULT_LOW_BATTERY), 0);
-    EXPECT_NEAR(at(4.33, FAULT_LOW_BATTERY), 51, 1);
-    EXPECT_EQ(at(4.31, FAULT_BROWN_OUT), 3);                                     // 0.8 of 5.4 V, more than two ticks
-    EXPECT_EQ(at(std::numeric_limits<double>::quiet_NaN(), FAULT_BROWN_OUT), 0); // a NaN is above every number
-    EXPECT_EQ(at(-std::numeric_limits<double>::quiet_NaN(), FAULT_BROWN_OUT), 3);
+    const auto at = [](float volt, uint32_t fault) { return when([&](Rover &r) { r.input.battery_V = volt; }, fault); };
+    EXPECT_NEAR(at(5.39f, FAULT_LOW_BATTERY), 51, 1);
+    EXPECT_EQ(at(5.41f, FAULT_LOW_BATTERY), 0);
+    EXPECT_NEAR(at(4.33f, FAULT_LOW_BATTERY), 51, 1);
+    EXPECT_EQ(at(4.31f, FAULT_BROWN_OUT), 3); // 0.8 of 5.4 V, more than two ticks
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(at(std::copysign(nan, 1.0f), FAULT_BROWN_OUT), 0);  // above every number,
+    EXPECT_EQ(at(std::copysign(nan, -1.0f), FAULT_BROWN_OUT), 3); // or below
 }
 
 // SPEED_DISAGREE over any speeds: the fastest wheel that turns this way, times 1.5, and 0.15 m/s, less three sigma.
