@@ -334,4 +334,33 @@ TEST(ControlTrace, a_limited_wheel_gets_the_duty_of_its_continuous_current_and_i
         }
 }
 
+// SPEED_BEYOND: three values in a row of more speed than the band holds; a tick without a value is none of them.
+TEST(ControlTrace, three_values_beyond_the_band_in_a_row_are_a_fault) {
+    const control_config_t config = rover_config_default();
+    for (const int between : {0, 1, 12}) {
+        control_state_t state;
+        control_reset(&config, &state);
+        command_t command = {};
+        command.mode = MODE_WHEEL_SPEED;
+        uint32_t tick = 0;
+        const auto value = [&](bool beyond) {
+            for (int k = 0; k < between; ++k) {
+                const sensor_frame_t frame = rolling_frame(tick++);
+                state.heard = {};
+                control_step(&config, &state, &command, &frame);
+            }
+            state.heard = {};
+            state.heard.fresh = true;
+            state.heard.trust = 1;
+            state.heard.beyond = beyond;
+            state.heard.speed_m_s = 0.2f;
+            const sensor_frame_t frame = rolling_frame(tick++);
+            return (control_step(&config, &state, &command, &frame).faults & FAULT_SPEED_BEYOND) != 0;
+        };
+        for (const bool beyond : {true, true, false, true, false, true, true}) EXPECT_FALSE(value(beyond)) << between;
+        EXPECT_TRUE(value(true));
+        EXPECT_TRUE(value(true));
+    }
+}
+
 } // namespace

@@ -533,4 +533,62 @@ TEST(DopplerSpectrum, just_a_third_of_all_is_not_more_than_half_of_the_others_an
     }
 }
 
+// Powers are reduced to 15 bits: nothing that is told of a spectrum may hang on how large it is.
+TEST(DopplerSpectrum, what_is_told_of_a_spectrum_is_the_same_at_any_power) {
+    for (const int low : {20, 40, 70}) {
+        Powers shape = echo(low, 0.6, 0);
+        const Powers other = echo(85, 0.4, 0);
+        for (std::size_t k = 0; k < FFT_BINS; k++) shape[k] += other[k];
+        double total = 0, least = 1e300, fit = 0;
+        for (int k = beam().first_bin; k < end_of_band(); k++) total += shape[static_cast<std::size_t>(k)];
+        for (int i = 0; i < beam().speeds; i++) {
+            double J = 0;
+            for (int k = 0; k < beam().bins; k++)
+                J += shape[static_cast<std::size_t>(beam().first_bin + k)] / total * beam().inverse[i * beam().bins + k];
+            if (J + beam().volume[i] < least) least = J + beam().volume[i], fit = J / beam().exact;
+        }
+        const doppler_output_t one = hear([&] {
+            Powers powers = shape;
+            for (double &power : powers) power *= 1e5;
+            return powers;
+        }());
+        for (int step = 0; step < 96; step++) { // a sixteenth of an octave each
+            Powers powers = shape;
+            for (double &power : powers) power *= 2e4 * std::exp2(step / 16.0);
+            const doppler_output_t out = hear(powers);
+            // each power is cut by one unit of 2^-8 of 64 to 127: 48 of them are 0.3 % of the sum at most, and what is cut is lost twice
+            EXPECT_NEAR(out.misfit / 0.3 + 0.8, std::fmax(fit, 0.8), 0.01 * fit) << low << ' ' << step;
+            EXPECT_NEAR(std::log(out.speed_m_s / one.speed_m_s), 0, 0.05 * wide(beam().log_step)) << low << ' ' << step;
+        }
+    }
+}
+
+// Half of what is heard is no rest, and a unit more is one.
+TEST(DopplerSpectrum, a_rest_is_more_than_half_of_what_is_heard) {
+    const doppler_config_t config = rover_config_default().doppler;
+    int heard = 0;
+    for (int speed = 20; speed < 85; speed++)
+        for (const std::uint64_t more : {0u, 1u, 2u}) {
+            doppler_state_t state = with(echo(speed, 2e4, 0));
+            for (std::uint64_t &power : state.power) power &= ~((std::uint64_t{1} << 22) - 1); // whole units of what counts
+            const int bin = static_cast<int>(std::max_element(state.power, state.power + FFT_BINS) - state.power);
+            if (bin < 8 || bin + 5 > end_of_band()) continue;
+            std::uint64_t others = 0, near = 0;
+            for (int k = beam().first_bin; k < end_of_band(); k++) (std::abs(k - bin) > 4 ? others : near) += state.power[k] >> 22;
+            const int beside =
+                bin + 6 < end_of_band() ? bin + 6 : bin - 6; // it takes what the others lack, or the loudest what the nine lack
+            if (near > others + more)
+                state.power[beside] += (near - others - more) << 22;
+            else
+                state.power[bin] += (others - near + more) << 22;
+            state.pending = true;
+            state.young_bin = bin;
+            const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+            if (out.quiet) continue;
+            EXPECT_EQ(out.rest, more > 0) << speed << ' ' << more;
+            heard++;
+        }
+    EXPECT_GT(heard, 10);
+}
+
 } // namespace

@@ -391,6 +391,21 @@ TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
     EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 50);
 }
 
+TEST(GroundSpeedTick, the_papers_standard_deviation_is_the_filters_alone) {
+    const ground_speed_config_t paper = rover_config_paper().ground_speed;
+    Any any{{41}};
+    for (int k = 0; k < 200; ++k) {
+        ground_speed_state_t state = calm(any);
+        state.std_m_s = 0; // it is made anew
+        state.alike_m_s = 0.2f;
+        state.apart_m2_s2 = 0.1f;
+        state.felt_m_s = 0;
+        const ground_speed_input_t input = same(state, 0.5);
+        const ground_speed_output_t out = ground_speed_step(&paper, &state, &input);
+        EXPECT_NEAR(out.std_m_s, std::sqrt(wide(state.p_vv)), eps);
+    }
+}
+
 // --- a value: the best track in its tick, the other sign in the next, the agile one in the third, the slide in the two after
 
 TEST(GroundSpeedTick, a_value_is_seen_by_one_track_a_tick) {
