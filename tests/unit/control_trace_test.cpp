@@ -363,4 +363,22 @@ TEST(ControlTrace, three_values_beyond_the_band_in_a_row_are_a_fault) {
     }
 }
 
+// At reset nothing is known of any wheel's slip: a standard deviation of 1, until its turn has come.
+TEST(ControlTrace, nothing_is_known_of_any_slip_before_its_first_look) {
+    const control_config_t config = rover_config_default();
+    control_state_t state;
+    control_reset(&config, &state);
+    for (const float std : state.slip_std) EXPECT_EQ(std, 1);
+    command_t command = {};
+    for (uint32_t tick = 0; tick < WHEEL_COUNT; ++tick) { // one wheel a tick, in their order
+        sensor_frame_t frame = rolling_frame(tick);
+        frame.present &= ~static_cast<uint32_t>(FRAME_RADAR);
+        const trace_t trace = control_step(&config, &state, &command, &frame);
+        for (uint32_t i = tick + 1; i < WHEEL_COUNT; ++i) {
+            EXPECT_EQ(trace.wheel[i].slip_std, 1);
+            EXPECT_FALSE(trace.wheel[i].slip_valid);
+        }
+    }
+}
+
 } // namespace
