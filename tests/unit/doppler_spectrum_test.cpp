@@ -557,7 +557,7 @@ TEST(DopplerSpectrum, what_is_told_of_a_spectrum_is_the_same_at_any_power) {
             for (double &power : powers) power *= 2e4 * std::exp2(step / 16.0);
             const doppler_output_t out = hear(powers);
             // each power is cut by one unit of 2^-8 of 64 to 127: 48 of them are 0.3 % of the sum at most, and what is cut is lost twice
-            EXPECT_NEAR(out.misfit / 0.3 + 0.8, std::fmax(fit, 0.8), 0.01 * fit) << low << ' ' << step;
+            EXPECT_NEAR(wide(out.misfit) / 0.3 + 0.8, std::fmax(fit, 0.8), 0.01 * fit) << low << ' ' << step;
             EXPECT_NEAR(std::log(out.speed_m_s / one.speed_m_s), 0, 0.05 * wide(beam().log_step)) << low << ' ' << step;
         }
     }
