@@ -1,5 +1,5 @@
-// Which sign, and which track: ground_speed_sign.c, _held.c, _slide.c, _jump.c against (7), (9), (12), (15), (17), (18) of ground_speed.h
-// in double, from any state. How a track moves and is corrected is held by ground_speed_track_test.
+// Which sign, and which track: ground_speed_sign.c, ground_speed_held.c, ground_speed_slide.c, ground_speed_jump.c against (7), (9), (12),
+// (15), (17), (18) of ground_speed.h in double, from any state. How a track moves and is corrected is held by ground_speed_track_test.
 #include "tests/unit/ground_speed_any.h"
 
 #include <gtest/gtest.h>

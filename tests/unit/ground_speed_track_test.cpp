@@ -1,5 +1,5 @@
-// One track [v, b] and what it is told, each part by itself: ground_speed_track.c, _value.c, _wheels.c, _gyro.c against the equations of
-// ground_speed.h in double, from any state.
+// One track [v, b] and what it is told, each part by itself: ground_speed_track.c, ground_speed_value.c, ground_speed_wheels.c,
+// ground_speed_gyro.c against the equations of ground_speed.h in double, from any state.
 #include "firmware/core/doppler_template.h"
 #include "tests/unit/ground_speed_any.h"
 
