@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace {
 
@@ -259,6 +261,139 @@ TEST_F(Circuit, any_number_is_accepted) {
             }
         }
     }
+}
+
+// (1) to (4) in double, of any measurements in any order: which speed each wheel is given, and what is named.
+struct CircuitModel {
+    struct Wheel {
+        bool refused = false;
+        int refused_ticks = 0, contradicts = 0, opens = 0;
+        double speed = 0, left_V = 0, current = 0, duty = 0;
+    } wheel[WHEEL_COUNT];
+    double supply_V = 0;
+    bool driven = false;
+    int turn = 0;
+    double margin = 1; // how near the nearest decision was to its limit, as a share
+
+    bool beyond(double a, double b) {
+        margin = std::fmin(margin, std::fabs(a - b) / (std::fabs(a) + std::fabs(b) + 1e-9));
+        return a > b;
+    }
+};
+
+TEST(CircuitSteps, any_measurements_are_judged_by_the_four_equations) {
+    const control_config_t whole = rover_config_default();
+    const circuit_config_t &config = whole.circuit;
+    uint64_t seed = 5;
+    const auto next = [&](unsigned n) { return static_cast<int>(((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 33) % n); };
+    const auto between = [&](double low, double high) { return low + (high - low) * next(1000000) / 1e6; };
+    int refused = 0, believed = 0, held = 0, contradicted = 0, long_refused = 0, broken = 0, without = 0;
+    for (int drive = 0; drive < 120; ++drive) {
+        CircuitModel model;
+        circuit_state_t state = {};
+        sense_state_t sense_state = {};
+        float duty[WHEEL_COUNT] = {};
+        double true_speed[WHEEL_COUNT] = {}, bias[WHEEL_COUNT] = {};
+        const bool steady = drive % 2 == 0, dead_band = drive % 8 == 3;
+        for (double &b : bias) b = next(3) == 0 ? between(-14, 14) : 0; // an encoder that lies for good
+        const int open = next(6), frozen = drive % 5 == 1 ? next(4) : -1;
+        for (int k = 0; k < 160; ++k) {
+            sense_output_t sense = {};
+            sense.usable = 0xfff;
+            for (uint32_t bit = 0; bit < 9; ++bit)
+                if (next(steady ? 200 : 25) == 0) sense.usable &= ~(1u << bit);
+            sense.battery_V = static_cast<float>(between(7.0, 7.4));
+            const bool driven = next(steady ? 100 : 12) != 0, look = next(5) != 0;
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                true_speed[i] += between(-0.3, 0.3);
+                if (k == 0 || next(60) == 0) duty[i] = static_cast<float>(between(-1, 1));
+                const double back = static_cast<double>(duty[i]) * supply_V - ke * true_speed[i];
+                const double V = dead_band && std::fabs(back) < 1 ? 0 : back;
+                sense.current_A[i] = i == open ? static_cast<float>(between(-0.03, 0.03)) : static_cast<float>(V / Ra * between(0.9, 1.1));
+                const double jump = next(12) == 0 ? between(-8, 8) : 0;
+                if (next(40) == 0) true_speed[i] += jump; // what a stone does, and the current tells
+                const double says = i == frozen ? 3.0 : true_speed[i] + bias[i] + (next(2) == 0 ? 0 : jump);
+                sense.speed_rad_s[i] = static_cast<float>(says);
+                if (next(8) == 0 || jump != 0) sense.jumped |= 1u << static_cast<unsigned>(i);
+            }
+            const sense_output_t was = sense;
+            const circuit_input_t input = {.duty = duty, .driven = driven, .look = look};
+            const circuit_output_t out = circuit_step(&config, &state, &input, &whole.sense, &sense_state, &sense);
+            uint32_t expect_refused = 0, expect_contradict = 0, expect_broken = 0;
+            double speed[WHEEL_COUNT];
+            model.margin = 1;
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                auto &wheel = model.wheel[i];
+                const uint32_t bit = 1u << static_cast<unsigned>(i);
+                const double says = static_cast<double>(was.speed_rad_s[i]), current = static_cast<double>(was.current_A[i]);
+                const double old = wheel.speed, now_V = static_cast<double>(duty[i]) * static_cast<double>(was.battery_V) - Ra * current;
+                const double then_V = wheel.duty * model.supply_V - Ra * wheel.current;
+                speed[i] = says;
+                if (((was.jumped & bit) != 0 || wheel.refused) && (was.usable & bit) != 0) {
+                    if (driven && model.driven && (was.usable & FRAME_CURRENT_0 << static_cast<unsigned>(i)) != 0) {
+                        const double expected = old + (now_V - (wheel.refused ? wheel.left_V : then_V)) / ke;       // (1)
+                        const bool explained = model.beyond(std::fabs(says - old) / 2, std::fabs(says - expected)); // at least half of it
+                        const bool possible = !model.beyond(std::fabs(says - expected), static_cast<double>(config.jump_rad_s)); // (4)
+                        wheel.refused = !explained && !possible;
+                        (wheel.refused ? refused : believed) += 1;
+                        wheel.refused_ticks = wheel.refused ? wheel.refused_ticks + 1 : 0;
+                        if (wheel.refused) wheel.left_V = now_V, speed[i] = expected;
+                    } else { // nothing to judge by: for three ticks at most
+                        const bool back = !model.beyond(std::fabs(says - old), static_cast<double>(config.jump_rad_s));
+                        wheel.refused = !back && wheel.refused_ticks < 3;
+                        wheel.refused_ticks = wheel.refused ? wheel.refused_ticks + 1 : 0;
+                        if (wheel.refused) wheel.left_V = then_V, speed[i] = old, held++;
+                    }
+                }
+                speed[i] = wheel.refused && speed[i] != says ? std::clamp(speed[i], -60.0, 60.0) : speed[i];
+                expect_refused |= wheel.refused ? bit : 0;
+                if (wheel.refused_ticks > 30) expect_contradict |= bit, long_refused++; // 0.3 s
+            }
+            const auto across = [&](int i) { return static_cast<double>(duty[i]) * static_cast<double>(was.battery_V) - ke * speed[i]; };
+            if (look) { // (2), (3) of one wheel
+                const int i = model.turn;
+                auto &wheel = model.wheel[i];
+                const auto u = static_cast<unsigned>(i);
+                const double current = static_cast<double>(was.current_A[i]), mine = std::fabs(across(i)), emf = std::fabs(ke * speed[i]);
+                const uint32_t needed = FRAME_BATTERY | FRAME_ENCODER_0 << u | FRAME_CURRENT_0 << u;
+                bool opens = false, contradicts = false;
+                if ((was.usable & needed) == needed && driven && model.driven) {
+                    bool others = false;
+                    for (int other = 0; other < WHEEL_COUNT; ++other)
+                        others = others || (other != i && (was.usable & FRAME_CURRENT_0 << static_cast<unsigned>(other)) != 0 &&
+                                            model.beyond(std::fabs(static_cast<double>(was.current_A[other])), 2 * 0.02 * 7.2 / Ra) &&
+                                            model.beyond(mine, std::fabs(across(other))));
+                    const double over = mine - 0.1 * emf;
+                    opens = model.beyond(0.02 * 7.2 / Ra, std::fabs(current)) && model.beyond(over, 0.07 * 7.2) &&
+                            (model.beyond(over, 0.22 * 7.2) || others);
+                    contradicts = !opens && model.beyond(std::fabs(across(i) - Ra * current),
+                                                         0.22 * 7.2 + 0.35 * std::fabs(Ra * current) + 0.25 * emf);
+                } else {
+                    without++;
+                }
+                wheel.opens = opens ? wheel.opens + 1 : 0;
+                wheel.contradicts = contradicts ? wheel.contradicts + 1 : 0;
+                if (wheel.opens >= 6) expect_broken |= 1u << u, broken++;
+                if (wheel.contradicts >= 8) expect_contradict |= 1u << u, contradicted++;
+                model.turn = (i + 1) % WHEEL_COUNT;
+            }
+            if (model.margin < 1e-4) break; // either is right, and what follows hangs on it
+            ASSERT_EQ(out.refused, expect_refused) << drive << ' ' << k;
+            ASSERT_EQ(out.contradict, expect_contradict) << drive << ' ' << k;
+            ASSERT_EQ(out.broken, expect_broken) << drive << ' ' << k;
+            for (int i = 0; i < WHEEL_COUNT; ++i) {
+                auto &wheel = model.wheel[i];
+                ASSERT_NEAR(sense.speed_rad_s[i], speed[i], 1e-3) << drive << ' ' << k << ' ' << i;
+                wheel.speed = static_cast<double>(sense.speed_rad_s[i]);
+                wheel.current = static_cast<double>(was.current_A[i]);
+                wheel.duty = static_cast<double>(duty[i]);
+            }
+            model.supply_V = static_cast<double>(was.battery_V);
+            model.driven = driven;
+        }
+    }
+    EXPECT_GT(std::min({refused, believed, held, contradicted, long_refused, broken, without}), 20)
+        << refused << ' ' << believed << ' ' << held << ' ' << contradicted << ' ' << long_refused << ' ' << broken << ' ' << without;
 }
 
 } // namespace

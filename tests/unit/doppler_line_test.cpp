@@ -188,4 +188,137 @@ TEST(DopplerLine, is_bounded_for_any_samples) {
     }
 }
 
+// (1), (2) and (3) in double, block by block: what is kept of each, what is made of them in every fourth block from the 16th on, four cells
+// a call, and when a line is one. Lines that begin and end, noise, skipped samples, other bins, a count of samples that wraps.
+TEST(DopplerLine, every_block_every_cell_and_every_verdict_is_its_equation) {
+    clutter::Random random{23};
+    int thoughts = 0, found = 0, ended = 0, full = 0, young = 0;
+    for (int drive = 0; drive < 24; ++drive) {
+        doppler_line_t line = {};
+        line.next = drive % 3 == 0 ? UINT32_MAX - 1500 : 0;
+        std::uint32_t bin = 10 + static_cast<std::uint32_t>(random.next() % 100);
+        doppler_line_suggest(&line, bin);
+        EXPECT_EQ(line.bin, bin);
+        const double at = bin + (drive % 4 == 0 ? 0.4 : random.uniform() - 0.5), loud = drive % 6 == 5 ? 0 : 600 + 3000 * random.uniform();
+        const double noise = 300 + 1500 * random.uniform(), mean = 200 * random.uniform();
+        std::vector<std::array<double, 2>> blocks; // of an unbroken stretch
+        std::array<double, 2> sum = {};
+        bool was_found = false, done = false;
+        for (int k = 0; k < 64 * 60 && !done; ++k) {
+            const bool plays = k < 64 * 44;
+            const double n = line.next; // modulo 2^32, of which all periods are parts
+            const double x = mean + (plays ? loud * std::cos(2 * pi * std::fmod(at * n / 256, 1.0) + 0.5) : 0) + noise * random.normal();
+            auto sample = static_cast<std::int16_t>(std::lround(std::clamp(x, -16000.0, 16000.0)));
+            const double heard = sample - std::floor(mean);
+            if (line.found) { // what has been taken off is not of this test: as if it had not been found
+                line.found = false;
+                was_found = true;
+            }
+            const double phase = 2 * pi * std::fmod(bin * n, 256.0) / 256;
+            sum[0] += heard * std::cos(phase) / 64, sum[1] -= heard * std::sin(phase) / 64;
+            const doppler_line_span_t span = {.count = 1, .mean = static_cast<std::int32_t>(mean), .low = -16384, .high = 16352};
+            std::int32_t total = 0;
+            const std::uint32_t h = line.next / 64 % 32, thought = line.thinks;
+            doppler_line_take(&line, &span, &sample, &total);
+            EXPECT_EQ(total, 0);
+            if (line.next % 64 != 0) continue;
+            blocks.push_back(sum);
+            sum = {};
+            if (blocks.size() > 32) blocks.erase(blocks.begin());
+            const auto N = static_cast<double>(blocks.size());
+            // a product is cut to 2^-15 of it, at 64 samples one unit on the mean; the cosine is a table's
+            ASSERT_NEAR(line.past_re[h], blocks.back()[0], 2.5) << drive << ' ' << k;
+            ASSERT_NEAR(line.past_im[h], blocks.back()[1], 2.5);
+            ASSERT_EQ(line.blocks, static_cast<std::int32_t>(blocks.size()));
+            EXPECT_EQ(line.re, 0);
+            EXPECT_EQ(line.im, 0);
+            EXPECT_EQ(line.thinks, thought != 0 ? thought : blocks.size() >= 16 && h % 4 == 0 ? 1u : 0u) << h;
+            if (line.thinks == 0) {
+                EXPECT_FALSE(doppler_line_think(&line));
+                continue;
+            }
+            const std::uint32_t first = line.next / 64 - static_cast<std::uint32_t>(blocks.size());
+            const auto of = [&](double u) { // |S|^2 of (2), from the blocks as they are kept
+                double re = 0, im = 0;
+                for (std::uint32_t j = 0; j < blocks.size(); ++j) {
+                    const double c = std::cos(2 * pi * std::fmod(u * (first + j), 1.0)),
+                                 s = std::sin(2 * pi * std::fmod(u * (first + j), 1.0));
+                    const double a = line.past_re[(first + j) % 32], b = line.past_im[(first + j) % 32];
+                    re += a * c + b * s, im += b * c - a * s;
+                }
+                return std::array<double, 3>{re, im, re * re + im * im};
+            };
+            double power = 0, most = 0;
+            for (std::uint32_t j = 0; j < blocks.size(); ++j)
+                power += std::pow(line.past_re[(first + j) % 32], 2) + std::pow(line.past_im[(first + j) % 32], 2);
+            for (std::uint32_t c = 0; c < 32; c += 4) EXPECT_TRUE(doppler_line_think(&line)); // four a call
+            for (std::uint32_t c = 0; c < 32; ++c) {
+                const double S = of(c / 32.0)[2];
+                // both parts of each of N terms are cut down by one unit at most, its table by 2^-15
+                EXPECT_NEAR(line.cell[c], S / 4096, (2 * std::sqrt(S) * (1.42 * N + 1e-4 * std::sqrt(N * power)) + 2 * N * N) / 4096 + 1)
+                    << c;
+                most = std::fmax(most, S);
+            }
+            EXPECT_EQ(line.thinks, 33u);
+            EXPECT_TRUE(doppler_line_think(&line)); // its place
+            const auto S = of(line.place / 4294967296.0);
+            EXPECT_GE(S[2], 0.97 * most); // no cell is better: the parabola may miss the top by a thirtieth of a cell
+            EXPECT_EQ(line.place % 64, 0u);
+            line.found = was_found;
+            EXPECT_TRUE(doppler_line_think(&line));
+            EXPECT_EQ(line.thinks, 0u);
+            const double share = S[2] / (N * power); // (3)
+            double last_re = 0, last_im = 0;
+            const double u = line.place / 4294967296.0;
+            for (std::uint32_t j = static_cast<std::uint32_t>(blocks.size()) - 8; j < blocks.size(); ++j) { // a second
+                const double c = std::cos(2 * pi * std::fmod(u * (first + j), 1.0)), s = std::sin(2 * pi * std::fmod(u * (first + j), 1.0));
+                const double a = line.past_re[(first + j) % 32], b = line.past_im[(first + j) % 32];
+                last_re += a * c + b * s, last_im += b * c - a * s;
+            }
+            const double goes = (last_re * S[0] + last_im * S[1]) / (S[2] * 8 / N), least = was_found ? 0.25 : 0.5;
+            thoughts++, full += N > 31 ? 1 : 0, young += N < 32 ? 1 : 0;
+            if (std::fabs(share - least) > 0.02 && std::fabs(goes - 0.25) > 0.05) {
+                EXPECT_EQ(line.found, share > least && goes > 0.25) << drive << ' ' << k << ' ' << share << ' ' << goes;
+                found += line.found ? 1 : 0, ended += was_found && !line.found ? 1 : 0;
+            }
+            const double aside = static_cast<std::int32_t>(line.place) / 4294967296.0; // (4): u from -1/2 to 1/2
+            EXPECT_NEAR(std::remainder(line.turn / 4294967296.0 - (bin / 256.0 + aside / 64), 1.0), 0, 1e-9);
+            double d_re = 0, d_im = 0;
+            for (int m = 0; m < 64; ++m) d_re += std::cos(2 * pi * aside * m / 64) / 64, d_im += std::sin(2 * pi * aside * m / 64) / 64;
+            const double scale = 2 / (N * (d_re * d_re + d_im * d_im)); // a = 2 S/(N D)
+            const double a_re = scale * (S[0] * d_re + S[1] * d_im), a_im = scale * (S[1] * d_re - S[0] * d_im);
+            // D's terms are the middles of four, half a sample late: 2 pi 0.5 0.5/64 rad at the edge; its table is up to 2 pi/256 early
+            EXPECT_NEAR(line.a_re, a_re, 0.05 * std::hypot(a_re, a_im) + 8);
+            EXPECT_NEAR(line.a_im, a_im, 0.05 * std::hypot(a_re, a_im) + 8);
+            was_found = line.found;
+            line.found = false;
+            if (drive % 5 == 2 && k > 64 * 24) { // what breaks a block is a new start
+                doppler_line_skip(&line, 64);
+                blocks.clear();
+            } else if (drive % 5 == 4 && k > 64 * 30) {
+                doppler_line_suggest(&line, bin + 1); // the same, give or take
+                EXPECT_EQ(line.bin, bin);
+                doppler_line_suggest(&line, bin - 1);
+                EXPECT_EQ(line.bin, bin);
+                EXPECT_EQ(line.blocks, static_cast<std::int32_t>(blocks.size()));
+                line.found = true;
+                doppler_line_suggest(&line, bin + 9); // it is found: nothing else is looked at
+                EXPECT_EQ(line.bin, bin);
+                line.found = false;
+                line.re = line.im = 99;
+                line.thinks = 3;
+                doppler_line_suggest(&line, bin + 2);
+                EXPECT_EQ(line.bin, bin + 2);
+                EXPECT_EQ(line.re, 0);
+                EXPECT_EQ(line.im, 0);
+                EXPECT_EQ(line.blocks, 0);
+                EXPECT_EQ(line.thinks, 0u);
+                done = true;
+            }
+        }
+    }
+    EXPECT_GT(std::min({thoughts, found, full, young}), 40);
+    EXPECT_GT(ended, 3);
+}
+
 } // namespace

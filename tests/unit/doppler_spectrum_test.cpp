@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 namespace {
+
+double wide(float x) { return static_cast<double>(x); }
 
 constexpr double unit = 268435456.0; // 2^28
 using Powers = std::array<double, FFT_BINS>;
@@ -318,6 +321,274 @@ TEST(DopplerSpectrum, what_was_relieved_keeps_its_kind_and_old_lines_are_forgott
     state.due = 1;
     doppler_step(&config, &state, nullptr, 0);
     for (const std::uint32_t word : state.line) EXPECT_EQ(word, 0u);
+}
+
+// The search begins at every fourth grid speed, or at the largest power: either must reach both ends, where there is no parabola.
+TEST(DopplerSpectrum, both_ends_of_every_grid_are_heard) {
+    for (const doppler_template_t *radar :
+         {&doppler_template_mdu1130, &doppler_template_dj_radar_2, &doppler_template_dj_radar_3, &doppler_template_drs1000}) {
+        doppler_config_t config = rover_config_default().doppler;
+        config.beam = radar;
+        for (const bool from_peak : {radar->from_peak, false, true}) {
+            for (const int end : {0, 1, 2, 3, 5, 6, radar->speeds - 4, radar->speeds - 3, radar->speeds - 2, radar->speeds - 1}) {
+                doppler_template_t own = *radar; // whichever search finds it
+                config.beam = &own;
+                doppler_state_t state = {};
+                state.full = true;
+                state.pending = true;
+                double least = 1e300;
+                int nearest = 0;
+                std::vector<double> powers;
+                for (int k = 0; k < radar->bins; k++) powers.push_back(1.0 / (radar->inverse[end * radar->bins + k] + 1e-3));
+                double total = 0, most = 0;
+                int peak = 0;
+                for (const double power : powers) total += power;
+                for (int k = 0; k < radar->bins; k++) {
+                    state.power[radar->first_bin + k] =
+                        static_cast<std::uint64_t>(powers[static_cast<std::size_t>(k)] / total * 1e6 * unit);
+                    if (powers[static_cast<std::size_t>(k)] > most) most = powers[static_cast<std::size_t>(k)], peak = k;
+                }
+                own.from_peak = from_peak;
+                if (from_peak && !radar->from_peak)
+                    own.start[peak] = static_cast<std::int8_t>(end < 6 ? end - 3 : end + 3); // beyond the grid, too
+                for (int i = 0; i < radar->speeds; i++) {
+                    double J = radar->volume[i];
+                    for (int k = 0; k < radar->bins; k++)
+                        J += powers[static_cast<std::size_t>(k)] / total * radar->inverse[i * radar->bins + k];
+                    if (J < least) least = J, nearest = i;
+                }
+                const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+                const double steps = radar->line ? (wide(out.speed_m_s) - wide(radar->speed_m_s[nearest])) / wide(radar->log_step)
+                                                 : std::log(wide(out.speed_m_s) / wide(radar->speed_m_s[nearest])) / wide(radar->log_step);
+                if (radar->from_peak && !from_peak) continue; // narrower than four steps: that search misses them
+                EXPECT_NEAR(steps, 0, nearest == 0 || nearest == radar->speeds - 1 ? 1e-3 : 0.55) << end << ' ' << from_peak;
+            }
+        }
+    }
+}
+
+// Of a window of half the length, whose samples stand twice, the bins above the band hold images: they tell of nothing.
+TEST(DopplerSpectrum, a_halved_window_knows_nothing_beyond_its_band) {
+    const doppler_config_t config = rover_config_default().doppler;
+    Powers powers = echo(beam().speeds - 1, 2e4, 0);
+    for (int k = end_of_band(); k < FFT_BINS; k++) powers[static_cast<std::size_t>(k)] = 1e5;
+    for (const bool halved : {true, false}) {
+        doppler_state_t state = with(powers);
+        state.pending = true;
+        state.halved = halved;
+        const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+        EXPECT_EQ(out.beyond, !halved);
+        if (halved) {
+            EXPECT_EQ(out.trust, 1);
+            EXPECT_NEAR(out.speed_m_s / (2 * beam().speed_m_s[beam().speeds - 1]), 1, 1e-3);
+        }
+    }
+}
+
+// What a line leaves that was taken off, an eighth of it, or a line that is not known well enough: no value, where it is half of what is
+// heard, within four bins of its place.
+TEST(DopplerSpectrum, the_rest_of_a_line_is_no_value) {
+    const doppler_config_t config = rover_config_default().doppler;
+    std::uint32_t random = 7;
+    const auto uniform = [&] { return (random = random * 1664525u + 1013904223u) / 4294967296.0; };
+    int rests = 0, values = 0, weak = 0;
+    for (int round = 0; round < 600; round++) {
+        const int bin = 1 + static_cast<int>(uniform() * 60);
+        Powers powers{};
+        for (std::size_t k = 0; k < FFT_BINS; k++) powers[k] = k < static_cast<std::size_t>(end_of_band()) ? 2e4 * uniform() : 0;
+        const double boost = std::exp(4 * uniform() - 1);
+        for (int k = std::max(0, bin - 4); k <= bin + 4; k++)
+            powers[static_cast<std::size_t>(k)] *= k == bin - 4 || k == bin + 4 ? 3 * boost : boost;
+        doppler_state_t state = with(powers);
+        state.pending = true;
+        double near = 0, energy = 0;
+        for (int k = std::max(0, bin - 4); k <= bin + 4; k++) near += powers[static_cast<std::size_t>(k)];
+        for (int k = beam().first_bin; k < end_of_band(); k++) energy += powers[static_cast<std::size_t>(k)];
+        if (std::fabs(2 * near / energy - 1) < 1e-3) continue;
+        const bool known = round % 2 == 0;
+        const double loud = 0.6 + uniform(); // of an eighth of its power: a^2/2 counts^2, of which each is 12288 * 2^28 in all bins
+        if (known) {
+            state.tone.found = true;
+            state.tone.turn =
+                (static_cast<std::uint32_t>(bin) << 24) + (round % 4 == 0 ? 0x600000u : 0u) - (round % 4 == 2 ? 0x700000u : 0u);
+            const double a = std::sqrt(2 * 8 * loud * energy / 12288) * 32;
+            state.tone.a_re = static_cast<std::int32_t>(a * 0.6);
+            state.tone.a_im = static_cast<std::int32_t>(a * -0.8);
+            if (std::fabs(loud - 1) < 2e-2) continue;
+        } else {
+            state.young_bin = bin;
+        }
+        const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+        if (out.quiet) {
+            EXPECT_FALSE(out.rest);
+            continue;
+        }
+        const bool rest = 2 * near > energy && (!known || loud > 1);
+        EXPECT_EQ(out.rest, rest) << bin << ' ' << known << ' ' << 2 * near / energy << ' ' << loud;
+        EXPECT_EQ(out.spoilt, rest || out.strange);
+        (rest ? rests : values) += 1;
+        weak += known && loud < 1 && 2 * near > energy ? 1 : 0;
+    }
+    EXPECT_GT(std::min({rests, values, weak}), 20);
+}
+
+// Until the search inside the echo has its 32 blocks and four more, what is as narrow as a line at 32 Hz or more is one.
+TEST(DopplerSpectrum, a_young_line_is_a_narrow_one_where_no_echo_is_narrow) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int bin : {12, 15, 16, 17, 30, 70, 100, 125})
+        for (const bool narrow : {true, false}) {
+            Powers powers{};
+            for (double &power : powers) power = 500;
+            add_line(powers, bin, 1e5);
+            for (int j = -8; j <= 8 && !narrow; j++)
+                if (bin + j < FFT_BINS) powers[static_cast<std::size_t>(bin + j)] += 3e4;
+            doppler_state_t state = with(powers);
+            state.weigh_young = true;
+            state.young_bin = 99;
+            doppler_step(&config, &state, nullptr, 0);
+            EXPECT_FALSE(state.weigh_young);
+            EXPECT_EQ(state.young_bin, narrow && bin >= 16 ? bin : 0) << bin;
+        }
+    for (const std::uint32_t next : {0u, 36u * 64u - 1u, 36u * 64u, 100000u})
+        for (const bool halved : {false, true}) {
+            doppler_state_t state = with(echo(60, 2e4, 10));
+            state.pending = true;
+            state.halved = halved;
+            state.tone.next = next;
+            state.young_bin = 20;
+            doppler_step(&config, &state, nullptr, 0);
+            EXPECT_EQ(state.weigh_young, next < 36 * 64 && !halved) << next; // asked anew at every value
+            EXPECT_EQ(state.young_bin, state.weigh_young ? 20 : 0);
+        }
+}
+
+// What is beside a line's five bins, up to eight away, may be louder than the others by a sixteenth of the line, and by what noise spreads:
+// 13 of their means for all bins together. And it stands out by eight.
+TEST(DopplerSpectrum, a_line_has_a_quiet_ring) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int bin : {16, 17, 40, 100, 122, 125})
+        for (const double loud : {1e4, 1e6})
+            for (const double times : {0.9, 1.1}) {
+                Powers powers{};
+                for (double &power : powers) power = 500;
+                for (int j = -2; j <= 2; j++) powers[static_cast<std::size_t>(bin + j)] = j == 0 ? 1.5 * loud : loud;
+                const int from = std::max(8, bin - 8), to = std::min(FFT_BINS - 1, bin + 8), ring = to - from + 1 - 5;
+                for (int k = from; k <= to; k++)
+                    if (std::abs(k - bin) > 2) powers[static_cast<std::size_t>(k)] = 500 + times * (5.5 * loud / 16 + 13 * 500) / ring;
+                doppler_state_t state = with(powers);
+                state.weigh_young = true;
+                doppler_step(&config, &state, nullptr, 0);
+                EXPECT_EQ(state.young_bin > 0, times < 1) << bin << ' ' << loud;
+            }
+    for (const double loud : {3900.0, 4100.0}) {
+        Powers powers{};
+        for (double &power : powers) power = 500;
+        powers[50] = loud;
+        doppler_state_t state = with(powers);
+        state.weigh_young = true;
+        doppler_step(&config, &state, nullptr, 0);
+        EXPECT_EQ(state.young_bin, loud > 4000 ? 50 : 0);
+    }
+}
+
+// What lines leave is weighed in the same two parts as what there was: up to bin 95, and from 96 on, each by its mean.
+TEST(DopplerSpectrum, what_lines_leave_is_an_echo_beyond_the_band_from_three_times_the_bands_mean_on) {
+    for (const bool far : {false, true})
+        for (const double times : {0.99, 1.01}) {
+            Powers powers{};
+            for (std::size_t k = 0; k < FFT_BINS; k++) {
+                const bool in = k < static_cast<std::size_t>(end_of_band()), spare = k >= 96;
+                powers[k] = in ? 1e4 : spare == far ? 3e4 * times : far ? 5e3 : 1e4;
+            }
+            const int line = 60, width = 96 - end_of_band();
+            for (int k = end_of_band(); k < 96 && !far; k++) // what is taken is counted as nothing in the mean
+                if (std::abs(k - line) > 2) powers[static_cast<std::size_t>(k)] = 3e4 * times * width / (width - 5);
+            for (int j = -2; j <= 2; j++) powers[static_cast<std::size_t>(line + j)] = j == 0 ? 4e7 : 1e7;
+            EXPECT_EQ(look_outside(powers).outside_lines, times < 1) << far;
+        }
+}
+
+TEST(DopplerSpectrum, just_a_third_of_all_is_not_more_than_half_of_the_others_and_a_relief_ends_with_its_values) {
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = {};
+    state.full = true;
+    const int others = end_of_band() - 5;
+    for (int k = 0; k < FFT_BINS; k++) state.power[k] = static_cast<std::uint64_t>((k == 20 ? 50.0 * others - 400 : 100.0) * unit);
+    state.line[0] = 1u << 20;
+    state.weigh_lines = true;
+    doppler_step(&config, &state, nullptr, 0);
+    EXPECT_FALSE(state.weigh_lines);
+    EXPECT_FALSE(state.relief_masked);
+    state.power[20] += 1024;
+    state.weigh_lines = true;
+    doppler_step(&config, &state, nullptr, 0);
+    EXPECT_TRUE(state.relief_masked);
+    EXPECT_GE(state.relief * config.hop, FFT_LENGTH); // a window that is rid of the line wholly has come by then
+    for (int left = state.relief - 1; left >= -1; left--) {
+        state.pending = true;
+        state.weigh_lines = false;
+        doppler_step(&config, &state, nullptr, 0);
+        EXPECT_EQ(state.relief, std::max(0, left));
+        EXPECT_EQ(state.relief_masked, left > 0);
+    }
+}
+
+// Powers are reduced to 15 bits: nothing that is told of a spectrum may hang on how large it is.
+TEST(DopplerSpectrum, what_is_told_of_a_spectrum_is_the_same_at_any_power) {
+    for (const int low : {20, 40, 70}) {
+        Powers shape = echo(low, 0.6, 0);
+        const Powers other = echo(85, 0.4, 0);
+        for (std::size_t k = 0; k < FFT_BINS; k++) shape[k] += other[k];
+        double total = 0, least = 1e300, fit = 0;
+        for (int k = beam().first_bin; k < end_of_band(); k++) total += shape[static_cast<std::size_t>(k)];
+        for (int i = 0; i < beam().speeds; i++) {
+            double J = 0;
+            for (int k = 0; k < beam().bins; k++)
+                J += shape[static_cast<std::size_t>(beam().first_bin + k)] / total * beam().inverse[i * beam().bins + k];
+            if (J + beam().volume[i] < least) least = J + beam().volume[i], fit = J / beam().exact;
+        }
+        const doppler_output_t one = hear([&] {
+            Powers powers = shape;
+            for (double &power : powers) power *= 1e5;
+            return powers;
+        }());
+        for (int step = 0; step < 96; step++) { // a sixteenth of an octave each
+            Powers powers = shape;
+            for (double &power : powers) power *= 2e4 * std::exp2(step / 16.0);
+            const doppler_output_t out = hear(powers);
+            // each power is cut by one unit of 2^-8 of 64 to 127: 48 of them are 0.3 % of the sum at most, and what is cut is lost twice
+            EXPECT_NEAR(wide(out.misfit) / 0.3 + 0.8, std::fmax(fit, 0.8), 0.01 * fit) << low << ' ' << step;
+            EXPECT_NEAR(std::log(out.speed_m_s / one.speed_m_s), 0, 0.05 * wide(beam().log_step)) << low << ' ' << step;
+        }
+    }
+}
+
+// Half of what is heard is no rest, and a unit more is one.
+TEST(DopplerSpectrum, a_rest_is_more_than_half_of_what_is_heard) {
+    const doppler_config_t config = rover_config_default().doppler;
+    int heard = 0;
+    for (int speed = 20; speed < 85; speed++)
+        for (const std::uint64_t more : {0u, 1u, 2u}) {
+            doppler_state_t state = with(echo(speed, 2e4, 0));
+            for (std::uint64_t &power : state.power) power &= ~((std::uint64_t{1} << 22) - 1); // whole units of what counts
+            const int bin = static_cast<int>(std::max_element(state.power, state.power + FFT_BINS) - state.power);
+            if (bin < 8 || bin + 5 > end_of_band()) continue;
+            std::uint64_t others = 0, near = 0;
+            for (int k = beam().first_bin; k < end_of_band(); k++) (std::abs(k - bin) > 4 ? others : near) += state.power[k] >> 22;
+            const int beside =
+                bin + 6 < end_of_band() ? bin + 6 : bin - 6; // it takes what the others lack, or the loudest what the nine lack
+            if (near > others + more)
+                state.power[beside] += (near - others - more) << 22;
+            else
+                state.power[bin] += (others - near + more) << 22;
+            state.pending = true;
+            state.young_bin = bin;
+            const doppler_output_t out = doppler_step(&config, &state, nullptr, 0);
+            if (out.quiet) continue;
+            EXPECT_EQ(out.rest, more > 0) << speed << ' ' << more;
+            heard++;
+        }
+    EXPECT_GT(heard, 10);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -267,6 +268,105 @@ TEST(DopplerStream, the_sum_of_the_window_stays_that_of_its_samples) {
             ASSERT_EQ(state.sum, sum) << "hop " << hop << " tick " << tick;
         }
         EXPECT_GT(values, 5) << hop;
+    }
+}
+
+// The transform of the early windows and of the full one is that of their samples about their own mean: 128 samples each taken twice, 192
+// with their mirror image, 256. A mean beyond 384 counts is held there.
+TEST(DopplerStream, every_window_is_heard_about_the_mean_of_what_it_holds) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int level : {512, 700, 300, 1000, 3}) {
+        doppler_state_t state = {};
+        std::vector<std::int16_t> samples;
+        std::uint32_t random = 5;
+        int heard = 0;
+        while (samples.size() < 256) {
+            random = random * 1664525u + 1013904223u;
+            const int count =
+                std::min(1023, std::max(0, level + static_cast<int>(random >> 24) % 41 - 20 + (samples.size() < 100 ? 15 : 0)));
+            const auto sample = static_cast<std::uint16_t>(count);
+            doppler_step(&config, &state, &sample, 1);
+            samples.push_back(static_cast<std::int16_t>((count - config.offset_count) * 32));
+            const std::size_t n = samples.size();
+            if (n != 128 && n != 192 && n != 256) continue;
+            std::int16_t window[FFT_LENGTH] = {};
+            long sum = 0;
+            for (std::size_t i = 0; i < FFT_LENGTH; i++)
+                window[i] = n == 128 ? samples[i / 2] : i < n ? samples[i] : samples[2 * n - 1 - i];
+            for (const std::int16_t value : samples) sum += value;
+            const long mean = std::min(384l * 32, std::max(-384l * 32, sum / static_cast<long>(n)));
+            std::uint64_t power[FFT_BINS];
+            fft_power_about(window, static_cast<std::int32_t>(mean), power);
+            for (int k = 0; k < FFT_BINS; k++) ASSERT_EQ(state.power[k], power[k]) << n << ' ' << level << ' ' << k;
+            EXPECT_TRUE(state.pending);
+            EXPECT_EQ(state.halved, n == 128);
+            heard++;
+        }
+        EXPECT_EQ(heard, 3);
+    }
+}
+
+// Lines are looked at once a value of a full window, four calls after it, unless the next window's powers are there first.
+TEST(DopplerStream, lines_are_looked_at_once_a_value_and_only_in_that_windows_powers) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int next : {1, 2, 3, 4, 5, 9}) { // the call in which the next window is full
+        doppler_state_t state = {};
+        std::uint32_t random = 3;
+        std::vector<std::uint16_t> samples;
+        for (int i = 0; i < 256 + 64; i++)
+            samples.push_back(static_cast<std::uint16_t>(500 + ((random = random * 1664525u + 1013904223u) >> 27)));
+        doppler_step(&config, &state, samples.data(), 256);
+        ASSERT_TRUE(state.full);
+        ASSERT_TRUE(doppler_step(&config, &state, nullptr, 0).fresh);
+        for (int call = 1; call <= 12; call++) {
+            EXPECT_EQ(state.leveled, call > 4 && next > 3) << next << ' ' << call;
+            if (call == next) {
+                doppler_step(&config, &state, samples.data() + 256, 64);
+                state.pending = false; // its own value would have a look of its own
+            } else {
+                doppler_step(&config, &state, nullptr, 0);
+            }
+        }
+    }
+}
+
+// However far off the rate is, and for however long: what is owed is held, not forgotten.
+TEST(DopplerStream, a_rate_that_is_far_off_is_refused_for_good) {
+    const doppler_config_t config = rover_config_default().doppler;
+    for (const int a_tick : {0, 1, 2, 3, 8, 11, 20, 64}) {
+        doppler_state_t state = {};
+        doppler_arrival_t arrival = {1, 1, 5};
+        doppler_missing(&config, &state, &arrival);
+        double owed = 0; // 5.12 a tick should come; a 512th is forgotten
+        for (int tick = 0; tick < 3000; tick++) {
+            arrival.sequence = state.next_sequence;
+            arrival.count = a_tick;
+            EXPECT_EQ(doppler_missing(&config, &state, &arrival), 0); // none is lost: they are numbered
+            owed = std::clamp((owed + 5.12 - a_tick) * (511.0 / 512), -256.0, 256.0);
+            EXPECT_NEAR(state.owed_q8 / 256.0, owed, 0.05 + 1e-2 * std::fabs(owed)) << a_tick << ' ' << tick; // 5.12 is 1310/256
+            if (tick > 200) {
+                EXPECT_GT(std::abs(state.owed_q8), 32 * 256) << a_tick;
+            }
+        }
+    }
+}
+
+// Five ticks' samples a call are rid of the line, 24 at least and 64 at most; none before the window is full, none twice.
+TEST(DopplerStream, a_line_is_taken_off_a_few_samples_a_call) {
+    for (const int per_tick_q8 : {300, 1311, 2000, 9000}) {
+        doppler_config_t config = rover_config_default().doppler;
+        config.per_tick_q8 = per_tick_q8;
+        doppler_state_t state = {};
+        state.full = true;
+        state.filled = 192;
+        const int some = std::clamp(5 * per_tick_q8 / 256, 24, 64);
+        int clean = 0;
+        for (int call = 0; call < 12; call++) {
+            doppler_step(&config, &state, nullptr, 0);
+            clean = std::min(192, clean + some);
+            EXPECT_EQ(state.clean, clean) << per_tick_q8 << ' ' << call;
+            EXPECT_EQ(state.tone.next, static_cast<std::uint32_t>(clean));
+        }
     }
 }
 

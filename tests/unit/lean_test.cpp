@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -203,6 +204,129 @@ TEST(Lean, without_the_gyros_the_accelerometer_is_taken_as_it_is) {
     frame.gyro_y_count = -1700;
     const sense_output_t out = sense_measure(&config, &state, &frame);
     EXPECT_NEAR(out.accel_x_m_s2 - out.level_m_s2, 0.0981f, 1e-3f); // nose up at 1 rad/s for a tick
+}
+
+// (1) to (4) in double, with the firmware's rounding: stretches of standing, of calm and of turns, offsets that move, missed ticks.
+struct LeanModel {
+    const lean_config_t &config;
+    double rest[3] = {}, felt[2] = {}, lean = 0;
+    int ticks = 0, stood = 0, calm = 0, apart = 0;
+    long first[3] = {}, sum[3] = {};
+    bool known = false;
+
+    explicit LeanModel(const lean_config_t &of) : config(of) {}
+    static double rounded(double x) { return std::floor(x + 0.5); }
+    double memory() const { return std::exp2(std::floor(std::log2(ticks))); } // a power of two, up to 256 ticks
+    void take_calm() {
+        double mean[3];
+        bool differs = false;
+        for (int i = 0; i < 3; i++) {
+            mean[i] = static_cast<double>(first[i]) * 256 + static_cast<double>(sum[i]) * 4; // of 64
+            differs = differs || std::fabs(mean[i] - rest[i]) > config.sudden_q8;
+        }
+        const bool whole = !known || (differs && apart == 2); // the first of all, or the third in a row that differs
+        apart = !differs || whole ? 0 : apart + 1;
+        for (int i = 0; i < 3; i++) {
+            if (whole)
+                rest[i] = mean[i];
+            else if (!differs)
+                rest[i] += std::trunc((mean[i] - rest[i]) / 16);
+        }
+        known = true;
+    }
+    double turned(const lean_input_t &input, int i) const { // radians
+        const double by = input.gyro_count[i] * 256.0 - rest[i];
+        if (stood < 100 && (!known || std::fabs(by) <= config.sudden_q8)) return 0;
+        const double q20 =
+            rounded((by - (i == 1 ? input.moved_q8 : 0)) * config.turn_q52 / 4294967296.0) * std::min(input.elapsed_ticks, 16u);
+        return std::clamp(q20 / 1048576.0, -0.25, 0.25);
+    }
+    void step(const lean_input_t &input) {
+        ticks = std::min(256, ticks + 1);
+        if (input.standing) {
+            if (stood == 0 && !known) ticks = 1;
+            stood = std::min(100, stood + 1);
+            for (int i = 0; i < 3; i++) rest[i] += std::floor((input.gyro_count[i] * 256.0 - rest[i]) / memory());
+        } else if (stood < 100) {
+            bool stays = calm > 0;
+            for (int i = 0; i < 3; i++) stays = stays && std::abs(input.gyro_count[i] - first[i]) <= config.calm_count;
+            calm = stays ? calm + 1 : 1;
+            for (int i = 0; i < 3; i++) {
+                if (!stays) first[i] = input.gyro_count[i], sum[i] = 0;
+                sum[i] += input.gyro_count[i] - first[i];
+            }
+            if (calm == 64) take_calm(), calm = 0;
+        }
+        for (int i = 0; i < 2 && input.accel; i++) felt[i] += std::floor((input.accel_count[i] * 256.0 - felt[i]) / memory());
+        const double most = config.gravity_q8, along = felt[0], across = felt[1];
+        double change = -rounded(turned(input, 1) * most), aside = rounded(turned(input, 0) * most);
+        if (std::fabs(along) + std::fabs(across) > config.steep_q8) {
+            change += rounded(turned(input, 2) * across);
+            aside -= rounded(turned(input, 2) * along);
+        }
+        lean = std::clamp(lean + change, -66977792.0, 66977792.0); // 2^26 - 2^17
+        felt[0] = std::clamp(along + change, -most, most);
+        felt[1] = std::clamp(across + aside, -most, most);
+    }
+};
+
+TEST(Lean, any_drive_is_what_its_equations_make_of_it) {
+    uint64_t random = 3;
+    const auto next = [&](int n) {
+        return static_cast<int>(((random = random * 6364136223846793005u + 1442695040888963407u) >> 33) % static_cast<unsigned>(n));
+    };
+    int calms = 0, stands = 0, turns = 0, believed = 0;
+    for (int drive = 0; drive < 40; drive++) {
+        const lean_config_t config = rover_config_default().sense.lean;
+        LeanModel model(config);
+        lean_state_t state = {};
+        const bool parks = drive % 2 == 0;
+        int rate[3] = {}, offset[3] = {}, phase = 0, left = 0, sway = 0;
+        for (int &o : offset) o = next(301) - 150;
+        for (int k = 0; k < 1500; k++) {
+            if (left-- <= 0) {
+                phase = next(4);
+                left = 20 + next(150);
+                sway = phase == 1 ? next(60) : phase == 2 ? next(90) : 200;
+                for (int i = 0; i < 3; i++) {
+                    rate[i] = phase == 3 ? next(1601) - 800 : 0;
+                    if (next(6) == 0) offset[i] += next(401) - 200;
+                }
+            }
+            lean_input_t input = {};
+            input.standing = phase == 0 && (parks || k > 1200);
+            for (int i = 0; i < 3; i++) input.gyro_count[i] = offset[i] + rate[i] + next(sway + 1) - sway / 2;
+            for (int i = 0; i < 2; i++) input.accel_count[i] = next(drive % 3 == 0 ? 1200 : 120) - (i == 0 ? 40 : 300);
+            input.accel = next(10) != 0;
+            input.moved_q8 = k > 700 ? next(2001) - 1000 : 0;
+            input.elapsed_ticks = next(12) == 0 ? 1u + static_cast<uint32_t>(next(30)) : 1u;
+            const int apart = model.apart;
+            lean_step(&config, &state, &input);
+            model.step(input);
+            for (int i = 0; i < 3; i++) ASSERT_EQ(state.rest_q8[i], model.rest[i]) << drive << ' ' << k << ' ' << i;
+            for (int i = 0; i < 2; i++) ASSERT_NEAR(state.felt_q8[i], model.felt[i], 1) << drive << ' ' << k << ' ' << i;
+            ASSERT_NEAR(state.lean_q8, model.lean, 1 + 0.01 * k) << drive << ' ' << k; // where a half is rounded to
+            model.felt[0] = state.felt_q8[0], model.felt[1] = state.felt_q8[1], model.lean = state.lean_q8;
+            calms += model.calm == 0 && model.known && !input.standing && model.stood < 100 ? 1 : 0;
+            stands += model.stood == 100 ? 1 : 0;
+            turns += model.turned(input, 1) != 0 ? 1 : 0;
+            believed += apart == 2 && model.apart == 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(std::min({calms, stands, turns}), 50);
+    EXPECT_GT(believed, 2);
+    const lean_config_t config = rover_config_default().sense.lean; // bounds: a lean runs off no further than its end, f no further than g
+    for (const int way : {1, -1}) {
+        lean_state_t state = {};
+        state.stood_ticks = 100;
+        lean_input_t input = {};
+        input.gyro_count[0] = input.gyro_count[1] = way * 30000;
+        input.elapsed_ticks = 16;
+        for (int k = 0; k < 1000; k++) lean_step(&config, &state, &input);
+        EXPECT_EQ(state.lean_q8, -way * 66977792);
+        EXPECT_EQ(state.felt_q8[0], -way * config.gravity_q8);
+        EXPECT_EQ(state.felt_q8[1], way * config.gravity_q8);
+    }
 }
 
 TEST(Lean, the_papers_filter_has_none) { EXPECT_EQ(rover_config_paper().sense.lean.gravity_q8, 0); }

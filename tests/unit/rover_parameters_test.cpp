@@ -506,4 +506,20 @@ TEST(ControlConfig, signs_and_offsets_reach_the_measurement) {
     EXPECT_EQ(out.gyro_z_rad_s, 0.0f);
 }
 
+// A value every quarter of a window, or later where that would be sooner than 80 ms; beyond 3200 Hz a whole window is shorter.
+TEST(RoverParameters, two_values_are_eighty_milliseconds_apart_or_more) {
+    rover_parameters_t parameters;
+    rover_parameters_reference(&parameters);
+    for (const double rate_Hz : {100.0, 512.0, 799.0, 800.0, 810.0, 1600.0, 1620.0, 2400.0, 2500.0, 3200.0, 5000.0}) {
+        doppler_template_t beam = doppler_template_mdu1130;
+        beam.sample_rate_Hz = static_cast<float>(rate_Hz);
+        parameters.beam = &beam;
+        control_config_t config;
+        control_config_build(&parameters, &config);
+        int hop = 64;
+        while (hop < 256 && hop < 0.08 * rate_Hz - 1e-6) hop += 64;
+        EXPECT_EQ(config.doppler.hop, hop) << rate_Hz;
+    }
+}
+
 } // namespace

@@ -351,6 +351,52 @@ TEST(SelfTestSteps, another_wheels_answer_is_told_from_a_rover_that_rolls) {
     EXPECT_EQ(dead.result.wheels, 1u);
 }
 
+// Two orders on one motor's leads: it answers to another wheel's pulse with current and encoder alike, which is an order and no dead
+// encoder.
+TEST(SelfTestSteps, a_motor_that_answers_to_two_orders_is_an_order_of_the_wheels_alone) {
+    for (std::size_t a = 0; a < 4; a++)
+        for (std::size_t b = 0; b < 4; b++) {
+            if (a == b) continue;
+            Bench bench;
+            bench.start.fill(0);
+            double turned = 0;
+            bench.also = [&](Bench &at, int) {
+                const command_t none{};
+                const command_t &last = at.commands.empty() ? none : at.commands.back();
+                turned += 40 * static_cast<double>(last.duty[a]);
+                at.frame.encoder_count[b] += static_cast<std::int32_t>(std::lround(turned));
+                at.frame.encoder_count[a] = 0;
+                at.trace.wheel[b].current_A += at.trace.wheel[a].current_A;
+                at.trace.wheel[a].current_A = 0;
+            };
+            EXPECT_EQ(bench.run().failures, static_cast<std::uint32_t>(SELF_TEST_WHEEL_ORDER)) << a << b;
+            EXPECT_EQ(bench.result.wheels, 1u << a | 1u << b) << a << b;
+        }
+}
+
+// A pulse that has turned its wheel is over: the wheel comes to rest for as long as after any other, and is judged by that pulse alone.
+TEST(SelfTestSteps, each_wheel_settles_for_as_long_however_soon_its_pulse_has_ended) {
+    for (const double counts : {0.0, 10.0, 40.0, 400.0}) {
+        Bench bench;
+        bench.count_per_duty.fill(counts);
+        bench.run();
+        EXPECT_EQ(bench.result.failures, counts > 0 ? 0u : static_cast<std::uint32_t>(SELF_TEST_ENCODER_DEAD)) << counts;
+        int wheel = -1;
+        std::size_t last = 0;
+        std::vector<std::size_t> rests;
+        for (std::size_t tick = 0; tick < bench.commands.size(); tick++)
+            for (int i = 0; i < 4; i++)
+                if (bench.commands[tick].duty[i] != 0.0f) {
+                    if (wheel >= 0 && i != wheel) rests.push_back(tick - last - 1);
+                    wheel = i, last = tick;
+                }
+        ASSERT_EQ(rests.size(), 3u) << counts;
+        for (const std::size_t rest : rests) { // the tick that judges, those it settles in, and the one in which the next begins
+            EXPECT_EQ(rest, static_cast<std::size_t>(bench.config.settle_ticks) + 1) << counts;
+        }
+    }
+}
+
 TEST(SelfTestSteps, safety_ends_it_but_for_what_only_limits_a_wheel) {
     const std::uint32_t limiting = FAULT_MOTOR_OPEN | FAULT_OVER_CURRENT | FAULT_STALL;
     for (std::uint32_t bit = 0; bit < 20; bit++) {
