@@ -3,8 +3,9 @@
 Every file is rewritten once with all its faults in it, each asleep behind a switch (mutant.h), so that they are compiled once and a fault costs
 one run of the tests. Faults: relation, logic, sign and product exchanged, a constant doubled, halved, one more or less, a condition always or
 never true, std::min for std::max, a statement left out. What does not compile is dropped; what no test comes by counts as survived, "not
-reached". A seeded sample is judged, within a budget of minutes; verdicts are kept in OUT/verdicts.tsv, and the next run goes on from there as long
-as neither sources nor tests have changed.
+reached". Each test is run once without a fault to learn which it comes by and how long it takes; a fault is then shown to those tests alone, the quickest
+first, until one fails. A seeded sample is judged, within a budget of minutes; verdicts are kept in OUT/verdicts.tsv, and the next run goes on
+from there as long as neither sources nor tests have changed.
 """
 
 import argparse
@@ -24,6 +25,7 @@ EXCHANGE = {" < ": [" <= ", " >= "], " <= ": [" < "], " > ": [" >= ", " <= "], "
             "std::max(": ["std::min("], "std::min(": ["std::max("], "true": ["false"], "false": ["true"]}
 PIECE = re.compile("|".join(sorted((re.escape(key) if key.strip() != key or key.endswith("(") else rf"\b{key}\b" for key in EXCHANGE),
                                    key=len, reverse=True)))
+QUICK_S = 0.5  # of a test's run by itself
 NUMBER = re.compile(r"(?<![\w.\"])(\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+|\d+)(?![\w.])")
 
 
@@ -228,6 +230,29 @@ def build_commands(build, target):
     return text.splitlines()
 
 
+def tests_of(program):
+    """Names of a program's tests, as --gtest_filter takes them."""
+    names, suite = [], ""
+    for line in run([str(program), "--gtest_list_tests"]).stdout.splitlines():
+        name = line.split("#")[0].strip()
+        if line.startswith("  "):
+            names.append(suite + name)
+        elif name.endswith("."):
+            suite = name
+    return names
+
+
+def rounds_of(tests, seconds):
+    """[(program, names)] that a fault is shown to in turn: what is quick, a program at once; then one by one, the quickest first."""
+    quick, slow = {}, []
+    for program, name in sorted(tests, key=lambda test: seconds[test]):
+        if seconds[program, name] < QUICK_S:
+            quick.setdefault(program, []).append(name)
+        else:
+            slow.append((program, [name]))
+    return sorted(quick.items(), key=lambda one: sum(seconds[one[0], name] for name in one[1])) + slow
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--root", type=pathlib.Path, required=True)
@@ -290,17 +315,17 @@ def main():
         judges.append(program)
 
     os.chdir(root)
-    reached, seconds = {}, {}
+    reached, seconds = {}, {}  # of each test
     for program in judges:
-        start = time.monotonic()
-        # failures on the way do not matter: a test that fails without any fault is left out of the judges below
-        (out / "reached").unlink(missing_ok=True)
-        done = run([str(program), "--gtest_brief=1"], TRACTION_MUTANT_REACHED=str(out / "reached"))
-        if done.returncode != 0:
-            sys.exit(f"{options.name}: {program.name} fails without any fault:\n{done.stdout[-1500:]}")
-        seconds[program] = time.monotonic() - start
-        there = (out / "reached").exists()  # a program that comes by no fault writes none
-        reached[program] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
+        for name in tests_of(program):
+            start = time.monotonic()
+            (out / "reached").unlink(missing_ok=True)
+            done = run([str(program), "--gtest_brief=1", f"--gtest_filter={name}"], TRACTION_MUTANT_REACHED=str(out / "reached"))
+            if done.returncode != 0:
+                sys.exit(f"{options.name}: {program.name} {name} fails without any fault:\n{done.stdout[-1500:]}")
+            seconds[program, name] = time.monotonic() - start
+            there = (out / "reached").exists()  # a test that comes by no fault writes none
+            reached[program, name] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
     mutants = {number: (source.name, *what) for source in sources for number, what in source.mutants.items()}
     content = "".join(source.path.read_text() for source in sources)
     stamp = hashlib.sha256((content + "".join(str((build / "x", test)) for test in options.tests)).encode()
@@ -322,12 +347,12 @@ def main():
             verdict = known.get(number)
             if verdict is None:
                 verdict = "not reached"
-                for program in judges:
-                    if number not in reached[program]:
-                        continue
+                for program, names in rounds_of([test for test in reached if number in reached[test]], seconds):
                     verdict = "survived"
                     try:
-                        done = run([str(program), "--gtest_brief=1", "--gtest_fail_fast"], timeout=10 * seconds[program] + 60, TRACTION_MUTANT=str(number))
+                        limit = 10 * sum(seconds[program, name] for name in names) + 10
+                        done = run([str(program), "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + ":".join(names)], timeout=limit,
+                                   TRACTION_MUTANT=str(number))
                         verdict = "killed" if done.returncode != 0 else "survived"
                     except subprocess.TimeoutExpired:
                         verdict = "killed"
