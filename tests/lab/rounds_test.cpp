@@ -3,6 +3,8 @@
 #include "tests/lab/hand_made.h"
 
 #include <gtest/gtest.h>
+#include <map>
+#include <tuple>
 
 #include <cmath>
 
