@@ -10,6 +10,7 @@ from there as long as neither sources nor tests have changed.
 
 import argparse
 import hashlib
+import json
 import os
 import pathlib
 import random
@@ -204,22 +205,37 @@ def run(command, timeout=None, **environment):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout, env=dict(os.environ, **environment))
 
 
-def compile_mutated(source, command, target, name):
-    """Rewrites and compiles until what is left compiles. Returns the object."""
+def compile_mutated(source, command, target, name, headers):
+    """Rewrites and compiles until what is left compiles. Returns the object; the one that is there, where nothing has changed."""
     object_file = target.with_suffix(".o")
+    kept = target.with_suffix(".kept")  # stamp of what the object was made of, and the lines that were dropped on the way
+    known = json.loads(kept.read_text()) if kept.exists() and object_file.exists() else {}
+    source.write(target)
+    stamp = hashlib.sha256((headers + " ".join(command) + target.read_text()).encode()).hexdigest()
+    dropped = []
+    if known.get("stamp") == stamp:
+        for lines in known["dropped"]:
+            source.drop(set(lines))
+        source.write(target)
+        return object_file
     for _ in range(40):
         source.write(target)
-        words = [word for word in command if not word.endswith("ccache")]
-        done = run(words + ["-O1", "-fmax-errors=0", "-w", "-c", str(target), "-o", str(object_file)])
+        words = [word for word in command if not word.endswith("ccache")] + ["-fmax-errors=0", "-w"]
+        done = run(words + ["-fsyntax-only", str(target)])
         if done.returncode == 0:
+            done = run(words + ["-O1", "-c", str(target), "-o", str(object_file)])
+        if done.returncode == 0:
+            kept.write_text(json.dumps({"stamp": stamp, "dropped": dropped}))
             return object_file
         bad = {int(match.group(1)) for match in re.finditer(re.escape(source.name) + r":(\d+):\d+: (?:fatal )?error", done.stdout)}
         bad |= {int(match.group(1)) for match in re.finditer(re.escape(source.name) + r":(\d+):\d+:   required from", done.stdout)}
         before = len(source.plan)
         source.drop(bad)
+        dropped.append(sorted(bad))
         if len(source.plan) == before:  # said of a line that bears no fault: the nearest above it
             above = [at for at in source.plan if any(at < line for line in bad)]
             source.drop({max(above) + 1} if above else set())
+            dropped.append([max(above) + 1] if above else [])
         if len(source.plan) == before:
             sys.exit(f"{name}: {source.name} does not compile:\n{done.stdout[:3000]}")
     sys.exit(f"{name}: {source.name} does not come to compile")
@@ -272,11 +288,12 @@ def main():
 
     commands = [line for test in options.tests for line in build_commands(build, test)]
     sources, number = [], 1
+    headers = "".join(path.read_text() for folder in ("host_tools/lab", "sim", "tests/mutate") for path in sorted((root / folder).rglob("*.h")))
     for folder in options.folders:
         for path in sorted((root / folder).rglob("*.cpp")):
             source = Source(path, root, number)
             sources.append(source)
-            number = source.next_number
+            number += max(4000, source.next_number - number)  # a file's faults keep their numbers when another changes
     objects = []
     for source in sources:
         if not re.search(options.only, source.name):  # not asked for: as built, and its faults keep their numbers
@@ -299,7 +316,7 @@ def main():
         flags = [flag for at, flag in enumerate(flags) if not flag.endswith("cmake_pch.hxx") and not (flag == "-include" and flags[at + 1].endswith("cmake_pch.hxx"))]
         target = out / (source.name.replace("/", "_"))
         library = re.search(r"-o \S*/(\w+)\.dir/", line).group(1)
-        objects.append((library, str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name))))
+        objects.append((library, str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name, headers))))
         print(f"{options.name}: {source.name}: {len(source.mutants)} faults", flush=True)
 
     judges = []
@@ -326,6 +343,18 @@ def main():
             seconds[program, name] = time.monotonic() - start
             there = (out / "reached").exists()  # a test that comes by no fault writes none
             reached[program, name] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
+    # a constant is come by before main(): it is shown to the tests that come by anything else of its file
+    at_start = set()
+    for program in judges:
+        (out / "reached").unlink(missing_ok=True)
+        run([str(program), "--gtest_filter=-*"], TRACTION_MUTANT_REACHED=str(out / "reached"))
+        at_start |= {int(line) for line in (out / "reached").read_text().split()} if (out / "reached").exists() else set()
+    for source in sources:
+        constants = at_start & source.mutants.keys()
+        others = source.mutants.keys() - constants
+        for test in reached:
+            if constants and not reached[test] & others:
+                reached[test] -= constants
     mutants = {number: (source.name, *what) for source in sources for number, what in source.mutants.items()}
     content = "".join(source.path.read_text() for source in sources)
     stamp = hashlib.sha256((content + "".join(str((build / "x", test)) for test in options.tests)).encode()
