@@ -80,6 +80,7 @@ class Search {
                 if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
                     problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
             }
+        problem.within_bounds(); // a linear step knows none, and from beyond them every step back costs
         problem.fit({});
         return problem;
     }
