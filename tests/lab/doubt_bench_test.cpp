@@ -1,0 +1,199 @@
+// Does the model describe the log (doubt.h)? In milliseconds: one motor at imposed speeds, whose current is read twice, I = (u - ke w) / R
+// by its voltage and I = (t0 + b w) / K by its friction.
+#include "host_tools/lab/decision/doubt.h"
+#include "host_tools/lab/fit/ladder.h"
+#include "tests/lab/hand_made.h"
+
+#include <cstdio>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+
+namespace traction::lab {
+namespace {
+
+constexpr double noise = 0.01, ke = 0.1, R = 3, K = 0.3, t0 = 0.05, b = 0.002;
+
+struct Motor {
+    Model model;
+    Dataset data;
+    // `wandering`: what the friction's current does beside, over time.
+    explicit Motor(std::size_t rows = 240, double (*wandering)(double) = nullptr) : data(hand_made::data_of(2, rows, 0.5)) {
+        model = parse_model("[rover]\nmotion = \"imposed\"\nmass_kg = 3\n[wheels]\nradius_m = 0.05\n[motor]\ntorque_constant_Nm_A = 0.3\n"
+                            "back_emf_Vs_rad = 0.1\nresistance_ohm = 3\ncoulomb_Nm = 0.05\nviscous_Nms = 0.002\n[[wheel]]\n",
+                            "motor");
+        const auto hold = [](Parameters &table) {
+            for (auto &[key, p] : table) p.prior = p.each_wheel = 0;
+        };
+        hold(model.rover), hold(model.sensors);
+        for (WheelSpec &w : model.wheel) hold(w.geometry), hold(w.motor), hold(w.soil);
+        for (const char *key : {"torque_constant_Nm_A", "back_emf_Vs_rad", "resistance_ohm", "coulomb_Nm", "viscous_Nms"})
+            stated(key, 1, 0.05);
+        std::mt19937 random(11);
+        std::normal_distribution<double> normal;
+        WheelInput w;
+        double angle = 0, integral = 0;
+        for (std::size_t k = 0; k < data.count; ++k) {
+            const double t = data.time(k), speed = 40 + 20 * std::sin(0.7 * t), u = 8 + 3 * std::sin(0.43 * t);
+            data.body_speed_m_s.push_back(speed * 0.05);
+            w.speed_rad_s.push_back(speed), w.accel_rad_s2.push_back(0), w.angle_rad.push_back(angle), w.travel_rad.push_back(angle);
+            w.voltage_V.push_back(u), w.voltage_t_s.push_back(t), w.voltage_integral_Vs.push_back(integral);
+            angle += 0.1 * speed, integral += 0.1 * u;
+        }
+        data.wheel = {w};
+        for (std::size_t i = 0; i < 2; ++i) {
+            Balance &balance = data.balance[i];
+            balance.kind = i == 0 ? BalanceKind::current_voltage : BalanceKind::current_torque;
+            balance.wheel = 0, balance.noise = noise;
+        }
+        const Eigen::VectorXd true_current = Forward(data).predict(make_physics(model));
+        Eigen::Index row = 0;
+        for (Balance &balance : data.balance)
+            for (std::size_t r = 0; r < rows; ++r) {
+                balance.measured[r] = true_current[row++] + noise * normal(random);
+                if (wandering != nullptr && balance.kind == BalanceKind::current_torque) balance.measured[r] += wandering(balance.t0_s[r]);
+            }
+    }
+    // What the sheet says: times what is true, known to this share of it.
+    void stated(const char *key, double times, double share) {
+        for (WheelSpec &w : model.wheel) {
+            Parameter &p = w.motor.at(key);
+            p.value *= times, p.prior = share * p.value, p.given = true;
+        }
+    }
+    double fit_error() const { return overall_error(fitted_problem(model, data)); }
+    std::optional<Doubt> asked(std::size_t accepted = 0, double shape_gain = 0, const Problem *last = nullptr) const {
+        Problem first = fitted_problem(model, data);
+        const Problem same = first;
+        return doubt(model, data, first, last != nullptr ? *last : same, accepted, shape_gain);
+    }
+};
+
+const Suspect *find(const std::vector<Suspect> &list, const std::string &quantity) {
+    const auto found = std::find_if(list.begin(), list.end(), [&](const Suspect &s) { return s.quantity == quantity; });
+    return found == list.end() ? nullptr : &*found;
+}
+
+TEST(Motor, is_predicted_by_its_two_balances) {
+    const Motor m;
+    const Eigen::VectorXd I = Forward(m.data).predict(make_physics(m.model));
+    double u = 0, w = 0; // means over the row from 10 s to 10.5 s
+    for (int i = 0; i < 5; ++i) {
+        const auto at = [&](double base, double by, double rate, double t) { return base + by * std::sin(rate * t); };
+        u += 0.2 * at(8, 3, 0.43, 10 + 0.1 * i + 0.05), w += 0.2 * at(40, 20, 0.7, 10 + 0.1 * i + 0.05);
+    }
+    EXPECT_NEAR(I[20], (u - ke * w) / R, 0.03); // the integral is a sum of steps
+    EXPECT_NEAR(I[240 + 20], (t0 + b * w) / K, 0.002);
+}
+
+TEST(Motor, that_is_as_stated_is_not_doubted) {
+    const Motor m;
+    EXPECT_LT(m.fit_error(), 1.1);
+    EXPECT_FALSE(m.asked());
+    EXPECT_FALSE(m.asked(1));
+    EXPECT_FALSE(m.asked(2));
+    EXPECT_FALSE(m.asked(0, 0.5));
+}
+
+// Of each datum that a sheet may have wrong threefold: found, with the true value, and told as the first to look at.
+TEST(Motor, of_another_data_sheet_is_told_which_number_would_describe_it) {
+    struct Wrong {
+        const char *key, *quantity, *unit;
+        double truth, times;
+    };
+    for (const Wrong &w : {Wrong{"resistance_ohm", "the motors' resistance", "ohm", R, 3},
+                           Wrong{"back_emf_Vs_rad", "the back-EMF (of the wheel's side of the gear)", "V s/rad", ke, 3},
+                           Wrong{"torque_constant_Nm_A", "the torque constant (of the wheel's side of the gear)", "N m/A", K, 3},
+                           Wrong{"viscous_Nms", "the viscous friction of the drives", "N m s", b, 4}}) {
+        Motor m(120);
+        m.stated(w.key, w.times, 0.04); // six deviations are no gross ratio
+        ASSERT_GT(m.fit_error(), 3) << w.key;
+        const std::vector<Suspect> all = gross_errors(m.model, m.data);
+        EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const Suspect &x, const Suspect &y) { return x.error < y.error; }));
+        const Suspect *s = find(all, w.quantity);
+        ASSERT_NE(s, nullptr) << w.key;
+        EXPECT_NEAR(s->fitted, w.truth, 0.05 * w.truth) << w.key; // the others may move within their 5 %
+        EXPECT_DOUBLE_EQ(s->stated, w.times * w.truth);
+        EXPECT_LT(s->error, 1.1);
+        EXPECT_EQ(s->unit, w.unit);
+        const std::optional<Doubt> d = m.asked();
+        ASSERT_TRUE(d) << w.key;
+        ASSERT_FALSE(d->suspects.empty());
+        EXPECT_EQ(d->suspects[0].quantity, w.quantity);
+        EXPECT_NEAR(d->error, m.fit_error(), 1e-9);
+        EXPECT_EQ(d->text.find(std::string("Look first at ") + w.quantity), 0U) << d->text;
+        for (std::size_t i = 0; i < d->suspects.size(); ++i) EXPECT_LT(d->suspects[i].error, 0.5 * d->error); // each does much
+    }
+}
+
+TEST(Motor, whose_number_is_farther_off_than_a_search_goes_is_found_from_where_it_ends) {
+    Motor m;
+    m.stated("back_emf_Vs_rad", 0.1, 0.05); // a search goes to six times
+    const std::vector<Suspect> all = gross_errors(m.model, m.data);
+    const Suspect *s = find(all, "the back-EMF (of the wheel's side of the gear)");
+    ASSERT_NE(s, nullptr);
+    EXPECT_NEAR(s->fitted, ke, 0.05 * ke);
+    Motor over;
+    over.stated("resistance_ohm", 300, 0.05); // and to a hundredth
+    const std::vector<Suspect> other = gross_errors(over.model, over.data);
+    const Suspect *r = find(other, "the motors' resistance");
+    ASSERT_NE(r, nullptr);
+    EXPECT_NEAR(r->fitted, R, 0.1 * R); // three steps from afar
+}
+
+// More friction than stated is an effect of the catalogue; less is the model's mistake.
+TEST(Motor, with_more_friction_than_stated_is_a_matter_of_the_catalogue) {
+    Motor more;
+    more.stated("viscous_Nms", 0.25, 0.05);
+    ASSERT_GT(more.fit_error(), 3);
+    const std::optional<Doubt> d = more.asked();
+    EXPECT_TRUE(!d || find(d->suspects, "the viscous friction of the drives") == nullptr);
+}
+
+// The sheet's deviation is so wide that the fit itself goes there: told, with the error that the stated number would leave.
+TEST(Motor, that_the_fit_moved_grossly_within_too_wide_a_deviation_is_told) {
+    Motor m, held;
+    m.stated("resistance_ohm", 3, 0.2); // 9 +- 1.8: three is 3.3 deviations off
+    held.stated("resistance_ohm", 3, 1e-6);
+    EXPECT_LT(m.fit_error(), 1.1);
+    const std::optional<Doubt> d = m.asked();
+    ASSERT_TRUE(d);
+    ASSERT_EQ(d->suspects.size(), 1U);
+    EXPECT_EQ(d->suspects[0].quantity, "the motors' resistance");
+    EXPECT_NEAR(d->suspects[0].fitted, R, 0.05 * R);
+    EXPECT_NEAR(d->suspects[0].stated, 3 * R, 1e-9);
+    EXPECT_NEAR(d->suspects[0].error, m.fit_error(), 1e-9);
+    EXPECT_NEAR(d->error, held.fit_error(), 0.15 * held.fit_error()); // other weights of the rows
+    EXPECT_GT(d->error, 3);
+    Motor near; // two and a half deviations: a sheet may be off by that
+    near.stated("resistance_ohm", 3, 0.28);
+    EXPECT_FALSE(near.asked());
+    Motor slight; // four deviations, but no gross ratio
+    slight.stated("resistance_ohm", 1.3, 0.055);
+    EXPECT_FALSE(slight.asked());
+    Motor named; // where something was found that decides
+    named.stated("resistance_ohm", 3, 0.2);
+    EXPECT_FALSE(named.asked(1));
+}
+
+// What no number of the sheet does: told only where as much is left as the signal itself, or at 25 times the noise with nothing found.
+TEST(Motor, whose_current_wanders_by_itself_is_doubted_where_it_is_far_off) {
+    Motor near(240, [](double t) { return 0.1 * std::sin(0.05 * t); }), far(240, [](double t) { return 2 * std::sin(0.05 * t); });
+    EXPECT_FALSE(near.asked()) << near.fit_error();
+    ASSERT_GT(far.fit_error(), 25);
+    const std::optional<Doubt> d = far.asked();
+    ASSERT_TRUE(d);
+    EXPECT_NEAR(d->error, far.fit_error(), 1e-9);
+    EXPECT_TRUE(d->suspects.empty());
+    char text[60];
+    std::snprintf(text, sizeof text, "as fitted it leaves %.0f %% of a measured signal",
+                  100 * misfits(fitted_problem(far.model, far.data))[1]);
+    EXPECT_EQ(d->text.find(text), 0U) << d->text;
+}
+
+} // namespace
+} // namespace traction::lab
