@@ -533,8 +533,11 @@ TEST(Knots, of_what_hardly_varies_are_few_and_of_a_voltage_that_does_not_none) {
     EXPECT_EQ(knots_on(Axis::slip, {}, false).size(), 1U);
     EXPECT_TRUE(knots_on(Axis::voltage, same, false).empty());
     EXPECT_TRUE(knots_on(Axis::other_current, same, false).empty());
-    std::vector<double> up;
-    for (int i = 0; i <= 1000; ++i) up.push_back(5 + 0.001 * i);
+    std::vector<double> up, down;
+    for (int i = 0; i <= 1000; ++i) up.push_back(5 + 0.001 * i), down.push_back(-5 - 0.001 * i);
+    const std::vector<double> one_way = knots_on(Axis::other_current, down, false);
+    ASSERT_EQ(one_way.size(), 3U);
+    EXPECT_NEAR(one_way[1], -5.5, 2e-3);                                  // nought is not among them
     const std::vector<double> knots = knots_on(Axis::voltage, up, false); // about nought, as far as the larger end
     ASSERT_EQ(knots.size(), 8U);
     EXPECT_NEAR(knots.back(), 5.98, 2e-3);

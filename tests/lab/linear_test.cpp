@@ -489,6 +489,24 @@ TEST(Rival, is_none_where_no_stated_deviation_does_a_quarter_of_it_or_nothing_is
     EXPECT_FALSE(free.found());
 }
 
+// A natural end that lies nearer than six deviations contradicts no sheet.
+TEST(Sheet, is_broken_by_what_stands_at_six_deviations_and_did_not_before) {
+    const LinearMachine m(24);
+    FreeParameter ended = a0(0.1);
+    ended.maximum = 0.4;
+    Problem before(m.data, m.physics, {a0(0.1), r0(0.1), ended, g0()}), with = before;
+    for (const auto &[first, third, count] : {std::tuple{0.6, 0.0, 1U}, std::tuple{-0.6, 0.0, 1U}, std::tuple{0.59, 0.0, 0U},
+                                              std::tuple{0.0, 0.4, 0U}, std::tuple{0.0, 0.0, 0U}}) {
+        with.theta << first, 0, third, 1e9;
+        with.parameters[2].wheel = before.parameters[2].wheel = 3;
+        EXPECT_EQ(newly_at_limits(before, with), count) << first << third;
+    }
+    with.theta << 0.6, -0.6, 0, 0;
+    EXPECT_EQ(newly_at_limits(before, with), 2U);
+    before.theta << -0.6, 0, 0, 0; // it was broken before, at whichever end
+    EXPECT_EQ(newly_at_limits(before, with), 1U);
+}
+
 // Two squared deviations, or two of its standard errors.
 TEST(Rival, explains_as_much_where_the_effect_leads_by_less_than_two_errors_or_four_squares) {
     const auto as_much = [](double lead, double error) { return ToleranceRival{"", 0, lead, error}.explains_as_much(); };

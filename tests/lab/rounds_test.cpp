@@ -307,6 +307,8 @@ TEST(Round, knows_the_balance_that_is_missed_the_most_in_its_own_noise) {
     Dataset bare = data;
     bare.balance[0].measured.clear(); // holds no row
     EXPECT_DOUBLE_EQ(worst_error(held(residual.tail(4), 0), bare, noise.tail(4)), 2);
+    const Dataset single = hand_made::data_of(1, 1, 1);
+    EXPECT_DOUBLE_EQ(worst_error(held(Eigen::VectorXd::Constant(1, 3), 0), single, Eigen::VectorXd::Ones(1)), 3);
 }
 
 // 0.2 % of all, or 2 % of one balance.

@@ -297,6 +297,46 @@ TEST(Bench, whose_accelerometer_jumps_tells_the_drift_as_the_nearest_and_not_the
     EXPECT_GT(d.ladder[0].heldout, d.ladder[0].train);
 }
 
+// A sensor that begins to run away: a line is most of it, an offset and a drift; the curve alone is more than both.
+TEST(Bench, of_two_names_that_one_curve_explains_tells_both_as_near) {
+    Bench bench;
+    bench.add(0, [](double t) { return 0.012 * std::max(0.0, t - 60); });
+    const Diagnosis d = bench.ask();
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    EXPECT_TRUE(d.effects.empty() && d.model.effects.empty());
+    ASSERT_TRUE(d.unknown);
+    EXPECT_EQ(d.unknown->balance, "accelerometer(time)");
+    EXPECT_NEAR(d.unknown->y.front(), 0, 0.06);
+    EXPECT_NEAR(d.unknown->y.back(), 0.012 * (d.unknown->x.back() - 60), 0.06);
+    EXPECT_EQ(d.ladder.size(), 1U);
+    EXPECT_EQ(d.nearest.size(), 2U);
+    for (const char *near : {"accel_bias", "accel_drift"}) EXPECT_EQ(std::count(d.nearest.begin(), d.nearest.end(), near), 1) << near;
+    EXPECT_EQ(d.messages.size(), 2U);
+    EXPECT_EQ(of(d.ranking, d.nearest[0]).verdict, "nearest");
+}
+
+// The name that stands keeps its rung, with the errors of the model as it is left.
+TEST(Bench, of_a_right_name_beside_a_proxys_keeps_the_right_one) {
+    Bench bench;
+    bench.add(0, [](double t) { return t > 60 ? 0.4 : 0.0; });
+    bench.hide(r1(), 0.08);
+    const Diagnosis d = bench.ask();
+    EXPECT_EQ(d.kind, "partial") << d.text;
+    EXPECT_EQ(d.effects, Labels{"radar_scale"});
+    EXPECT_EQ(d.nearest, Labels{"accel_drift"});
+    ASSERT_TRUE(d.unknown);
+    EXPECT_EQ(d.unknown->balance, "accelerometer(time)");
+    EXPECT_NEAR(d.accepted[0].value[0], 0.08, 3 * bench.textbook({r1()}).error);
+    ASSERT_EQ(d.ladder.size(), 2U);
+    EXPECT_EQ(d.ladder[1].label, "+ radar_scale");
+    Bench jump;
+    jump.add(0, [](double t) { return t > 60 ? 0.4 : 0.0; });
+    EXPECT_NEAR(d.ladder[1].train, jump.ask().ladder[0].train, 0.02); // as where the radar is right
+    EXPECT_GT(d.ladder[1].heldout, d.ladder[1].train);
+    EXPECT_EQ(d.model.effects.size(), 1U);
+    EXPECT_EQ(d.model.effects[0].name, "radar_scale");
+}
+
 TEST(Bench, of_a_size_beyond_the_catalogues_says_that_it_is_a_least_one) {
     Bench bench;
     bench.hide(r1(), 1.5); // the fit may go to 0.6

@@ -103,6 +103,12 @@ TEST(Worst, stretch_is_the_twenty_seconds_in_which_most_is_left) {
     EXPECT_GE(part.time(part.count - 1), 7 + 27);
 }
 
+TEST(Worst, stretch_that_reaches_beyond_the_end_begins_twenty_seconds_before_it) {
+    const Dataset part = worst_stretch(rows_of(103, [](std::size_t, std::size_t r) { return r >= 88 ? 1.0 : 0.0; }));
+    EXPECT_NEAR(part.start_s, 7 + 83, 0.11);
+    EXPECT_NEAR(part.time(part.count - 1), 7 + 103, 0.11);
+}
+
 TEST(Worst, stretch_counts_a_balance_like_another) {
     const auto part = [](double second) { // of the first balance the beginning is the worse by 16 to 1, of the second the other by 4 to 1
         return worst_stretch(rows_of(100, [=](std::size_t b, std::size_t r) {

@@ -152,6 +152,12 @@ TEST(Scan, begins_at_the_step_twice_the_step_or_half_of_the_range_whichever_is_b
     down.expect_start(down.at(-0.3), -0.8); // half of the range on its side
 }
 
+TEST(Scan, of_a_step_to_a_side_that_is_none_goes_over_the_range_that_there_is) {
+    Scanned s(1);
+    s.c.minimum = {0}, s.c.strengths[0].minimum = 0;
+    s.expect_start(s.at(-0.3), 1.0); // half of the range
+}
+
 TEST(Scan, of_a_small_step_goes_over_a_tenth_a_quarter_and_a_half_of_the_range) {
     for (const auto &[hidden, start] : {std::pair{0.2, 0.2}, std::pair{0.5, 0.5}, std::pair{1.0, 1.0}}) {
         Scanned s(hidden);
@@ -208,6 +214,7 @@ TEST(Refit, of_what_is_linear_ends_at_the_joint_regression) {
             Trial t = a.stepped();
             if (std::fabs(start) < 1e8) t.start = {start}, t.start_change = Eigen::VectorXd::Zero(3);
             const double step_gain = t.gain, step_fall = t.error_reduction;
+            if (touched != stage_sensors) t.error_reduction = t.gain = -1; // reckoned anew, but where the step is the fit
             refit(t, *a.base, *a.screen, a.model, a.machine.data);
             EXPECT_TRUE(t.refitted);
             ASSERT_EQ(t.value.size(), 1U);

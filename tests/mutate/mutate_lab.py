@@ -78,6 +78,9 @@ def changes(expression, is_condition):
         if not free(match.start()):
             continue
         old = match.group(1)
+        if "." in old and float(old) == 0:  # neither doubled nor halved it is another
+            out.append(expression[:match.start()] + "1.0" + expression[match.end():])
+            continue
         news = [f"{2 * float(old):g}" if "." in old or "e" in old.lower() else str(int(old) + 1)]
         news += [f"{0.5 * float(old):g}"] if "." in old or "e" in old.lower() else [str(int(old) - 1)] if int(old) > 0 else []
         out += [expression[:match.start()] + (new if "." in new or "e" in new or "." not in old and "e" not in old.lower() else new + ".0")
@@ -279,6 +282,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--folders", nargs="+", default=FOLDERS)
+    parser.add_argument("--slowest", type=float, default=1e9, help="seconds: a test that takes longer is no judge")
     parser.add_argument("--name", default="mutate_lab", help="how the run calls itself")
     parser.add_argument("--only", default="", help="files whose name holds this (a regular expression)")
     options = parser.parse_args()
@@ -341,6 +345,8 @@ def main():
             if done.returncode != 0:
                 sys.exit(f"{options.name}: {program.name} {name} fails without any fault:\n{done.stdout[-1500:]}")
             seconds[program, name] = time.monotonic() - start
+            if seconds[program, name] > options.slowest:
+                continue
             there = (out / "reached").exists()  # a test that comes by no fault writes none
             reached[program, name] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
     # a constant is come by before main(): it is shown to the tests that come by anything else of its file
