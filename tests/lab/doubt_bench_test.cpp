@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <random>
 #include <string>
@@ -23,7 +24,8 @@ struct Motor {
     Model model;
     Dataset data;
     // `wandering`: what the friction's current does beside, over time. `hidden`: effects that the log holds and the model does not.
-    explicit Motor(std::size_t rows = 240, double (*wandering)(double) = nullptr, double noise = 0.01, std::vector<EffectUse> hidden = {})
+    explicit Motor(std::size_t rows = 240, const std::function<double(double)> &wandering = nullptr, double noise = 0.01,
+                   std::vector<EffectUse> hidden = {})
         : data(hand_made::data_of(2, rows, 0.5)) {
         model = parse_model("[rover]\nmotion = \"imposed\"\nmass_kg = 3\n[wheels]\nradius_m = 0.05\n[motor]\ntorque_constant_Nm_A = 0.3\n"
                             "back_emf_Vs_rad = 0.1\nresistance_ohm = 3\ncoulomb_Nm = 0.05\nviscous_Nms = 0.002\n[[wheel]]\n",
@@ -59,7 +61,7 @@ struct Motor {
         for (Balance &balance : data.balance)
             for (std::size_t r = 0; r < rows; ++r) {
                 balance.measured[r] = true_current[row++] + noise * normal(random);
-                if (wandering != nullptr && balance.kind == BalanceKind::current_torque) balance.measured[r] += wandering(balance.t0_s[r]);
+                if (wandering && balance.kind == BalanceKind::current_torque) balance.measured[r] += wandering(balance.t0_s[r]);
             }
     }
     // What the sheet says: times what is true, known to this share of it.
@@ -241,23 +243,39 @@ TEST(Motor, that_wears_in_is_named_with_the_time_that_it_takes) {
     EXPECT_GT(d.ladder[0].train, 2);
 }
 
-// A resistance beside the friction's: each is named in its own balance.
+// A resistance beside the friction's: each is named in its own balance, and the time is that of the friction.
 TEST(Motor, with_two_faults_has_both_named) {
-    const Motor m(480, nullptr, 0.01,
-                  {effect("wiring_resistance", {{"resistance_ohm", 1.0}}), effect("viscous_friction", {{"coefficient_Nms", 0.001}})});
+    const Motor m(
+        480, nullptr, 0.01,
+        {effect("wiring_resistance", {{"resistance_ohm", 1.0}}), effect("wear_in", {{"torque_Nm", 0.05}, {"time_constant_s", 33}})});
     const Diagnosis d = diagnose(m.model, m.data, {});
-    const auto size = [&](const char *name) {
-        for (const CandidateResult &a : d.accepted)
-            if (a.candidate.effect == name) return a.value[0];
-        return 0.0;
+    ASSERT_EQ(d.accepted.size(), 2U) << d.text;
+    const auto of = [&](const char *name) {
+        return *std::find_if(d.accepted.begin(), d.accepted.end(), [&](const CandidateResult &a) { return a.candidate.effect == name; });
     };
-    EXPECT_NEAR(size("wiring_resistance"), 1, 0.15) << d.text; // beside 5 % of 3 ohm that the sheet may be off
-    EXPECT_NEAR(size("viscous_friction"), 0.001, 0.0003) << d.text;
-    EXPECT_EQ(d.accepted.size(), 2U) << d.text;
+    EXPECT_NEAR(of("wiring_resistance").value[0], 1, 0.15) << d.text; // beside 5 % of 3 ohm that the sheet may be off
+    EXPECT_TRUE(of("wiring_resistance").shapes.empty());
+    EXPECT_NEAR(of("wear_in").value[0], 0.05, 0.003);
+    ASSERT_EQ(of("wear_in").shapes.size(), 1U);
+    EXPECT_NEAR(of("wear_in").shapes[0].value, 33, 3);
+    for (const EffectUse &use : d.model.effects)
+        if (use.name == "wiring_resistance") {
+            EXPECT_EQ(use.parameters.size(), 1U);
+            EXPECT_TRUE(std::isfinite(use.parameters.at("resistance_ohm").maximum));
+        }
 }
 
 // What no number of the sheet does: told only where as much is left as the signal itself, or at 25 times the noise with nothing found.
 TEST(Motor, whose_current_wanders_by_itself_is_doubted_where_it_is_far_off) {
+    const auto missed_by = [](double error) { // times the noise, in all
+        const auto with = [](double size) { return Motor(240, [=](double t) { return size * std::sin(0.05 * t); }); };
+        double size = 0.1 * error / 8; // what is left grows nearly as the wandering does
+        for (int i = 0; i < 4; ++i) size *= error / with(size).fit_error();
+        return with(size);
+    };
+    EXPECT_NEAR(missed_by(24).fit_error(), 24, 0.5);
+    EXPECT_FALSE(missed_by(24).asked());
+    EXPECT_TRUE(missed_by(25.8).asked());
     Motor near(240, [](double t) { return 0.1 * std::sin(0.05 * t); }), far(240, [](double t) { return 2 * std::sin(0.05 * t); });
     EXPECT_FALSE(near.asked()) << near.fit_error();
     ASSERT_GT(far.fit_error(), 25);

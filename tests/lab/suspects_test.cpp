@@ -259,6 +259,19 @@ TEST(Suspect, beside_nothing_that_was_named_must_halve_the_error_and_beat_a_shap
     EXPECT_FALSE(told(suspect(20, 5.6, true), 2, 10, 5, false, 0.1));
     EXPECT_FALSE(told(suspect(20, 7.6, true), 2, 10, 9, false, 0.1));
     EXPECT_FALSE(told(suspect(12, 5.4, true), 2, 10, 5, false, 0.1));
+    // a limit itself is not beyond it
+    EXPECT_FALSE(told(suspect(20, 0.75 * 10), 1, 10, 90));
+    EXPECT_FALSE(told(suspect(20, 0.9 * 8), 1, 10, 8));
+    EXPECT_FALSE(told(suspect(20, 1.02 * 8), 1, 10, 8, true));
+    EXPECT_FALSE(told(suspect(20, 0.95 * 10), 1, 10, 12, true));
+    EXPECT_FALSE(told(suspect(20, 1.1 * 5), 2, 10, 5));
+    EXPECT_FALSE(told(suspect(20, 0.5 * 10), 0, 10, 10));
+    EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, false, 2, true));
+    EXPECT_FALSE(told(suspect(12.5, 5.4, true), 2, 10, 5, false, 0.1));
+    EXPECT_FALSE(told(suspect(20, 0.75 * 10, true), 2, 10, 9, false, 0.1));
+    EXPECT_FALSE(told(suspect(20, 1.1 * 5, true), 2, 10, 5, false, 0.1));
+    EXPECT_FALSE(is_gross(suspect(12.5)));
+    EXPECT_FALSE(is_gross(suspect(8)));
 }
 
 // The share that is looked for is the largest that the rule above accepts.

@@ -15,4 +15,4 @@ said=$(ninja -C "$build" $judges 2>&1) || {
 }
 # shellcheck disable=SC2086
 exec python3 "$root/tests/mutate/mutate_lab.py" --root "$root" --build "$build" --out "$root/build/mutate_lab" --tests $judges \
-  --mutants "${1:-100}" --seed "${2:-1}" --minutes "${3:-60}"
+  --slowest 8 --mutants "${1:-100}" --seed "${2:-1}" --minutes "${3:-60}"
