@@ -274,50 +274,9 @@ TEST(Columns, of_all_wheels_are_the_sum_of_each_and_of_a_patch_the_sum_of_its_ha
     EXPECT_NEAR(one.norm() / direct.norm(), 1, 0.25);
 }
 
-// What a diagnosis hands on for whoever asks the same again is what they would find.
-void expect_same_fit(const Problem *handed_on, const Model &model, const Dataset &data) {
-    ASSERT_NE(handed_on, nullptr);
-    const Problem anew = fitted_problem(model, data);
-    EXPECT_EQ(handed_on->theta, anew.theta);
-    EXPECT_EQ(handed_on->residual, anew.residual);
-    EXPECT_EQ(handed_on->jacobian, anew.jacobian);
-    EXPECT_EQ(handed_on->row_scale, anew.row_scale);
-}
-
-// One minute each: what is named, what is not, and that every part of the answer fits the others.
-TEST(Verdict, of_a_hidden_law_of_the_catalogue) {
-    const Log log("slip_sinkage:coefficient=0.3");
-    const Diagnosis d = diagnose(log.model, log.data, {});
-    ASSERT_EQ(d.kind, "named") << d.text;
-    ASSERT_EQ(d.effects, std::vector<std::string>{"slip_sinkage"}) << d.text;
-    EXPECT_NEAR(d.accepted[0].value[0], 0.3, 0.03); // the size of interest, 0.02, on half of a usual log
-    EXPECT_LT(d.accepted[0].low[0], d.accepted[0].value[0]);
-    EXPECT_GT(d.accepted[0].high[0], d.accepted[0].value[0]);
-    ASSERT_EQ(d.ladder.size(), 2U);
-    EXPECT_EQ(d.ladder[0].label, "baseline");
-    EXPECT_EQ(d.ladder[1].label, "+ slip_sinkage");
-    EXPECT_LT(d.ladder[1].heldout, d.ladder[0].heldout);
-    EXPECT_LT(d.ladder[1].train, d.ladder[0].train);
-    ASSERT_EQ(d.model.effects.size(), 1U);
-    EXPECT_EQ(d.model.effects[0].name, "slip_sinkage");
-    EXPECT_NEAR(d.model.effects[0].parameters.at("coefficient").value, d.accepted[0].value[0], 0.02);
-    expect_same_fit(d.stated_fit.get(), log.model, log.data);
-    expect_same_fit(d.model_fit.get(), d.model, log.data);
-    EXPECT_FALSE(d.unknown);
-    EXPECT_TRUE(d.nearest.empty());
-    ASSERT_FALSE(d.ranking.empty());
-    EXPECT_EQ(d.ranking[0].candidate.effect, "slip_sinkage");
-    EXPECT_EQ(d.ranking[0].verdict, "named");
-    EXPECT_GT(d.ranking[0].heldout_gain, 0.1);
-    EXPECT_EQ(std::count_if(d.ranking.begin(), d.ranking.end(), [](const CandidateResult &r) { return r.verdict == "passes"; }), 0);
-    for (const auto &[effect, why] : d.not_excited) {
-        EXPECT_NE(effect, "slip_sinkage");
-        EXPECT_FALSE(why.empty());
-    }
-}
-
+// Nothing of the catalogue, though some of it comes near.
 TEST(Verdict, of_a_law_that_no_catalogue_holds) {
-    const Log log("friction_resonance:torque_Nm=0.05,speed_rad_s=4", 90, 31);
+    const Log log("friction_resonance:torque_Nm=0.05,speed_rad_s=4", 60, 31);
     const Diagnosis d = diagnose(log.model, log.data, {});
     ASSERT_TRUE(d.unknown) << d.text;
     EXPECT_NE(d.unknown->variable.find("speed"), std::string::npos) << d.text;
@@ -331,15 +290,6 @@ TEST(Verdict, of_a_law_that_no_catalogue_holds) {
     EXPECT_GT(d.unknown->gain, 0.02);
     EXPECT_FALSE(d.unknown->expression.empty());
     EXPECT_EQ(std::count(d.effects.begin(), d.effects.end(), "viscous_friction"), 0) << d.text; // its proxy
-}
-
-TEST(Verdict, of_a_clean_log_is_nothing) {
-    const Log log("", 60, 3);
-    const Diagnosis d = diagnose(log.model, log.data, {});
-    EXPECT_EQ(d.kind, "nothing") << d.text;
-    EXPECT_TRUE(d.accepted.empty() && d.classes.empty() && d.effects.empty() && !d.unknown) << d.text;
-    EXPECT_EQ(d.ladder.size(), 1U);
-    EXPECT_EQ(d.model.effects.size(), 0U);
 }
 
 } // namespace

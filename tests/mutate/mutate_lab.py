@@ -3,12 +3,14 @@
 Every file is rewritten once with all its faults in it, each asleep behind a switch (mutant.h), so that they are compiled once and a fault costs
 one run of the tests. Faults: relation, logic, sign and product exchanged, a constant doubled, halved, one more or less, a condition always or
 never true, std::min for std::max, a statement left out. What does not compile is dropped; what no test comes by counts as survived, "not
-reached". A seeded sample is judged, within a budget of minutes; verdicts are kept in OUT/verdicts.tsv, and the next run goes on from there as long
-as neither sources nor tests have changed.
+reached". Each test is run once without a fault to learn which it comes by and how long it takes; a fault is then shown to those tests alone, the quickest
+first, until one fails. A seeded sample is judged, within a budget of minutes; verdicts are kept in OUT/verdicts.tsv, and the next run goes on
+from there as long as neither sources nor tests have changed.
 """
 
 import argparse
 import hashlib
+import json
 import os
 import pathlib
 import random
@@ -24,6 +26,7 @@ EXCHANGE = {" < ": [" <= ", " >= "], " <= ": [" < "], " > ": [" >= ", " <= "], "
             "std::max(": ["std::min("], "std::min(": ["std::max("], "true": ["false"], "false": ["true"]}
 PIECE = re.compile("|".join(sorted((re.escape(key) if key.strip() != key or key.endswith("(") else rf"\b{key}\b" for key in EXCHANGE),
                                    key=len, reverse=True)))
+QUICK_S = 0.5  # of a test's run by itself
 NUMBER = re.compile(r"(?<![\w.\"])(\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+|\d+)(?![\w.])")
 
 
@@ -75,6 +78,9 @@ def changes(expression, is_condition):
         if not free(match.start()):
             continue
         old = match.group(1)
+        if "." in old and float(old) == 0:  # neither doubled nor halved it is another
+            out.append(expression[:match.start()] + "1.0" + expression[match.end():])
+            continue
         news = [f"{2 * float(old):g}" if "." in old or "e" in old.lower() else str(int(old) + 1)]
         news += [f"{0.5 * float(old):g}"] if "." in old or "e" in old.lower() else [str(int(old) - 1)] if int(old) > 0 else []
         out += [expression[:match.start()] + (new if "." in new or "e" in new or "." not in old and "e" not in old.lower() else new + ".0")
@@ -202,22 +208,37 @@ def run(command, timeout=None, **environment):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout, env=dict(os.environ, **environment))
 
 
-def compile_mutated(source, command, target, name):
-    """Rewrites and compiles until what is left compiles. Returns the object."""
+def compile_mutated(source, command, target, name, headers):
+    """Rewrites and compiles until what is left compiles. Returns the object; the one that is there, where nothing has changed."""
     object_file = target.with_suffix(".o")
+    kept = target.with_suffix(".kept")  # stamp of what the object was made of, and the lines that were dropped on the way
+    known = json.loads(kept.read_text()) if kept.exists() and object_file.exists() else {}
+    source.write(target)
+    stamp = hashlib.sha256((headers + " ".join(command) + target.read_text()).encode()).hexdigest()
+    dropped = []
+    if known.get("stamp") == stamp:
+        for lines in known["dropped"]:
+            source.drop(set(lines))
+        source.write(target)
+        return object_file
     for _ in range(40):
         source.write(target)
-        words = [word for word in command if not word.endswith("ccache")]
-        done = run(words + ["-O1", "-fmax-errors=0", "-w", "-c", str(target), "-o", str(object_file)])
+        words = [word for word in command if not word.endswith("ccache")] + ["-fmax-errors=0", "-w"]
+        done = run(words + ["-fsyntax-only", str(target)])
         if done.returncode == 0:
+            done = run(words + ["-O1", "-c", str(target), "-o", str(object_file)])
+        if done.returncode == 0:
+            kept.write_text(json.dumps({"stamp": stamp, "dropped": dropped}))
             return object_file
         bad = {int(match.group(1)) for match in re.finditer(re.escape(source.name) + r":(\d+):\d+: (?:fatal )?error", done.stdout)}
         bad |= {int(match.group(1)) for match in re.finditer(re.escape(source.name) + r":(\d+):\d+:   required from", done.stdout)}
         before = len(source.plan)
         source.drop(bad)
+        dropped.append(sorted(bad))
         if len(source.plan) == before:  # said of a line that bears no fault: the nearest above it
             above = [at for at in source.plan if any(at < line for line in bad)]
             source.drop({max(above) + 1} if above else set())
+            dropped.append([max(above) + 1] if above else [])
         if len(source.plan) == before:
             sys.exit(f"{name}: {source.name} does not compile:\n{done.stdout[:3000]}")
     sys.exit(f"{name}: {source.name} does not come to compile")
@@ -226,6 +247,29 @@ def compile_mutated(source, command, target, name):
 def build_commands(build, target):
     text = run(["ninja", "-C", str(build), "-t", "commands", target]).stdout
     return text.splitlines()
+
+
+def tests_of(program):
+    """Names of a program's tests, as --gtest_filter takes them."""
+    names, suite = [], ""
+    for line in run([str(program), "--gtest_list_tests"]).stdout.splitlines():
+        name = line.split("#")[0].strip()
+        if line.startswith("  "):
+            names.append(suite + name)
+        elif name.endswith("."):
+            suite = name
+    return names
+
+
+def rounds_of(tests, seconds):
+    """[(program, names)] that a fault is shown to in turn: what is quick, a program at once; then one by one, the quickest first."""
+    quick, slow = {}, []
+    for program, name in sorted(tests, key=lambda test: seconds[test]):
+        if seconds[program, name] < QUICK_S:
+            quick.setdefault(program, []).append(name)
+        else:
+            slow.append((program, [name]))
+    return sorted(quick.items(), key=lambda one: sum(seconds[one[0], name] for name in one[1])) + slow
 
 
 def main():
@@ -238,6 +282,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--folders", nargs="+", default=FOLDERS)
+    parser.add_argument("--slowest", type=float, default=1e9, help="seconds: a test that takes longer is no judge")
     parser.add_argument("--name", default="mutate_lab", help="how the run calls itself")
     parser.add_argument("--only", default="", help="files whose name holds this (a regular expression)")
     options = parser.parse_args()
@@ -247,11 +292,12 @@ def main():
 
     commands = [line for test in options.tests for line in build_commands(build, test)]
     sources, number = [], 1
+    headers = "".join(path.read_text() for folder in ("host_tools/lab", "sim", "tests/mutate") for path in sorted((root / folder).rglob("*.h")))
     for folder in options.folders:
         for path in sorted((root / folder).rglob("*.cpp")):
             source = Source(path, root, number)
             sources.append(source)
-            number = source.next_number
+            number += max(4000, source.next_number - number)  # a file's faults keep their numbers when another changes
     objects = []
     for source in sources:
         if not re.search(options.only, source.name):  # not asked for: as built, and its faults keep their numbers
@@ -274,7 +320,7 @@ def main():
         flags = [flag for at, flag in enumerate(flags) if not flag.endswith("cmake_pch.hxx") and not (flag == "-include" and flags[at + 1].endswith("cmake_pch.hxx"))]
         target = out / (source.name.replace("/", "_"))
         library = re.search(r"-o \S*/(\w+)\.dir/", line).group(1)
-        objects.append((library, str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name))))
+        objects.append((library, str(compile_mutated(source, flags + [f"-I{(root / source.name).parent}", f"-I{root}"], target, options.name, headers))))
         print(f"{options.name}: {source.name}: {len(source.mutants)} faults", flush=True)
 
     judges = []
@@ -290,17 +336,31 @@ def main():
         judges.append(program)
 
     os.chdir(root)
-    reached, seconds = {}, {}
+    reached, seconds = {}, {}  # of each test
     for program in judges:
-        start = time.monotonic()
-        # failures on the way do not matter: a test that fails without any fault is left out of the judges below
+        for name in tests_of(program):
+            start = time.monotonic()
+            (out / "reached").unlink(missing_ok=True)
+            done = run([str(program), "--gtest_brief=1", f"--gtest_filter={name}"], TRACTION_MUTANT_REACHED=str(out / "reached"))
+            if done.returncode != 0:
+                sys.exit(f"{options.name}: {program.name} {name} fails without any fault:\n{done.stdout[-1500:]}")
+            seconds[program, name] = time.monotonic() - start
+            if seconds[program, name] > options.slowest:
+                continue
+            there = (out / "reached").exists()  # a test that comes by no fault writes none
+            reached[program, name] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
+    # a constant is come by before main(): it is shown to the tests that come by anything else of its file
+    at_start = set()
+    for program in judges:
         (out / "reached").unlink(missing_ok=True)
-        done = run([str(program), "--gtest_brief=1"], TRACTION_MUTANT_REACHED=str(out / "reached"))
-        if done.returncode != 0:
-            sys.exit(f"{options.name}: {program.name} fails without any fault:\n{done.stdout[-1500:]}")
-        seconds[program] = time.monotonic() - start
-        there = (out / "reached").exists()  # a program that comes by no fault writes none
-        reached[program] = {int(line) for line in (out / "reached").read_text().split()} if there else set()
+        run([str(program), "--gtest_filter=-*"], TRACTION_MUTANT_REACHED=str(out / "reached"))
+        at_start |= {int(line) for line in (out / "reached").read_text().split()} if (out / "reached").exists() else set()
+    for source in sources:
+        constants = at_start & source.mutants.keys()
+        others = source.mutants.keys() - constants
+        for test in reached:
+            if constants and not reached[test] & others:
+                reached[test] -= constants
     mutants = {number: (source.name, *what) for source in sources for number, what in source.mutants.items()}
     content = "".join(source.path.read_text() for source in sources)
     stamp = hashlib.sha256((content + "".join(str((build / "x", test)) for test in options.tests)).encode()
@@ -322,12 +382,12 @@ def main():
             verdict = known.get(number)
             if verdict is None:
                 verdict = "not reached"
-                for program in judges:
-                    if number not in reached[program]:
-                        continue
+                for program, names in rounds_of([test for test in reached if number in reached[test]], seconds):
                     verdict = "survived"
                     try:
-                        done = run([str(program), "--gtest_brief=1", "--gtest_fail_fast"], timeout=10 * seconds[program] + 60, TRACTION_MUTANT=str(number))
+                        limit = 10 * sum(seconds[program, name] for name in names) + 10
+                        done = run([str(program), "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + ":".join(names)], timeout=limit,
+                                   TRACTION_MUTANT=str(number))
                         verdict = "killed" if done.returncode != 0 else "survived"
                     except subprocess.TimeoutExpired:
                         verdict = "killed"

@@ -6,7 +6,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${4:-$root/build/host}
 command -v python3 > /dev/null || { echo "mutate_lab: skipped, needs python3 (apt: python3)"; exit 0; }
 [ -f "$build/build.ninja" ] || { echo "mutate_lab: $build is not configured; to mend: cmake --preset host" >&2; exit 3; }
-judges="lab_judge_test lab_doubt_test lab_candidates_test" # the quickest first: seconds, so that a sample of faults costs minutes
+judges="lab_rules_test lab_judge_test lab_manner_test lab_doubt_test lab_candidates_test" # tests of milliseconds first; whole diagnoses last, for what only they come by
 # shellcheck disable=SC2086 # a list of targets
 said=$(ninja -C "$build" $judges 2>&1) || {
   printf '%s\n' "$said" | tail -n 20 >&2
@@ -15,4 +15,4 @@ said=$(ninja -C "$build" $judges 2>&1) || {
 }
 # shellcheck disable=SC2086
 exec python3 "$root/tests/mutate/mutate_lab.py" --root "$root" --build "$build" --out "$root/build/mutate_lab" --tests $judges \
-  --mutants "${1:-100}" --seed "${2:-1}" --minutes "${3:-60}"
+  --slowest 8 --mutants "${1:-100}" --seed "${2:-1}" --minutes "${3:-60}"

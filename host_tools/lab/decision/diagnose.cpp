@@ -6,6 +6,8 @@
 #include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
 #include "manner.h"
+#include "record.h"
+#include "rounds.h"
 #include "shapes.h"
 #include "tolerance.h"
 #include "trial.h"
@@ -14,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <memory>
@@ -23,23 +24,6 @@
 namespace traction::lab {
 
 namespace {
-
-// Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
-// machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
-// own. Assumed.
-constexpr double least_fall = 0.002, least_fall_of_one = 0.02;
-
-std::string one_decimal(double value) {
-    char buffer[64];
-    std::snprintf(buffer, sizeof buffer, "%.1f", value);
-    return buffer;
-}
-
-std::string figures(double value) {
-    char buffer[64];
-    std::snprintf(buffer, sizeof buffer, "%.3g", value);
-    return buffer;
-}
 
 // Forward selection, round by round, then backward elimination, then structure-free shapes.
 class Search {
@@ -67,7 +51,7 @@ class Search {
         if (options_.shapes) test_shapes(first, problem);
         settle_last(problem);
         reject_conflicts(d_, problem, [&](std::size_t i) {
-            Model without = model_without(d_.accepted[i].candidate);
+            Model without = model_without(d_.model, d_.accepted[i].candidate);
             Problem left = fitted(without, &problem);
             remove(i, std::move(without), left);
             d_.model_fit.reset();
@@ -75,7 +59,7 @@ class Search {
         });
         refine_shapes(problem);
         d_.limits = limits_of(problem);
-        conclude();
+        conclude(d_);
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
             name_nothing(d_, stated_, *d);
         return std::move(d_);
@@ -96,6 +80,7 @@ class Search {
                 if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
                     problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
             }
+        problem.within_bounds(); // a linear step knows none, and from beyond them every step back costs
         problem.fit({});
         return problem;
     }
@@ -109,41 +94,21 @@ class Search {
                     const FreeParameter &p = problem.parameters[i];
                     if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
                     a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
-                    const double half_width = errors[i].half_width + std::fabs(a.value[j]) * smoothing_loss(a.candidate);
+                    const double half_width = errors[i].half_width + std::fabs(a.value[j]) * smoothing_loss(a.candidate, data_);
                     a.low[j] = a.value[j] - half_width;
                     a.high[j] = a.value[j] + half_width;
                 }
     }
 
-    // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses
-    // at the ripple's frequency is not known of its size.
-    double smoothing_loss(const Candidate &c) const {
-        if (c.effect != "torque_ripple" || c.variant.empty()) return 0;
-        double squares = 0, n = 0;
-        for (const WheelInput &w : data_.wheel)
-            for (const double speed : w.speed_rad_s)
-                if (std::fabs(speed) > 0.5) squares += speed * speed, ++n;
-        return n > 0 ? data_.acceleration_loss(std::fabs(c.variant[0].second) * std::sqrt(squares / n)) : 0;
-    }
-
     // Best shape of each effect and wheel, largest predicted reduction of the error first.
     std::vector<Trial> screened(Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
-        std::map<std::string, Trial> best;
-        std::vector<std::string> order;
+        BestVariants best;
         for (const Candidate &c : catalogue_candidates(d_.model, data_, problem.forward().motion())) {
-            Trial t = screen_candidate(c, screen, columns);
-            const auto found = best.find(c.label());
-            if (found == best.end()) {
-                order.push_back(c.label());
-                best.emplace(c.label(), std::move(t));
-            } else if (t.error_reduction > found->second.error_reduction) {
-                found->second = std::move(t);
-            }
+            best.add(screen_candidate(c, screen, columns));
             tick();
         }
-        std::vector<Trial> trials;
-        for (const std::string &key : order) trials.push_back(std::move(best.at(key)));
+        std::vector<Trial> trials = best.take();
         for (Trial &t : trials)
             if (t.candidate.wheel < 0) scan(t, problem, screen);
         std::stable_sort(trials.begin(), trials.end(),
@@ -156,12 +121,13 @@ class Search {
         std::vector<Trial> trials = screened(problem, screen);
         const double base_error = screen.heldout_error();
         for (Trial &t : trials) judge(t, screen.explainable(), options_);
-        refit_likely(trials, problem, screen);
+        const Refit refit_one = [&](Trial &t) { return refit_and_judge(t, problem, screen); };
+        refit_likely(trials, options_.refits, refit_one);
         if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
-        judge_beyond_range(trials, base_error);
+        judge_beyond_range(trials, base_error, d_.messages);
         std::optional<Next> next;
         std::size_t winner = trials.size();
-        bool sought_afar = !is_first || !(worst_error(held_) > far_off);
+        bool sought_afar = !is_first || !(worst_error_of(held_) > far_off);
         for (;;) {
             std::stable_sort(trials.begin(), trials.end(),
                              [](const Trial &a, const Trial &b) { return a.refitted != b.refitted ? a.refitted : a.gain > b.gain; });
@@ -172,117 +138,23 @@ class Search {
             }
             if (next) break;
             // what was refused stands in nobody's way: those that were not fitted because it explained more have their turn
-            if (refit_passing(trials, problem, screen)) continue;
-            if (std::exchange(sought_afar, true) || !refit_from_afar(trials, problem, screen)) break;
+            if (refit_passing(trials, options_.refits, refit_one)) continue;
+            if (std::exchange(sought_afar, true) || !refit_from_afar(trials, refit_one)) break;
         }
-        if (next && !sought_afar && worst_error(next->held) > far_off) prefer_from_afar(trials, winner, *next, problem, screen);
+        if (next && !sought_afar && worst_error_of(next->held) > far_off) prefer_from_afar(trials, winner, *next, problem, refit_one);
         if (next) prefer_stated(trials, winner, *next, problem, screen);
         for (const Trial &t : trials)
             if (t.refitted && t.verdict == "passes") earlier_.insert_or_assign(t.candidate.label(), Earlier{t.candidate.variant, t.value});
-        if (is_first) note_not_excited(trials);
-        record(trials, winner, base_error, screen, is_first, next ? next->rival : "");
+        if (is_first) note_not_excited(d_, trials);
+        const std::vector<std::size_t> members =
+            winner < trials.size() ? confounded(trials, winner, base_error, screen.explainable(), options_) : std::vector<std::size_t>();
+        record(d_, trials, winner, members, next ? next->rival : "", base_error, screen, is_first);
         if (!next) return std::nullopt;
         held_ = std::move(next->held);
         return std::move(next->problem);
     }
 
-    // A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range.
-    void judge_beyond_range(std::vector<Trial> &trials, double base_error) {
-        double most = 0;
-        Trial *best = nullptr;
-        for (Trial &t : trials) {
-            if (t.verdict == "passes" && t.refitted) most = std::max(most, t.gain);
-            if (t.verdict == "beyond_range" && !t.candidate.bounded && (best == nullptr || t.gain > best->gain)) best = &t;
-        }
-        if (best == nullptr || !(best->gain > most)) return;
-        const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
-        if (much) best->at_least = true, best->verdict = "passes";
-        const std::string told = best->candidate.label() + " explains ";
-        if (std::any_of(d_.messages.begin(), d_.messages.end(), [&](const std::string &m) { return m.starts_with(told); }))
-            return; // in an earlier round
-        d_.messages.push_back(told + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
-                              best->candidate.strengths[0].key + " at " + figures(best->value[0]) +
-                              (much ? "): read its size as at least that" : "): not named"));
-    }
-
-    // Those most sure by their linear step, those of larger predicted reduction than what passed, then those whose scan saw more than the
-    // step did.
-    void refit_likely(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
-        double best = 0; // of the held-out gains that passed: what explains less than half can be neither the winner nor of its class
-        std::vector<Trial *> order;
-        for (Trial &t : trials) order.push_back(&t);
-        const auto refit_some = [&](int most, auto &&likely, auto &&before) {
-            std::stable_sort(order.begin(), order.end(), [&](const Trial *a, const Trial *b) { return before(*a, *b); });
-            for (Trial *t : order) {
-                if (t->refitted || !likely(*t)) continue;
-                if (most-- <= 0) return;
-                if (refit_and_judge(*t, problem, screen)) best = std::max(best, t->gain);
-            }
-        };
-        refit_some(
-            options_.refits,
-            [&](const Trial &t) { return t.p_value < 0.2 && t.error_reduction > least_reduction && t.error_reduction > 0.5 * best; },
-            [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
-        const auto largest_reduction = [](const Trial &a, const Trial &b) { return a.error_reduction > b.error_reduction; };
-        // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
-        refit_some(
-            3,
-            [&](const Trial &t) {
-                return t.error_reduction > std::max(3 * least_reduction, (t.leaves_active_set ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best);
-            },
-            largest_reduction);
-        refit_some(
-            3,
-            [&](const Trial &t) {
-                return t.nonlinear_reduction > std::max(3 * least_reduction, 0.3 * t.error_reduction) && t.error_reduction > 0.5 * best;
-            },
-            largest_reduction);
-    }
-
-    // Those that pass by their linear step and were not fitted, the most sure first, as many as `refits`; whether one passes still.
-    bool refit_passing(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
-        std::vector<Trial *> order;
-        for (Trial &t : trials)
-            if (t.verdict == "passes" && !t.refitted) order.push_back(&t);
-        std::stable_sort(order.begin(), order.end(),
-                         [](const Trial *a, const Trial *b) { return a->assessment.p_value < b->assessment.p_value; });
-        bool any = false;
-        for (std::size_t i = 0; i < order.size() && i < static_cast<std::size_t>(options_.refits); ++i)
-            any = refit_and_judge(*order[i], problem, screen) || any;
-        return any;
-    }
-
-    // A missing law may have taken the baseline to where every small step is blind. Each law of one strength that moves the body is fitted
-    // from a part of its range, whatever its step and its scan said; whether one passes.
-    bool refit_from_afar(std::vector<Trial> &trials, Problem &problem, const Screen &screen) {
-        bool any = false;
-        for (Trial &t : trials) {
-            const Candidate c = t.candidate;
-            if (c.wheel >= 0 || c.strengths.size() != 1 || c.maximum.empty() || (c.touched & stage_motion) == 0) continue;
-            for (const double end : {c.maximum[0], std::min(0.0, c.minimum[0])}) {
-                if (end == 0) continue;
-                Trial afar = t;
-                afar.start = {part_of_range * end};
-                afar.start_change.resize(0);
-                if (refit_and_judge(afar, problem, screen) && (t.verdict != "passes" || afar.gain > t.gain))
-                    t = std::move(afar), any = true;
-            }
-        }
-        return any;
-    }
-
-    // The largest held-out error of a balance, in units of its noise.
-    double worst_error(const HeldOut &held) const {
-        const Eigen::VectorXd squares = held.residual.cwiseQuotient(d_.stated_fit->noise_rows()).cwiseAbs2();
-        Eigen::Index row = 0;
-        double most = 0;
-        for (const Balance &b : data_.balance) {
-            const auto n = static_cast<Eigen::Index>(b.measured.size());
-            if (n > 0) most = std::max(most, squares.segment(row, n).mean());
-            row += n;
-        }
-        return std::sqrt(most);
-    }
+    double worst_error_of(const HeldOut &held) const { return worst_error(held, data_, d_.stated_fit->noise_rows()); }
 
     bool refit_and_judge(Trial &t, Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
@@ -301,27 +173,9 @@ class Search {
         return t.verdict == "passes";
     }
 
-    // What passed in a round before, as it was found there.
-    struct Earlier {
-        std::vector<std::pair<std::string, double>> variant;
-        std::vector<double> value;
-    };
-
-    // Of a law that moves the body: this round's step has led to another size than the one that an earlier round was sure of.
-    static bool lost(const Trial &now, const Earlier &earlier) {
-        if (now.candidate.variant != earlier.variant || (now.candidate.touched & stage_motion) == 0) return false;
-        for (std::size_t j = 0; j < now.value.size(); ++j)
-            if (std::fabs(now.value[j] - earlier.value[j]) > elsewhere * std::fabs(earlier.value[j])) return true;
-        return false;
-    }
-
     // A refit may find the baseline a better place while its own effect says nothing: then the round begins anew from there.
     bool restart_from_refit(const std::vector<Trial> &trials, Problem &problem) const {
-        const Trial *best = nullptr;
-        for (const Trial &t : trials)
-            if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.error_reduction > 3 * least_reduction &&
-                (best == nullptr || t.error_reduction > best->error_reduction))
-                best = &t;
+        const Trial *best = better_place(trials);
         if (best == nullptr) return false;
         Problem moved = problem;
         const double before = moved.cost();
@@ -343,9 +197,9 @@ class Search {
 
     // What explains the most of that which is near may be no more than what a law that is seen from afar leaves of it: where with the
     // winner a balance is still missed by far, those are asked too, and the one that predicts better stands in its place.
-    void prefer_from_afar(std::vector<Trial> &trials, std::size_t &winner, Next &next, Problem &problem, const Screen &screen) {
+    void prefer_from_afar(std::vector<Trial> &trials, std::size_t &winner, Next &next, Problem &problem, const Refit &refit_one) {
         const double gain = trials[winner].gain;
-        if (!refit_from_afar(trials, problem, screen)) return;
+        if (!refit_from_afar(trials, refit_one)) return;
         std::size_t best = trials.size();
         for (std::size_t i = 0; i < trials.size(); ++i)
             if (trials[i].verdict == "passes" && trials[i].refitted && trials[i].gain > (best < trials.size() ? trials[best].gain : gain))
@@ -368,18 +222,6 @@ class Search {
             next = std::move(*other);
             return;
         }
-    }
-
-    bool falls_notably(const HeldOut &held) const {
-        Eigen::Index row = 0;
-        double most = 0;
-        for (const Balance &b : data_.balance) {
-            const auto n = static_cast<Eigen::Index>(b.measured.size());
-            const double before = held_.residual.segment(row, n).norm();
-            if (before > 0) most = std::max(most, 1 - held.residual.segment(row, n).norm() / before);
-            row += n;
-        }
-        return held.error < (1 - least_fall) * held_.error || most > least_fall_of_one;
     }
 
     // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks
@@ -442,7 +284,7 @@ class Search {
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
-        if (!pay && !falls_notably(held)) return std::nullopt;
+        if (!pay && !falls_notably(held_, held, data_)) return std::nullopt;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
@@ -461,61 +303,6 @@ class Search {
         return held;
     }
 
-    // Three sizes of interest: do they show at all, and do they show beside what the model may adjust?
-    void note_not_excited(const std::vector<Trial> &trials) {
-        for (const Trial &t : trials) {
-            const Candidate &c = t.candidate;
-            if (c.wheel >= 0 || c.of_interest.empty() || t.p_value < 0.05) continue; // what the log says something of can be seen in it
-            bool alone = false, beside = false;
-            for (std::size_t j = 0; j < t.error.size(); ++j) {
-                const double size = 3 * c.of_interest[j];
-                alone = alone || size * t.assessment.column_norm > 2;
-                beside = beside || size > 2 * t.error[j];
-            }
-            if (!alone)
-                d_.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
-                                                          one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) +
-                                                          " standard deviations");
-            else if (!beside)
-                d_.not_excited.emplace_back(
-                    c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
-                                  one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
-        }
-    }
-
-    void record(std::vector<Trial> &trials, std::size_t winner, double base_error, const Screen &screen, bool is_first,
-                const std::string &rival) {
-        const bool found = winner < trials.size();
-        const std::vector<std::size_t> members =
-            found ? confounded(trials, winner, base_error, screen.explainable(), options_) : std::vector<std::size_t>();
-        for (std::size_t i = 0; i < trials.size(); ++i) {
-            CandidateResult r = result_of(trials[i], base_error, screen);
-            const bool member = std::find(members.begin(), members.end(), i) != members.end();
-            if (i == winner)
-                r.verdict = members.empty() && rival.empty() ? "named" : "class";
-            else if (member)
-                r.verdict = "class";
-            else if (r.verdict == "passes" || (found && r.verdict == "not_held_out"))
-                r.verdict = found ? "not_needed" : "not_held_out";
-            if ((i == winner || member) && r.verdict == "class") r.class_index = static_cast<int>(d_.classes.size());
-            for (const auto &[effect, why] : d_.not_excited)
-                if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
-            if (is_first) d_.ranking.push_back(r);
-            if (i == winner) d_.accepted.push_back(r);
-        }
-        if (!found) return;
-        const Trial &w = trials[winner];
-        if (!members.empty() || !rival.empty()) {
-            ConfoundedClass c;
-            c.members.push_back(w.candidate.label());
-            for (const std::size_t i : members) c.members.push_back(trials[i].candidate.label());
-            if (!rival.empty()) c.members.push_back(rival);
-            if (const sim::Effect *effect = sim::find_effect(w.candidate.effect)) c.separate_by = effect->reveals;
-            d_.classes.push_back(std::move(c));
-        }
-        d_.model.effects.push_back(effect_of(w.candidate, w.value));
-    }
-
     // Backward elimination: drops what no longer matters beside the others. `last`: the problem of the model as it stands, replaced with
     // it.
     void eliminate_backward(Problem &last) {
@@ -525,7 +312,7 @@ class Search {
             for (std::size_t j = 0; j < one.value.size(); ++j) sure = sure || one.low[j] * one.high[j] > 0;
             const bool solid = sure && large_enough(one.candidate, one.value);
             if (d_.accepted.size() == 1 && solid) return;
-            Model without = model_without(one.candidate);
+            Model without = model_without(d_.model, one.candidate);
             Problem problem = fitted(without, &last);
             const Screen screen(problem);
             Columns::Cache cache;
@@ -548,12 +335,6 @@ class Search {
         const HeldOut left_before = held_out(before), left_after = held_out(after);
         return fall_between(left_before, left_after, noise_weight(before)).sure() &&
                fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
-    }
-
-    Model model_without(const Candidate &one) const {
-        Model without = d_.model;
-        std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == one.effect && use.wheel == one.wheel; });
-        return without;
     }
 
     void remove(std::size_t i, Model without, const Problem &problem) {
@@ -606,7 +387,7 @@ class Search {
 
     void reject_as_nearest(std::size_t i, Problem &last) {
         const CandidateResult one = d_.accepted[i];
-        Model without = model_without(one.candidate);
+        Model without = model_without(d_.model, one.candidate);
         d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance +
                               " alone explains as much: not named");
         for (CandidateResult &r : d_.ranking)
@@ -640,11 +421,7 @@ class Search {
                 for (const sim::EffectParameter &spec : effect->parameters) {
                     const auto found = use.parameters.find(std::string(spec.name));
                     if (found == use.parameters.end() || !is_on_a_scale(spec)) continue;
-                    Parameter &p = found->second;
-                    p.fixed = false;
-                    p.minimum = std::max(spec.minimum, spec.unit == "m" ? p.value - reach_m : p.value / reach);
-                    p.maximum = std::min(spec.maximum, spec.unit == "m" ? p.value + reach_m : p.value * reach);
-                    if (spec.unit == "rad") p.minimum = p.value - 1.6, p.maximum = p.value + 1.6;
+                    set_free(found->second, spec);
                     any = true;
                 }
             }
@@ -656,9 +433,6 @@ class Search {
         }
     }
 
-    // Numbers on a scale; the others are kinds.
-    static bool is_on_a_scale(const sim::EffectParameter &spec) { return !spec.strength && spec.unit != "1" && spec.unit != "1/turn"; }
-
     void take_shapes(CandidateResult &a, Problem &problem, Model &freed) {
         const std::vector<ParameterError> errors = Screen(problem).parameter_errors();
         for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
@@ -668,7 +442,7 @@ class Search {
             for (auto &[key, variant] : a.candidate.variant) {
                 if (key != p.key) continue;
                 variant = value;
-                const double half = errors[i].half_width + (p.unit == "m" ? row_m() : 0);
+                const double half = errors[i].half_width + (p.unit == "m" ? half_row_m(d_.model, data_) : 0);
                 a.shapes.push_back({p.key, p.unit, value, value - half, value + half});
             }
         }
@@ -685,44 +459,7 @@ class Search {
         refresh(problem, Screen(problem));
     }
 
-    // How far the rover goes in half a row: an edge within it is not seen.
-    double row_m() const {
-        double sum = 0, n = 0;
-        for (std::size_t i = 0; i < data_.wheel.size(); ++i)
-            for (const double speed : data_.wheel[i].speed_rad_s)
-                if (std::fabs(speed) > data_.standstill_rad_s) sum += std::fabs(speed) * radius_of(i), ++n;
-        return n > 0 ? 0.5 * sum / n * 0.05 : 0;
-    }
-    double radius_of(std::size_t wheel) const { return d_.model.wheel[wheel].geometry.at("radius_m").value; }
-
-    // What was found, or may be meant, can be seen in this log.
-    bool was_seen(const std::string &effect) const {
-        const auto is = [&](const std::string &label) { return label == effect || label.starts_with(effect + " on wheel"); };
-        for (const ConfoundedClass &c : d_.classes)
-            if (std::any_of(c.members.begin(), c.members.end(), is)) return true;
-        return std::any_of(d_.nearest.begin(), d_.nearest.end(), is) ||
-               std::any_of(d_.accepted.begin(), d_.accepted.end(), [&](const CandidateResult &a) { return a.candidate.effect == effect; });
-    }
-
-    void conclude() {
-        separate_accepted(d_);
-        std::erase_if(d_.not_excited, [&](const auto &one) { return was_seen(one.first); });
-        if (d_.accepted.empty() && !d_.unknown)
-            for (CandidateResult &r : d_.ranking)
-                if (r.verdict == "not_needed") r.verdict = "not_held_out";
-        for (const CandidateResult &a : d_.accepted) d_.effects.push_back(a.candidate.label());
-        if (d_.accepted.empty())
-            d_.kind = d_.unknown ? "unknown" : "nothing";
-        else
-            d_.kind = d_.unknown ? "partial" : !d_.classes.empty() ? "class" : "named";
-        d_.text = verdict_text(d_);
-    }
-
-    static constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
-    // Times its noise, of a balance that is missed by far (uneven ground leaves up to six); of the catalogue's range: both assumed.
-    static constexpr double far_off = 8, part_of_range = 0.25;
-    static constexpr double elsewhere = 0.5;     // of a size: a refit that ends so far from where it was sure is another one (assumed)
-    static constexpr double least_reduction = 9; // three standard deviations of white noise: below it no rule can pass
+    static constexpr double far_off = 8; // times its noise, of a balance that is missed by far (uneven ground leaves up to six): assumed
     const Dataset &data_;
     const Model &stated_;
     const DiagnoseOptions &options_;

@@ -92,7 +92,7 @@ Diagnosis diagnose(const Model &model, const Dataset &data, const DiagnoseOption
 // The verdict wrong_model: takes back every name, class and shape; the model stays as stated.
 void name_nothing(Diagnosis &diagnosis, const Model &stated, const Doubt &doubt);
 
-// The sentence that ends a diagnosis; conclude() of diagnose.cpp puts it into `text`.
+// The sentence that ends a diagnosis; conclude() of record.h puts it into `text`.
 std::string verdict_text(const Diagnosis &diagnosis);
 
 } // namespace traction::lab

@@ -3,12 +3,10 @@
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/forward/rounding.h"
-#include "host_tools/lab/inputs/smooth.h"
-#include "host_tools/lab/inputs/stretch.h"
+#include "suspects.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace traction::lab {
 
@@ -17,62 +15,7 @@ namespace {
 constexpr double suspicious = 0.15;       // (1) of the worst balance, before effects
 constexpr double describes_nothing = 0.9; // (1) of the worst balance, with all that was accepted
 constexpr double never_nothing = 25;      // times noise: uneven ground leaves 3 to 6, what no effect or shape explains at 25 is no ground
-constexpr double several_names = 1.1;     // one wrong number is simpler than two effects
-constexpr double one_name = 0.9;          // it must explain more than one effect, or than a shape does
-constexpr double much_better = 0.5;       // of the error as stated
-constexpr double better = 0.75;           // the same, where an effect was named
-constexpr double as_much = 1.02;          // of the error that what was named leaves
-constexpr double notable = 0.95;          // of the error as stated: a mass that a log hardly tells wanders for less
-constexpr double sure = 2;                // standard errors of the blocks' differences
 constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
-
-constexpr double looked_at_s = 20; // what is grossly wrong shows wherever the model fails: there each datum is tried first
-
-// What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
-struct Datum {
-    const char *table, *key, *name;
-    double gross = 1.4; // times, or one over: a data sheet, a scale is not wrong by that much, and no effect of the catalogue is as large
-    bool more_is_an_effect = false; // of the catalogue: whether it is the cause has been decided there, only less is a matter of the model
-};
-constexpr Datum data_of_a_model[] = {
-    {"rover", "mass_kg", "the mass", 1.3}, // on stiff ground a log was seen to tell it no better than 1.2
-    {"wheel", "radius_m", "the wheels' radius", 1.25},
-    {"motor", "torque_constant_Nm_A", "the torque constant (of the wheel's side of the gear)"},
-    {"motor", "back_emf_Vs_rad", "the back-EMF (of the wheel's side of the gear)"},
-    {"motor", "resistance_ohm", "the motors' resistance", 1.4, true},
-    {"motor", "inertia_kg_m2", "the inertia at the wheel"},
-    {"motor", "coulomb_Nm", "the dry friction of the drives", 1.4, true},
-    {"motor", "viscous_Nms", "the viscous friction of the drives", 1.4, true},
-    {"soil", "mu", "the ground's grip"},
-    {"soil", "rolling_coefficient", "the rolling resistance", 1.4, true},
-    {"soil", "shear_slip", "the soil law's stiffness"},
-};
-
-std::vector<Parameter *> values_of(Model &model, const Datum &datum) {
-    std::vector<Parameter *> out;
-    const std::string table = datum.table;
-    const auto take = [&](Parameters &from) {
-        if (const auto found = from.find(datum.key); found != from.end()) out.push_back(&found->second);
-    };
-    if (table == "rover") take(model.rover);
-    for (WheelSpec &wheel : model.wheel)
-        if (table != "rover") take(table == "wheel" ? wheel.geometry : table == "motor" ? wheel.motor : wheel.soil);
-    return out;
-}
-
-// The datum times `start`, free from a hundredth to six times that.
-bool set_free(Model &model, const Datum &datum, double start) {
-    bool any = false;
-    for (Parameter *p : values_of(model, datum)) {
-        if (!(p->value > 0)) continue;
-        p->value *= start;
-        p->prior = p->value;
-        p->fixed = false;
-        p->minimum = 0.01 * p->value, p->maximum = 6 * p->value;
-        any = true;
-    }
-    return any;
-}
 
 } // namespace
 
@@ -133,8 +76,6 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
     return out;
 }
 
-bool is_gross(const Suspect &s) { return s.fitted < s.stated / s.gross || (!s.more_is_an_effect && s.fitted > s.stated * s.gross); }
-
 std::vector<Freed> freed(const Model &stated, const Dataset &data, const std::vector<const Datum *> &asked) {
     std::vector<Freed> found;
     const auto less = [](const Freed &a, const Freed &b) { return a.suspect.error < b.suspect.error; };
@@ -154,52 +95,6 @@ std::vector<Freed> freed(const Model &stated, const Dataset &data, const std::ve
     return found;
 }
 
-std::vector<const Datum *> all_data() {
-    std::vector<const Datum *> list;
-    for (const Datum &datum : data_of_a_model) list.push_back(&datum);
-    return list;
-}
-
-// The part of the log where the model leaves the most, balance by balance; a row counts as four times its balance's mean at most.
-Dataset worst_stretch(const Problem &first) {
-    const Dataset &data = first.data();
-    const double end = data.time(data.count - 1), step = 0.25 * looked_at_s;
-    if (data.independent_rows || end - data.start_s < 2 * looked_at_s) return data;
-    const Eigen::VectorXd squares = first.residual.cwiseQuotient(first.noise_rows()).cwiseAbs2();
-    std::vector<double> left(static_cast<std::size_t>((end - data.start_s) / step) + 1, 0); // of each quarter of a stretch
-    Eigen::Index row = 0;
-    for (const Balance &b : data.balance) {
-        const auto n = static_cast<Eigen::Index>(b.measured.size());
-        const double mean = squares.segment(row, n).mean();
-        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
-            const double place =
-                std::clamp((0.5 * (b.t0_s[r] + b.t1_s[r]) - data.start_s) / step, 0.0, static_cast<double>(left.size() - 1));
-            left[static_cast<std::size_t>(place)] += std::min(4 * mean, squares[row]) / static_cast<double>(n);
-        }
-    }
-    std::size_t best = 0;
-    double most = 0;
-    for (std::size_t i = 0; i + 4 <= left.size(); ++i)
-        if (const double sum = left[i] + left[i + 1] + left[i + 2] + left[i + 3]; sum > most) most = sum, best = i;
-    const double from = std::min(data.start_s + static_cast<double>(best) * step, end - looked_at_s);
-    return stretch(data, from, from + looked_at_s);
-}
-
-// Of a fitted model on the rows of a part of its log, in units of noise, as overall_error() has it.
-double error_within(const Problem &fitted, const Dataset &part) {
-    const Eigen::VectorXd squares = fitted.residual.cwiseQuotient(fitted.noise_rows()).cwiseAbs2();
-    const double from = part.start_s, to = part.time(part.count - 1);
-    double sum = 0, balances = 0;
-    Eigen::Index row = 0;
-    for (const Balance &b : fitted.data().balance) {
-        double own = 0, n = 0;
-        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row)
-            if (b.t0_s[r] >= from && b.t1_s[r] <= to) own += squares[row], ++n;
-        if (n > 0) sum += own / n, ++balances;
-    }
-    return balances > 0 ? std::sqrt(sum / balances) : 0;
-}
-
 // Those that may bring the error below `need` times what it is, on the whole log: a datum that does not go half of that way where the model
 // fails most does not go all of it on the whole log.
 std::vector<const Datum *> promising_data(const Model &stated, const Problem &first, double need) {
@@ -212,35 +107,6 @@ std::vector<const Datum *> promising_data(const Model &stated, const Problem &fi
     return list;
 }
 
-// What no model goes below: the scatter of the residuals from row to row, which a prediction has no part in, for it follows the wheels.
-double fit_scatter(const Problem &fitted) {
-    const Eigen::VectorXd e = fitted.residual.cwiseQuotient(fitted.noise_rows());
-    double sum = 0;
-    Eigen::Index row = 0;
-    for (const Balance &b : fitted.data().balance) {
-        std::vector<double> bend; // second differences: of white noise, sqrt(6) times it
-        for (std::size_t r = 2; r < b.measured.size(); ++r)
-            bend.push_back(std::fabs(e[row + static_cast<Eigen::Index>(r)] - 2 * e[row + static_cast<Eigen::Index>(r) - 1] +
-                                     e[row + static_cast<Eigen::Index>(r) - 2]));
-        sum += bend.empty() ? 0 : std::pow(1.4826 * median(bend), 2) / 6;
-        row += static_cast<Eigen::Index>(b.measured.size());
-    }
-    return fitted.data().balance.empty() ? 0 : std::sqrt(sum / static_cast<double>(fitted.data().balance.size()));
-}
-
-// The error as overall_error() has it, with `squares` of each row taken off.
-double error_less(const Problem &fitted, const Eigen::VectorXd &squares) {
-    const Eigen::VectorXd left = (fitted.residual.cwiseAbs2() - squares).cwiseQuotient(fitted.noise_rows().cwiseAbs2());
-    double sum = 0;
-    Eigen::Index row = 0;
-    for (const Balance &b : fitted.data().balance) {
-        const auto n = static_cast<Eigen::Index>(b.measured.size());
-        if (n > 0) sum += left.segment(row, n).mean();
-        row += n;
-    }
-    return fitted.data().balance.empty() ? 0 : std::sqrt(std::max(0.0, sum / static_cast<double>(fitted.data().balance.size())));
-}
-
 // Data that the fit within the priors has itself moved grossly (the sheet's deviation was too wide to hold them), and without which it
 // describes the log notably worse: what uneven ground does to a soil's stiffness is less. A soil that is too soft also predicts better
 // because it does not follow the encoders' scatter ((1) of forward/rounding.h): what that may be is no evidence.
@@ -249,7 +115,8 @@ std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first, do
     for (std::size_t i = 0; i < first.parameters.size(); ++i)
         store(after, first.parameters[i], first.theta[static_cast<Eigen::Index>(i)], 0);
     std::vector<Suspect> out;
-    for (const Datum &datum : data_of_a_model) {
+    for (const Datum *one : all_data()) {
+        const Datum &datum = *one;
         const std::vector<Parameter *> was = values_of(before, datum), is = values_of(after, datum);
         double value = 0, fitted = 0, prior = 0;
         for (std::size_t i = 0; i < was.size() && i < is.size(); ++i)
@@ -271,14 +138,6 @@ std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first, do
     return out;
 }
 
-// Data of the sheet at their bounds.
-bool strained(const Problem &problem) {
-    for (std::size_t i = 0; i < problem.parameters.size(); ++i)
-        for (const Datum &datum : data_of_a_model)
-            if (problem.parameters[i].owner == datum.table && problem.parameters[i].key == datum.key && problem.at_bound(i)) return true;
-    return false;
-}
-
 // By how many standard errors the freed datum predicts blocks left out better than the model with what was named.
 double lead_of(const Problem &last, Problem &datum) {
     datum.get_ready();
@@ -286,17 +145,6 @@ double lead_of(const Problem &last, Problem &datum) {
     datum.gauss_newton(2);
     const Fall fall = fall_between(held_out(last), held_out(datum), noise_weight(last));
     return fall.error > 0 ? fall.sum / fall.error : fall.sum;
-}
-
-// An effect of the catalogue that is the datum by another name: of the two the effect is told.
-bool is_its_law(const Problem &last, const Datum &datum) {
-    static constexpr const char *laws[][2] = {
-        {"torque_constant", "torque_constant_Nm_A"}, {"current_gain", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"},
-        {"shear_stiffness", "shear_slip"},           {"voltage_gain", "back_emf_Vs_rad"},      {"voltage_gain", "torque_constant_Nm_A"}};
-    return std::any_of(last.parameters.begin(), last.parameters.end(), [&](const FreeParameter &p) {
-        return std::any_of(std::begin(laws), std::end(laws),
-                           [&](const auto &law) { return p.owner == law[0] && law[1] == std::string(datum.key); });
-    });
 }
 
 } // namespace
@@ -331,58 +179,21 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     if (!at_bound && worst_of(first) < suspicious && !far_off && out.suspects.empty() && !(accepted >= 2 && before > 1.3 * after))
         return std::nullopt;
     const double left = after * (1 - shape_gain);
-    // the largest share of the error that a rule below lets a datum leave
-    const double need = accepted == 0   ? std::min(much_better, one_name * left / before)
-                        : accepted == 1 ? std::min(notable, as_much * left / before)
-                                        : std::min(better, several_names * left / before);
+    const double need = largest_share(accepted, before, left);
     std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
     if (before > never_nothing)
         found = freed(stated, data, all_data());
     else if (data.independent_rows || fit_scatter(first) < need * before)
         found = freed(stated, data, promising_data(stated, first, need));
     for (Freed &f : found) {
-        const Suspect &s = f.suspect;
-        // more of it is an effect, unless it alone does what took two names: then one of them is none
-        if (accepted >= 2 && s.more_is_an_effect && s.fitted > s.stated * s.gross && s.error < better * before &&
-            s.error < several_names * left && lead_of(last, *f.problem) > 0) {
+        const auto lead = [&] { return lead_of(last, *f.problem); };
+        const auto relieves = [&] { return strained(last) && !strained(*f.problem); };
+        if (is_suspect(f.suspect, accepted, before, left, relieves, lead, [&] { return is_its_law(last, *f.datum); }))
             out.suspects.push_back(std::move(f.suspect));
-            continue;
-        }
-        if (!is_gross(s)) continue;
-        const bool helps = s.error < (accepted > 0 ? better : much_better) * before;
-        const bool alone = s.error < (accepted >= 2 ? several_names : one_name) * left; // one number against all that was named
-        // one number against one effect: what is named leaves the sheet contradicted and the datum does not, or it predicts at least as
-        // well
-        const bool rivals =
-            accepted == 1 && s.error < as_much * left && s.error < notable * before &&
-            ((strained(last) && !strained(*f.problem)) || lead_of(last, *f.problem) > (is_its_law(last, *f.datum) ? sure : 0));
-        if ((helps && alone) || rivals) out.suspects.push_back(std::move(f.suspect));
     }
-    std::stable_sort(out.suspects.begin(), out.suspects.end(), [](const Suspect &x, const Suspect &y) { return x.error < y.error; });
-    std::vector<Suspect> once;
-    for (Suspect &suspect : out.suspects)
-        if (std::none_of(once.begin(), once.end(), [&](const Suspect &seen) { return seen.quantity == suspect.quantity; }))
-            once.push_back(std::move(suspect));
-    out.suspects = std::move(once);
+    out.suspects = told_once(std::move(out.suspects));
     if (out.suspects.empty() && worst < describes_nothing && !far_off) return std::nullopt;
-    char buffer[300];
-    if (out.suspects.empty()) {
-        std::snprintf(buffer, sizeof buffer,
-                      "as fitted it leaves %.0f %% of a measured signal (but for noise). Look at the wheels' order and signs, radius, "
-                      "mass, units and gear, and "
-                      "the ground's law",
-                      100 * worst);
-        out.text = buffer;
-    } else {
-        for (std::size_t i = 0; i < out.suspects.size() && i < 3; ++i) {
-            const Suspect &s = out.suspects[i];
-            std::snprintf(buffer, sizeof buffer, "%s%s: %.4g %s would describe it (error %.3g x noise), the model has %.4g",
-                          i == 0 ? "Look first at " : "; or ", s.quantity.c_str(), s.fitted, s.unit == "1" ? "" : s.unit.c_str(), s.error,
-                          s.stated);
-            out.text += buffer;
-        }
-        out.text += "; then at units, gear, the wheels' order, and the ground's law";
-    }
+    out.text = what_to_look_at(out.suspects, worst);
     return out;
 }
 

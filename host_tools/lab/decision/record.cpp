@@ -1,0 +1,128 @@
+#include "record.h"
+
+#include "classes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
+
+std::string one_decimal(double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.1f", value);
+    return buffer;
+}
+
+} // namespace
+
+void note_not_excited(Diagnosis &d, const std::vector<Trial> &trials) {
+    for (const Trial &t : trials) {
+        const Candidate &c = t.candidate;
+        if (c.wheel >= 0 || c.of_interest.empty() || t.p_value < 0.05) continue;
+        bool alone = false, beside = false;
+        for (std::size_t j = 0; j < t.error.size(); ++j) {
+            const double size = 3 * c.of_interest[j];
+            alone = alone || size * t.assessment.column_norm > 2;
+            beside = beside || size > 2 * t.error[j];
+        }
+        if (!alone)
+            d.not_excited.emplace_back(c.effect, "a size three times that of interest changes the log by " +
+                                                     one_decimal(3 * c.of_interest[0] * t.assessment.column_norm) + " standard deviations");
+        else if (!beside)
+            d.not_excited.emplace_back(
+                c.effect, "it would hide behind the model's own uncertain parameters: a size three times that of interest is " +
+                              one_decimal(3 * c.of_interest[0] / t.error[0]) + " standard errors");
+    }
+}
+
+void record(Diagnosis &d, const std::vector<Trial> &trials, std::size_t winner, const std::vector<std::size_t> &members,
+            const std::string &rival, double base_error, const Screen &screen, bool is_first) {
+    const bool found = winner < trials.size();
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        CandidateResult r = result_of(trials[i], base_error, screen);
+        const bool member = std::find(members.begin(), members.end(), i) != members.end();
+        if (i == winner)
+            r.verdict = members.empty() && rival.empty() ? "named" : "class";
+        else if (member)
+            r.verdict = "class";
+        else if (r.verdict == "passes" || (found && r.verdict == "not_held_out"))
+            r.verdict = found ? "not_needed" : "not_held_out";
+        if ((i == winner || member) && r.verdict == "class") r.class_index = static_cast<int>(d.classes.size());
+        for (const auto &[effect, why] : d.not_excited)
+            if (effect == r.candidate.effect && r.verdict == "not_significant" && r.candidate.wheel < 0) r.verdict = "not_excited";
+        if (is_first) d.ranking.push_back(r);
+        if (i == winner) d.accepted.push_back(r);
+    }
+    if (!found) return;
+    const Trial &w = trials[winner];
+    if (!members.empty() || !rival.empty()) {
+        ConfoundedClass c;
+        c.members.push_back(w.candidate.label());
+        for (const std::size_t i : members) c.members.push_back(trials[i].candidate.label());
+        if (!rival.empty()) c.members.push_back(rival);
+        if (const sim::Effect *effect = sim::find_effect(w.candidate.effect)) c.separate_by = effect->reveals;
+        d.classes.push_back(std::move(c));
+    }
+    d.model.effects.push_back(effect_of(w.candidate, w.value));
+}
+
+bool was_seen(const Diagnosis &d, const std::string &effect) {
+    const auto is = [&](const std::string &label) { return label == effect || label.starts_with(effect + " on wheel"); };
+    for (const ConfoundedClass &c : d.classes)
+        if (std::any_of(c.members.begin(), c.members.end(), is)) return true;
+    return std::any_of(d.nearest.begin(), d.nearest.end(), is) ||
+           std::any_of(d.accepted.begin(), d.accepted.end(), [&](const CandidateResult &a) { return a.candidate.effect == effect; });
+}
+
+void conclude(Diagnosis &d) {
+    separate_accepted(d);
+    std::erase_if(d.not_excited, [&](const auto &one) { return was_seen(d, one.first); });
+    if (d.accepted.empty() && !d.unknown)
+        for (CandidateResult &r : d.ranking)
+            if (r.verdict == "not_needed") r.verdict = "not_held_out";
+    for (const CandidateResult &a : d.accepted) d.effects.push_back(a.candidate.label());
+    if (d.accepted.empty())
+        d.kind = d.unknown ? "unknown" : "nothing";
+    else
+        d.kind = d.unknown ? "partial" : !d.classes.empty() ? "class" : "named";
+    d.text = verdict_text(d);
+}
+
+Model model_without(const Model &model, const Candidate &one) {
+    Model without = model;
+    std::erase_if(without.effects, [&](const EffectUse &use) { return use.name == one.effect && use.wheel == one.wheel; });
+    return without;
+}
+
+bool is_on_a_scale(const sim::EffectParameter &spec) { return !spec.strength && spec.unit != "1" && spec.unit != "1/turn"; }
+
+void set_free(Parameter &p, const sim::EffectParameter &spec) {
+    p.fixed = false;
+    p.minimum = std::max(spec.minimum, spec.unit == "m" ? p.value - reach_m : p.value / reach);
+    p.maximum = std::min(spec.maximum, spec.unit == "m" ? p.value + reach_m : p.value * reach);
+    if (spec.unit == "rad") p.minimum = p.value - 1.6, p.maximum = p.value + 1.6;
+}
+
+double smoothing_loss(const Candidate &c, const Dataset &data) {
+    if (c.effect != "torque_ripple" || c.variant.empty()) return 0;
+    double squares = 0, n = 0;
+    for (const WheelInput &w : data.wheel)
+        for (const double speed : w.speed_rad_s)
+            if (std::fabs(speed) > 0.5) squares += speed * speed, ++n;
+    return n > 0 ? data.acceleration_loss(std::fabs(c.variant[0].second) * std::sqrt(squares / n)) : 0;
+}
+
+double half_row_m(const Model &model, const Dataset &data) {
+    double sum = 0, n = 0;
+    for (std::size_t i = 0; i < data.wheel.size(); ++i)
+        for (const double speed : data.wheel[i].speed_rad_s)
+            if (std::fabs(speed) > data.standstill_rad_s) sum += std::fabs(speed) * model.wheel[i].geometry.at("radius_m").value, ++n;
+    return n > 0 ? 0.5 * sum / n * 0.05 : 0;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,43 @@
+// record.h - what a diagnosis writes down: of each round who was named, who may be meant, who could not be seen; and its last word.
+#pragma once
+
+#include "diagnose.h"
+#include "trial.h"
+
+#include "sim/physics/effects/catalogue.h"
+
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+// Three sizes of interest of what all wheels share: do they show at all (two standard deviations of the whole log), and do they show beside
+// what the model may adjust (two standard errors)? What the log says something of can be seen in it.
+void note_not_excited(Diagnosis &diagnosis, const std::vector<Trial> &trials);
+
+// A round with this winner (trials.size(): none), whose class `members` are, and `rival`, a tolerance that explains as much (empty: none
+// does). The first round is the ranking. The winner is accepted, and an effect of the model.
+void record(Diagnosis &diagnosis, const std::vector<Trial> &trials, std::size_t winner, const std::vector<std::size_t> &members,
+            const std::string &rival, double base_error, const Screen &screen, bool is_first);
+
+// What was found, or may be meant, can be seen in this log.
+bool was_seen(const Diagnosis &diagnosis, const std::string &effect);
+
+// Kind, names and text of what was found.
+void conclude(Diagnosis &diagnosis);
+
+Model model_without(const Model &model, const Candidate &candidate);
+
+// A shape parameter that is a number on a scale (the others are kinds: an order, who shares a lead), and the range in which it is set free
+// from the station at which it was found: a factor of four or a metre to either side, a quarter of a turn and a little of an angle.
+bool is_on_a_scale(const sim::EffectParameter &spec);
+void set_free(Parameter &parameter, const sim::EffectParameter &spec);
+
+// A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses at the
+// ripple's frequency, at the mean speed of the turning wheels, is not known of its size. A share of it.
+double smoothing_loss(const Candidate &candidate, const Dataset &data);
+
+// How far the rover goes in half a row: an edge within it is not seen.
+double half_row_m(const Model &model, const Dataset &data);
+
+} // namespace traction::lab

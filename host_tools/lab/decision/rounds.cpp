@@ -1,0 +1,160 @@
+#include "rounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr double part_of_range = 0.25; // of the catalogue's: assumed
+constexpr double elsewhere = 0.5;      // of a size: a refit that ends so far from where it was sure is another one (assumed)
+// Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
+// machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
+// own. Assumed.
+constexpr double least_fall = 0.002, least_fall_of_one = 0.02;
+
+std::string figures(double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.3g", value);
+    return buffer;
+}
+
+bool larger_reduction(const Trial &a, const Trial &b) { return a.error_reduction > b.error_reduction; }
+
+} // namespace
+
+void BestVariants::add(Trial t) {
+    const auto found = best_.find(t.candidate.label());
+    if (found == best_.end()) {
+        order_.push_back(t.candidate.label());
+        best_.emplace(t.candidate.label(), std::move(t));
+    } else if (t.error_reduction > found->second.error_reduction) {
+        found->second = std::move(t);
+    }
+}
+
+std::vector<Trial> BestVariants::take() {
+    std::vector<Trial> trials;
+    for (const std::string &key : order_) trials.push_back(std::move(best_.at(key)));
+    best_.clear(), order_.clear();
+    return trials;
+}
+
+void refit_likely(std::vector<Trial> &trials, int refits, const Refit &refit_and_judge) {
+    double best = 0; // of the held-out gains that passed
+    std::vector<Trial *> order;
+    for (Trial &t : trials) order.push_back(&t);
+    const auto refit_some = [&](int most, auto &&likely, auto &&before) {
+        std::stable_sort(order.begin(), order.end(), [&](const Trial *a, const Trial *b) { return before(*a, *b); });
+        for (Trial *t : order) {
+            if (t->refitted || !likely(*t)) continue;
+            if (most-- <= 0) return;
+            if (refit_and_judge(*t)) best = std::max(best, t->gain);
+        }
+    };
+    refit_some(
+        refits, [&](const Trial &t) { return t.p_value < 0.2 && t.error_reduction > least_reduction && t.error_reduction > 0.5 * best; },
+        [](const Trial &a, const Trial &b) { return a.assessment.p_value < b.assessment.p_value; });
+    // what passed may be surer, but explain less; or the linear test was made where it cannot be trusted
+    refit_some(
+        3,
+        [&](const Trial &t) {
+            return t.error_reduction > std::max(3 * least_reduction, (t.leaves_active_set ? 0.5 : t.p_value < 0.2 ? 0.7 : 0.9) * best);
+        },
+        larger_reduction);
+    refit_some(
+        3,
+        [&](const Trial &t) {
+            return t.nonlinear_reduction > std::max(3 * least_reduction, 0.3 * t.error_reduction) && t.error_reduction > 0.5 * best;
+        },
+        larger_reduction);
+}
+
+bool refit_passing(std::vector<Trial> &trials, int refits, const Refit &refit_and_judge) {
+    std::vector<Trial *> order;
+    for (Trial &t : trials)
+        if (t.verdict == "passes" && !t.refitted) order.push_back(&t);
+    std::stable_sort(order.begin(), order.end(),
+                     [](const Trial *a, const Trial *b) { return a->assessment.p_value < b->assessment.p_value; });
+    bool any = false;
+    for (std::size_t i = 0; i < order.size() && i < static_cast<std::size_t>(refits); ++i) any = refit_and_judge(*order[i]) || any;
+    return any;
+}
+
+bool refit_from_afar(std::vector<Trial> &trials, const Refit &refit_and_judge) {
+    bool any = false;
+    for (Trial &t : trials) {
+        const Candidate c = t.candidate;
+        if (c.wheel >= 0 || c.strengths.size() != 1 || c.maximum.empty() || (c.touched & stage_motion) == 0) continue;
+        for (const double end : {c.maximum[0], std::min(0.0, c.minimum[0])}) {
+            if (end == 0) continue;
+            Trial afar = t;
+            afar.start = {part_of_range * end};
+            afar.start_change.resize(0);
+            if (refit_and_judge(afar) && (t.verdict != "passes" || afar.gain > t.gain)) t = std::move(afar), any = true;
+        }
+    }
+    return any;
+}
+
+void judge_beyond_range(std::vector<Trial> &trials, double base_error, std::vector<std::string> &messages) {
+    double most = 0;
+    Trial *best = nullptr;
+    for (Trial &t : trials) {
+        if (t.verdict == "passes" && t.refitted) most = std::max(most, t.gain);
+        if (t.verdict == "beyond_range" && !t.candidate.bounded && (best == nullptr || t.gain > best->gain)) best = &t;
+    }
+    if (best == nullptr || !(best->gain > most)) return;
+    const bool much = best->gain > std::max(1.1 * most, 0.1 * base_error);
+    if (much) best->at_least = true, best->verdict = "passes";
+    const std::string told = best->candidate.label() + " explains ";
+    if (std::any_of(messages.begin(), messages.end(), [&](const std::string &m) { return m.starts_with(told); }))
+        return; // in an earlier round
+    messages.push_back(told + figures(100 * best->gain / base_error) + " % of the held-out error, but only beyond its range (" +
+                       best->candidate.strengths[0].key + " at " + figures(best->value[0]) +
+                       (much ? "): read its size as at least that" : "): not named"));
+}
+
+const Trial *better_place(const std::vector<Trial> &trials) {
+    const Trial *best = nullptr;
+    for (const Trial &t : trials)
+        if (t.refitted && t.verdict != "passes" && t.p_value > 0.2 && t.error_reduction > 3 * least_reduction &&
+            (best == nullptr || t.error_reduction > best->error_reduction))
+            best = &t;
+    return best;
+}
+
+bool lost(const Trial &now, const Earlier &earlier) {
+    if (now.candidate.variant != earlier.variant || (now.candidate.touched & stage_motion) == 0) return false;
+    for (std::size_t j = 0; j < now.value.size(); ++j)
+        if (std::fabs(now.value[j] - earlier.value[j]) > elsewhere * std::fabs(earlier.value[j])) return true;
+    return false;
+}
+
+double worst_error(const HeldOut &held, const Dataset &data, const Eigen::VectorXd &noise_rows) {
+    const Eigen::VectorXd squares = held.residual.cwiseQuotient(noise_rows).cwiseAbs2();
+    Eigen::Index row = 0;
+    double most = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        if (n > 0) most = std::max(most, squares.segment(row, n).mean());
+        row += n;
+    }
+    return std::sqrt(most);
+}
+
+bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data) {
+    Eigen::Index row = 0;
+    double most = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        const double was = before.residual.segment(row, n).norm();
+        if (was > 0) most = std::max(most, 1 - after.residual.segment(row, n).norm() / was);
+        row += n;
+    }
+    return after.error < (1 - least_fall) * before.error || most > least_fall_of_one;
+}
+
+} // namespace traction::lab

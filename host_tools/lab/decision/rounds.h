@@ -1,0 +1,67 @@
+// rounds.h - one round of the forward selection: which candidates are fitted in full and in which order, what is believed of a size beyond
+// its range, and where a round begins anew.
+//
+// A refit costs a hundred linear steps, so that only those are fitted which may win, or be of the winner's class. Whoever asks hands in how
+// a trial is refitted and judged (`Refit`: whether it passes).
+#pragma once
+
+#include "host_tools/lab/fit/heldout.h"
+#include "trial.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace traction::lab {
+
+inline constexpr double least_reduction = 9; // squares: three standard deviations of white noise; below it no rule can pass
+
+using Refit = std::function<bool(Trial &)>;
+
+// Of the variants of each effect and wheel the one of the largest predicted fall, in the order in which their labels came.
+class BestVariants {
+  public:
+    void add(Trial trial);
+    std::vector<Trial> take();
+
+  private:
+    std::map<std::string, Trial> best_;
+    std::vector<std::string> order_;
+};
+
+// Those most sure by their linear step, `refits` of them; then three of larger predicted reduction than what passed; then three whose scan
+// saw more than the step did. What explains less than half of what passed can be neither the winner nor of its class.
+void refit_likely(std::vector<Trial> &trials, int refits, const Refit &refit_and_judge);
+
+// Those that pass by their linear step and were not fitted, the most sure first, at most `refits`; whether one passes still.
+bool refit_passing(std::vector<Trial> &trials, int refits, const Refit &refit_and_judge);
+
+// A missing law may have taken the baseline to where every small step is blind. Each law of one strength that moves the body is fitted
+// from a part of its range, whatever its step and its scan said; whether one passes.
+bool refit_from_afar(std::vector<Trial> &trials, const Refit &refit_and_judge);
+
+// A size where the fit may go no further is believed only where it explains much, and more than all that keeps within its range: told in
+// `messages`, once.
+void judge_beyond_range(std::vector<Trial> &trials, double base_error, std::vector<std::string> &messages);
+
+// A refit may find the baseline a better place while its own effect says nothing: the one that fell the most; nullptr: none did.
+const Trial *better_place(const std::vector<Trial> &trials);
+
+// What passed in a round before, as it was found there.
+struct Earlier {
+    std::vector<std::pair<std::string, double>> variant;
+    std::vector<double> value;
+};
+
+// Of a law that moves the body: this round's step has led to another size than the one that an earlier round was sure of.
+bool lost(const Trial &now, const Earlier &earlier);
+
+// The largest held-out error of a balance, in units of its noise.
+double worst_error(const HeldOut &held, const Dataset &data, const Eigen::VectorXd &noise_rows);
+
+// Whether a name lowers the held-out error by as much as a name must, of all or of one balance.
+bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data);
+
+} // namespace traction::lab

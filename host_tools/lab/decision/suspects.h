@@ -1,0 +1,62 @@
+// suspects.h - data of a model that a log may find grossly wrong, and by what a suspicion is believed.
+#pragma once
+
+#include "doubt.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace traction::lab {
+
+inline constexpr double notable = 0.95; // of the error as stated: a mass that a log hardly tells wanders for less
+
+// What a data sheet, a ruler or a scale says, and how a mistake in it is looked for.
+struct Datum {
+    const char *table, *key, *name;
+    double gross = 1.4; // times, or one over: a data sheet, a scale is not wrong by that much, and no effect of the catalogue is as large
+    bool more_is_an_effect = false; // of the catalogue: whether it is the cause has been decided there, only less is a matter of the model
+};
+std::vector<const Datum *> all_data();
+
+std::vector<Parameter *> values_of(Model &model, const Datum &datum);
+
+// The datum times `start`, free from a hundredth to six times that. Whether the model has it.
+bool set_free(Model &model, const Datum &datum, double start);
+
+bool is_gross(const Suspect &suspect);
+
+// The part of the log where the model leaves the most, balance by balance; a row counts as four times its balance's mean at most.
+Dataset worst_stretch(const Problem &first);
+
+// Of a fitted model on the rows of a part of its log, in units of noise, as overall_error() has it.
+double error_within(const Problem &fitted, const Dataset &part);
+
+// What no model goes below: the scatter of the residuals from row to row, which a prediction has no part in, for it follows the wheels.
+double fit_scatter(const Problem &fitted);
+
+// The error as overall_error() has it, with `squares` of each row taken off.
+double error_less(const Problem &fitted, const Eigen::VectorXd &squares);
+
+// Data of the sheet at their bounds.
+bool strained(const Problem &problem);
+
+// An effect of the catalogue that is the datum by another name: of the two the effect is told.
+bool is_its_law(const Problem &last, const Datum &datum);
+
+// Of the error as stated, `before`, the largest share that is_suspect() lets a datum leave; `left`: what is left with all that was
+// accepted.
+double largest_share(std::size_t accepted, double before, double left);
+
+// Is a datum, set free, to be told instead of the `accepted` effects? relieves: what was named leaves the sheet contradicted, and the datum
+// does not; lead: by how many standard errors the datum predicts blocks left out better; is_its_law: above. Asked only where it matters.
+bool is_suspect(const Suspect &suspect, std::size_t accepted, double before, double left, const std::function<bool()> &relieves,
+                const std::function<double()> &lead, const std::function<bool()> &is_its_law);
+
+// Least error first, each quantity once.
+std::vector<Suspect> told_once(std::vector<Suspect> suspects);
+
+// The first three, in words; where there is none, how much of a signal is left: `worst`, (1) of doubt.h.
+std::string what_to_look_at(const std::vector<Suspect> &suspects, double worst);
+
+} // namespace traction::lab

@@ -1,0 +1,401 @@
+// What a diagnosis writes down (record.h, verdict.cpp, classes.h), on rounds made by hand.
+#include "host_tools/lab/decision/classes.h"
+#include "host_tools/lab/decision/record.h"
+#include "tests/lab/hand_made.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+namespace traction::lab {
+namespace {
+
+using hand_made::candidate;
+using Labels = std::vector<std::string>;
+
+Trial trial(const std::string &effect, const std::string &verdict, double gain = 10) {
+    Trial t;
+    t.candidate = candidate(effect);
+    t.value = {0.5}, t.error = {0.1}, t.half_width = {0.2};
+    t.verdict = verdict, t.gain = gain, t.gain_error = 2;
+    t.p_value = 0.5;
+    t.block_gain = Eigen::VectorXd::Zero(10);
+    return t;
+}
+
+const Problem &problem() {
+    static const Dataset data = hand_made::data_of(1, 100, 0.5);
+    static const Problem one = hand_made::problem_of(data, {}, Eigen::MatrixXd(100, 0), Eigen::VectorXd::Ones(100));
+    return one;
+}
+const Screen &screen() {
+    static const Screen one(problem());
+    return one;
+}
+
+TEST(Excited, is_what_three_sizes_of_interest_change_by_two_deviations_alone_and_beside_the_rest) {
+    const auto noted = [](double column_norm, double error, double p = 0.5, int wheel = -1) {
+        Trial t = trial("a", "not_significant");
+        t.candidate.wheel = wheel;
+        t.assessment.column_norm = column_norm, t.error = {error}, t.p_value = p; // 0.3 is three times of interest
+        Diagnosis d;
+        note_not_excited(d, {t});
+        return d.not_excited.empty() ? std::string() : d.not_excited[0].first + ": " + d.not_excited[0].second;
+    };
+    EXPECT_EQ(noted(6.7, 0.1), "");
+    EXPECT_EQ(noted(6.6, 0.1), "a: a size three times that of interest changes the log by 2.0 standard deviations");
+    EXPECT_EQ(noted(1, 0.1), "a: a size three times that of interest changes the log by 0.3 standard deviations");
+    EXPECT_EQ(noted(100, 0.149), "");
+    EXPECT_EQ(noted(100, 0.25),
+              "a: it would hide behind the model's own uncertain parameters: a size three times that of interest is 1.2 standard errors");
+    EXPECT_NE(noted(100, 0.151), "");
+    EXPECT_EQ(noted(1, 0.1, 0.049), ""); // the log says something of it
+    EXPECT_NE(noted(1, 0.1, 0.05), "");
+    EXPECT_EQ(noted(1, 0.1, 0.5, 2), ""); // of one wheel nothing is said
+}
+
+TEST(Excited, are_two_strengths_of_which_one_is) {
+    Trial t = trial("a", "not_significant");
+    t.candidate.of_interest = {0.1, 0.5};
+    t.assessment.column_norm = 2, t.error = {1, 0.7}; // 0.6 and 3 deviations; 0.3 and 2.1 errors
+    Diagnosis d;
+    note_not_excited(d, {t});
+    EXPECT_TRUE(d.not_excited.empty());
+    t.error = {1, 0.8};
+    note_not_excited(d, {t});
+    ASSERT_EQ(d.not_excited.size(), 1U);
+    EXPECT_NE(d.not_excited[0].second.find("is 0.3 standard errors"), std::string::npos); // of the first
+    t.candidate.of_interest.clear();
+    note_not_excited(d, {t});
+    EXPECT_EQ(d.not_excited.size(), 1U); // of what has no size of interest nothing is said
+}
+
+Labels verdicts(const std::vector<CandidateResult> &list) {
+    Labels out;
+    for (const CandidateResult &r : list) out.push_back(r.verdict);
+    return out;
+}
+
+TEST(Record, of_a_winner_without_rival_or_class_is_a_name) {
+    Diagnosis d;
+    d.not_excited = {{"d", ""}, {"e", ""}};
+    std::vector<Trial> trials = {trial("a", "passes"),       trial("slip_sinkage", "passes", 30),
+                                 trial("b", "not_held_out"), trial("d", "not_significant"),
+                                 trial("e", "too_small"),    trial("c", "too_small")};
+    record(d, trials, 1, {}, "", 200, screen(), true);
+    EXPECT_EQ(verdicts(d.ranking), (Labels{"not_needed", "named", "not_needed", "not_excited", "too_small", "too_small"}));
+    ASSERT_EQ(d.accepted.size(), 1U);
+    EXPECT_EQ(d.accepted[0].candidate.label(), "slip_sinkage");
+    EXPECT_FALSE(d.accepted[0].class_index);
+    EXPECT_DOUBLE_EQ(d.accepted[0].heldout_gain, 30.0 / 200);
+    EXPECT_TRUE(d.classes.empty());
+    ASSERT_EQ(d.model.effects.size(), 1U);
+    EXPECT_EQ(d.model.effects[0].name, "slip_sinkage");
+    EXPECT_EQ(d.model.effects[0].parameters.at("size").value, 0.5);
+    trials[3].candidate.wheel = 0; // not excited on all wheels: of one nothing is said
+    record(d, trials, 0, {}, "", 200, screen(), false);
+    EXPECT_EQ(d.ranking.size(), 6U); // of the first round alone
+    EXPECT_EQ(d.accepted.size(), 2U);
+    EXPECT_EQ(d.model.effects.size(), 2U);
+    Diagnosis again;
+    again.not_excited = d.not_excited;
+    record(again, trials, 0, {}, "", 200, screen(), true);
+    EXPECT_EQ(again.ranking[3].verdict, "not_significant");
+}
+
+TEST(Record, of_a_winner_with_a_class_or_a_tolerance_beside_it_is_a_class) {
+    Diagnosis d;
+    const std::vector<Trial> trials = {trial("a", "passes"), trial("slip_sinkage", "passes"), trial("b", "passes"), trial("c", "passes")};
+    record(d, trials, 1, {0, 3}, "tolerance of x", 200, screen(), true);
+    EXPECT_EQ(verdicts(d.ranking), (Labels{"class", "class", "not_needed", "class"}));
+    ASSERT_EQ(d.classes.size(), 1U);
+    EXPECT_EQ(d.classes[0].members, (Labels{"slip_sinkage", "a", "c", "tolerance of x"}));
+    EXPECT_EQ(d.classes[0].separate_by, sim::find_effect("slip_sinkage")->reveals);
+    for (const std::size_t i : {0U, 1U, 3U}) EXPECT_EQ(d.ranking[i].class_index, 0);
+    EXPECT_FALSE(d.ranking[2].class_index);
+    record(d, trials, 0, {}, "tolerance of y", 200, screen(), false);
+    ASSERT_EQ(d.classes.size(), 2U);
+    EXPECT_EQ(d.classes[1].members, (Labels{"a", "tolerance of y"}));
+    EXPECT_EQ(d.classes[1].separate_by, ""); // no effect of the catalogue
+    EXPECT_EQ(d.accepted[1].verdict, "class");
+    EXPECT_EQ(d.accepted[1].class_index, 1);
+    record(d, trials, 2, {3}, "", 200, screen(), false);
+    EXPECT_EQ(d.classes[2].members, (Labels{"b", "c"}));
+}
+
+TEST(Record, of_a_round_without_a_winner_names_none) {
+    Diagnosis d;
+    const std::vector<Trial> trials = {trial("a", "passes"), trial("b", "not_held_out"), trial("c", "too_small")};
+    record(d, trials, 3, {}, "", 200, screen(), true);
+    EXPECT_EQ(verdicts(d.ranking), (Labels{"not_held_out", "not_held_out", "too_small"}));
+    EXPECT_TRUE(d.accepted.empty() && d.classes.empty() && d.model.effects.empty());
+}
+
+TEST(Result, tells_gain_interval_and_detectability_by_their_definitions) {
+    Trial t = trial("slip_sinkage", "passes", 30);
+    t.candidate.strengths.push_back(t.candidate.strengths[0]), t.candidate.strengths.push_back(t.candidate.strengths[0]);
+    t.value = {0.5, -2, 3}, t.error = {0.1, 0.25, std::numeric_limits<double>::infinity()}, t.half_width = {0.2, 0.5, 9};
+    t.p_value = 0.25;
+    CandidateResult r = result_of(t, 200, screen());
+    EXPECT_EQ(r.low, (std::vector<double>{0.3, -2.5, -6}));
+    EXPECT_EQ(r.high, (std::vector<double>{0.7, -1.5, 12}));
+    EXPECT_DOUBLE_EQ(r.detectability, 8); // the surest of its sizes
+    EXPECT_DOUBLE_EQ(r.gain_squares, 30);
+    EXPECT_DOUBLE_EQ(r.gain_low, (30 - 1.96 * 2) / 200);
+    EXPECT_DOUBLE_EQ(r.gain_high, (30 + 1.96 * 2) / 200);
+    EXPECT_EQ(r.p_value, 0.25);
+    EXPECT_EQ(r.verdict, "passes");
+    EXPECT_EQ(r.explains, sim::find_effect("slip_sinkage")->signature);
+    EXPECT_TRUE(r.evidence.empty());
+    t.error = {0, 0, 0};
+    r = result_of(t, 0, screen());
+    EXPECT_EQ(r.detectability, 0);
+    EXPECT_EQ(r.heldout_gain, 0);
+    t.block_gain[7] = 6, t.block_gain[1] = 2; // of blocks of 5 s, in the order of what they gain
+    r = result_of(t, 0, screen());
+    ASSERT_EQ(r.evidence.size(), 2U);
+    EXPECT_EQ(r.evidence[0].first, std::make_pair(35.0, 40.0));
+    EXPECT_DOUBLE_EQ(r.evidence[0].second, 0.75);
+    EXPECT_EQ(r.evidence[1].first, std::make_pair(5.0, 10.0));
+}
+
+CandidateResult named(const std::string &effect, int wheel = -1) {
+    CandidateResult r;
+    r.candidate = candidate(effect, wheel), r.verdict = "named";
+    return r;
+}
+
+TEST(Seen, is_what_was_found_or_may_be_meant_on_whatever_wheel) {
+    Diagnosis d;
+    d.classes = {{{"a", "b on wheel 2"}, ""}};
+    d.nearest = {"c", "d on wheel 1"};
+    d.accepted = {named("e", 3)};
+    for (const char *seen : {"a", "b", "c", "d", "e"}) EXPECT_TRUE(was_seen(d, seen)) << seen;
+    for (const char *not_seen : {"f", "b on", "on wheel 2", ""}) EXPECT_FALSE(was_seen(d, not_seen)) << not_seen;
+    d.classes = {{{"ab", "x"}, ""}}; // of a longer name
+    EXPECT_FALSE(was_seen(d, "a"));
+}
+
+TEST(Conclusion, is_of_the_kind_that_names_classes_and_shapes_make) {
+    const auto kind = [](bool name, bool in_class, bool shape) {
+        Diagnosis d;
+        if (name) d.accepted = {named("a", 1)};
+        if (in_class) d.accepted[0].verdict = "class", d.accepted[0].class_index = 0, d.classes = {{{"a on wheel 1", "b"}, ""}};
+        if (shape) d.unknown = UnknownShape();
+        conclude(d);
+        EXPECT_EQ(d.effects, name ? Labels{"a on wheel 1"} : Labels{});
+        EXPECT_EQ(d.text, verdict_text(d));
+        return d.kind;
+    };
+    EXPECT_EQ(kind(false, false, false), "nothing");
+    EXPECT_EQ(kind(false, false, true), "unknown");
+    EXPECT_EQ(kind(true, false, false), "named");
+    EXPECT_EQ(kind(true, true, false), "class");
+    EXPECT_EQ(kind(true, false, true), "partial");
+    EXPECT_EQ(kind(true, true, true), "partial");
+}
+
+TEST(Conclusion, knows_what_was_seen_and_that_where_nothing_is_found_nothing_is_needed) {
+    Diagnosis d;
+    d.not_excited = {{"a", "why"}, {"b", "why"}};
+    d.ranking = {named("a"), named("b"), named("c")};
+    d.ranking[1].verdict = "not_needed";
+    d.accepted = {named("a")};
+    Diagnosis named_one = d;
+    conclude(named_one);
+    ASSERT_EQ(named_one.not_excited.size(), 1U);
+    EXPECT_EQ(named_one.not_excited[0].first, "b");
+    EXPECT_EQ(named_one.ranking[1].verdict, "not_needed");
+    d.accepted.clear();
+    Diagnosis shape = d;
+    shape.unknown = UnknownShape();
+    conclude(shape);
+    EXPECT_EQ(shape.ranking[1].verdict, "not_needed");
+    conclude(d);
+    EXPECT_EQ(d.ranking[1].verdict, "not_held_out");
+    EXPECT_EQ(d.ranking[2].verdict, "named");
+    EXPECT_EQ(d.not_excited.size(), 2U);
+}
+
+TEST(Model, without_an_effect_keeps_it_on_other_wheels) {
+    Model model;
+    for (const int wheel : {-1, 1, 2}) {
+        model.effects.emplace_back();
+        model.effects.back().name = wheel == 2 ? "b" : "a", model.effects.back().wheel = wheel;
+    }
+    const Model without = model_without(model, candidate("a", 1));
+    ASSERT_EQ(without.effects.size(), 2U);
+    EXPECT_EQ(without.effects[0].wheel, -1);
+    EXPECT_EQ(without.effects[1].name, "b");
+}
+
+TEST(Shape, parameters_on_a_scale_are_set_free_by_a_factor_of_four_a_metre_or_a_quarter_turn) {
+    sim::EffectParameter spec;
+    spec.strength = false, spec.unit = "rad/s", spec.minimum = 0.1, spec.maximum = 100;
+    EXPECT_TRUE(is_on_a_scale(spec));
+    Parameter p;
+    p.value = 2, p.fixed = true;
+    set_free(p, spec);
+    EXPECT_FALSE(p.fixed);
+    EXPECT_DOUBLE_EQ(p.minimum, 0.5);
+    EXPECT_DOUBLE_EQ(p.maximum, 8);
+    p.value = 40, set_free(p, spec);
+    EXPECT_DOUBLE_EQ(p.maximum, 100); // the catalogue's end is nearer
+    p.value = 0.2, set_free(p, spec);
+    EXPECT_DOUBLE_EQ(p.minimum, 0.1);
+    spec.unit = "m", p.value = 3, set_free(p, spec);
+    EXPECT_DOUBLE_EQ(p.minimum, 2);
+    EXPECT_DOUBLE_EQ(p.maximum, 4);
+    spec.unit = "rad", p.value = 5, set_free(p, spec); // either way round
+    EXPECT_NEAR(p.maximum - p.minimum, std::numbers::pi, 0.1);
+    EXPECT_DOUBLE_EQ(0.5 * (p.maximum + p.minimum), 5);
+    for (const char *kind : {"1", "1/turn"}) {
+        spec.unit = kind;
+        EXPECT_FALSE(is_on_a_scale(spec)) << kind;
+    }
+    spec.unit = "m", spec.strength = true; // fitted anyway
+    EXPECT_FALSE(is_on_a_scale(spec));
+}
+
+TEST(Ripple, is_known_but_for_what_the_smoothing_takes_at_its_frequency_at_the_wheels_mean_speed) {
+    Dataset data;
+    data.step_s = 0.02, data.smoothing_half_s = 0.08;
+    data.wheel.resize(2);
+    data.wheel[0].speed_rad_s = {0, 0.4, 3, -3, 0.5}; // what hardly turns does not count
+    data.wheel[1].speed_rad_s = {5, -5};
+    const double speed = std::sqrt((2 * 9.0 + 2 * 25.0) / 4);
+    Candidate c = candidate("torque_ripple");
+    c.variant = {{"order", -4.0}};
+    ASSERT_GT(data.acceleration_loss(4 * speed), 0.05);
+    EXPECT_DOUBLE_EQ(smoothing_loss(c, data), data.acceleration_loss(4 * speed));
+    c.variant.clear();
+    EXPECT_EQ(smoothing_loss(c, data), 0);
+    c.effect = "backlash", c.variant = {{"order", 4.0}};
+    EXPECT_EQ(smoothing_loss(c, data), 0);
+    c.effect = "torque_ripple";
+    data.wheel[0].speed_rad_s = {0.1}, data.wheel[1].speed_rad_s = {0.5};
+    EXPECT_EQ(smoothing_loss(c, data), 0);
+}
+
+// 20 rows a second: half of one is 0.025 s.
+TEST(Edges, are_seen_no_sharper_than_half_a_row_of_the_mean_speed) {
+    Dataset data;
+    data.standstill_rad_s = 0.15;
+    data.wheel.resize(2);
+    data.wheel[0].speed_rad_s = {0, 0.1, 4, -2};
+    data.wheel[1].speed_rad_s = {0.15, 3};
+    Model model;
+    model.wheel.resize(2);
+    model.wheel[0].geometry["radius_m"].value = 0.1, model.wheel[1].geometry["radius_m"].value = 0.2;
+    EXPECT_DOUBLE_EQ(half_row_m(model, data), 0.025 * (0.4 + 0.2 + 0.6) / 3);
+    data.wheel[0].speed_rad_s = data.wheel[1].speed_rad_s = {0};
+    EXPECT_EQ(half_row_m(model, data), 0);
+}
+
+TEST(Words, of_nothing_tell_the_error_that_stands_and_how_many_could_not_be_seen) {
+    Diagnosis d;
+    d.kind = "nothing";
+    d.ladder = {{"baseline", 1.5, 2.5, 1}, {"x", 1, 1, 1}};
+    d.not_excited = {{"x", ""}};
+    EXPECT_EQ(verdict_text(d), "Nothing found that the log supports; the error stands at 2.50 x noise on what was not fitted (1.50 in the "
+                               "fit). 1 effects could not have been seen in it: traction next --all proposes the drive for them.");
+    d.not_excited.clear(), d.ladder.clear();
+    EXPECT_EQ(verdict_text(d), "Nothing found that the log supports; the error stands at 0.00 x noise on what was not fitted (0.00 in the "
+                               "fit). 0 effects could not have been seen in it.");
+}
+
+TEST(Words, of_names_tell_all_of_them_and_by_how_much_the_error_falls) {
+    Diagnosis d;
+    d.accepted = {named("a"), named("b", 1)};
+    d.ladder = {{"baseline", 2, 4, 1}, {"+ a", 1, 3, 1}};
+    EXPECT_EQ(verdict_text(d), "The model lacks a and b on wheel 1: on what was not fitted the error falls by 25 %, from 4.000 to 3.000 x "
+                               "noise (5 s blocks, each predicted by a refit to the others).");
+    d.ladder[1].heldout = 5; // a rise is no negative fall
+    EXPECT_NE(verdict_text(d).find("falls by 0 %, from 4.000 to 5.000"), std::string::npos);
+    d.ladder.clear();
+    EXPECT_NE(verdict_text(d).find("falls by 0 %, from 0.000 to 0.000"), std::string::npos);
+    d.accepted.clear();
+    d.classes = {{{"a", "b"}, ""}, {{"c", "d", "e"}, ""}};
+    EXPECT_EQ(verdict_text(d), " This log cannot tell a from b. This log cannot tell c, d from e.");
+    d.classes.clear();
+    d.unknown = UnknownShape();
+    d.unknown->variable = "time", d.unknown->balance = "friction(time)";
+    d.nearest = {"p"};
+    EXPECT_EQ(verdict_text(d),
+              "Unknown: no effect of the catalogue explains it: what is left depends on time: friction(time). Nearest in the "
+              "catalogue, not the cause: p.");
+}
+
+TEST(Words, of_a_wrong_model_take_every_name_back) {
+    Diagnosis d;
+    d.ranking = {named("a"), named("b"), named("c"), named("d")};
+    d.ranking[1].verdict = "class", d.ranking[1].class_index = 0, d.ranking[2].verdict = "nearest", d.ranking[3].verdict = "too_small";
+    d.accepted = {named("a")}, d.classes = {{{"b", "x"}, ""}}, d.effects = {"a"}, d.nearest = {"c"}, d.not_excited = {{"q", ""}};
+    d.unknown = UnknownShape();
+    d.ladder = {{"baseline", 2, 4, 1}, {"+ a", 1, 3, 1}};
+    d.stated_fit = std::make_shared<const Problem>(problem());
+    Model stated;
+    stated.name = "stated";
+    Doubt doubt;
+    doubt.error = 12.34, doubt.text = "Look at it";
+    name_nothing(d, stated, doubt);
+    EXPECT_EQ(verdicts(d.ranking), (Labels{"wrong_model", "wrong_model", "wrong_model", "too_small"}));
+    EXPECT_FALSE(d.ranking[1].class_index);
+    ASSERT_EQ(d.ladder.size(), 1U);
+    EXPECT_EQ(d.ladder[0].label, "baseline");
+    EXPECT_TRUE(d.accepted.empty() && d.classes.empty() && d.effects.empty() && d.nearest.empty() && d.not_excited.empty() && !d.unknown);
+    EXPECT_EQ(d.model.name, "stated");
+    EXPECT_EQ(d.model_fit, d.stated_fit);
+    EXPECT_EQ(d.kind, "wrong_model");
+    EXPECT_EQ(d.text, "This model does not describe this log: its error is 12.3 x noise, and no effect is named. Look at it.");
+    d.ladder.clear();
+    name_nothing(d, stated, doubt);
+    EXPECT_TRUE(d.ladder.empty());
+}
+
+TEST(Class, that_lost_its_front_leaves_its_members_as_not_needed_and_its_accepted_as_names) {
+    Diagnosis d;
+    for (const char *name : {"a", "b", "c", "d"}) {
+        d.ranking.push_back(named(name));
+        d.ranking.back().verdict = "class", d.ranking.back().class_index = 0;
+    }
+    d.ranking[3].verdict = "not_significant", d.ranking[3].class_index.reset();
+    d.ranking[2].class_index.reset(); // of a class that is gone
+    d.classes = {{{"a", "b"}, ""}};
+    d.accepted = {d.ranking[0], d.ranking[1]};
+    separate_accepted(d);
+    EXPECT_TRUE(d.classes.empty());
+    EXPECT_EQ(verdicts(d.ranking), (Labels{"named", "named", "not_needed", "not_significant"}));
+    EXPECT_FALSE(d.accepted[0].class_index || d.accepted[1].class_index);
+    // a member of a class that stands keeps its place though it is no front
+    Diagnosis kept;
+    kept.classes = {{{"a", "b", "c"}, ""}};
+    kept.ranking = {named("a"), named("b"), named("c")};
+    for (CandidateResult &r : kept.ranking) r.verdict = "class", r.class_index = 0;
+    kept.accepted = {kept.ranking[0]};
+    separate_accepted(kept);
+    EXPECT_EQ(verdicts(kept.ranking), (Labels{"class", "class", "class"}));
+    EXPECT_EQ(kept.ranking[1].class_index, 0);
+    remove_class(kept, "b"); // no front
+    EXPECT_EQ(kept.classes.size(), 1U);
+}
+
+TEST(Class, that_goes_moves_those_behind_it_up_and_not_those_before) {
+    Diagnosis d;
+    d.classes = {{{"a", "x"}, ""}, {{"b", "x"}, ""}, {{"c", "x"}, ""}};
+    for (const char *name : {"a", "b", "c", "none"}) d.ranking.push_back(named(name));
+    for (int i = 0; i < 3; ++i) d.ranking[static_cast<std::size_t>(i)].class_index = i;
+    remove_class(d, "b");
+    ASSERT_EQ(d.classes.size(), 2U);
+    EXPECT_EQ(d.classes[1].members.front(), "c");
+    EXPECT_EQ(d.ranking[0].class_index, 0);
+    EXPECT_FALSE(d.ranking[1].class_index);
+    EXPECT_EQ(d.ranking[2].class_index, 1);
+    EXPECT_FALSE(d.ranking[3].class_index);
+}
+
+} // namespace
+} // namespace traction::lab
