@@ -113,13 +113,29 @@ TEST(Caster, is_told_and_a_motors_wheel_without_a_speed_is_told_otherwise) {
 }
 
 TEST(Caster, its_log_passes_the_gate_with_its_own_model_and_not_with_that_of_four_driven_wheels) {
-    const auto wheels = [](const Model &model) {
+    const auto errors = [](const Model &model, const char *id) {
         const check::Report report = check::check(clean(), {}, machine_of(model));
         return std::count_if(report.findings.begin(), report.findings.end(),
-                             [](const check::Finding &f) { return f.severity == check::Severity::error; });
+                             [&](const check::Finding &f) { return f.severity == check::Severity::error && (*id == 0 || f.id == id); });
     };
-    EXPECT_EQ(wheels(two_and_caster()), 0);
-    EXPECT_GT(wheels(read_model("models/rover_sand.toml")), 0);
+    EXPECT_EQ(errors(two_and_caster(), ""), 0);
+    EXPECT_EQ(errors(read_model("models/rover_sand.toml"), "wheels"), 1);
+}
+
+// The radar's noise grows with the speed of the wheels that are known to turn.
+TEST(Caster, has_no_part_in_how_fast_the_wheels_are) {
+    const Model model = two_and_caster();
+    Model without = model;
+    without.wheel.pop_back();
+    const auto radar = [](const Dataset &data) {
+        const auto found =
+            std::find_if(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::radar; });
+        return found == data.balance.end() ? std::vector<double>() : found->noise_factor;
+    };
+    const std::vector<double> with_it = radar(measured_data(model, clean()));
+    ASSERT_FALSE(with_it.empty());
+    EXPECT_GT(*std::max_element(with_it.begin(), with_it.end()), 1);
+    EXPECT_EQ(with_it, radar(measured_data(without, clean())));
 }
 
 TEST(Caster, a_clean_drive_gets_no_name) {
