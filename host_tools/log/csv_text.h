@@ -14,9 +14,14 @@ constexpr double never = std::numeric_limits<double>::infinity(); // the time of
 
 // The shortest text that reads back to the same double.
 void append_number(std::string &text, double value);
-inline constexpr std::size_t number_room = 32;           // bytes that put_number may use
-char *put_number(char *to, double value);                // the same, written there; its end
-char *put_millionths(char *to, std::int32_t millionths); // put_number of millionths/1e6
+inline constexpr std::size_t number_room = 32; // bytes that put_number may use
+char *put_number(char *to, double value);      // the same, written there; its end
+
+// What a whole number of 32 bits stands for: millionths of the unit; a count; the bits of a count from 0 to 2^32; the bits of a finite
+// float, as the double whose shortest text reads back to it.
+enum class Unit : std::uint8_t { millionth, count, natural, exact };
+double value_of(Unit unit, std::int32_t whole);
+char *put_whole(char *to, Unit unit, std::int32_t whole); // put_number of value_of
 
 // The lines above the rows: names, format, header. Throws LogError with `path` where a key, a value or a name cannot be written.
 std::string csv_head(const std::map<std::string, std::string> &header, const std::vector<std::string> &names, const std::string &path);

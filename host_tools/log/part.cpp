@@ -53,6 +53,8 @@ std::string header_text(const std::map<std::string, std::string> &header) {
     return text;
 }
 
-std::string column_line(const std::string &name, bool absent_is_zero) { return (absent_is_zero ? "0 " : "- ") + name + '\n'; }
+std::string column_line(const std::string &name, bool absent_is_zero, Unit unit) {
+    return std::string(1, absent_is_zero ? '0' : '-') + unit_letters[static_cast<std::size_t>(unit)] + name + '\n';
+}
 
 } // namespace traction::log::part

@@ -8,6 +8,8 @@
 // the order in which they came, from 0.
 #pragma once
 
+#include "csv_text.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -21,7 +23,7 @@ inline constexpr std::string_view magic = "traction-part 1\n";
 
 enum class Kind : std::uint32_t {
     header = 1,  // text, a line "key: value" each: what is known of the log at its beginning
-    columns = 2, // text, a line each: "- " or "0 " (left out where it never held anything but 0), then the name
+    columns = 2, // text, a line each: "-", or "0" (left out where it never held anything but 0); a letter of the unit; the name
     pattern = 3, // uint32 each: the columns of a row
     rows = 4, // uint32 lanes, uint32 bytes of each, then their rows (row_spool.h), to be merged by time; a column goes on from what it held
     samples = 5, // uint32 columns; of each uint32 its number, uint32 count; then of each its times and its values, double
@@ -31,7 +33,8 @@ struct BlockHead {
     std::uint32_t kind, size, payload_check, unused, check;
 };
 
-// A row: this, the columns that changed to whole millionths (uint16 each), their values (int32), the other ones (uint16), theirs (double).
+// A row: this, the columns that changed to whole numbers of their unit (uint16 each), their values (int32), the other ones (uint16), theirs
+// (double).
 struct RowHead {
     double t_s;
     std::uint32_t pattern;
@@ -49,7 +52,8 @@ std::uint32_t crc_by_bytes(std::uint32_t crc, const void *bytes, std::size_t siz
 inline std::uint32_t head_check(const BlockHead &head) { return crc_after(0, &head, offsetof(BlockHead, check)); }
 
 std::string header_text(const std::map<std::string, std::string> &header);
-std::string column_line(const std::string &name, bool absent_is_zero);
+inline constexpr std::string_view unit_letters = " cne"; // by Unit
+std::string column_line(const std::string &name, bool absent_is_zero, Unit unit);
 template <typename Number> std::string_view bytes_of(const std::vector<Number> &numbers) {
     return {reinterpret_cast<const char *>(numbers.data()), numbers.size() * sizeof(Number)};
 }

@@ -63,7 +63,7 @@ class LaneRows {
     explicit LaneRows(std::string_view bytes) : rest_(bytes) { next(); }
     double t_s() const { return head_.t_s; } // never: behind the last row
     std::uint32_t pattern() const { return head_.pattern; }
-    // whole(column, millionths) and other(column, value) of what changed.
+    // whole(column, number) and other(column, value) of what changed.
     template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) {
         each<std::int32_t>(head_.whole, whole);
         each<double>(head_.changed, other);
@@ -120,7 +120,7 @@ class Reading {
 
   private:
     struct Held { // what a column held last
-        enum { nothing, millionths, number } as = nothing;
+        enum { nothing, whole_number, number } as = nothing;
         std::int32_t whole = 0;
         double value = 0;
     };
@@ -135,8 +135,9 @@ class Reading {
     void take_columns(Bytes lines) {
         while (!lines.empty()) {
             const std::string_view line = lines.line();
-            need(line.size() > 2 && (line.starts_with("- ") || line.starts_with("0 ")), "a column has no name");
-            log_.add(std::string(line.substr(2)), line.front() == '0');
+            const std::size_t unit = line.size() > 2 ? part::unit_letters.find(line[1]) : std::string_view::npos;
+            need(unit != std::string_view::npos && (line.front() == '-' || line.front() == '0'), "a column has no name");
+            log_.add(std::string(line.substr(2)), line.front() == '0', 0, static_cast<Unit>(unit));
             held_.emplace_back();
         }
     }
@@ -161,7 +162,7 @@ class Reading {
     void take_row(LaneRows &row) {
         row.each_change(
             [this](std::uint32_t column, std::int32_t whole) {
-                held_[known(column)] = {Held::millionths, whole, 0};
+                held_[known(column)] = {Held::whole_number, whole, 0};
             },
             [this](std::uint32_t column, double value) {
                 held_[known(column)] = {Held::number, 0, value};
@@ -170,8 +171,8 @@ class Reading {
         for (const std::uint32_t column : patterns_[row.pattern()]) {
             const Held &held = held_[column];
             need(held.as != Held::nothing, "a column has a sample and no value");
-            if (held.as == Held::millionths)
-                log_.put_millionths(column, row.t_s(), held.whole);
+            if (held.as == Held::whole_number)
+                log_.put_whole(column, row.t_s(), held.whole);
             else
                 log_.put(column, row.t_s(), held.value);
             told.samples++;

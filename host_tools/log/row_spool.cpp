@@ -10,10 +10,11 @@
 
 namespace traction::log {
 
-std::size_t RowSpool::add(const std::string &name, bool absent_is_zero) {
+std::size_t RowSpool::add(const std::string &name, bool absent_is_zero, Unit unit) {
     if (columns_.size() > std::numeric_limits<std::uint16_t>::max())
         throw LogError(scratch_.path(), 0, 0, "too many signals for a CSV", "write a ULog (.ulg)");
-    columns_.emplace_back().absent_is_zero = absent_is_zero;
+    Column &fresh = columns_.emplace_back();
+    fresh.absent_is_zero = absent_is_zero, fresh.unit = unit;
     names_.push_back(name);
     for (Lane &lane : lanes_) make_room(lane);
     if (lanes_.empty()) start_lane();
@@ -21,27 +22,40 @@ std::size_t RowSpool::add(const std::string &name, bool absent_is_zero) {
     return columns_.size() - 1;
 }
 
+std::size_t RowSpool::bind(const std::vector<std::size_t> &columns) {
+    Bound &fresh = bound_.emplace_back();
+    fresh.lane = &lanes_.front();
+    for (const std::size_t column : columns) fresh.columns.push_back(static_cast<std::uint16_t>(column));
+    fresh.last.resize(columns.size()), fresh.ever.resize(columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) fresh.never[i / 64] |= std::uint64_t{1} << (i % 64);
+    fresh.unknown = fresh.never;
+    for (Lane &lane : lanes_) make_room(lane);
+    return bound_.size() - 1;
+}
+
 void RowSpool::make_room(Lane &lane) const {
-    const std::size_t count = columns_.size() + copied;
+    const std::size_t count = columns_.size() + bound_.size() * (1 + sizeof(Absent) / sizeof(std::uint32_t)) + copied;
     lane.columns.resize(count);
     lane.whole_columns.resize(count);
     lane.whole_values.resize(count);
     lane.changed_columns.resize(count);
     lane.changed_bits.resize(count);
-    lane.bytes.resize(2 * chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t)));
+    const std::size_t room = 2 * chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t));
+    auto bytes = std::make_unique_for_overwrite<char[]>(room); // half of it is seldom touched
+    std::copy_n(lane.bytes.get(), lane.used, bytes.get());
+    lane.bytes = std::move(bytes);
 }
 
 void RowSpool::start_lane() { make_room(lanes_.emplace_back()); }
 
-void RowSpool::refuse(std::size_t column, double t_s, double value) {
-    if (refused_.empty()) refused_.push_back({column, columns_[column].count, columns_[column].last_s, t_s, value});
+void RowSpool::refuse(const Place &at, std::size_t column, double t_s, double value) {
+    if (refused_.empty()) refused_.push_back({column, at.count, at.last_s, t_s, value});
 }
 
 // The lane that takes a sample of a time that is not that of its column's row, the row begun; none where the sample is refused.
-RowSpool::Lane *RowSpool::new_row(std::size_t column, double t_s, double value) {
-    Column &to = columns_[column];
+RowSpool::Lane *RowSpool::new_row(Place &to, std::size_t column, double t_s, double value) {
     if (!(t_s > to.last_s && t_s < never)) {
-        refuse(column, t_s, value);
+        refuse(to, column, t_s, value);
         return nullptr;
     }
     if (!(to.lane->now_s <= t_s)) {
@@ -59,24 +73,56 @@ RowSpool::Lane *RowSpool::new_row(std::size_t column, double t_s, double value) 
 }
 
 void RowSpool::put_in_new_row(std::size_t column, double t_s, double value) {
-    if (Lane *lane = new_row(column, t_s, value); lane != nullptr) add_number(columns_[column], *lane, column, t_s, value);
+    Column &to = columns_[column];
+    if (Lane *lane = new_row(to, column, t_s, value); lane != nullptr) add_number(to, *lane, column, t_s, value);
 }
 
-void RowSpool::put_millionths_in_new_row(std::size_t column, double t_s, std::int32_t millionths) {
-    if (Lane *lane = new_row(column, t_s, millionths / 1e6); lane != nullptr)
-        add_millionths(columns_[column], *lane, column, t_s, millionths);
+void RowSpool::put_whole_in_new_row(std::size_t column, double t_s, std::int32_t whole) {
+    Column &to = columns_[column];
+    if (Lane *lane = new_row(to, column, t_s, value_of(to.unit, whole)); lane != nullptr) add_whole(to, *lane, column, t_s, whole);
 }
 
-void RowSpool::change(Lane &lane, std::size_t column, std::uint64_t bits) {
+void RowSpool::put_together(std::size_t bound, double t_s, const std::int32_t *whole, const Absent &absent, std::span<const Other> others) {
+    Bound &to = bound_[bound];
+    Lane *lane = to.lane;
+    if (!(t_s == lane->now_s && t_s > to.last_s)) lane = new_row(to, to.columns[0], t_s, value_of(columns_[to.columns[0]].unit, whole[0]));
+    if (lane == nullptr) return;
+    add(to, *lane, bound_bit | bound, t_s);
+    std::memcpy(&lane->columns[lane->size], &absent, sizeof absent);
+    lane->size += sizeof absent / sizeof lane->columns[0];
+    const std::size_t count = to.columns.size();
+    const std::uint16_t *__restrict column = to.columns.data();
+    std::int32_t *__restrict last = to.last.data(), *__restrict ever = to.ever.data();
+    std::uint16_t *__restrict columns = lane->whole_columns.data();
+    std::int32_t *__restrict values = lane->whole_values.data();
+    std::size_t at = lane->whole;
+    if (absent == Absent{} && to.unknown == Absent{}) { // nearly always
+        for (std::size_t i = 0; i < count; ++i) {       // written each, kept where it is another: no branch that is guessed wrong
+            columns[at] = column[i], values[at] = whole[i];
+            at += whole[i] != last[i] ? 1 : 0;
+        }
+        for (std::size_t i = 0; i < count; ++i) ever[i] |= whole[i], last[i] = whole[i];
+    } else {
+        for (std::size_t i = 0; i < count; ++i) {
+            if (is_absent(absent, i)) continue;
+            columns[at] = column[i], values[at] = whole[i];
+            at += whole[i] != last[i] || is_absent(to.unknown, i) ? 1 : 0;
+            ever[i] |= whole[i], last[i] = whole[i];
+        }
+    }
+    lane->whole = at;
+    for (std::size_t n = 0; n < absent.size(); ++n) to.never[n] &= absent[n], to.unknown[n] &= absent[n];
+    for (const Other &other : others) to.unknown[other.index / 64] |= std::uint64_t{1} << (other.index % 64);
+    for (const Other &other : others) change(to, *lane, column[other.index], std::bit_cast<std::uint64_t>(other.value));
+}
+
+// by: what was just added to.
+void RowSpool::change(const Place &by, Lane &lane, std::size_t column, std::uint64_t bits) {
     Column &to = columns_[column];
     const auto value = std::bit_cast<double>(bits);
-    if (!std::isfinite(value)) {
-        --to.count;
-        refuse(column, to.last_s, value);
-        ++to.count;
-    }
+    if (!std::isfinite(value)) refuse({by.last_s, by.count - 1, by.lane}, column, by.last_s, value);
     to.bits = bits;
-    to.millionths = none;
+    to.whole = none;
     to.all_zero = to.all_zero && value == 0;
     lane.changed_columns[lane.changed] = static_cast<std::uint16_t>(column);
     lane.changed_bits[lane.changed++] = bits;
@@ -90,11 +136,13 @@ void RowSpool::close_row(Lane &lane) {
     };
     if (lane.pattern >= patterns_.size() || !is_this(patterns_[lane.pattern])) {
         lane.pattern = static_cast<std::uint32_t>(std::find_if(patterns_.begin(), patterns_.end(), is_this) - patterns_.begin());
-        if (lane.pattern == patterns_.size())
+        if (lane.pattern == patterns_.size()) {
             patterns_.emplace_back(lane.columns.begin(), lane.columns.begin() + static_cast<std::ptrdiff_t>(lane.size));
+            shown_patterns_.push_back(columns_of(lane));
+        }
     }
     const RowHead head{lane.now_s, lane.pattern, static_cast<std::uint16_t>(lane.whole), static_cast<std::uint16_t>(lane.changed)};
-    char *to = lane.bytes.data() + lane.used;
+    char *to = lane.bytes.get() + lane.used;
     const auto put = [&to](const void *from, std::size_t size) {
         if (size <= copied)
             std::memcpy(to, from, copied); // no call; what is too much is written over, and there is room
@@ -113,15 +161,43 @@ void RowSpool::close_row(Lane &lane) {
     full_ = full_ || lane.used >= chunk_bytes;
 }
 
+std::vector<std::uint32_t> RowSpool::columns_of(const Lane &lane) const {
+    std::vector<std::uint32_t> columns;
+    for (std::size_t i = 0; i < lane.size; ++i) {
+        if ((lane.columns[i] & bound_bit) == 0) {
+            columns.push_back(lane.columns[i]);
+            continue;
+        }
+        const Bound &bound = bound_[lane.columns[i] & ~bound_bit];
+        Absent absent{};
+        std::memcpy(&absent, &lane.columns[i + 1], sizeof absent);
+        i += sizeof absent / sizeof lane.columns[0];
+        for (std::size_t n = 0; n < bound.columns.size(); ++n)
+            if (!is_absent(absent, n)) columns.push_back(bound.columns[n]);
+    }
+    return columns;
+}
+
+// What of bound columns is not kept in them.
+void RowSpool::tell_counts() {
+    for (const Bound &bound : bound_)
+        for (std::size_t i = 0; i < bound.columns.size(); ++i) {
+            Column &column = columns_[bound.columns[i]];
+            column.count = is_absent(bound.never, i) ? 0 : bound.count;
+            const std::int32_t not_zero = column.unit == Unit::exact ? std::numeric_limits<std::int32_t>::max() : -1; // -0 is 0
+            column.all_zero = column.all_zero && (bound.ever[i] & not_zero) == 0; // an Other has told its own
+        }
+}
+
 // What the part's reader must know before the rows that come.
 void RowSpool::tell_new_names() {
     if (told_columns_ == 0) scratch_.append(part::Kind::header, part::header_text(header_));
     std::string text;
     for (; told_columns_ < columns_.size(); ++told_columns_)
-        text += part::column_line(names_[told_columns_], columns_[told_columns_].absent_is_zero);
+        text += part::column_line(names_[told_columns_], columns_[told_columns_].absent_is_zero, columns_[told_columns_].unit);
     if (!text.empty()) scratch_.append(part::Kind::columns, text);
     for (; told_patterns_ < patterns_.size(); ++told_patterns_)
-        scratch_.append(part::Kind::pattern, part::bytes_of(patterns_[told_patterns_]));
+        scratch_.append(part::Kind::pattern, part::bytes_of(shown_patterns_[told_patterns_]));
 }
 
 // All lanes at once: a block is there or not, and a column that has changed its lane needs both. Of a row that is closed here the rest may
@@ -134,25 +210,17 @@ void RowSpool::put_by() {
     std::size_t size = 0;
     for (const Lane &lane : lanes_) {
         sizes.push_back(static_cast<std::uint32_t>(lane.used));
-        pieces.emplace_back(lane.bytes.data(), lane.used);
+        pieces.emplace_back(lane.bytes.get(), lane.used);
         size += lane.used;
     }
     if (size == 0) return;
     pieces[0] = part::bytes_of(sizes);
     scratch_.open(); // who cannot write there learns it now, not at the end
-    const bool held = in_memory_ + size <= memory_bytes;
-    std::uint64_t place = 0;
-    if (scratch_.lasts() || !held) {
-        tell_new_names();
-        place = scratch_.append(part::Kind::rows, pieces) + pieces[0].size();
-    }
-    if (held) in_memory_ += size;
+    tell_new_names();
+    std::uint64_t place = scratch_.append(part::Kind::rows, pieces) + pieces[0].size();
     for (Lane &lane : lanes_) {
         if (lane.used == 0) continue;
-        if (held)
-            lane.chunks.push_back({{lane.bytes.data(), lane.bytes.data() + lane.used}, 0, lane.used});
-        else
-            lane.chunks.push_back({{}, place, lane.used});
+        lane.chunks.push_back({place, lane.used});
         place += lane.used;
         lane.used = 0;
     }
@@ -164,7 +232,7 @@ class RowSpool::Reader {
     Reader(const RowSpool &spool, const Lane &lane) : spool_(spool), lane_(lane) { next(); }
     double t_s() const { return head_.t_s; } // never: behind the last row
     std::uint32_t pattern() const { return head_.pattern; }
-    // whole(column, millionths) and other(column, value) of what changed.
+    // whole(column, number) and other(column, value) of what changed.
     template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) const {
         const char *from = each<std::int32_t>(row_, head_.whole, whole);
         each<double>(from, head_.changed, other);
@@ -195,15 +263,13 @@ class RowSpool::Reader {
         at_ = size_ = 0;
         if (number_ > lane_.chunks.size()) return false;
         if (number_ == lane_.chunks.size()) {
-            data_ = lane_.bytes.data();
+            data_ = lane_.bytes.get();
             size_ = lane_.used;
         } else {
             const Chunk &chunk = lane_.chunks[number_];
-            if (chunk.bytes.empty()) {
-                loaded_.resize(chunk.size);
-                spool_.scratch_.read(chunk.place, loaded_.data(), chunk.size);
-            }
-            data_ = chunk.bytes.empty() ? loaded_.data() : chunk.bytes.data();
+            loaded_.resize(chunk.size);
+            spool_.scratch_.read(chunk.place, loaded_.data(), chunk.size);
+            data_ = loaded_.data();
             size_ = chunk.size;
         }
         ++number_;
@@ -226,7 +292,8 @@ class RowSpool::Rows {
             if (!spool.columns_[i].left_out()) place[i] = static_cast<std::uint32_t>(columns_++);
         shown_of_ = place;
         shown_.resize(columns_);
-        for (const std::vector<std::uint32_t> &pattern : spool.patterns_) {
+        for (const Column &column : spool.columns_) unit_.push_back(column.unit);
+        for (const std::vector<std::uint32_t> &pattern : spool.shown_patterns_) {
             std::vector<std::uint32_t> cells;
             for (const std::uint32_t column : pattern)
                 if (place[column] != left_out) cells.push_back(place[column]);
@@ -235,8 +302,9 @@ class RowSpool::Rows {
         }
         for (const Lane &lane : spool.lanes_) readers_.emplace_back(spool, lane);
         room_ = (columns_ + 2) * (number_room + 1) + commas.size();
-        text_.resize(room_ + 65536);
-        to_ = text_.data();
+        size_ = room_ + (1u << 20);
+        text_ = std::make_unique_for_overwrite<char[]>(size_);
+        to_ = text_.get();
     }
     void write() {
         for (;;) {
@@ -246,8 +314,11 @@ class RowSpool::Rows {
             const std::vector<std::uint32_t> *cells = nullptr;
             for (Reader &reader : readers_) {
                 for (; reader.t_s() == now_s; reader.next()) {
-                    reader.each_change([this](std::uint32_t column, std::int32_t whole) { show(column, whole, log::put_millionths); },
-                                       [this](std::uint32_t column, double value) { show(column, value, put_number); });
+                    reader.each_change(
+                        [this](std::uint32_t column, std::int32_t whole) {
+                            show(column, [&](char *to) { return log::put_whole(to, unit_[column], whole); });
+                        },
+                        [this](std::uint32_t column, double value) { show(column, [&](char *to) { return put_number(to, value); }); });
                     cells = cells == nullptr ? &cells_[reader.pattern()] : together(*cells, cells_[reader.pattern()]);
                 }
             }
@@ -268,10 +339,10 @@ class RowSpool::Rows {
         std::array<char, number_room + 8> text{','};
         std::size_t size = 0;
     };
-    template <typename Value> void show(std::uint32_t column, Value value, char *(*put)(char *, Value)) {
+    template <typename Put> void show(std::uint32_t column, const Put &put) {
         if (shown_of_[column] == left_out) return;
         Shown &shown = shown_[shown_of_[column]];
-        shown.size = static_cast<std::size_t>(put(shown.text.data() + 1, value) - shown.text.data());
+        shown.size = static_cast<std::size_t>(put(shown.text.data() + 1) - shown.text.data());
     }
     // No column is in two rows of one time: its times go up.
     const std::vector<std::uint32_t> *together(const std::vector<std::uint32_t> &a, const std::vector<std::uint32_t> &b) {
@@ -281,7 +352,7 @@ class RowSpool::Rows {
         return &both_;
     }
     void put_row(double now_s, const std::vector<std::uint32_t> &cells) {
-        if (static_cast<std::size_t>(text_.data() + text_.size() - to_) < room_) flush();
+        if (static_cast<std::size_t>(text_.get() + size_ - to_) < room_) flush();
         char *to = put_number(to_, now_s);
         std::size_t at = 0;
         for (const std::uint32_t cell : cells) {
@@ -305,8 +376,8 @@ class RowSpool::Rows {
         return to + count;
     }
     void flush() {
-        file_.write({text_.data(), static_cast<std::size_t>(to_ - text_.data())});
-        to_ = text_.data();
+        file_.write({text_.get(), static_cast<std::size_t>(to_ - text_.get())});
+        to_ = text_.get();
     }
 
     WholeFile &file_;
@@ -314,16 +385,18 @@ class RowSpool::Rows {
     std::size_t columns_ = 0; // that are written
     std::vector<std::uint32_t> shown_of_;
     std::vector<Shown> shown_;
+    std::vector<Unit> unit_;                        // of every column
     std::vector<std::vector<std::uint32_t>> cells_; // of each pattern, in the order of the columns
     std::vector<std::uint32_t> both_;
-    std::vector<char> text_;
-    std::size_t room_ = 0; // of a row
+    std::unique_ptr<char[]> text_;
+    std::size_t size_ = 0, room_ = 0; // of it; of a row
     char *to_ = nullptr;
 };
 
 void RowSpool::write(const std::map<std::string, std::string> &header) {
     for (const Refused &one : refused_) check_sample(names_[one.column], one.index, one.before_s, one.t_s, one.value, scratch_.path());
     for (Lane &lane : lanes_) close_row(lane);
+    tell_counts();
     std::vector<std::string> names;
     for (std::size_t i = 0; i < columns_.size(); ++i)
         if (!columns_[i].left_out()) names.push_back(names_[i]);

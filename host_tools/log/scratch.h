@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace traction::log {
 
@@ -39,7 +40,7 @@ class Scratch {
   private:
     [[noreturn]] void fail() const; // errno
     bool open_part();
-    void put(const void *bytes, std::size_t size);
+    void put(std::vector<std::string_view> pieces);
     std::string path_, part_;
     Name name_;
     int fd_ = -1;

@@ -26,13 +26,28 @@ void Spool::put_by() {
         keep_blocks();
 }
 
-std::size_t Spool::add(const std::string &name, bool absent_is_zero, std::size_t reserve) {
-    if (rows_) return rows_->add(name, absent_is_zero);
-    Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .blocks = {}, .absent_is_zero = absent_is_zero};
+std::size_t Spool::add(const std::string &name, bool absent_is_zero, std::size_t reserve, Unit unit) {
+    if (rows_) return rows_->add(name, absent_is_zero, unit);
+    Column fresh{.signal = {.name = name, .t_s = {}, .value = {}}, .blocks = {}, .absent_is_zero = absent_is_zero, .unit = unit};
     fresh.signal.t_s.reserve(path_.empty() ? reserve : std::min(reserve, block));
     fresh.signal.value.reserve(path_.empty() ? reserve : std::min(reserve, block));
     columns_.push_back(std::move(fresh));
     return columns_.size() - 1;
+}
+
+std::size_t Spool::bind(const std::vector<std::size_t> &columns) {
+    if (rows_) return rows_->bind(columns);
+    bound_.push_back(columns);
+    return bound_.size() - 1;
+}
+
+void Spool::put_in_columns(std::size_t bound, double t_s, const std::int32_t *whole, const Absent &absent, std::span<const Other> others) {
+    for (std::size_t i = 0; i < bound_[bound].size(); ++i) {
+        if (is_absent(absent, i)) continue;
+        const std::size_t column = bound_[bound][i];
+        const auto other = std::find_if(others.begin(), others.end(), [i](const Other &one) { return one.index == i; });
+        put_in_column(column, t_s, other == others.end() ? value_of(columns_[column].unit, whole[i]) : other->value);
+    }
 }
 
 void Spool::put_in_column(std::size_t column, double t_s, double value) {
@@ -57,7 +72,8 @@ void Spool::keep_blocks() {
     if (told_columns_ == 0) scratch_.append(part::Kind::header, part::header_text(header_));
     std::string names;
     for (; told_columns_ < columns_.size(); ++told_columns_)
-        names += part::column_line(columns_[told_columns_].signal.name, columns_[told_columns_].absent_is_zero);
+        names +=
+            part::column_line(columns_[told_columns_].signal.name, columns_[told_columns_].absent_is_zero, columns_[told_columns_].unit);
     if (!names.empty()) scratch_.append(part::Kind::columns, names);
     std::vector<std::string_view> pieces{part::bytes_of(counts)};
     for (const Column &column : columns_) {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,11 @@ class Spool {
     explicit Spool(std::string path = "", Scratch::Name name = Scratch::Name::part);
     void begin(const std::map<std::string, std::string> &header); // before the first sample: what is known of the log already, for the part
     // A new column; its number. absent_is_zero: left out where it never held anything but 0. reserve: samples that are expected.
-    std::size_t add(const std::string &name, bool absent_is_zero = false, std::size_t reserve = 0);
+    // unit: of its put_whole.
+    std::size_t add(const std::string &name, bool absent_is_zero = false, std::size_t reserve = 0, Unit unit = Unit::millionth);
+    // These columns, at most RowSpool::bound_most, come together from now on, by put_together alone: less is done for each. A number for
+    // them.
+    std::size_t bind(const std::vector<std::size_t> &columns);
     // A sample. Times of a column go up. Throws FileError.
     void put(std::size_t column, double t_s, double value) {
         if (rows_)
@@ -33,12 +38,19 @@ class Spool {
         else
             put_in_column(column, t_s, value);
     }
-    // The same of the value millionths/1e6.
-    void put_millionths(std::size_t column, double t_s, std::int32_t millionths) {
+    // The same of a whole number of the column's unit.
+    void put_whole(std::size_t column, double t_s, std::int32_t whole) {
         if (rows_)
-            rows_->put_millionths(column, t_s, millionths);
+            rows_->put_whole(column, t_s, whole);
         else
-            put_in_column(column, t_s, millionths / 1e6);
+            put_in_column(column, t_s, value_of(columns_[column].unit, whole));
+    }
+    // A sample of each bound column, whole numbers of their units, but for others; bit i of absent: none of the i-th.
+    void put_together(std::size_t bound, double t_s, const std::int32_t *whole, const Absent &absent, std::span<const Other> others) {
+        if (rows_)
+            rows_->put_together(bound, t_s, whole, absent, others);
+        else
+            put_in_columns(bound, t_s, whole, absent, others);
     }
 
     // All that is of one instant is there: the part may end here, and what is made of it. Throws FileError.
@@ -66,18 +78,21 @@ class Spool {
         Signal signal; // what is not on the disk
         std::vector<Block> blocks;
         bool absent_is_zero = false, all_zero = true;
+        Unit unit = Unit::millionth;
         bool left_out() const { return (blocks.empty() && signal.value.empty()) || (absent_is_zero && all_zero); }
     };
     class Reader;
     class Again;
     void write_log(const std::map<std::string, std::string> &header);
     void put_in_column(std::size_t column, double t_s, double value);
+    void put_in_columns(std::size_t bound, double t_s, const std::int32_t *whole, const Absent &absent, std::span<const Other> others);
     void keep_blocks();
     void load(const Column &column, std::size_t number, std::vector<double> &into) const; // times, then values
 
     std::string path_;
     std::unique_ptr<RowSpool> rows_; // CSV
     std::vector<Column> columns_;    // everything else
+    std::vector<std::vector<std::size_t>> bound_;
     std::map<std::string, std::string> header_;
     std::size_t told_columns_ = 0;
     bool full_ = false; // a column has a block

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -40,7 +41,7 @@ char *put_four(char *to, std::uint32_t number) {
     return to + 1;
 }
 
-char *put_whole(char *to, std::uint32_t number) {
+char *put_digits(char *to, std::uint32_t number) {
     if (number < 10000) return put_four(to, number);
     const std::uint32_t above = number / 10000, below = number % 10000;
     to = above < 10000 ? put_four(to, above) : put_pair(put_pair(put_four(to, above / 10000), above / 100 % 100), above % 100);
@@ -79,7 +80,7 @@ char *put_decimals(char *to, double value) {
                 if (count == 0) return nullptr; // -0
                 *to++ = '-';
             }
-            return put_whole(to, count);
+            return put_digits(to, count);
         }
     }
     if (!(size >= 1e-6 && size < 1e9)) return nullptr;
@@ -99,7 +100,7 @@ char *put_decimals(char *to, double value) {
     }
     if (below == 0 && above >= 100000 && above % 10 == 0) return nullptr; // 1e+05 is shorter
     if (value < 0) *to++ = '-';
-    to = put_whole(to, above);
+    to = put_digits(to, above);
     if (below == 0) return to;
     *to++ = '.';
     const std::uint32_t first = below / 100000, last = below % 100000; // four digits, and five
@@ -170,6 +171,33 @@ char *put_number(char *to, double value) {
     return std::to_chars(to, to + number_room, value).ptr;
 }
 
+double value_of(Unit unit, std::int32_t whole) {
+    switch (unit) {
+    case Unit::millionth:
+        return whole / 1e6;
+    case Unit::count:
+        return whole;
+    case Unit::natural:
+        return static_cast<std::uint32_t>(whole);
+    case Unit::exact:
+        break;
+    }
+    std::array<char, number_room> text;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), std::bit_cast<float>(whole)).ptr;
+    double value = 0;
+    std::from_chars(text.data(), end, value);
+    return value;
+}
+
+namespace {
+
+char *put_count(char *to, std::int64_t count) {
+    const auto size = static_cast<std::uint32_t>(std::abs(count));
+    if (size >= 100000 && size % 10 == 0) return put_number(to, static_cast<double>(count)); // 1e+05 is shorter
+    if (count < 0) *to++ = '-';
+    return put_digits(to, size);
+}
+
 char *put_millionths(char *to, std::int32_t millionths) {
     if (millionths == 0) {
         *to = '0';
@@ -182,12 +210,20 @@ char *put_millionths(char *to, std::int32_t millionths) {
     if (above < 10)
         *to++ = static_cast<char>('0' + above);
     else
-        to = put_whole(to, above);
+        to = put_digits(to, above);
     if (below == 0) return to;
     *to++ = '.';
     to = put_pair(put_pair(put_pair(to, below / 10000), below / 100 % 100), below % 100);
     while (to[-1] == '0') --to;
     return to;
+}
+
+} // namespace
+
+char *put_whole(char *to, Unit unit, std::int32_t whole) {
+    if (unit == Unit::millionth) return put_millionths(to, whole);
+    if (unit == Unit::exact) return put_number(to, value_of(unit, whole));
+    return put_count(to, unit == Unit::count ? std::int64_t{whole} : std::int64_t{static_cast<std::uint32_t>(whole)});
 }
 
 void append_number(std::string &text, double value) {

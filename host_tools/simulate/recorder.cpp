@@ -2,189 +2,219 @@
 
 #include "sim/plant/steering.h"
 
-#include <charconv>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
 
 namespace traction {
 
-// Rounded to whole millionths.
-void Recorder::put_tidy(std::size_t column, double t_s, float value) {
-    const double millionths = static_cast<double>(value) * 1e6;
-    if (std::fabs(millionths) < 2e9) {
+namespace {
+
+// Rounded to whole millionths, of which a log keeps 32 bits.
+struct Tidy {
+    explicit Tidy(float value) : millionths(static_cast<double>(value) * 1e6) {}
+    bool large() const { return !(std::fabs(millionths) < 2e9); } // or no number
+    std::int32_t whole() const {
         constexpr double round_by = 6755399441055744.0; // 1.5 * 2^52: nearbyint without a call
-        spool_.put_millionths(column, t_s, static_cast<std::int32_t>((millionths + round_by) - round_by));
-    } else {
-        put_large(column, t_s, millionths);
+        return static_cast<std::int32_t>((millionths + round_by) - round_by);
     }
+    double value() const { return std::nearbyint(millionths) / 1e6 + 0.0; }
+    double millionths;
+};
+
+} // namespace
+
+void Recorder::large(std::size_t slot, double value) { others_.push_back({slot, value}); }
+
+inline void Recorder::tidy(std::size_t slot, float value) {
+    if (const Tidy tidied(value); tidied.large()) [[unlikely]]
+        large(slot, tidied.value());
+    else
+        tick_[slot] = tidied.whole();
 }
 
-void Recorder::put_large(std::size_t column, double t_s, double millionths) { put(column, t_s, std::nearbyint(millionths) / 1e6 + 0.0); }
+inline void Recorder::exact(std::size_t slot, float value) { // the firmware takes what is no number as 0 too
+    tick_[slot] = std::isfinite(value) ? std::bit_cast<std::int32_t>(value) : 0;
+}
 
-std::size_t Recorder::column(const std::string &name, bool absent_is_zero) {
-    return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_);
+std::size_t Recorder::column(const std::string &name, log::Unit unit, bool absent_is_zero) {
+    return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_, unit);
 }
 
 Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path, unsigned wheels)
     : expected_(expected_ticks), spool_(path), radar_rate_Hz_(radar_rate_Hz), wheels_(wheels) {
+    using log::Unit;
+    std::vector<std::size_t> bound;
+    const auto slot = [&](const std::string &name, Unit unit, bool absent_is_zero = false) {
+        bound.push_back(column(name, unit, absent_is_zero));
+        return bound.size() - 1;
+    };
     for (int i = 0; i < WHEEL_COUNT; i++) {
         if (!has_wheel(i)) continue;
         const std::string name = "wheel" + std::to_string(i) + '.';
-        wheel_[i] = {.speed = column(name + "speed_rad_s"),
-                     .encoder = column(name + "encoder_count"),
-                     .current = column(name + "current_A"),
-                     .current_count = column(name + "current_count"),
-                     .duty = column(name + "duty"),
-                     .set_speed = column(name + "set_speed_rad_s"),
-                     .slip = column(name + "slip"),
-                     .torque = column(name + "motor_torque_Nm"),
-                     .traction = column(name + "traction_N"),
-                     .slip_std = column(name + "slip_std"),
-                     .slip_valid = column(name + "slip_valid"),
-                     .saturated = column(name + "saturated"),
-                     .refused = column(name + "encoder_refused", true),
-                     .bridge = column(name + "bridge_status", true),
-                     .command_speed = column(name + "command_speed_rad_s", true),
-                     .command_duty = column(name + "command_duty", true)};
+        wheel_[i] = {.speed = slot(name + "speed_rad_s", Unit::millionth),
+                     .encoder = slot(name + "encoder_count", Unit::count),
+                     .current = slot(name + "current_A", Unit::millionth),
+                     .current_count = slot(name + "current_count", Unit::count),
+                     .duty = slot(name + "duty", Unit::millionth),
+                     .set_speed = slot(name + "set_speed_rad_s", Unit::millionth),
+                     .slip = slot(name + "slip", Unit::millionth),
+                     .torque = slot(name + "motor_torque_Nm", Unit::millionth),
+                     .traction = slot(name + "traction_N", Unit::millionth),
+                     .slip_std = slot(name + "slip_std", Unit::millionth),
+                     .slip_valid = slot(name + "slip_valid", Unit::count),
+                     .saturated = slot(name + "saturated", Unit::count),
+                     .refused = slot(name + "encoder_refused", Unit::count, true),
+                     .bridge = slot(name + "bridge_status", Unit::count, true),
+                     .command_speed = slot(name + "command_speed_rad_s", Unit::exact, true),
+                     .command_duty = slot(name + "command_duty", Unit::exact, true)};
     }
-    at_ = {.battery = column("battery.voltage_V"),
-           .battery_count = column("battery.voltage_count"),
-           .radar_count = column("radar.adc_count"),
-           .radar_speed = column("radar.speed_m_s"),
-           .accel = column("imu.accel_x_m_s2"),
-           .accel_count = column("imu.accel_x_count"),
-           .gyro = column("imu.gyro_z_rad_s"),
-           .gyro_count = column("imu.gyro_z_count"),
-           .camera_x = column("camera.x_m"),
-           .camera_y = column("camera.y_m"),
-           .camera_yaw = column("camera.yaw_rad"),
-           .speed = column("estimate.speed_m_s"),
-           .speed_std = column("estimate.speed_std_m_s"),
-           .bias = column("estimate.accel_bias_m_s2"),
-           .standstill = column("estimate.standstill"),
-           .mode = column("control.mode"),
-           .faults = column("control.faults"),
-           .command_mode = column("command.mode"),
-           .command_speed = column("command.speed_m_s", true),
-           .command_yaw_rate = column("command.yaw_rate_rad_s", true),
-           .command_slip = column("command.slip", true),
-           .command_slip_wheels = column("command.slip_wheels", true),
-           .command_age = column("command.age_ticks", true),
-           .present = column("frame.present"),
-           .samples = column("frame.radar_samples"),
-           .emergency_stop = column("frame.emergency_stop", true),
-           .motor_enable = column("actuator.motor_enable"),
-           .drive = column("actuator.drive"),
-           .time = column("frame.time_us"),
-           .elapsed = column("frame.elapsed_ticks"),
-           .sequence = column("frame.radar_sequence"),
-           .accel_y = column("imu.accel_y_count"),
-           .accel_z = column("imu.accel_z_count"),
-           .gyro_x = column("imu.gyro_x_count"),
-           .gyro_y = column("imu.gyro_y_count"),
-           .fault_wheels = column("control.fault_wheels", true),
-           .curvature = column("actuator.curvature_1_m", true)};
+    at_ = {.battery = slot("battery.voltage_V", Unit::millionth),
+           .battery_count = slot("battery.voltage_count", Unit::count),
+           .radar_count = column("radar.adc_count", Unit::count),
+           .radar_speed = column("radar.speed_m_s", Unit::millionth),
+           .accel = slot("imu.accel_x_m_s2", Unit::millionth),
+           .accel_count = slot("imu.accel_x_count", Unit::count),
+           .gyro = slot("imu.gyro_z_rad_s", Unit::millionth),
+           .gyro_count = slot("imu.gyro_z_count", Unit::count),
+           .camera_x = column("camera.x_m", Unit::millionth),
+           .camera_y = column("camera.y_m", Unit::millionth),
+           .camera_yaw = column("camera.yaw_rad", Unit::millionth),
+           .speed = slot("estimate.speed_m_s", Unit::millionth),
+           .speed_std = slot("estimate.speed_std_m_s", Unit::millionth),
+           .bias = slot("estimate.accel_bias_m_s2", Unit::millionth),
+           .standstill = slot("estimate.standstill", Unit::count),
+           .mode = slot("control.mode", Unit::count),
+           .faults = slot("control.faults", Unit::natural),
+           .command_mode = slot("command.mode", Unit::count),
+           .command_speed = slot("command.speed_m_s", Unit::exact, true),
+           .command_yaw_rate = slot("command.yaw_rate_rad_s", Unit::exact, true),
+           .command_slip = slot("command.slip", Unit::exact, true),
+           .command_slip_wheels = slot("command.slip_wheels", Unit::count, true),
+           .command_age = slot("command.age_ticks", Unit::natural, true),
+           .present = slot("frame.present", Unit::natural),
+           .samples = slot("frame.radar_samples", Unit::count),
+           .emergency_stop = slot("frame.emergency_stop", Unit::count, true),
+           .motor_enable = slot("actuator.motor_enable", Unit::count),
+           .drive = slot("actuator.drive", Unit::count),
+           .time = slot("frame.time_us", Unit::natural),
+           .elapsed = column("frame.elapsed_ticks", Unit::natural),
+           .sequence = slot("frame.radar_sequence", Unit::natural),
+           .accel_y = slot("imu.accel_y_count", Unit::count),
+           .accel_z = slot("imu.accel_z_count", Unit::count),
+           .gyro_x = slot("imu.gyro_x_count", Unit::count),
+           .gyro_y = slot("imu.gyro_y_count", Unit::count),
+           .fault_wheels = slot("control.fault_wheels", Unit::natural, true),
+           .curvature = slot("actuator.curvature_1_m", Unit::millionth, true)};
+    tick_.resize(bound.size());
+    bound_ = spool_.bind(bound);
 }
 
-// A double whose shortest text reads back to this very float.
-double Recorder::exact(float value) {
-    if (value == last_float_) return last_exact_;
-    if (!std::isfinite(value)) return 0; // the firmware takes it as 0 too
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    double result = 0;
-    std::from_chars(text, end, result);
-    last_float_ = value;
-    last_exact_ = result;
-    return result;
-}
-
-void Recorder::add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace) {
+void Recorder::add_wheel(int wheel, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace) {
     const Wheel &at = wheel_[wheel];
-    if ((frame.present & (unsigned{FRAME_ENCODER_0} << static_cast<unsigned>(wheel))) != 0u) {
-        put_tidy(at.speed, t_s, trace.speed_rad_s);
-        put(at.encoder, t_s, frame.encoder_count[wheel]);
-    }
-    if ((frame.present & (unsigned{FRAME_CURRENT_0} << static_cast<unsigned>(wheel))) != 0u) {
-        put_tidy(at.current, t_s, trace.current_A);
-        put(at.current_count, t_s, frame.current_count[wheel]);
-    }
-    put_tidy(at.duty, t_s, trace.duty);
-    put_tidy(at.set_speed, t_s, trace.set_speed_rad_s);
-    put_tidy(at.slip, t_s, trace.slip);
-    put_tidy(at.torque, t_s, trace.torque_Nm);
-    put_tidy(at.traction, t_s, trace.traction_N);
-    put_tidy(at.slip_std, t_s, trace.slip_std);
-    put(at.slip_valid, t_s, trace.slip_valid ? 1 : 0);
-    put(at.saturated, t_s, trace.saturated ? 1 : 0);
-    put(at.refused, t_s, trace.encoder_refused ? 1 : 0);
-    put(at.bridge, t_s, frame.bridge_status[wheel]);
-    put(at.command_speed, t_s, exact(command.wheel_speed_rad_s[wheel]));
-    put(at.command_duty, t_s, exact(command.duty[wheel]));
+    if ((frame.present & (unsigned{FRAME_ENCODER_0} << static_cast<unsigned>(wheel))) != 0u)
+        tidy(at.speed, trace.speed_rad_s), tick_[at.encoder] = frame.encoder_count[wheel];
+    else
+        leave_out(at.speed), leave_out(at.encoder);
+    if ((frame.present & (unsigned{FRAME_CURRENT_0} << static_cast<unsigned>(wheel))) != 0u)
+        tidy(at.current, trace.current_A), tick_[at.current_count] = frame.current_count[wheel];
+    else
+        leave_out(at.current), leave_out(at.current_count);
+    tidy(at.duty, trace.duty);
+    tidy(at.set_speed, trace.set_speed_rad_s);
+    tidy(at.slip, trace.slip);
+    tidy(at.torque, trace.torque_Nm);
+    tidy(at.traction, trace.traction_N);
+    tidy(at.slip_std, trace.slip_std);
+    tick_[at.slip_valid] = trace.slip_valid ? 1 : 0;
+    tick_[at.saturated] = trace.saturated ? 1 : 0;
+    tick_[at.refused] = trace.encoder_refused ? 1 : 0;
+    tick_[at.bridge] = frame.bridge_status[wheel];
+    exact(at.command_speed, command.wheel_speed_rad_s[wheel]);
+    exact(at.command_duty, command.duty[wheel]);
 }
 
-void Recorder::add_frame(double t_s, const sensor_frame_t &frame) {
-    if ((frame.present & FRAME_BATTERY) != 0u) put(at_.battery_count, t_s, frame.battery_count);
-    if ((frame.present & FRAME_ACCEL) != 0u) put(at_.accel_count, t_s, frame.accel_x_count);
-    if ((frame.present & FRAME_GYRO) != 0u) put(at_.gyro_count, t_s, frame.gyro_z_count);
-    put(at_.present, t_s, frame.present);
-    put(at_.samples, t_s, frame.radar_samples);
-    put(at_.emergency_stop, t_s, frame.emergency_stop ? 1 : 0);
-    if ((frame.present & FRAME_TIME) != 0u) put(at_.time, t_s, frame.time_us);
-    if (frame.elapsed_ticks != 1) put(at_.elapsed, t_s, frame.elapsed_ticks);
-    if ((frame.present & FRAME_ACCEL_YZ) != 0u) {
-        put(at_.accel_y, t_s, frame.accel_y_count);
-        put(at_.accel_z, t_s, frame.accel_z_count);
-    }
-    if ((frame.present & FRAME_GYRO_XY) != 0u) {
-        put(at_.gyro_x, t_s, frame.gyro_x_count);
-        put(at_.gyro_y, t_s, frame.gyro_y_count);
-    }
-    // samples keep the converter's own clock, n/rate; what was recorded already is not recorded again
+void Recorder::add_frame(const sensor_frame_t &frame) {
+    const auto put = [&](unsigned present, std::size_t slot, std::int32_t count) {
+        if ((frame.present & present) != 0u)
+            tick_[slot] = count;
+        else
+            leave_out(slot);
+    };
+    put(FRAME_BATTERY, at_.battery_count, frame.battery_count);
+    put(FRAME_ACCEL, at_.accel_count, frame.accel_x_count);
+    put(FRAME_GYRO, at_.gyro_count, frame.gyro_z_count);
+    put(FRAME_TIME, at_.time, natural(frame.time_us));
+    put(FRAME_ACCEL_YZ, at_.accel_y, frame.accel_y_count);
+    put(FRAME_ACCEL_YZ, at_.accel_z, frame.accel_z_count);
+    put(FRAME_GYRO_XY, at_.gyro_x, frame.gyro_x_count);
+    put(FRAME_GYRO_XY, at_.gyro_y, frame.gyro_y_count);
+    put(FRAME_RADAR, at_.sequence, natural(frame.radar_sequence));
+    tick_[at_.present] = natural(frame.present);
+    tick_[at_.samples] = frame.radar_samples;
+    tick_[at_.emergency_stop] = frame.emergency_stop ? 1 : 0;
+}
+
+// Samples keep the converter's own clock, n/rate; what was recorded already is not recorded again.
+void Recorder::add_radar(const sensor_frame_t &frame) {
     if ((frame.present & FRAME_RADAR) == 0u) return;
-    put(at_.sequence, t_s, frame.radar_sequence);
     for (std::uint32_t i = 0; i < frame.radar_samples; i++) {
         const std::uint32_t n = frame.radar_sequence + i;
         if (static_cast<std::int32_t>(n - radar_next_) < 0) continue;
-        put(at_.radar_count, static_cast<double>(n) / radar_rate_Hz_, frame.radar_count[i]);
+        spool_.put_whole(at_.radar_count, static_cast<double>(n) / radar_rate_Hz_, frame.radar_count[i]);
         radar_next_ = n + 1;
     }
 }
 
-void Recorder::add_command(double t_s, const command_t &command) {
-    put(at_.command_mode, t_s, command.mode);
-    put(at_.command_speed, t_s, exact(command.platform_speed_m_s));
-    put(at_.command_yaw_rate, t_s, exact(command.yaw_rate_rad_s));
-    put(at_.command_slip, t_s, exact(command.slip_ref));
-    put(at_.command_slip_wheels, t_s, command.slip_wheels);
-    put(at_.command_age, t_s, command.age_ticks);
+void Recorder::add_command(const command_t &command) {
+    tick_[at_.command_mode] = command.mode;
+    exact(at_.command_speed, command.platform_speed_m_s);
+    exact(at_.command_yaw_rate, command.yaw_rate_rad_s);
+    exact(at_.command_slip, command.slip_ref);
+    tick_[at_.command_slip_wheels] = command.slip_wheels;
+    tick_[at_.command_age] = natural(command.age_ticks);
 }
 
-void Recorder::add_estimates(double t_s, const trace_t &trace) {
-    if ((trace.present & FRAME_BATTERY) != 0u) put_tidy(at_.battery, t_s, trace.battery_voltage_V);
-    if ((trace.present & FRAME_ACCEL) != 0u) put_tidy(at_.accel, t_s, trace.accel_x_m_s2);
-    if ((trace.present & FRAME_GYRO) != 0u) put_tidy(at_.gyro, t_s, trace.gyro_z_rad_s);
-    if (trace.radar_fresh) put_tidy(at_.radar_speed, t_s, trace.radar_speed_m_s);
-    put_tidy(at_.speed, t_s, trace.speed_m_s);
-    put_tidy(at_.speed_std, t_s, trace.speed_std_m_s);
-    put_tidy(at_.bias, t_s, trace.accel_bias_m_s2);
-    put(at_.standstill, t_s, trace.standstill ? 1 : 0);
-    put(at_.mode, t_s, trace.mode);
-    put(at_.faults, t_s, trace.faults);
-    put(at_.fault_wheels, t_s, trace.fault_wheels);
-    put_tidy(at_.curvature, t_s, trace.actuator.curvature_1_m);
-    put(at_.drive, t_s, trace.actuator.drive);
-    put(at_.motor_enable, t_s, trace.actuator.drive == DRIVE_ON || trace.actuator.drive == DRIVE_BRAKE ? 1 : 0);
+void Recorder::add_estimates(const trace_t &trace) {
+    const auto put = [&](unsigned present, std::size_t slot, float value) {
+        if ((trace.present & present) != 0u)
+            tidy(slot, value);
+        else
+            leave_out(slot);
+    };
+    put(FRAME_BATTERY, at_.battery, trace.battery_voltage_V);
+    put(FRAME_ACCEL, at_.accel, trace.accel_x_m_s2);
+    put(FRAME_GYRO, at_.gyro, trace.gyro_z_rad_s);
+    tidy(at_.speed, trace.speed_m_s);
+    tidy(at_.speed_std, trace.speed_std_m_s);
+    tidy(at_.bias, trace.accel_bias_m_s2);
+    tick_[at_.standstill] = trace.standstill ? 1 : 0;
+    tick_[at_.mode] = trace.mode;
+    tick_[at_.faults] = natural(trace.faults);
+    tick_[at_.fault_wheels] = natural(trace.fault_wheels);
+    tidy(at_.curvature, trace.actuator.curvature_1_m);
+    tick_[at_.drive] = trace.actuator.drive;
+    tick_[at_.motor_enable] = trace.actuator.drive == DRIVE_ON || trace.actuator.drive == DRIVE_BRAKE ? 1 : 0;
 }
 
 void Recorder::add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace) {
     const double t_s = (frame.tick + 1.0) / 100; // a tick ends its 10 ms
+    absent_ = {};
+    others_.clear();
     for (int wheel = 0; wheel < WHEEL_COUNT; wheel++)
-        if (has_wheel(wheel)) add_wheel(wheel, t_s, frame, command, trace.wheel[wheel]);
-    add_frame(t_s, frame);
-    add_command(t_s, command);
-    add_estimates(t_s, trace);
+        if (has_wheel(wheel)) add_wheel(wheel, frame, command, trace.wheel[wheel]);
+    add_frame(frame);
+    add_command(command);
+    add_estimates(trace);
+    spool_.put_together(bound_, t_s, tick_.data(), absent_, others_);
+    add_radar(frame);
+    if (frame.elapsed_ticks != 1) spool_.put_whole(at_.elapsed, t_s, natural(frame.elapsed_ticks));
+    if (!trace.radar_fresh) return;
+    if (const Tidy speed(trace.radar_speed_m_s); speed.large())
+        put(at_.radar_speed, t_s, speed.value());
+    else
+        spool_.put_whole(at_.radar_speed, t_s, speed.whole());
 }
 
 void Recorder::add_camera(std::span<const sim::Pose> poses) {

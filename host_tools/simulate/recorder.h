@@ -32,15 +32,18 @@ class Recorder {
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 
   private:
-    std::size_t column(const std::string &name, bool absent_is_zero = false);
+    std::size_t column(const std::string &name, log::Unit unit, bool absent_is_zero = false);
     void put(std::size_t column, double t_s, double value) { spool_.put(column, t_s, value); }
-    void put_tidy(std::size_t column, double t_s, float value);
-    void put_large(std::size_t column, double t_s, double millionths); // 2e9 of them, and more
-    void add_wheel(int wheel, double t_s, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
-    void add_frame(double t_s, const sensor_frame_t &frame);
-    void add_command(double t_s, const command_t &command);
-    void add_estimates(double t_s, const trace_t &trace);
-    double exact(float value);
+    static std::int32_t natural(std::uint32_t count) { return static_cast<std::int32_t>(count); }
+    void tidy(std::size_t slot, float value);
+    [[gnu::noinline]] void large(std::size_t slot, double value); // 2e9 millionths, and more
+    void exact(std::size_t slot, float value);
+    void leave_out(std::size_t slot) { absent_[slot / 64] |= std::uint64_t{1} << (slot % 64); }
+    void add_wheel(int wheel, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
+    void add_frame(const sensor_frame_t &frame);
+    void add_radar(const sensor_frame_t &frame);
+    void add_command(const command_t &command);
+    void add_estimates(const trace_t &trace);
     bool has_wheel(int wheel) const { return (wheels_ >> static_cast<unsigned>(wheel) & 1u) != 0u; }
 
     std::uint64_t expected_;
@@ -48,14 +51,17 @@ class Recorder {
     double radar_rate_Hz_;
     unsigned wheels_;
     std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick
-    float last_float_ = 0;
-    double last_exact_ = 0;
 
-    struct Wheel {
+    // what a tick holds, in slots: together one row (log::Spool::put_together)
+    std::vector<std::int32_t> tick_;
+    log::Absent absent_{};
+    std::vector<log::Other> others_;
+    std::size_t bound_ = 0;
+    struct Wheel { // slots
         std::size_t speed, encoder, current, current_count, duty, set_speed, slip, torque, traction, slip_std, slip_valid, saturated,
             refused, bridge, command_speed, command_duty;
     } wheel_[WHEEL_COUNT]{};
-    struct {
+    struct { // slots; of radar, camera and elapsed columns
         std::size_t battery, battery_count, radar_count, radar_speed, accel, accel_count, gyro, gyro_count, camera_x, camera_y, camera_yaw,
             speed, speed_std, bias, standstill, mode, faults, command_mode, command_speed, command_yaw_rate, command_slip,
             command_slip_wheels, command_age, present, samples, emergency_stop, motor_enable, drive, time, elapsed, sequence, accel_y,

@@ -61,7 +61,7 @@ class Drive {
         if (k % 5 == 0)
             spool_.put(wheel_, t_s, wheel_value(k));
         else
-            spool_.put_millionths(wheel_, t_s, k / 3);
+            spool_.put_whole(wheel_, t_s, k / 3);
         spool_.put(zero_, t_s, 0);
         for (int i = 0; i < 3; ++i) spool_.put(fast_, t_s - 0.009 + i * 0.003, 37 * k % 1024);
         if (k % 7 == 3) spool_.put(late_, t_s - (k % 2 == 0 ? 0.055 : 0.0), 1.0 / k);

@@ -117,7 +117,8 @@ TEST(Spool, tells_where_it_cannot_write) {
     Spool spool("/nowhere/at/all.csv");
     const std::size_t column = spool.add("wheel0.speed_rad_s");
     try {
-        for (std::size_t k = 0; k <= 2 * Spool::block; ++k) spool.put(column, static_cast<double>(k), 1);
+        for (std::size_t k = 0; k <= RowSpool::chunk_bytes / 16; ++k) spool.put(column, static_cast<double>(k), 1); // a row has 16 bytes
+        spool.instant_is_over();
         FAIL() << "a folder that is not there";
     } catch (const FileError &error) {
         EXPECT_NE(std::string(error.what()).find("/nowhere/at/all.csv"), std::string::npos) << error.what();
@@ -128,7 +129,7 @@ TEST(Spool, tells_where_it_cannot_write) {
 TEST(Spool, millionths_are_written_as_their_number) {
     const auto expect_same = [](std::int32_t millionths) {
         char whole[number_room], number[number_room];
-        const std::string a(whole, put_millionths(whole, millionths)), b(number, put_number(number, millionths / 1e6));
+        const std::string a(whole, put_whole(whole, Unit::millionth, millionths)), b(number, put_number(number, millionths / 1e6));
         ASSERT_EQ(a, b) << millionths;
     };
     for (std::int32_t n = -20000; n <= 20000; ++n) expect_same(n);
@@ -138,6 +139,116 @@ TEST(Spool, millionths_are_written_as_their_number) {
         for (const std::int32_t off : {-1, 0, 1}) expect_same(n + off), expect_same(-(n + off));
     }
     expect_same(std::numeric_limits<std::int32_t>::max());
+}
+
+TEST(Spool, counts_are_written_as_their_number) {
+    const auto expect_same = [](std::int32_t bits) {
+        for (const Unit unit : {Unit::count, Unit::natural}) {
+            const double value = unit == Unit::count ? bits : static_cast<double>(static_cast<std::uint32_t>(bits));
+            char whole[number_room], number[number_room];
+            const std::string a(whole, put_whole(whole, unit, bits)), b(number, put_number(number, value));
+            ASSERT_EQ(a, b) << bits;
+            ASSERT_EQ(value_of(unit, bits), value);
+        }
+    };
+    for (std::int32_t n = -20000; n <= 20000; ++n) expect_same(n);
+    for (std::int64_t n = std::numeric_limits<std::int32_t>::min(); n <= std::numeric_limits<std::int32_t>::max(); n += 65521)
+        expect_same(static_cast<std::int32_t>(n));
+    for (std::int64_t power = 1; power < std::int64_t{1} << 31; power *= 10)
+        for (const std::int64_t off : {-1, 0, 1, 10})
+            expect_same(static_cast<std::int32_t>(power + off)), expect_same(-static_cast<std::int32_t>(power + off));
+}
+
+// A float is told by the shortest text that reads back to it.
+TEST(Spool, floats_are_written_as_their_shortest_text) {
+    std::mt19937 random(20261126);
+    for (int i = 0; i < 100000; ++i) {
+        const auto bits = static_cast<std::int32_t>(random());
+        const auto value = std::bit_cast<float>(bits);
+        if (!std::isfinite(value)) continue;
+        ASSERT_EQ(static_cast<float>(value_of(Unit::exact, bits)), value);
+        char ours[number_room], shortest[64];
+        const std::string a(ours, put_whole(ours, Unit::exact, bits));
+        double read = 0;
+        std::from_chars(shortest, std::to_chars(shortest, shortest + sizeof shortest, value).ptr, read);
+        ASSERT_EQ(value_of(Unit::exact, bits), read);
+        char theirs[64];
+        ASSERT_EQ(a, std::string(theirs, std::to_chars(theirs, theirs + sizeof theirs, read).ptr));
+    }
+}
+
+// Columns that come together, some of them now and then, one large now and then, beside others of their own: as if they came one by one.
+TEST(Spool, columns_that_come_together_are_written_as_one_by_one) {
+    for (const char *name : {"spool_grown.csv", "spool_grown.ulg"}) {
+        const test::File at_once(std::string("spool_at_once") + (name + 11), ""), grown(name, "");
+        Spool memory, disk(grown.path());
+        const Unit units[] = {Unit::millionth, Unit::count, Unit::natural, Unit::exact, Unit::millionth, Unit::count};
+        const auto whole_of = [](int k, std::size_t i) {
+            const int held = k / (i % 3 == 0 ? 1 : 40); // one changes always, others seldom
+            if (i == 5) return 0;
+            return i == 3 ? std::bit_cast<std::int32_t>(0.1f * static_cast<float>(held % 13))
+                          : (held * 7919 + static_cast<int>(i)) % 2000003 - (i == 2 ? 0 : 700);
+        };
+        const auto absent = [](int k, std::size_t i) { return (i == 1 && k % 5 == 2) || (i == 4 && k < 900) || (i == 0 && k == 0); };
+        const auto large = [](int k, std::size_t i) { return i == 0 && (k % 1000 == 7 || k % 1000 == 8); };
+        std::vector<std::size_t> bound;
+        for (Spool *spool : {&memory, &disk}) {
+            bound.clear();
+            std::size_t alone = 0, own = 0;
+            for (std::size_t i = 0; i < std::size(units); ++i) {
+                bound.push_back(spool->add("a" + std::to_string(i) + ".x_m", i == 5, 0, units[i]));
+                if (i == 2) alone = spool->add("b.x_m"), own = spool->add("c.adc_count", false, 0, Unit::count);
+            }
+            const std::size_t together = spool == &disk ? spool->bind(bound) : 0;
+            for (int k = 0; k < 30000; ++k) {
+                const double t_s = k * 0.01;
+                std::int32_t whole[std::size(units)];
+                Absent left_out{};
+                std::vector<Other> others;
+                for (std::size_t i = 0; i < std::size(units); ++i) {
+                    whole[i] = whole_of(k, i);
+                    if (absent(k, i)) left_out[0] |= 1u << i;
+                    if (large(k, i) && !absent(k, i)) others.push_back({i, 1e5 + k});
+                    if (spool == &memory && large(k, i) && !absent(k, i))
+                        spool->put(bound[i], t_s, 1e5 + k);
+                    else if (spool == &memory && !absent(k, i))
+                        spool->put_whole(bound[i], t_s, whole[i]);
+                }
+                if (spool == &disk) spool->put_together(together, t_s, whole, left_out, others);
+                if (k % 3 == 0) spool->put(alone, t_s, 1.0 / (k + 1));
+                spool->put_whole(own, t_s - 0.004, k % 1024);
+                spool->instant_is_over();
+            }
+        }
+        Log log = memory.take();
+        log.header = {{"seed", "7"}};
+        if (names_a_ulog(grown.path()))
+            write_ulog(log, at_once.path());
+        else
+            write_csv(log, at_once.path());
+        disk.write(log.header);
+        EXPECT_TRUE(at_once.text() == grown.text()) << name;
+        EXPECT_EQ(log.find("a5.x_m"), nullptr) << "absent is 0";
+    }
+}
+
+TEST(Spool, refuses_columns_that_come_together_twice) {
+    const test::File kept("spool_refused.csv", "as it was");
+    for (const double second_s : {1.0, 0.5, std::numeric_limits<double>::quiet_NaN()}) {
+        Spool spool(kept.path());
+        const std::size_t both = spool.bind({spool.add("a.x_m"), spool.add("b.x_m")});
+        const std::int32_t whole[2] = {1, 2};
+        spool.put_together(both, 1, whole, {}, {});
+        spool.put_together(both, second_s, whole, {}, {});
+        EXPECT_THROW(spool.write({}), LogError) << second_s;
+    }
+    Spool spool(kept.path());
+    const std::size_t one = spool.bind({spool.add("a.x_m")});
+    const std::int32_t whole[1] = {0};
+    const Other other[1] = {{0, std::numeric_limits<double>::infinity()}};
+    spool.put_together(one, 1, whole, {}, other);
+    EXPECT_THROW(spool.write({}), LogError);
+    EXPECT_EQ(kept.text(), "as it was");
 }
 
 // Numbers take ways of their own to their digits: counts, millionths, billionths. All end where the library's shortest text does.
@@ -178,9 +289,9 @@ TEST(Spool, a_column_of_millionths_and_other_numbers_is_written_as_at_once) {
                 else if (k % 7 == 4)
                     spool->put(mixed, t_s, (k - 1) / 1e6); // what the last millionths were, as a number
                 else
-                    spool->put_millionths(mixed, t_s, k / 3 * 3);
-                spool->put_millionths(zero, t_s, 0);
-                if (k % 3 == 0) spool->put_millionths(held, t_s, k < 9000 ? 0 : -5);
+                    spool->put_whole(mixed, t_s, k / 3 * 3);
+                spool->put_whole(zero, t_s, 0);
+                if (k % 3 == 0) spool->put_whole(held, t_s, k < 9000 ? 0 : -5);
             }
         }
         Log log = memory.take();
@@ -194,11 +305,11 @@ TEST(Spool, a_column_of_millionths_and_other_numbers_is_written_as_at_once) {
     }
 }
 
-// What no longer fits in memory waits on the disk, in the middle of a run.
-TEST(Spool, a_run_that_memory_does_not_hold_is_written_as_at_once) {
+// What is in full chunks waits on the disk, in the middle of a run.
+TEST(Spool, a_run_of_many_chunks_is_written_as_at_once) {
     const test::File at_once("spool_at_once.csv", ""), grown("spool_grown.csv", "");
     Spool memory, disk(grown.path());
-    constexpr int samples = 2 * RowSpool::memory_bytes / 26; // a row of one number: 16 bytes and 10
+    constexpr int samples = 20 * RowSpool::chunk_bytes / 26; // a row of one number: 16 bytes and 10
     for (Spool *spool : {&memory, &disk}) {
         const std::size_t column = spool->add("a.x_m");
         for (int k = 0; k < samples; ++k) spool->put(column, k * 0.25, 1.0 / (k + 1));
