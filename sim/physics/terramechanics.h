@@ -53,11 +53,11 @@ SoilConstants soil_constants(const Bekker &soil, double wheel_width_m);
 SoilForce bekker_force(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const SoilContact &contact);
 
 // (1)-(5) of four wheels of one soil, size and width, a number of each in a place of its own: the same bits.
-struct FourSoilContacts {
-    alignas(32) double strength[4], sinkage_m[4], slip[4], rut_m[4];
+struct FourSoilContacts { // four each
+    const double *strength, *sinkage_m, *slip, *rut_m;
 };
 struct FourSoilForces {
-    alignas(32) double normal_N[4], largest_N[4], shear_slip[4], traction_N[4], resistance_N[4], torque_Nm[4];
+    alignas(32) double normal_N[4]{}, largest_N[4]{}, shear_slip[4]{}, traction_N[4]{}, resistance_N[4]{}, torque_Nm[4]{};
 };
 void bekker_forces(const Bekker &soil, const SoilConstants &constants, const SoilWheel &wheel, const FourSoilContacts &contacts,
                    FourSoilForces &out); // wheel.strength is not read

@@ -5,12 +5,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace traction::sim {
 
 namespace {
 
 constexpr std::size_t four = 4;
+
+// Written four at once: they are read so.
+inline void ride_here(const HalfNow &left, const HalfNow &right, FourCarriers &__restrict on) {
+    const auto of = [](Four &all, double l, double r) {
+        using Wide = double __attribute__((vector_size(32)));
+        const Wide wide{l, r, l, r};
+        std::memcpy(all.of.data(), &wide, sizeof wide);
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t c = 0; c < 3; ++c) of(on.turn[3 * k + c], left.turn[4 * k + c], right.turn[4 * k + c]);
+        of(on.at_m[k], left.at_m[k], right.at_m[k]);
+        of(on.velocity_m_s[k], left.velocity_m_s[k], right.velocity_m_s[k]);
+        of(on.spin_rad_s[k], left.spin_rad_s[k], right.spin_rad_s[k]);
+    }
+    for (std::size_t k = 0; k < 2; ++k) of(on.heading[k], left.heading[k], right.heading[k]);
+}
 
 inline void stand_here(const FourKnown &known, const FourCarriers &on, FourWheels &__restrict w) {
     for (std::size_t i = 0; i < four; ++i) {
@@ -98,14 +115,16 @@ inline void slide_here(const FourKnown &known, FourWheels &__restrict w) {
 inline void meet_soft(const FourKnown &known, const FourGiven &given, FourWheels &__restrict w, FourMet &__restrict met) {
     for (std::size_t i = 0; i < four; ++i) {
         ContactInput in = input_of(known, w, i);
-        const double given_N = given.load_N[i], resistance = given.resistance_N[i], free_N = given.free_N[i], free_Nm = given.free_Nm[i];
-        const double by_slip = given.by_slip_N[i], twist = given.twist_Nm[i], damping = known.damping_Ns_m * -w.sink_m_s[i];
+        const FourSoilForces &soil = given.soil;
+        const double given_N = soil.normal_N[i], resistance = soil.resistance_N[i], free_N = given.free_N[i], free_Nm = given.free_Nm[i];
+        const double by_slip = std::fabs(soil.traction_N[i]), twist = std::fabs(soil.torque_Nm[i]),
+                     damping = known.damping_Ns_m * -w.sink_m_s[i];
         const double belly = std::max(0.0, w.sinkage_m[i] - 0.9 * known.soil_radius_m) * known.stiffness_N_m;
         const double load = std::max(0.0, given_N + belly - (given_N > 0 ? damping : 0));
-        const double most = given.most_N[i];
+        const double most = soil.largest_N[i];
         in.grip_N = load > 0 ? most : 0; // then there is no force either
-        in.shear_slip = given.shear_slip[i];
-        in.side_ratio = given.side_ratio[i];
+        in.shear_slip = soil.shear_slip[i];
+        in.side_ratio = given.side_ratio[i]; // one that is loaded: written here, the loop is no vector code
         in.law = TractionLaw::janosi;
         const ContactState state{.slip = w.slip[i], .side_slip = w.side_slip[i]};
         const ContactForce force = contact_force(in, state, {w.slid[i], w.slid_aside[i]}, by_slip, known.dt_s);
@@ -193,6 +212,7 @@ inline void soft_here(const FourKnown &known, const FourCarriers &on, const Four
 #define TRACTION_FOUR_IN_narrow __attribute__((flatten))
 #define TRACTION_FOUR_IN_avx2 __attribute__((target("avx2"), flatten))
 #define TRACTION_FOUR_STEPS(name)                                                                                                          \
+    TRACTION_FOUR_IN_##name void ride_##name(const HalfNow &left, const HalfNow &right, FourCarriers &on) { ride_here(left, right, on); }  \
     TRACTION_FOUR_IN_##name void stand_##name(const FourKnown &known, const FourCarriers &on, FourWheels &__restrict w) {                  \
         stand_here(known, on, w);                                                                                                          \
     }                                                                                                                                      \
@@ -205,7 +225,7 @@ inline void soft_here(const FourKnown &known, const FourCarriers &on, const Four
                                              const FourGiven &given, FourWheels &__restrict w) {                                           \
         soft_here(known, on, orders, given, w);                                                                                            \
     }                                                                                                                                      \
-    constexpr FourSteps steps_##name{stand_##name, firm_##name, slide_##name, soft_##name};
+    constexpr FourSteps steps_##name{ride_##name, stand_##name, firm_##name, slide_##name, soft_##name};
 
 TRACTION_FOUR_STEPS(narrow)
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)

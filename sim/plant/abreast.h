@@ -39,6 +39,11 @@ struct FourKnown {
     bool nods = false; // the wheels' spin-up turns the halves
 };
 
+// How a half moves: a rotation in rows of four, the others of three; its heading of two.
+struct HalfNow {
+    const double *turn, *at_m, *velocity_m_s, *spin_rad_s, *heading;
+};
+
 // How the halves move, each number as wheels 0 to 3 have it: of the left, the right, the left, the right one.
 struct FourCarriers {
     std::array<Four, 9> turn; // rows
@@ -46,9 +51,10 @@ struct FourCarriers {
     std::array<Four, 2> heading;
 };
 
-// What ground that sinks gives, at a wheel's sinkage and slip.
+// What ground that sinks gives, at a wheel's sinkage and slip; traction and torque: the part of them that is due to slip.
 struct FourGiven {
-    Four load_N, most_N, shear_slip, side_ratio, by_slip_N, twist_Nm, resistance_N, free_N, free_Nm;
+    FourSoilForces soil;
+    Four free_N, free_Nm, side_ratio{1};
 };
 
 struct FourWheels {
@@ -73,8 +79,9 @@ struct FourOrders {
     bool enabled = true;
 };
 
-// One step is `stand`, then the cells that changed, then `firm`, or `slide`, the soil's law and `soft`.
+// One step is `ride`, `stand`, then the cells that changed, then `firm`, or `slide`, the soil's law and `soft`.
 struct FourSteps {
+    void (*ride)(const HalfNow &left, const HalfNow &right, FourCarriers &);
     void (*stand)(const FourKnown &, const FourCarriers &, FourWheels &); // where they touch, how fast they slide
     void (*firm)(const FourKnown &, const FourCarriers &, const FourOrders &, FourWheels &);
     void (*slide)(const FourKnown &, FourWheels &);

@@ -168,15 +168,14 @@ void Plant::World::take_hinge() {
 void Plant::World::hold_halves() {
     std::array<HingeMotion, 2> moving{};
     for (std::size_t n = 0; n < 2; ++n) {
-        const dReal *force = dBodyGetForce(half[n]), *torque = dBodyGetTorque(half[n]);
-        moving[n] = {now[n].turn, now[n].at, now[n].velocity, now[n].spin, {}, {torque[0], torque[1], torque[2]}};
-        for (std::size_t k = 0; k < 3; ++k) moving[n].force_N[k] = force[k] + hinge->body[n].mass_kg * gravity[k]; // ODE adds it itself
+        const BodyNow &one = now[half_at[n]];
+        moving[n] = {one.turn, one.at, one.velocity, one.spin, {}, one.torque};
+        for (std::size_t k = 0; k < 3; ++k) moving[n].force_N[k] = one.force[k] + hinge->body[n].mass_kg * gravity[k]; // ODE adds it itself
     }
     const auto loads = hinge->loads(moving, config.dt_s);
-    for (std::size_t n = 0; n < 2; ++n) {
-        dBodyAddForce(half[n], loads[n].force_N[0], loads[n].force_N[1], loads[n].force_N[2]);
-        dBodyAddTorque(half[n], loads[n].torque_Nm[0], loads[n].torque_Nm[1], loads[n].torque_Nm[2]);
-    }
+    for (std::size_t n = 0; n < 2; ++n)
+        for (std::size_t k = 0; k < 3; ++k)
+            now[half_at[n]].force[k] += loads[n].force_N[k], now[half_at[n]].torque[k] += loads[n].torque_Nm[k];
 }
 
 double Plant::World::kinetic() const {
@@ -224,7 +223,8 @@ void Plant::World::push_body() {
     push[1] += law::tether_drag_N(b.tether_N_m, truth.position_m[1] - config.y_m);
     if (config.rover.layout.drawbar_N != 0)
         for (std::size_t k = 0; k < 2; ++k) push[k] -= config.rover.layout.drawbar_N * ahead[k];
-    for (const dBodyID body : half) dBodyAddForce(body, 0.5 * push[0], 0.5 * push[1], 0);
+    for (const std::size_t at : half_at)
+        for (std::size_t k = 0; k < 3; ++k) now[at].force[k] += 0.5 * push[k];
 }
 
 void Plant::World::step() {
@@ -253,9 +253,9 @@ void Plant::World::step() {
         step_abreast(supply_V);
     else
         step_wheels(supply_V);
-    push_bodies();
     push_body();
     if (hinge) hold_halves();
+    push_bodies();
     dWorldStep(world, dt);
     ++steps;
 
@@ -286,7 +286,7 @@ void Plant::World::begin_bodies() {
 }
 
 void Plant::World::push_bodies() {
-    for (const BodyNow &one : now) {
+    for (const BodyNow &one : now) { // once a step: each call costs
         dBodyAddForce(one.body, one.force[0], one.force[1], one.force[2]);
         dBodyAddTorque(one.body, one.torque[0], one.torque[1], one.torque[2]);
     }

@@ -35,7 +35,7 @@ RutMemory::RutMemory(double width_m) : width_m_(width_m), cell_m_(width_m + 2 * 
 std::int64_t RutMemory::index(double place_m) const { return static_cast<std::int64_t>(std::floor(place_m / cell_m_)); }
 
 void RutMemory::add(const RutPiece &piece) {
-    near_[cell_at(index(piece.x1_m), index(piece.y1_m))].push_back(static_cast<std::uint32_t>(pieces_.size()));
+    near_[cell_at(index(piece.x1_m), index(piece.y1_m))].push_back({piece.x1_m, piece.y1_m, static_cast<std::uint32_t>(pieces_.size())});
     pieces_.push_back(piece);
     longest_m_ = std::max(longest_m_, std::sqrt(squared(piece.x1_m - piece.x0_m, piece.y1_m - piece.y0_m)));
     deepest_m_ = std::max({deepest_m_, piece.depth0_m, piece.depth1_m});
@@ -46,13 +46,16 @@ double RutMemory::depth(double x_m, double y_m) const {
     const double reach2 = width_m_ * width_m_;
     double far_m = 1.0001 * (width_m_ + longest_m_), far2 = far_m * far_m; // of its second end: no piece reaches so far
     const std::int64_t column = index(x_m), row = index(y_m);
+    const double in_x_m = x_m - static_cast<double>(column) * cell_m_, in_y_m = y_m - static_cast<double>(row) * cell_m_;
+    const auto gap_m = [this](std::int64_t to, double in_m) { return to == 0 ? 0 : to < 0 ? in_m : cell_m_ - in_m; };
     for (const std::int64_t right : {0, -1, 1}) // its own cell first
         for (const std::int64_t up : {0, -1, 1}) {
+            if (squared(gap_m(right, in_x_m), gap_m(up, in_y_m)) > far2) continue;
             const auto list = near_.find(cell_at(column + right, row + up));
             if (list == near_.end()) continue;
-            for (const std::uint32_t i : list->second) {
-                const RutPiece &p = pieces_[i];
-                if (squared(x_m - p.x1_m, y_m - p.y1_m) > far2) continue;
+            for (const End &end : list->second) {
+                if (squared(x_m - end.x_m, y_m - end.y_m) > far2) continue;
+                const RutPiece &p = pieces_[end.piece];
                 const double dx = p.x1_m - p.x0_m, dy = p.y1_m - p.y0_m, length2 = squared(dx, dy);
                 const double along = length2 > 0 ? ((x_m - p.x0_m) * dx + (y_m - p.y0_m) * dy) / length2 : 0;
                 const double share = std::clamp(along, 0.0, 1.0);
@@ -62,7 +65,7 @@ double RutMemory::depth(double x_m, double y_m) const {
                 const double here = overlap * (p.depth0_m + share * (p.depth1_m - p.depth0_m));
                 if (!(here > found)) continue;
                 found = here;
-                far_m = 1.0001 * (width_m_ * (1 - found / deepest_m_) + longest_m_), far2 = far_m * far_m; // beyond, none is deeper by (1)
+                far_m = 1.0001 * (width_m_ * (1 - found / deepest_m_) + longest_m_), far2 = far_m * far_m; // beyond, none is deeper
             }
         }
     return found;

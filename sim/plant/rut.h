@@ -32,7 +32,11 @@ class RutMemory {
     std::int64_t index(double place_m) const; // of a cell
     double width_m_, cell_m_, longest_m_ = 0, deepest_m_ = 0;
     std::vector<RutPiece> pieces_;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> near_; // where to look; the answer does not depend on it
+    struct End { // the second one
+        double x_m, y_m;
+        std::uint32_t piece;
+    };
+    std::unordered_map<std::uint64_t, std::vector<End>> near_; // where to look; the answer does not depend on it
 };
 
 // One wheel in the memory: what it finds under itself, and what it leaves behind.

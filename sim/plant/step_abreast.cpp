@@ -70,17 +70,11 @@ void Plant::World::step_abreast(double supply_V) {
     }
     FourCarriers &on = abreast.carriers;
     const std::array<BodyNow *, 2> side{&now[carrier_at[0]], &now[carrier_at[1]]};
-    for (std::size_t i = 0; i < wheel_count; ++i) {
-        const BodyNow &half_now = *side[i % 2];
-        for (std::size_t k = 0; k < 3; ++k) {
-            for (std::size_t c = 0; c < 3; ++c) on.turn[3 * k + c][i] = half_now.turn[4 * k + c];
-            on.at_m[k][i] = half_now.at[k], on.velocity_m_s[k][i] = half_now.velocity[k], on.spin_rad_s[k][i] = half_now.spin[k];
-        }
-        for (std::size_t k = 0; k < 2; ++k) on.heading[k][i] = half_now.heading[k];
-        abreast.orders.duty[i] = duty[i];
-    }
+    for (std::size_t i = 0; i < wheel_count; ++i) abreast.orders.duty[i] = duty[i];
     abreast.orders.supply_V = supply_V, abreast.orders.enabled = enabled;
 
+    const auto half_now = [](const BodyNow &one) -> HalfNow { return {one.turn, one.at, one.velocity, one.spin, one.heading.data()}; };
+    abreast.steps->ride(half_now(*side[0]), half_now(*side[1]), on);
     abreast.steps->stand(abreast.known, on, w);
     if (abreast.known.grip_noise > 0)
         for (std::size_t i = 0; i < wheel_count; ++i)
@@ -91,9 +85,8 @@ void Plant::World::step_abreast(double supply_V) {
             }
     if (abreast.soft) {
         abreast.steps->slide(abreast.known, w);
-        FourGiven given;
-        give_abreast(given);
-        abreast.steps->soft(abreast.known, on, abreast.orders, given, w);
+        give_abreast(abreast.given);
+        abreast.steps->soft(abreast.known, on, abreast.orders, abreast.given, w);
     } else {
         abreast.steps->firm(abreast.known, on, abreast.orders, w);
     }
@@ -118,25 +111,16 @@ void Plant::World::give_abreast(FourGiven &given) {
     std::array<double, wheel_count> rut_m{};
     for (std::size_t i = 0; i < wheel_count; ++i) rut_m[i] = trace[i].follow(ruts, w.point_m[0][i], w.point_m[1][i], w.sinkage_m[i]);
     if (config.ground.contact == ContactLaw::bekker) {
-        FourSoilContacts in;
-        FourSoilForces out;
-        for (std::size_t i = 0; i < wheel_count; ++i)
-            in.strength[i] = w.factor[i], in.sinkage_m[i] = w.sinkage_m[i], in.slip[i] = w.law_slip[i], in.rut_m[i] = rut_m[i];
-        bekker_forces(*soil.bekker, constants[0], wheel, in, out);
-        for (std::size_t i = 0; i < wheel_count; ++i) {
-            given.load_N[i] = out.normal_N[i], given.most_N[i] = out.largest_N[i], given.shear_slip[i] = out.shear_slip[i];
-            given.side_ratio[i] = 1, given.resistance_N[i] = out.resistance_N[i];
-            given.by_slip_N[i] = std::fabs(out.traction_N[i]), given.twist_Nm[i] = std::fabs(out.torque_Nm[i]);
-            given.free_N[i] = given.free_Nm[i] = 0;
-        }
-        return;
+        bekker_forces(*soil.bekker, constants[0], wheel, {w.factor.of.data(), w.sinkage_m.of.data(), w.law_slip.of.data(), rut_m.data()},
+                      given.soil);
+        return; // its free_N and free_Nm are 0
     }
     for (std::size_t i = 0; i < wheel_count; ++i) {
         wheel.strength = w.factor[i];
         const Given one = on_soft(soil, constants[0], config.ground.contact, wheel, {w.sinkage_m[i], w.law_slip[i], rut_m[i]}, w.still[i]);
-        given.load_N[i] = one.soil.normal_N, given.most_N[i] = one.soil.largest_N, given.shear_slip[i] = one.soil.shear_slip;
-        given.side_ratio[i] = one.side_ratio, given.by_slip_N[i] = one.by_slip_N, given.twist_Nm[i] = one.twist_Nm;
-        given.resistance_N[i] = one.soil.resistance_N;
+        FourSoilForces &to = given.soil;
+        to.normal_N[i] = one.soil.normal_N, to.largest_N[i] = one.soil.largest_N, to.shear_slip[i] = one.soil.shear_slip;
+        to.traction_N[i] = one.by_slip_N, to.torque_Nm[i] = one.twist_Nm, to.resistance_N[i] = one.soil.resistance_N;
         given.free_N[i] = one.soil.free_traction_N, given.free_Nm[i] = one.soil.free_torque_Nm;
     }
 }

@@ -184,6 +184,7 @@ struct Plant::World {
         FourKnown known;
         FourCarriers carriers;
         FourOrders orders;
+        FourGiven given;
         FourWheels wheels;
         const FourSteps *steps = nullptr;
     } abreast;

@@ -187,9 +187,15 @@ TEST(abreast, every_width_of_vectors_gives_the_same_bits) {
         FourOrders orders{.duty = {}, .supply_V = 7.2, .enabled = n % 7 != 0};
         draw(orders.duty, -1, 1);
         FourGiven given;
-        draw(given.load_N, -1, 9), draw(given.most_N, 0, 6), draw(given.shear_slip, 0.05, 0.5), draw(given.side_ratio, 0.5, 2);
-        draw(given.by_slip_N, 0, 6), draw(given.twist_Nm, 0, 0.3), draw(given.resistance_N, 0, 2), draw(given.free_N, 0, 2);
-        draw(given.free_Nm, 0, 0.1);
+        const auto draw_soil = [&draw](double(&four)[4], double low, double high) {
+            Four drawn;
+            draw(drawn, low, high);
+            std::copy_n(drawn.of.data(), 4, four);
+        };
+        FourSoilForces &soil = given.soil;
+        draw_soil(soil.normal_N, -1, 9), draw_soil(soil.largest_N, 0, 6), draw_soil(soil.shear_slip, 0.05, 0.5);
+        draw_soil(soil.traction_N, -6, 6), draw_soil(soil.torque_Nm, -0.3, 0.3), draw_soil(soil.resistance_N, 0, 2);
+        draw(given.free_N, 0, 2), draw(given.free_Nm, 0, 0.1);
         FourWheels narrow = wide;
         for (FourWheels *w : {&wide, &narrow}) {
             const FourSteps &steps = four_steps_in(w == &wide ? Vectors::avx2 : Vectors::narrow);
@@ -217,19 +223,19 @@ TEST(abreast, four_soil_forces_are_those_of_one_wheel_at_any_width) {
         SoilWheel wheel{0.057, 0.042, 0.005, 1, 1.2};
         const SoilConstants constants = soil_constants(*soil.bekker, wheel.width_m);
         for (int n = 0; n < 5000; ++n) {
-            FourSoilContacts in;
+            double strength[4], slip[4], sinkage_m[4], rut_m[4];
             for (std::size_t i = 0; i < 4; ++i) {
-                in.strength[i] = draw(0.05, 1.5), in.slip[i] = draw(-1, 1);
-                in.sinkage_m[i] = n % 3 == 0 ? 0 : draw(-0.001, n % 5 == 0 ? 0.08 : 0.02);
-                in.rut_m[i] = random() % 2 == 0 ? 0 : draw(0, 0.02);
+                strength[i] = draw(0.05, 1.5), slip[i] = draw(-1, 1);
+                sinkage_m[i] = n % 3 == 0 ? 0 : draw(-0.001, n % 5 == 0 ? 0.08 : 0.02);
+                rut_m[i] = random() % 2 == 0 ? 0 : draw(0, 0.02);
             }
             for (const Vectors vectors : {Vectors::narrow, Vectors::avx2}) {
                 if (!has(vectors)) continue;
                 FourSoilForces out;
-                bekker_forces_in(vectors, *soil.bekker, constants, wheel, in, out);
+                bekker_forces_in(vectors, *soil.bekker, constants, wheel, {strength, sinkage_m, slip, rut_m}, out);
                 for (std::size_t i = 0; i < 4; ++i) {
-                    wheel.strength = in.strength[i];
-                    const SoilForce one = bekker_force(*soil.bekker, constants, wheel, {in.sinkage_m[i], in.slip[i], in.rut_m[i]});
+                    wheel.strength = strength[i];
+                    const SoilForce one = bekker_force(*soil.bekker, constants, wheel, {sinkage_m[i], slip[i], rut_m[i]});
                     const auto same = [](double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); };
                     ASSERT_TRUE(same(one.normal_N, out.normal_N[i]) && same(one.largest_N, out.largest_N[i]) &&
                                 same(one.shear_slip, out.shear_slip[i]) && same(one.traction_N, out.traction_N[i]) &&
