@@ -33,15 +33,17 @@ struct BlockHead {
     std::uint32_t kind, size, payload_check, unused, check;
 };
 
-// A row: this, the columns that changed to whole numbers of their unit (uint16 each), their values (int32), the other ones (uint16), theirs
-// (double).
+// A row: this, the columns that changed to whole numbers of their unit, their values (int32), the other ones, theirs (double). Columns are
+// uint16 each, or bytes.
 struct RowHead {
+    static constexpr std::uint32_t in_bytes = 1u << 31u;
     double t_s;
-    std::uint32_t pattern;
+    std::uint32_t marked_pattern; // in_bytes: its columns are
     std::uint16_t whole, changed;
+    std::uint32_t pattern() const { return marked_pattern & ~in_bytes; }
+    std::size_t column_size() const { return (marked_pattern & in_bytes) != 0 ? 1 : sizeof(std::uint16_t); }
     std::size_t size() const {
-        return sizeof *this + whole * (sizeof(std::uint16_t) + sizeof(std::int32_t)) +
-               changed * (sizeof(std::uint16_t) + sizeof(std::uint64_t));
+        return sizeof *this + whole * (column_size() + sizeof(std::int32_t)) + changed * (column_size() + sizeof(double));
     }
 };
 

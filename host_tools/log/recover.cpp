@@ -62,11 +62,13 @@ class LaneRows {
   public:
     explicit LaneRows(std::string_view bytes) : rest_(bytes) { next(); }
     double t_s() const { return head_.t_s; } // never: behind the last row
-    std::uint32_t pattern() const { return head_.pattern; }
+    std::uint32_t pattern() const { return head_.pattern(); }
     // whole(column, number) and other(column, value) of what changed.
     template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) {
-        each<std::int32_t>(head_.whole, whole);
-        each<double>(head_.changed, other);
+        if (head_.column_size() == 1)
+            each<std::uint8_t, std::int32_t>(head_.whole, whole), each<std::uint8_t, double>(head_.changed, other);
+        else
+            each<std::uint16_t, std::int32_t>(head_.whole, whole), each<std::uint16_t, double>(head_.changed, other);
     }
     void next() { // behind each_change
         head_.t_s = never;
@@ -76,10 +78,10 @@ class LaneRows {
     }
 
   private:
-    template <typename Value, typename Do> void each(std::size_t count, const Do &what) {
-        Bytes columns(rest_.take(count * sizeof(std::uint16_t))), values(rest_.take(count * sizeof(Value)));
+    template <typename Column, typename Value, typename Do> void each(std::size_t count, const Do &what) {
+        Bytes columns(rest_.take(count * sizeof(Column))), values(rest_.take(count * sizeof(Value)));
         for (std::size_t i = 0; i < count; ++i) {
-            const std::uint32_t column = columns.number<std::uint16_t>();
+            const std::uint32_t column = columns.number<Column>();
             what(column, values.number<Value>());
         }
     }

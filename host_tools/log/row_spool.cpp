@@ -141,7 +141,9 @@ void RowSpool::close_row(Lane &lane) {
             shown_patterns_.push_back(columns_of(lane));
         }
     }
-    const RowHead head{lane.now_s, lane.pattern, static_cast<std::uint16_t>(lane.whole), static_cast<std::uint16_t>(lane.changed)};
+    const bool in_bytes = columns_.size() <= 256;
+    const RowHead head{lane.now_s, lane.pattern | (in_bytes ? RowHead::in_bytes : 0), static_cast<std::uint16_t>(lane.whole),
+                       static_cast<std::uint16_t>(lane.changed)};
     char *to = lane.bytes.get() + lane.used;
     const auto put = [&to](const void *from, std::size_t size) {
         if (size <= copied)
@@ -150,11 +152,21 @@ void RowSpool::close_row(Lane &lane) {
             std::memcpy(to, from, size);
         to += size;
     };
+    const auto put_columns = [&](const std::vector<std::uint16_t> &columns, std::size_t count) {
+        if (!in_bytes) {
+            put(columns.data(), count * sizeof columns[0]);
+            return;
+        }
+        const std::uint16_t *__restrict from = columns.data();
+        char *__restrict byte = to;
+        for (std::size_t i = 0; i < count; ++i) byte[i] = static_cast<char>(from[i]);
+        to += count;
+    };
     static_assert(sizeof head == copied);
     put(&head, sizeof head);
-    put(lane.whole_columns.data(), lane.whole * sizeof lane.whole_columns[0]);
+    put_columns(lane.whole_columns, lane.whole);
     put(lane.whole_values.data(), lane.whole * sizeof lane.whole_values[0]);
-    put(lane.changed_columns.data(), lane.changed * sizeof lane.changed_columns[0]);
+    put_columns(lane.changed_columns, lane.changed);
     put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
     lane.used += head.size();
     lane.size = lane.whole = lane.changed = 0;
@@ -231,11 +243,13 @@ class RowSpool::Reader {
   public:
     Reader(const RowSpool &spool, const Lane &lane) : spool_(spool), lane_(lane) { next(); }
     double t_s() const { return head_.t_s; } // never: behind the last row
-    std::uint32_t pattern() const { return head_.pattern; }
+    std::uint32_t pattern() const { return head_.pattern(); }
     // whole(column, number) and other(column, value) of what changed.
     template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) const {
-        const char *from = each<std::int32_t>(row_, head_.whole, whole);
-        each<double>(from, head_.changed, other);
+        if (head_.column_size() == 1)
+            each_change_in<std::uint8_t>(whole, other);
+        else
+            each_change_in<std::uint16_t>(whole, other);
     }
     void next() {
         if (at_ == size_ && !open_chunk()) {
@@ -248,10 +262,15 @@ class RowSpool::Reader {
     }
 
   private:
-    template <typename Value, typename Do> static const char *each(const char *columns, std::size_t count, const Do &what) {
-        const char *values = columns + count * sizeof(std::uint16_t);
+    template <typename Column, typename Whole, typename Other> void each_change_in(const Whole &whole, const Other &other) const {
+        const char *from = each<Column, std::int32_t>(row_, head_.whole, whole);
+        each<Column, double>(from, head_.changed, other);
+    }
+    template <typename Column, typename Value, typename Do>
+    static const char *each(const char *columns, std::size_t count, const Do &what) {
+        const char *values = columns + count * sizeof(Column);
         for (std::size_t i = 0; i < count; ++i) {
-            std::uint16_t column = 0;
+            Column column = 0;
             Value value{};
             std::memcpy(&column, columns + i * sizeof column, sizeof column);
             std::memcpy(&value, values + i * sizeof value, sizeof value);

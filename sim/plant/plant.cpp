@@ -161,7 +161,8 @@ void Plant::World::take_hinge() {
                          .normal_2 = vector_of(stands)};
         dBodySetGyroscopicMode(half[n], 0);
     }
-    dJointDisable(joint);
+    dJointDestroy(joint); // one that is only disabled is looked at in every step
+    joint = nullptr;
     dJointAttach(dJointCreateNull(world, nullptr), half[0], half[1]);
 }
 
@@ -214,8 +215,9 @@ double Plant::World::potential() const {
 
 void Plant::World::push_body() {
     const BodyEffects &b = effects.body;
-    const Vec3 &ahead = heading_before; // as the last step left it
     push_velocity = mean_velocity();
+    if (b.drag_N == 0 && b.drag_Ns2_m2 == 0 && b.tether_N_m == 0 && config.rover.layout.drawbar_N == 0) return;
+    const Vec3 &ahead = heading_before; // as the last step left it
     push = {};
     const double along = dot(push_velocity, ahead), drag = dragged_N(b, along, soft_sign(along, 0.005));
     for (std::size_t k = 0; k < 2; ++k) push[k] = drag * ahead[k];

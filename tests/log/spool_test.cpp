@@ -232,6 +232,29 @@ TEST(Spool, columns_that_come_together_are_written_as_one_by_one) {
     }
 }
 
+// Up to 256 columns a row names each with a byte, beyond with two.
+TEST(Spool, many_columns_are_written_as_at_once) {
+    for (const std::size_t count : {std::size_t{256}, std::size_t{257}, std::size_t{600}}) {
+        const test::File at_once("spool_at_once.csv", ""), grown("spool_grown.csv", "");
+        Spool memory, disk(grown.path());
+        for (Spool *spool : {&memory, &disk}) {
+            std::vector<std::size_t> columns;
+            for (std::size_t i = 0; i < count; ++i) columns.push_back(spool->add("a" + std::to_string(i) + ".x_m"));
+            for (int k = 0; k < 400; ++k)
+                for (std::size_t i = 0; i < count; ++i) {
+                    const int number = k * (static_cast<int>(i % 7) + 1);
+                    if (i % 3 == 0)
+                        spool->put(columns[i], k * 0.01, 1.0 / (number + 1));
+                    else
+                        spool->put_whole(columns[i], k * 0.01, number);
+                }
+        }
+        write_csv(memory.take(), at_once.path());
+        disk.write({});
+        EXPECT_TRUE(at_once.text() == grown.text()) << count;
+    }
+}
+
 TEST(Spool, refuses_columns_that_come_together_twice) {
     const test::File kept("spool_refused.csv", "as it was");
     for (const double second_s : {1.0, 0.5, std::numeric_limits<double>::quiet_NaN()}) {
