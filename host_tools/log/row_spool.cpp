@@ -128,19 +128,25 @@ void RowSpool::change(const Place &by, Lane &lane, std::size_t column, std::uint
     lane.changed_bits[lane.changed++] = bits;
 }
 
+// The number of the pattern that the lane's row has, a new one where it is new.
+std::uint32_t RowSpool::pattern_of(const Lane &lane) {
+    const auto is_this = [&lane](const std::vector<std::uint32_t> &pattern) {
+        return pattern.size() == lane.size && std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
+    };
+    if (lane.pattern < patterns_.size() && is_this(patterns_[lane.pattern])) return lane.pattern;
+    const auto found = static_cast<std::uint32_t>(std::find_if(patterns_.begin(), patterns_.end(), is_this) - patterns_.begin());
+    if (found == patterns_.size()) {
+        patterns_.emplace_back(lane.columns.begin(), lane.columns.begin() + static_cast<std::ptrdiff_t>(lane.size));
+        shown_patterns_.push_back(columns_of(lane));
+    }
+    return found;
+}
+
 void RowSpool::close_row(Lane &lane) {
     if (lane.size == 0) return;
-    const auto is_this = [&lane](const std::vector<std::uint32_t> &pattern) {
-        if (pattern.size() != lane.size || pattern[0] != lane.columns[0]) return false;
-        return lane.size == 1 || std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
-    };
-    if (lane.pattern >= patterns_.size() || !is_this(patterns_[lane.pattern])) {
-        lane.pattern = static_cast<std::uint32_t>(std::find_if(patterns_.begin(), patterns_.end(), is_this) - patterns_.begin());
-        if (lane.pattern == patterns_.size()) {
-            patterns_.emplace_back(lane.columns.begin(), lane.columns.begin() + static_cast<std::ptrdiff_t>(lane.size));
-            shown_patterns_.push_back(columns_of(lane));
-        }
-    }
+    const bool alone = lane.size == 1 && lane.pattern < patterns_.size() && patterns_[lane.pattern].size() == 1 &&
+                       patterns_[lane.pattern][0] == lane.columns[0]; // a radar's sample: five of six rows
+    if (!alone) lane.pattern = pattern_of(lane);
     const bool in_bytes = columns_.size() <= 256;
     const RowHead head{lane.now_s, lane.pattern | (in_bytes ? RowHead::in_bytes : 0), static_cast<std::uint16_t>(lane.whole),
                        static_cast<std::uint16_t>(lane.changed)};
@@ -164,10 +170,14 @@ void RowSpool::close_row(Lane &lane) {
     };
     static_assert(sizeof head == copied);
     put(&head, sizeof head);
-    put_columns(lane.whole_columns, lane.whole);
-    put(lane.whole_values.data(), lane.whole * sizeof lane.whole_values[0]);
-    put_columns(lane.changed_columns, lane.changed);
-    put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
+    if (lane.whole != 0) {
+        put_columns(lane.whole_columns, lane.whole);
+        put(lane.whole_values.data(), lane.whole * sizeof lane.whole_values[0]);
+    }
+    if (lane.changed != 0) {
+        put_columns(lane.changed_columns, lane.changed);
+        put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
+    }
     lane.used += head.size();
     lane.size = lane.whole = lane.changed = 0;
     full_ = full_ || lane.used >= chunk_bytes;

@@ -35,8 +35,8 @@ class RowSpool {
     using RowHead = part::RowHead;
 
   public:
-    static constexpr std::size_t chunk_bytes = 1u
-                                               << 18; // of a lane, filled in memory; where nobody says that an instant is over, twice that
+    // Of a lane, filled in memory; where nobody says that an instant is over, twice that.
+    static constexpr std::size_t chunk_bytes = 65536;
 
     RowSpool(std::string path, Scratch::Name name) : scratch_(std::move(path), name) {}
 
@@ -138,6 +138,7 @@ class RowSpool {
     Lane *new_row(Place &to, std::size_t column, double t_s, double value);
     void change(const Place &by, Lane &lane, std::size_t column, std::uint64_t bits);
     void close_row(Lane &lane);
+    std::uint32_t pattern_of(const Lane &lane);
     void start_lane();
     void tell_new_names();
     void make_room(Lane &lane) const;

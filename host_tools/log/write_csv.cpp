@@ -68,6 +68,33 @@ char *put_small(char *to, std::uint64_t millionths) {
     return to + 2 + places;
 }
 
+// The times of a radar's samples are 512ths of a second: point and digits behind it, none where it is whole.
+struct Fraction {
+    std::array<char, 15> text;
+    char size;
+};
+constexpr std::uint32_t binary_parts = 512;
+constexpr auto fractions = [] {
+    std::array<Fraction, binary_parts> all{};
+    for (std::uint32_t i = 1; i < binary_parts; ++i) {
+        Fraction &one = all[i];
+        one.text[0] = '.', one.size = 1;
+        for (std::uint32_t rest = i; rest != 0; rest = rest * 10 % binary_parts)
+            one.text[static_cast<std::size_t>(one.size++)] = static_cast<char>('0' + rest * 10 / binary_parts);
+    }
+    return all;
+}();
+
+// Null where the time is none.
+char *put_binary(char *to, double size) {
+    const auto parts = static_cast<std::uint32_t>(size * binary_parts);
+    if (static_cast<double>(parts) != size * binary_parts) return nullptr;
+    const Fraction &fraction = fractions[parts % binary_parts];
+    to = put_digits(to, parts / binary_parts);
+    std::memcpy(to, fraction.text.data(), fraction.text.size());
+    return to + fraction.size;
+}
+
 // Nearly every value is a count or a whole number of millionths (recorder.h), and a time of the radar's of billionths: its digits are those
 // of a whole number. No two decimals of 15 digits are the same double, so no shorter text reads back to it: the text is that of
 // std::to_chars. Where that would write an exponent, or in doubt, it does the work (null).
@@ -81,6 +108,12 @@ char *put_decimals(char *to, double value) {
                 *to++ = '-';
             }
             return put_digits(to, count);
+        }
+    }
+    if (size >= 1 && size < 1e5) { // 15 digits at most: the text is the shortest
+        if (char *end = put_binary(value < 0 ? to + 1 : to, size)) {
+            if (value < 0) *to = '-';
+            return end;
         }
     }
     if (!(size >= 1e-6 && size < 1e9)) return nullptr;
