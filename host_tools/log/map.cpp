@@ -2,6 +2,7 @@
 #include "vocabulary.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -46,10 +47,19 @@ class Keys {
     std::string column(const char *key) {
         const toml::node *node = look(key);
         if (node == nullptr) return "";
-        if (const auto number = node->value_exact<std::int64_t>()) return std::to_string(*number);
-        const auto name = node->value_exact<std::string>();
-        if (!name || name->empty()) fail(*node, key, "the name of a column, or its number from 1");
-        return *name;
+        const std::string name = column_of(*node);
+        if (name.empty()) fail(*node, key, "the name of a column, or its number from 1");
+        return name;
+    }
+    // Exactly so many of them; none where the key is not there.
+    std::vector<std::string> columns(const char *key, std::size_t count, const std::string &wanted) {
+        const toml::node *node = look(key);
+        if (node == nullptr) return {};
+        std::vector<std::string> names;
+        if (const toml::array *list = node->as_array())
+            for (const toml::node &item : *list) names.push_back(column_of(item));
+        if (names.size() != count || std::find(names.begin(), names.end(), "") != names.end()) fail(*node, key, wanted);
+        return names;
     }
     const toml::node *look(const char *key) {
         known_.insert(key);
@@ -71,6 +81,11 @@ class Keys {
     [[noreturn]] void fail(const std::string &what, const std::string &mend) const { throw LogError(path_, line(), 0, what, mend); }
 
   private:
+    // Empty: it is neither a name nor a number.
+    static std::string column_of(const toml::node &node) {
+        if (const auto number = node.value_exact<std::int64_t>()) return std::to_string(*number);
+        return node.value_exact<std::string>().value_or("");
+    }
     template <class T> std::optional<T> get(const char *key, const char *wanted) {
         const toml::node *node = look(key);
         if (node == nullptr) return std::nullopt;
@@ -110,9 +125,10 @@ MapSignal read_signal(const std::string &path, const toml::table &table, std::si
     }
     signal.column = keys.column("column");
     signal.value = keys.number("value");
-    if (signal.column.empty() == !signal.value) {
+    signal.quaternion = keys.columns("quaternion", 4, "the columns of w, x, y and z, such as [\"qw\", \"qx\", \"qy\", \"qz\"]");
+    if ((signal.column.empty() ? 0 : 1) + (signal.value ? 1 : 0) + (signal.quaternion.empty() ? 0 : 1) != 1) {
         keys.fail("signal '" + signal.name + "' needs either 'column' or 'value'",
-                  "write column = \"its column\", or value = 24.0 for a constant");
+                  "write column = \"its column\", or value = 24.0 for a constant, or quaternion = [w, x, y, z] for a heading");
     }
     signal.scale = keys.number("scale", 1);
     const double sign = keys.number("sign", 1);
@@ -305,6 +321,37 @@ void drop_repeats(Signal &signal) {
     signal = std::move(kept);
 }
 
+const Column &find_column(const Table &table, const std::string &name, const MapSignal &rule, const Map &map, const std::string &path) {
+    const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const Column &c) { return c.signal.name == name; });
+    if (found == table.columns.end())
+        throw LogError(map.path, rule.line, 0, "signal '" + rule.name + "' wants column '" + name + "', which " + path + " does not have",
+                       "correct the name (columns there: " + table.names.front() + " ... " + table.names.back() + ")");
+    return *found;
+}
+
+// The heading about z (up, to the left positive) of a rotation from the body to the world, in radians, without jumps.
+Column heading_of(const std::array<const Column *, 4> &wxyz, const MapSignal &rule, const Map &map) {
+    Column heading = *wxyz[0];
+    std::vector<double> &angle = heading.signal.value;
+    for (const Column *part : wxyz)
+        if (part->signal.t_s != heading.signal.t_s)
+            throw LogError(map.path, rule.line, 0, "the quaternion of '" + rule.name + "' has rows in which one of its numbers is missing",
+                           "leave those rows out by [[where]]");
+    for (std::size_t i = 0; i < angle.size(); ++i) {
+        const auto at = [&](std::size_t part) { return wxyz[part]->signal.value[i]; };
+        const double w = at(0), x = at(1), y = at(2), z = at(3), size = w * w + x * x + y * y + z * z;
+        constexpr double off = 0.1; // of 1: rounded numbers are within, angles and other orders are not
+        if (!(std::fabs(size - 1) < off))
+            throw LogError(map.path, rule.line, 0,
+                           "the quaternion of '" + rule.name + "' is none at row " + std::to_string(i + 1) +
+                               " of its numbers: its length squared is " + std::to_string(size) + ", not 1",
+                           "name the columns of w, x, y and z, in this order");
+        angle[i] = std::atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z);
+    }
+    unwrap(angle, 2 * std::numbers::pi);
+    return heading;
+}
+
 Signal make_signal(const MapSignal &rule, Column column, const std::string &path, std::vector<Repair> &repairs) {
     if (!rule.missing.empty()) {
         Column kept = column;
@@ -338,6 +385,7 @@ Log read_through_map(const FileBytes &bytes, const std::string &path, const Map 
     std::set<std::string> wanted;
     for (const MapSignal &signal : map.signals) {
         if (!signal.column.empty()) wanted.insert(signal.column);
+        wanted.insert(signal.quaternion.begin(), signal.quaternion.end());
     }
     dialect.wanted = [&](const std::string &name) { return wanted.count(name) != 0; };
     Table table = read_table(bytes.view(), path, dialect, limits, repairs);
@@ -355,15 +403,12 @@ Log read_through_map(const FileBytes &bytes, const std::string &path, const Map 
             std::sort(column.signal.t_s.begin(), column.signal.t_s.end());
             column.signal.t_s.erase(std::unique(column.signal.t_s.begin(), column.signal.t_s.end()), column.signal.t_s.end());
             column.signal.value.assign(column.signal.t_s.size(), *rule.value);
+        } else if (!rule.quaternion.empty()) {
+            std::array<const Column *, 4> wxyz{};
+            for (std::size_t i = 0; i < wxyz.size(); ++i) wxyz[i] = &find_column(table, rule.quaternion[i], rule, map, path);
+            column = heading_of(wxyz, rule, map);
         } else {
-            const auto found =
-                std::find_if(table.columns.begin(), table.columns.end(), [&](const Column &c) { return c.signal.name == rule.column; });
-            if (found == table.columns.end()) {
-                throw LogError(map.path, rule.line, 0,
-                               "signal '" + rule.name + "' wants column '" + rule.column + "', which " + path + " does not have",
-                               "correct the name (columns there: " + table.names.front() + " ... " + table.names.back() + ")");
-            }
-            column = *found;
+            column = find_column(table, rule.column, rule, map, path);
         }
         Signal signal =
             rule.value ? Signal{rule.name, column.signal.t_s, column.signal.value} : make_signal(rule, std::move(column), path, repairs);

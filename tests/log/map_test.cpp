@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 using namespace traction::log;
@@ -83,6 +84,37 @@ TEST(Map, an_angle_that_wraps_becomes_continuous_and_its_rate_a_speed) {
     const Signal &angle = *log.find("wheel0.angle_rad"), &speed = *log.find("wheel0.speed_rad_s");
     EXPECT_NEAR(angle.value.back() - angle.value.front(), 199 * 7 * 0.017453292519943295, 1e-9); // sum of 200 roundings of 25
     for (const double w : speed.value) EXPECT_NEAR(w, 700 * 0.017453292519943295, 1e-9);         // 7 deg per 10 ms
+}
+
+// A heading of 7 deg a row over three turns, under a pitch and a roll that stay.
+TEST(Map, a_quaternion_becomes_a_heading_without_jumps) {
+    constexpr double deg = 0.017453292519943295, pitch = 0.2, roll = -0.3;
+    std::string csv = "time_ms,q.x,q.y,q.z,q.w\n";
+    for (int i = 0; i < 160; ++i) {
+        const double yaw = 7 * deg * i - 2, cy = std::cos(yaw / 2), sy = std::sin(yaw / 2), cp = std::cos(pitch / 2),
+                     sp = std::sin(pitch / 2), cr = std::cos(roll / 2), sr = std::sin(roll / 2);
+        const double sign = i % 3 == 0 ? -1 : 1; // q and -q are one rotation
+        char row[160];
+        std::snprintf(row, sizeof row, "%d,%.12f,%.12f,%.12f,%.12f\n", 10 * i, sign * (cy * cp * sr - sy * sp * cr),
+                      sign * (cy * sp * cr + sy * cp * sr), sign * (sy * cp * cr - cy * sp * sr), sign * (cy * cp * cr + sy * sp * sr));
+        csv += row;
+    }
+    const std::string heading = "quaternion = [\"q.w\", \"q.x\", \"q.y\", \"q.z\"]";
+    const Log log = through(top + signal("camera.yaw_rad", heading + "\nsign = -1") +
+                                signal("imu.gyro_z_rad_s", heading + "\ndifferentiate = true\nwindow_s = 0.03"),
+                            csv);
+    const Signal &yaw = *log.find("camera.yaw_rad"), &rate = *log.find("imu.gyro_z_rad_s");
+    ASSERT_EQ(yaw.value.size(), 160u);
+    for (std::size_t i = 0; i < yaw.value.size(); ++i) EXPECT_NEAR(yaw.value[i], 2 - 7 * deg * static_cast<double>(i), 1e-10);
+    for (const double w : rate.value) EXPECT_NEAR(w, 700 * deg, 1e-7);
+
+    EXPECT_HAS(refusal(top + signal("camera.yaw_rad", "quaternion = [\"a\", \"b\", \"c\"]")), "write the columns of w, x, y and z");
+    EXPECT_HAS(refusal(top + signal("camera.yaw_rad", heading + "\ncolumn = \"q.w\"")), "needs either 'column' or 'value'");
+    EXPECT_HAS(refusal(top + signal("camera.yaw_rad", heading), "time_ms,q.w,q.x,q.y\n0,1,0,0\n"), "wants column 'q.z'");
+    EXPECT_HAS(refusal(top + signal("camera.yaw_rad", heading), "time_ms,q.w,q.x,q.y,q.z\n0,1,0,0,0\n10,1,0,0,2\n"),
+               "is none at row 2 of its numbers: its length squared is 5.000000, not 1");
+    EXPECT_HAS(refusal(top + signal("camera.yaw_rad", heading), "time_ms,q.w,q.x,q.y,q.z\n0,1,0,0,0\n10,1,0,,0\n"),
+               "has rows in which one of its numbers is missing; to mend: leave those rows out");
 }
 
 TEST(Map, missing_numbers_repeats_filters_and_skipped_rows_are_left_out) {
