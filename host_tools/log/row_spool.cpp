@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -23,6 +24,7 @@ std::size_t RowSpool::add(const std::string &name, bool absent_is_zero, Unit uni
 }
 
 std::size_t RowSpool::bind(const std::vector<std::size_t> &columns) {
+    assert(columns.size() <= bound_most);
     Bound &fresh = bound_.emplace_back();
     fresh.lane = &lanes_.front();
     for (const std::size_t column : columns) fresh.columns.push_back(static_cast<std::uint16_t>(column));
