@@ -336,15 +336,37 @@ void TableReader::take_row() {
     for (Column &column : table_.columns) take_cell(column, t_s);
 }
 
+// Other formats that logs come in, by their first bytes.
+void refuse_what_is_no_text(std::string_view text, const std::string &file) {
+    using namespace std::string_view_literals;
+    constexpr std::string_view topics = "export its topics as CSV (PlotJuggler, rostopic echo -p) and name the columns in a map (--map)",
+                               table = "write the table as CSV (MATLAB: writetable; pandas: to_csv) and name the columns in a map (--map)";
+    constexpr struct {
+        std::string_view begins, is, mend;
+    } known[] = {{"\xFF\xFE"sv, "text in UTF-16", "save it as UTF-8 (Excel: CSV UTF-8)"},
+                 {"\xFE\xFF"sv, "text in UTF-16", "save it as UTF-8 (Excel: CSV UTF-8)"},
+                 {"PK\x03\x04"sv, "a zip archive or a spreadsheet", "unpack it, or export the sheet as CSV"},
+                 {"\x1F\x8B"sv, "packed by gzip", "unpack it first (gunzip)"},
+                 {"#ROSBAG"sv, "a ROS bag", topics},
+                 {"SQLite format 3\0"sv, "an SQLite database, as bags of ROS 2 are", topics},
+                 {"\x89MCAP"sv, "an MCAP file, which is written here and not read", topics},
+                 {"\x89HDF"sv, "an HDF5 file, as MATLAB's are since 7.3", table},
+                 {"MATLAB 5"sv, "a MATLAB file", table},
+                 {"PAR1"sv, "a Parquet file", table}};
+    for (const auto &one : known)
+        if (text.substr(0, one.begins.size()) == one.begins)
+            throw LogError(file, 1, 0, "this is " + std::string(one.is), std::string(one.mend));
+    if (text.substr(0, 4).find('\0') != std::string_view::npos)
+        throw LogError(file, 1, 0, "this is not a text file", "export the log as CSV");
+}
+
 Table TableReader::read() {
     if (rest_.substr(0, 3) == "\xEF\xBB\xBF") {
         rest_.remove_prefix(3);
         note("byte_order_mark", "", 1, 1, "a byte order mark at the beginning is skipped");
     }
     if (trim(rest_).empty()) throw LogError(file_, 0, 0, "the file is empty", "check the recording, or name another file");
-    if (rest_.substr(0, 2) == "PK" || rest_.substr(0, 4).find('\0') != std::string_view::npos) {
-        throw LogError(file_, 1, 0, "this is not a text file", "export the log as CSV");
-    }
+    refuse_what_is_no_text(rest_, file_);
     for (std::size_t i = 0; i < dialect_.skip_rows && next_line(); ++i) {
     }
     bool names_taken = false;

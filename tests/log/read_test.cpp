@@ -89,7 +89,20 @@ TEST(Read, an_empty_file_is_refused) {
     EXPECT_HAS(refusal("# format: traction-log 1\n"), "there is no row of names and no data");
 }
 
-TEST(Read, a_binary_file_is_refused) { EXPECT_HAS(refusal(std::string("PK\x03\x04", 4)), "this is not a text file"); }
+TEST(Read, a_binary_file_is_refused_by_what_it_is) {
+    using namespace std::string_literals;
+    EXPECT_HAS(refusal("\x01\x02\x00\x03"s), "this is not a text file");
+    EXPECT_HAS(refusal("PK\x03\x04"), "this is a zip archive or a spreadsheet; to mend: unpack it, or export the sheet as CSV");
+    EXPECT_HAS(refusal("\xFF\xFEt\0_\0s\0"s), "this is text in UTF-16; to mend: save it as UTF-8");
+    EXPECT_HAS(refusal("\xFE\xFF\0t\0_\0s"s), "this is text in UTF-16; to mend: save it as UTF-8");
+    EXPECT_HAS(refusal("\x1F\x8B\x08\x00"s), "this is packed by gzip");
+    EXPECT_HAS(refusal("#ROSBAG V2.0\nE\0\0\0"s), "this is a ROS bag; to mend: export its topics as CSV");
+    EXPECT_HAS(refusal("SQLite format 3\0\x10\0"s), "this is an SQLite database, as bags of ROS 2 are");
+    EXPECT_HAS(refusal("\x89MCAP0\r\n"), "this is an MCAP file, which is written here and not read");
+    EXPECT_HAS(refusal("\x89HDF\r\n\x1A\n"), "this is an HDF5 file");
+    EXPECT_HAS(refusal("MATLAB 5.0 MAT-file"), "this is a MATLAB file; to mend: write the table as CSV");
+    EXPECT_HAS(refusal("PAR1\x15\x04"), "this is a Parquet file");
+}
 
 TEST(Read, a_missing_row_of_names_is_refused) {
     EXPECT_EQ(refusal("0,1,2\n0.01,1,2\n"),
