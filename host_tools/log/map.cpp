@@ -2,10 +2,10 @@
 #include "vocabulary.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <muParser.h>
 #include <numbers>
 #include <set>
 #include <toml++/toml.h>
@@ -61,6 +61,20 @@ class Keys {
         if (names.size() != count || std::find(names.begin(), names.end(), "") != names.end()) fail(*node, key, wanted);
         return names;
     }
+    // Names of columns by short names, as the variables of an expression; none where the key is not there.
+    std::vector<std::pair<std::string, std::string>> named_columns(const char *key) {
+        const toml::node *node = look(key);
+        std::vector<std::pair<std::string, std::string>> named;
+        if (node == nullptr) return named;
+        const toml::table *table = node->as_table();
+        const char *wanted = "short names of columns, such as { p = \"pwm_left\", d = \"dir_left\" }";
+        if (table == nullptr || table->empty()) fail(*node, key, wanted);
+        for (const auto &[name, column] : *table) {
+            named.emplace_back(std::string(name.str()), column_of(column));
+            if (named.back().second.empty()) fail(column, key, wanted);
+        }
+        return named;
+    }
     const toml::node *look(const char *key) {
         known_.insert(key);
         return table_.get(key);
@@ -106,6 +120,32 @@ const toml::table &as_table(const std::string &path, const toml::node &node, con
     return *node.as_table();
 }
 
+// Variables in the order of signal.columns. Throws mu::Parser::exception_type.
+class Formula {
+  public:
+    explicit Formula(const MapSignal &signal) : values_(signal.columns.size()) {
+        for (std::size_t i = 0; i < values_.size(); ++i) parser_.DefineVar(signal.columns[i].first, &values_[i]);
+        parser_.DefineConst("pi", std::numbers::pi);
+        parser_.SetExpr(signal.expression);
+        parser_.Eval(); // finds syntax errors and unknown names now
+    }
+    double &variable(std::size_t i) { return values_[i]; }
+    double value() const { return parser_.Eval(); }
+
+  private:
+    std::vector<double> values_;
+    mu::Parser parser_;
+};
+
+void compile(const MapSignal &signal, const Keys &keys) {
+    try {
+        Formula{signal};
+    } catch (const mu::Parser::exception_type &error) {
+        keys.fail("the expression of '" + signal.name + "' is not understood: " + error.GetMsg(),
+                  "use the names in 'columns', pi and muparser's functions");
+    }
+}
+
 MapSignal read_signal(const std::string &path, const toml::table &table, std::size_t index) {
     Keys keys(path, table, "[[signal]] number " + std::to_string(index));
     MapSignal signal;
@@ -125,10 +165,18 @@ MapSignal read_signal(const std::string &path, const toml::table &table, std::si
     }
     signal.column = keys.column("column");
     signal.value = keys.number("value");
+    signal.expression = keys.text("expression", "");
+    signal.columns = keys.named_columns("columns");
+    if (signal.expression.empty() != signal.columns.empty())
+        keys.fail("signal '" + signal.name + "' needs 'expression' and 'columns' together",
+                  "write expression = \"p/255*(2*d - 1)\" and columns = { p = \"its column\", d = \"its column\" }");
+    if (!signal.expression.empty()) compile(signal, keys);
     signal.quaternion = keys.columns("quaternion", 4, "the columns of w, x, y and z, such as [\"qw\", \"qx\", \"qy\", \"qz\"]");
-    if ((signal.column.empty() ? 0 : 1) + (signal.value ? 1 : 0) + (signal.quaternion.empty() ? 0 : 1) != 1) {
+    if ((signal.column.empty() ? 0 : 1) + (signal.value ? 1 : 0) + (signal.quaternion.empty() ? 0 : 1) +
+            (signal.expression.empty() ? 0 : 1) !=
+        1) {
         keys.fail("signal '" + signal.name + "' needs either 'column' or 'value'",
-                  "write column = \"its column\", or value = 24.0 for a constant, or quaternion = [w, x, y, z] for a heading");
+                  "write column = \"its column\", or value = 24.0 for a constant, or 'expression', or 'quaternion'");
     }
     signal.scale = keys.number("scale", 1);
     const double sign = keys.number("sign", 1);
@@ -162,6 +210,9 @@ void read_time(const std::string &path, const toml::table &table, Map &map) {
     map.time_offset_s = keys.number("offset_s", 0);
     map.from_zero = keys.flag("from_zero");
     map.row_period_s = keys.number("row_period_s", 0);
+    map.dialect.fine_column = keys.column("nanoseconds");
+    if (!map.dialect.fine_column.empty() && map.dialect.time_column.empty())
+        keys.fail("'nanoseconds' of [time] stands without 'column'", "write column = \"the column of seconds\"");
     const bool trials = keys.flag("rows_are_trials");
     keys.none_unknown();
     if (!(map.time_scale > 0))
@@ -169,6 +220,7 @@ void read_time(const std::string &path, const toml::table &table, Map &map) {
     if ((map.dialect.time_column.empty() ? 0 : 1) + (map.row_period_s > 0 ? 1 : 0) + (trials ? 1 : 0) != 1) {
         keys.fail("[time] needs one of 'column', 'row_period_s', 'rows_are_trials'", "write column = \"the column of time\"");
     }
+    map.dialect.fine_scale = 1e-9 / map.time_scale;
     if (map.row_period_s <= 0 && map.dialect.time_column.empty()) map.header["rows"] = "trials";
 }
 
@@ -329,14 +381,34 @@ const Column &find_column(const Table &table, const std::string &name, const Map
     return *found;
 }
 
+// The columns of a signal that is made of several: they have the same rows.
+std::vector<const Column *> columns_together(const Table &table, const std::vector<std::string> &names, const MapSignal &rule,
+                                             const Map &map, const std::string &path) {
+    std::vector<const Column *> columns;
+    for (const std::string &name : names) columns.push_back(&find_column(table, name, rule, map, path));
+    for (const Column *column : columns)
+        if (column->signal.t_s != columns[0]->signal.t_s)
+            throw LogError(map.path, rule.line, 0,
+                           "signal '" + rule.name + "' has rows in which a number of '" + column->signal.name + "' or '" +
+                               columns[0]->signal.name + "' is missing",
+                           "leave those rows out by [[where]]");
+    return columns;
+}
+
+Column column_by_expression(const std::vector<const Column *> &columns, const MapSignal &rule) {
+    Column made = *columns[0];
+    Formula formula(rule);
+    for (std::size_t i = 0; i < made.signal.value.size(); ++i) {
+        for (std::size_t n = 0; n < columns.size(); ++n) formula.variable(n) = columns[n]->signal.value[i];
+        made.signal.value[i] = formula.value(); // what is no number is left out later, and told
+    }
+    return made;
+}
+
 // The heading about z (up, to the left positive) of a rotation from the body to the world, in radians, without jumps.
-Column heading_of(const std::array<const Column *, 4> &wxyz, const MapSignal &rule, const Map &map) {
+Column heading_of(const std::vector<const Column *> &wxyz, const MapSignal &rule, const Map &map) {
     Column heading = *wxyz[0];
     std::vector<double> &angle = heading.signal.value;
-    for (const Column *part : wxyz)
-        if (part->signal.t_s != heading.signal.t_s)
-            throw LogError(map.path, rule.line, 0, "the quaternion of '" + rule.name + "' has rows in which one of its numbers is missing",
-                           "leave those rows out by [[where]]");
     for (std::size_t i = 0; i < angle.size(); ++i) {
         const auto at = [&](std::size_t part) { return wxyz[part]->signal.value[i]; };
         const double w = at(0), x = at(1), y = at(2), z = at(3), size = w * w + x * x + y * y + z * z;
@@ -386,6 +458,7 @@ Log read_through_map(const FileBytes &bytes, const std::string &path, const Map 
     for (const MapSignal &signal : map.signals) {
         if (!signal.column.empty()) wanted.insert(signal.column);
         wanted.insert(signal.quaternion.begin(), signal.quaternion.end());
+        for (const auto &[variable, column] : signal.columns) wanted.insert(column);
     }
     dialect.wanted = [&](const std::string &name) { return wanted.count(name) != 0; };
     Table table = read_table(bytes.view(), path, dialect, limits, repairs);
@@ -404,9 +477,11 @@ Log read_through_map(const FileBytes &bytes, const std::string &path, const Map 
             column.signal.t_s.erase(std::unique(column.signal.t_s.begin(), column.signal.t_s.end()), column.signal.t_s.end());
             column.signal.value.assign(column.signal.t_s.size(), *rule.value);
         } else if (!rule.quaternion.empty()) {
-            std::array<const Column *, 4> wxyz{};
-            for (std::size_t i = 0; i < wxyz.size(); ++i) wxyz[i] = &find_column(table, rule.quaternion[i], rule, map, path);
-            column = heading_of(wxyz, rule, map);
+            column = heading_of(columns_together(table, rule.quaternion, rule, map, path), rule, map);
+        } else if (!rule.expression.empty()) {
+            std::vector<std::string> names;
+            for (const auto &[variable, name] : rule.columns) names.push_back(name);
+            column = column_by_expression(columns_together(table, names, rule, map, path), rule);
         } else {
             column = find_column(table, rule.column, rule, map, path);
         }

@@ -6,15 +6,20 @@
 
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace traction::log {
 
 // How one signal comes out of a column: value = sign * scale * (column) + offset, time = row time - delay_s.
 struct MapSignal {
     std::string name;
-    std::string column;                  // empty for a constant and for a quaternion
+    std::string column;                  // empty for a constant, an expression and a quaternion
     std::vector<std::string> quaternion; // the columns of w, x, y, z: the column is the heading about z that they tell [rad], continuous
-    std::optional<double> value;         // a constant, e.g. the battery of a machine that does not log it
+    std::string expression;              // of columns, by the names that `columns` gives them (muparser)
+    std::vector<std::pair<std::string, std::string>> columns; // its variables: name, column
+    std::optional<double> value;                              // a constant, e.g. the battery of a machine that does not log it
     double scale = 1;
     double offset = 0;
     double delay_s = 0;            // how long before its row's time the sample was true

@@ -97,7 +97,7 @@ class TableReader {
     std::size_t trailing_ = 0, bad_times_ = 0, bad_time_line_ = 0, rows_ = 0, samples_ = 0;
     char separator_ = ',';
     std::vector<Field> fields_;
-    std::size_t time_index_ = 0;
+    std::size_t time_index_ = 0, fine_index_ = 0;
     bool has_time_ = false;
     std::vector<std::size_t> filter_index_;
     Table table_;
@@ -237,6 +237,11 @@ void TableReader::take_names() {
                                  : "correct time.column in the map");
         }
     }
+    if (!dialect_.fine_column.empty()) {
+        fine_index_ = index_of(dialect_.fine_column);
+        if (fine_index_ == fields_.size())
+            fail(0, "there is no column '" + dialect_.fine_column + "'", "correct time.nanoseconds in the map");
+    }
     for (const RowFilter &filter : dialect_.filters) {
         filter_index_.push_back(index_of(filter.column));
         if (filter_index_.back() == fields_.size())
@@ -326,10 +331,18 @@ void TableReader::take_row() {
         bool finite = false;
         if (!cell_number(time_index_, t_s, finite))
             fail(time_index_ + 1, "the row has no time", "write its time in column '" + dialect_.time_column + "', or delete the row");
+        double fine = 0;
+        if (!dialect_.fine_column.empty()) {
+            bool fine_finite = false;
+            if (!cell_number(fine_index_, fine, fine_finite))
+                fail(fine_index_ + 1, "the row has no time", "write its time in column '" + dialect_.fine_column + "', or delete the row");
+            finite = finite && fine_finite;
+        }
         if (!finite) {
             if (bad_times_++ == 0) bad_time_line_ = line_number_;
             return;
         }
+        t_s += dialect_.fine_scale * fine;
     }
     ++rows_;
     if (!dialect_.native) table_.row_time.push_back(t_s);

@@ -42,6 +42,8 @@ struct Dialect {
     bool row_of_names = true;        // false: columns are called "1", "2", ...
     bool native = true;              // the `# key: value` header of our own format is expected
     std::string time_column = "t_s"; // empty: the time is the number of the row, from 0
+    std::string fine_column;         // of what is added to it, fine_scale each; empty: nothing
+    double fine_scale = 1;           // in the time column's unit
     std::vector<RowFilter> filters;
     std::function<bool(const std::string &)> wanted; // which columns to read; empty: all
 };

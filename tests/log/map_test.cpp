@@ -114,7 +114,45 @@ TEST(Map, a_quaternion_becomes_a_heading_without_jumps) {
     EXPECT_HAS(refusal(top + signal("camera.yaw_rad", heading), "time_ms,q.w,q.x,q.y,q.z\n0,1,0,0,0\n10,1,0,0,2\n"),
                "is none at row 2 of its numbers: its length squared is 5.000000, not 1");
     EXPECT_HAS(refusal(top + signal("camera.yaw_rad", heading), "time_ms,q.w,q.x,q.y,q.z\n0,1,0,0,0\n10,1,0,,0\n"),
-               "has rows in which one of its numbers is missing; to mend: leave those rows out");
+               "has rows in which a number of 'q.y' or 'q.w' is missing; to mend: leave those rows out");
+}
+
+TEST(Map, a_signal_is_made_of_columns_by_an_expression) {
+    const std::string made = "expression = \"p/255*(2*d - 1)\"\ncolumns = { p = \"pwm\", d = \"dir\" }\nscale = 10\n";
+    const Log log = through(top + signal("wheel0.duty", made), "time_ms,pwm,dir\n0,255,1\n10,51,0\n20,0,0\n");
+    EXPECT_EQ(log.signals[0].value[0], 10);
+    EXPECT_DOUBLE_EQ(log.signals[0].value[1], -2);
+    EXPECT_EQ(log.signals[0].t_s, (std::vector<double>{0, 0.01, 0.02}));
+    EXPECT_EQ(through(top + signal("camera.x_m", "expression = \"1/a\"\ncolumns = { a = \"a\" }"), "time_ms,a\n0,4\n10,0\n20,2\n")
+                  .signals[0]
+                  .value,
+              (std::vector<double>{0.25, 0.5}))
+        << "what is no number is no sample";
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "expression = \"a\"")), "needs 'expression' and 'columns' together");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "expression = \"a+*2\"\ncolumns = { a = \"a\" }")),
+               "map.toml, line 5: the expression of 'camera.x_m' is not understood");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "expression = \"b\"\ncolumns = { a = \"a\" }")),
+               "use the names in 'columns', pi and muparser's functions");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "expression = \"a\"\ncolumns = \"a\"")), "write short names of columns");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "expression = \"a\"\ncolumns = { a = \"x\" }")), "wants column 'x'");
+    EXPECT_HAS(refusal(top + signal("camera.x_m", "expression = \"a\"\ncolumns = { a = \"a\" }\nvalue = 1")),
+               "needs either 'column' or 'value'");
+    EXPECT_HAS(
+        refusal(top + signal("camera.x_m", "expression = \"a+b\"\ncolumns = { a = \"a\", b = \"b\" }"), "time_ms,a,b\n0,1,1\n10,1,\n"),
+        "is missing; to mend: leave those rows out by [[where]]");
+}
+
+TEST(Map, a_time_in_seconds_and_nanoseconds_is_one) {
+    const std::string time = "format = \"traction-map 1\"\n[time]\ncolumn = \"sec\"\nnanoseconds = \"nsec\"\nfrom_zero = true\n";
+    const Log log = through(time + signal("camera.x_m", "column = \"x\""),
+                            "sec,nsec,x\n1732600000,990000000,1\n1732600001,0,2\n1732600001,10000000,3\n");
+    EXPECT_NEAR(log.signals[0].t_s[1], 0.01, 5e-7); // a double of 1.7e9 s has steps of 0.24 us
+    EXPECT_NEAR(log.signals[0].t_s[2], 0.02, 5e-7);
+    EXPECT_HAS(refusal(time + signal("camera.x_m", "column = \"x\""), "sec,x\n0,1\n"),
+               "there is no column 'nsec'; to mend: correct time.nanoseconds");
+    EXPECT_HAS(refusal(time + signal("camera.x_m", "column = \"x\""), "sec,nsec,x\n0,,1\n"),
+               "the row has no time; to mend: write its time in column 'nsec'");
+    EXPECT_HAS(refusal("format = \"traction-map 1\"\n[time]\nrow_period_s = 1\nnanoseconds = \"nsec\"\n"), "stands without 'column'");
 }
 
 TEST(Map, missing_numbers_repeats_filters_and_skipped_rows_are_left_out) {
@@ -140,8 +178,8 @@ TEST(Map, wrong_keys_and_values_are_named_with_their_line) {
     EXPECT_HAS(refusal("format = \"traction-map 1\"\n" + signal("camera.x_m", "column = \"a\"")), "the map has no [time]");
     EXPECT_HAS(refusal(top), "the map has no [[signal]]");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nscael = 2")),
-               "map.toml, line 8: unknown key 'scael' in [[signal]] number 1; to mend: use one of: column, delay_s, differentiate, "
-               "drop_repeats, missing, name, noise, offset,");
+               "map.toml, line 8: unknown key 'scael' in [[signal]] number 1; to mend: use one of: column, columns, delay_s, "
+               "differentiate, drop_repeats, expression, missing, name, noise, offset,");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nscale = \"2\"")),
                "map.toml, line 8: 'scale' in [[signal]] number 1 has the wrong value; to mend: write a finite number");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nunsigned = 1")), "write true or false");
