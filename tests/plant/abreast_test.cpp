@@ -4,6 +4,7 @@
 #include "sim/physics/effects/catalogue.h"
 #include "sim/plant/plant.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <gtest/gtest.h>
