@@ -337,6 +337,45 @@ TEST(Bench, of_a_right_name_beside_a_proxys_keeps_the_right_one) {
     EXPECT_EQ(d.model.effects[0].name, "radar_scale");
 }
 
+// The radar's stated scale gives way by nearly six deviations, its rows gain less than is asked of rows alone, and the accelerometer jumps:
+// that leaves 2.3 and 4.7 times the noise, by which the deviations are widened. 36 squared deviations are more than 4 x 2.3^2 and less
+// than 4 x 4.7^2.
+TEST(Bench, whose_sheet_alone_speaks_for_a_name_is_told_it_beside_a_shape_only_where_little_is_left) {
+    DiagnoseOptions options;
+    options.least_gain = 0.5, options.least_gain_one = 0.6; // the radar's rows gain a tenth, the drift's as many as three quarters
+    const auto with_jump = [&](double jump) {
+        Bench bench;
+        bench.add(0, [=](double t) { return t > 60 ? jump : 0.0; });
+        bench.hide(r1(), 0.04);
+        return bench.ask(options);
+    };
+    const Diagnosis little = with_jump(0.3), much = with_jump(0.6);
+    EXPECT_EQ(little.kind, "partial") << little.text;
+    EXPECT_EQ(little.effects, Labels{"radar_scale"});
+    ASSERT_TRUE(little.accepted.at(0).sheet_alone);
+    EXPECT_LE(*little.accepted[0].sheet_alone, 36 + 1e-6); // of its own limit; what it leaves of it, and the bias's, is less
+    EXPECT_GT(*little.accepted[0].sheet_alone, 25);
+    EXPECT_EQ(much.kind, "unknown") << much.text;
+    EXPECT_TRUE(much.effects.empty() && much.model.effects.empty());
+    EXPECT_EQ(much.nearest, Labels{"accel_drift"}); // the name of the sheet is not even near
+    ASSERT_TRUE(much.unknown);
+    EXPECT_EQ(much.unknown->balance, "accelerometer(time)");
+    EXPECT_EQ(much.ladder.size(), 1U);
+    EXPECT_EQ(std::count(much.messages.begin(), much.messages.end(),
+                         "radar_scale was found, but for the data sheet's sake alone, whose numbers are bent by what the model lacks: not "
+                         "named"),
+              1);
+    EXPECT_EQ(of(much.ranking, "radar_scale").verdict, "not_needed");
+    // without the shape it stands, whatever is left; and with a shape where its rows speak
+    options.shapes = false;
+    const Diagnosis no_shape = with_jump(0.6);
+    EXPECT_EQ(no_shape.effects, (Labels{"accel_drift", "radar_scale"})) << no_shape.text;
+    options = {};
+    const Diagnosis by_rows = with_jump(0.6);
+    EXPECT_EQ(by_rows.effects, Labels{"radar_scale"}) << by_rows.text;
+    EXPECT_FALSE(by_rows.accepted[0].sheet_alone);
+}
+
 TEST(Bench, of_a_size_beyond_the_catalogues_says_that_it_is_a_least_one) {
     Bench bench;
     bench.hide(r1(), 1.5); // the fit may go to 0.6

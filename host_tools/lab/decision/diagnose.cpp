@@ -285,6 +285,7 @@ class Search {
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
         if (!pay && !falls_notably(held_, held, data_)) return std::nullopt;
+        if (!t.by_rows) t.sheet_alone = rival && broken == 0 ? spared : 0;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
     }
@@ -349,6 +350,23 @@ class Search {
         refresh(problem, Screen(problem));
     }
 
+    // Beside a shape no name stands for which the stated tolerances alone speak, and too weakly for the error that is left: what the model
+    // lacks bends the sheet's numbers, and such a name straightens them. Whether one went.
+    bool drop_unsupported(Problem &last) {
+        for (std::size_t i = d_.accepted.size(); i-- > 0;) {
+            const std::optional<double> spared = d_.accepted[i].sheet_alone;
+            if (!spared || tolerances_pay(*spared, d_.ladder.back().heldout, 0, options_.least_prior_reduction)) continue;
+            const Candidate one = d_.accepted[i].candidate;
+            d_.messages.push_back(one.label() + " was found, but for the data sheet's sake alone, whose numbers are bent by what the model "
+                                                "lacks: not named");
+            Model without = model_without(d_.model, one);
+            last = fitted(without, &last);
+            remove(i, std::move(without), last);
+            return true;
+        }
+        return false;
+    }
+
     // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
     // that is not needed beside a shape was its proxy. What is rejected is told as the nearest of the catalogue.
     void test_shapes(const Problem &first, Problem &last) {
@@ -365,6 +383,11 @@ class Search {
             std::vector<Candidate> named;
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
             ShapeFindings findings = find_unknown(first, last, named, options_, of_first);
+            if ((findings.shape || (findings.proxy && may_take_its_place())) && drop_unsupported(last)) {
+                d_.unknown.reset();
+                again = true;
+                continue;
+            }
             if (findings.shape) d_.unknown = findings.shape;
             std::vector<std::size_t> &rest = findings.replaced;
             for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);

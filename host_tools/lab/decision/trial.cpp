@@ -199,10 +199,10 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
 }
 
 void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
-    const bool by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
-                         t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
-    const bool gains = t.gain > 0 && (by_rows || t.assessment.spared > options.least_prior_reduction);
-    if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
+    t.by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
+                t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
+    const bool gains = t.gain > 0 && (t.by_rows || t.assessment.spared > options.least_prior_reduction);
+    if (!((t.by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
         t.verdict = "wrong_sign";
@@ -230,6 +230,7 @@ CandidateResult result_of(const Trial &t, double base_error, const Screen &scree
     r.gain_high = (t.gain + 1.96 * t.gain_error) * unit;
     r.p_value = t.p_value;
     r.verdict = t.verdict;
+    r.sheet_alone = t.sheet_alone;
     if (const sim::Effect *effect = sim::find_effect(t.candidate.effect)) r.explains = std::string(effect->signature);
     std::vector<std::pair<double, std::size_t>> order;
     double positive = 0;

@@ -5,6 +5,7 @@
 #include "diagnose.h"
 #include "host_tools/lab/fit/screen.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct Trial {
     Eigen::VectorXd start_change;                 // of the baseline's parameters there
     std::string verdict;
     bool refitted = false;
+    bool by_rows = false;              // the rows alone speak for it, whatever the stated tolerances gain (judge)
+    std::optional<double> sheet_alone; // of a name for which the rows alone do not speak: squared stated deviations that it spares
     bool smooths = false;     // most of what it gains is by not following the encoders' scatter: no evidence, of itself or beside another
     bool at_least = false;    // its size lies where the fit may go no further, yet nothing else explains as much
     Eigen::VectorXd baseline; // increments of the baseline's parameters, where refitted
