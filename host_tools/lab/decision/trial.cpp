@@ -82,6 +82,25 @@ bool large_enough(const Candidate &c, const std::vector<double> &value) {
     return std::sqrt(size) >= least;
 }
 
+bool is_solid(const CandidateResult &r) {
+    bool sure = false;
+    for (std::size_t j = 0; j < r.value.size(); ++j) sure = sure || r.low[j] * r.high[j] > 0;
+    return sure && large_enough(r.candidate, r.value);
+}
+
+Problem held_ground(const Problem &with, const Problem &before) {
+    Problem held = with;
+    for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+        if (before.parameters[i].owner != "soil") continue;
+        const double stays = before.theta[static_cast<Eigen::Index>(i)];
+        held.parameters[i].minimum = held.parameters[i].maximum = before.parameters[i].base + stays;
+        held.theta[static_cast<Eigen::Index>(i)] = stays;
+    }
+    held.jacobian.resize(0, 0);
+    held.gauss_newton(2);
+    return held;
+}
+
 // The ends of the 95 % intervals that lie nearer to zero.
 std::vector<double> near_ends(const Trial &t) {
     std::vector<double> near;

@@ -46,11 +46,16 @@ void scan(Trial &trial, Problem &base, const Screen &screen);
 // Fits baseline plus candidate in full.
 void refit(Trial &trial, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data);
 
+// The fit of a model with a candidate, the soil's numbers where they stand in the fit without it, whose parameters are the first.
+Problem held_ground(const Problem &with, const Problem &before);
+
 // explainable: the part of the baseline's held-out error that is not noise (Screen).
 void judge(Trial &trial, double explainable, const DiagnoseOptions &options);
 bool large_enough(const Candidate &candidate, const std::vector<double> &value);
 bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
-bool strongly_nonlinear(const std::string &effect);                              // its slope at zero says little of its size
+// Of an effect that was named: larger than its own uncertainty, and of interest.
+bool is_solid(const CandidateResult &result);
+bool strongly_nonlinear(const std::string &effect); // its slope at zero says little of its size
 
 CandidateResult result_of(const Trial &trial, double base_error, const Screen &screen);
 
