@@ -406,5 +406,23 @@ TEST(Proxy, of_the_flagged_shape_is_a_name_that_explains_no_less_unless_it_is_ne
     EXPECT_FALSE(confounding_shape(both, line, other, &other[0], options));
 }
 
+TEST(Place, of_several_names_is_for_a_shape_that_does_nearly_as_much_and_of_one_for_what_does_surely_more) {
+    const DiagnoseOptions options; // 1.1 times
+    EXPECT_TRUE(takes_their_place(2, 95.1, 100, 50, true, options));
+    EXPECT_FALSE(takes_their_place(2, 95, 100, 0, false, options));
+    EXPECT_TRUE(takes_their_place(1, 110.1, 100, 5, false, options));
+    EXPECT_FALSE(takes_their_place(1, 109.9, 100, 1, false, options));
+    EXPECT_FALSE(takes_their_place(1, 110.1, 100, 5.1, false, options)); // two standard errors
+    EXPECT_FALSE(takes_their_place(1, 199, 100, 1, true, options));      // where the name leaves a shape
+    EXPECT_TRUE(takes_their_place(1, 201, 100, 1, true, options));
+    EXPECT_FALSE(takes_their_place(1, 201, 100, 51, true, options));
+}
+
+TEST(Left, is_anything_of_which_a_shape_explains_a_hundredth) {
+    EXPECT_TRUE(anything_left({worthy(5, 1), worthy(5, 10)}, 1000));
+    EXPECT_FALSE(anything_left({worthy(5, 1), worthy(5, 9.9)}, 1000));
+    EXPECT_FALSE(anything_left({}, 1000));
+}
+
 } // namespace
 } // namespace traction::lab

@@ -71,8 +71,8 @@ std::vector<Eigen::MatrixXd> ShapeColumns::of_waves(const std::vector<Candidate>
         }
         StackedTerm all;
         for (std::size_t i = first; i < last; ++i) all.add(make_periodic(waves[i].axis, waves[i].order), 2);
-        const Eigen::MatrixXd columns = problem_.row_scale.asDiagonal() *
-                                        problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
+        const Eigen::MatrixXd columns =
+            problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
         for (Eigen::Index i = 0; i < columns.cols(); i += 2) list.push_back(columns.middleCols(i, 2));
     }
     return list;
@@ -87,8 +87,7 @@ const UnitResponse &ShapeColumns::unit(TermTarget target) {
 
 const std::vector<Forward::ElectricSeries> &ShapeColumns::electric_unit(TermTarget target) {
     auto found = electric_units_.find(target);
-    if (found == electric_units_.end())
-        found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
+    if (found == electric_units_.end()) found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
     return found->second;
 }
 
