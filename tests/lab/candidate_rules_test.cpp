@@ -167,6 +167,15 @@ TEST(Variants, are_every_combination_of_shapes_with_either_sign_where_there_are_
     EXPECT_EQ(speeds, spec("stribeck_friction", "speed_rad_s").variants);
 }
 
+TEST(Variants, are_counted_by_shapes_times_wheels) {
+    const Machine m;
+    std::map<std::string, int> count;
+    const std::vector<Candidate> all = catalogue_candidates(m.model, m.data, m.motion);
+    for (const Candidate &c : all) ++count[c.effect];
+    for (const Candidate &c : all) EXPECT_EQ(c.variants, count[c.effect]) << c.label();
+    EXPECT_GT(count["torque_ripple"], 9); // three at least, on both wheels and on either
+}
+
 TEST(Variants, are_put_where_the_effect_stands_and_nowhere_else) {
     const Machine m;
     const auto prepared = [&](Candidate c) {

@@ -289,5 +289,36 @@ TEST(Motor, whose_current_wanders_by_itself_is_doubted_where_it_is_far_off) {
     EXPECT_EQ(d->text.find(text), 0U) << d->text;
 }
 
+// A resistance that stands at six of its deviations and leaves five noises, all in the balance of the voltage: no signal that is counted
+// is missed, so nothing but the bound says that something is wrong.
+TEST(Motor, whose_number_stands_at_its_limit_is_asked_though_no_counted_signal_is_missed) {
+    Motor m(960, nullptr, 0.06);
+    for (const char *known : {"back_emf_Vs_rad", "torque_constant_Nm_A", "coulomb_Nm", "viscous_Nms"}) m.stated(known, 1, 0.001);
+    m.stated("resistance_ohm", 1.6, 0.02);
+    const Problem first = fitted_problem(m.model, m.data);
+    ASSERT_LT(worst_misfit(first), 0.15);
+    ASSERT_LT(m.fit_error(), 25);
+    ASSERT_GT(m.fit_error(), 3);
+    const std::optional<Doubt> d = m.asked();
+    ASSERT_TRUE(d);
+    ASSERT_FALSE(d->suspects.empty());
+    EXPECT_EQ(d->suspects[0].quantity, "the motors' resistance");
+    EXPECT_NEAR(d->suspects[0].fitted, R, 0.1 * R);
+}
+
+// Four stated deviations and a gross ratio, but the error falls by 3 %: the log hardly asks for it.
+TEST(Motor, that_the_fit_moved_grossly_for_little_is_not_told) {
+    Motor m(2000, nullptr, 1.2);
+    m.stated("viscous_Nms", 2, 0.1);
+    const Problem first = fitted_problem(m.model, m.data);
+    double moved = 1;
+    for (std::size_t i = 0; i < first.parameters.size(); ++i)
+        if (first.parameters[i].key == "viscous_Nms" && !first.parameters[i].own)
+            moved = 1 + first.theta[static_cast<Eigen::Index>(i)] / first.parameters[i].base;
+    ASSERT_LT(moved, 1 / 1.4);
+    ASSERT_LT(moved, 1 - 3 * 0.1);
+    EXPECT_FALSE(m.asked());
+}
+
 } // namespace
 } // namespace traction::lab

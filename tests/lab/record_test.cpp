@@ -160,6 +160,14 @@ TEST(Result, tells_gain_interval_and_detectability_by_their_definitions) {
     EXPECT_EQ(r.evidence[0].first, std::make_pair(35.0, 40.0));
     EXPECT_DOUBLE_EQ(r.evidence[0].second, 0.75);
     EXPECT_EQ(r.evidence[1].first, std::make_pair(5.0, 10.0));
+    t.block_gain << 0.5, 0.25, 4, -9, 0.1, 3, 0, 0, 0.15, 0; // the three that gain the most, of all that gain
+    r = result_of(t, 0, screen());
+    ASSERT_EQ(r.evidence.size(), 3U);
+    EXPECT_EQ(r.evidence[2].first, std::make_pair(0.0, 5.0));
+    EXPECT_DOUBLE_EQ(r.evidence[2].second, 0.5 / 8);
+    EXPECT_FALSE(r.sheet_alone);
+    t.sheet_alone = 25;
+    EXPECT_EQ(result_of(t, 0, screen()).sheet_alone, 25);
 }
 
 CandidateResult named(const std::string &effect, int wheel = -1) {

@@ -2,6 +2,7 @@
 // hidden is known, and how large it must be told is a textbook's regression.
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/decision/knots.h"
+#include "host_tools/lab/decision/shapes.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "tests/lab/linear_machine.h"
 
@@ -413,6 +414,63 @@ TEST(Bench, of_an_empty_log_says_nothing_and_hands_on_what_the_log_said) {
     Bench brief;
     brief.machine.data.count = 2;
     EXPECT_EQ(brief.ask().text, d.text);
+}
+
+// The search's last question by itself: which names does one shape stand for?
+struct Named {
+    Bench bench;
+    std::vector<Candidate> names;
+    ShapeFindings found(const std::vector<std::string> &effects) {
+        Model with = bench.model;
+        names.clear();
+        for (const Candidate &c : catalogue_candidates(bench.model, bench.machine.data, Motion()))
+            if (std::count(effects.begin(), effects.end(), c.effect) == 1 && c.wheel < 0) {
+                names.push_back(c);
+                with.effects.push_back(effect_of(c, std::vector<double>(c.strengths.size(), 0)));
+            }
+        const Problem first = fitted_problem(bench.model, bench.machine.data), last = fitted_problem(with, bench.machine.data);
+        ShapeScores of_first;
+        return find_unknown(first, last, names, DiagnoseOptions{}, of_first);
+    }
+};
+
+TEST(Unknown, shape_that_explains_more_than_all_names_stands_for_those_that_say_the_same) {
+    Named n;
+    n.bench.add(0, [](double t) { return 0.012 * std::max(0.0, t - 60); });
+    const ShapeFindings both = n.found({"accel_bias", "accel_drift"});
+    ASSERT_TRUE(both.shape);
+    EXPECT_EQ(both.shape->balance, "accelerometer(time)");
+    EXPECT_EQ(both.replaced, (std::vector<std::size_t>{0, 1}));
+    EXPECT_GT(both.gain_squares, 120); // on the fit's scales each of the accelerometer's 240 rows counts one: most of them
+    const ShapeFindings none = n.found({});
+    ASSERT_TRUE(none.shape);
+    EXPECT_TRUE(none.replaced.empty() && !none.proxy && !none.cause);
+    EXPECT_EQ(none.gain_squares, 0);
+    n.bench.hide(r1(), 0.08);
+    const ShapeFindings other = n.found({"radar_scale"}); // about something else
+    ASSERT_TRUE(other.shape);
+    EXPECT_TRUE(other.replaced.empty() && !other.proxy);
+}
+
+TEST(Unknown, shape_stands_for_no_name_that_is_right) {
+    Named n;
+    n.bench.hide(a2(), 0.003), n.bench.hide(a1(), 0.3);
+    const ShapeFindings right = n.found({"accel_bias", "accel_drift"});
+    EXPECT_FALSE(right.shape);
+    EXPECT_TRUE(right.replaced.empty() && !right.proxy && !right.cause);
+    const ShapeFindings half = n.found({"accel_bias"}); // the drift is left: a shape
+    ASSERT_TRUE(half.shape);
+    EXPECT_EQ(half.shape->balance, "accelerometer(time)");
+}
+
+TEST(Unknown, shape_beside_which_a_name_is_not_needed_is_its_cause) {
+    Named n;
+    n.bench.add(0, [](double t) { return t > 60 ? 0.4 : 0.0; });
+    n.bench.hide(r1(), 0.08);
+    const ShapeFindings found = n.found({"accel_drift", "radar_scale"});
+    ASSERT_TRUE(found.proxy && found.cause);
+    EXPECT_EQ(n.names[*found.proxy].effect, "accel_drift");
+    EXPECT_EQ(found.cause->balance, "accelerometer(time)");
 }
 
 } // namespace
