@@ -199,6 +199,8 @@ TEST(Motor, that_is_missed_by_some_noises_is_told_what_would_describe_it) {
     EXPECT_EQ(d->suspects[0].quantity, "the torque constant (of the wheel's side of the gear)");
     EXPECT_NEAR(d->suspects[0].fitted, K, 0.05 * K);
     EXPECT_LT(d->suspects[0].error, 1.1);
+    EXPECT_TRUE(m.asked(0, 0.1)); // a shape that takes off a tenth; one that takes off all but the noise leaves nothing to a number
+    EXPECT_FALSE(m.asked(0, 1 - 1 / m.fit_error()));
     EXPECT_TRUE(m.asked(1)); // one number does far more than one name did
     EXPECT_TRUE(m.asked(2));
     Motor right(240, nullptr, 0.03); // named was what explains all: the number does no more

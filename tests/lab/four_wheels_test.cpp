@@ -66,9 +66,10 @@ void expect_told(const std::vector<EffectUse> &hidden) {
     EXPECT_NEAR(d.ladder.back().heldout, held_out(anew).error, 5e-3);
     for (const CandidateResult &a : d.accepted)
         for (std::size_t i = 0; i < anew.parameters.size(); ++i)
-            if (const FreeParameter &p = anew.parameters[i];
-                p.owner == a.candidate.effect && p.wheel == a.candidate.wheel && p.key == a.candidate.strengths[0].key && a.shapes.empty()) {
-                EXPECT_NEAR(a.value[0], p.base + anew.theta[static_cast<Eigen::Index>(i)], 0.1 * (a.high[0] - a.low[0])) << a.candidate.label();
+            if (const FreeParameter &p = anew.parameters[i]; p.owner == a.candidate.effect && p.wheel == a.candidate.wheel &&
+                                                             p.key == a.candidate.strengths[0].key && a.shapes.empty()) {
+                EXPECT_NEAR(a.value[0], p.base + anew.theta[static_cast<Eigen::Index>(i)], 0.1 * (a.high[0] - a.low[0]))
+                    << a.candidate.label();
             }
 }
 

@@ -452,6 +452,20 @@ TEST(Unknown, shape_that_explains_more_than_all_names_stands_for_those_that_say_
     EXPECT_TRUE(other.replaced.empty() && !other.proxy);
 }
 
+TEST(Unknown, shapes_of_the_baseline_are_asked_once) {
+    Named n;
+    n.bench.add(0, [](double t) { return 0.012 * std::max(0.0, t - 60); });
+    const Problem first = fitted_problem(n.bench.model, n.bench.machine.data), same = first;
+    ShapeScores of_first;
+    EXPECT_TRUE(find_unknown(first, same, {}, DiagnoseOptions{}, of_first).shape);
+    EXPECT_TRUE(of_first == nullptr); // of another fit
+    EXPECT_TRUE(find_unknown(first, first, {}, DiagnoseOptions{}, of_first).shape);
+    ASSERT_TRUE(of_first != nullptr);
+    const ShapeScores kept = of_first;
+    EXPECT_TRUE(find_unknown(first, first, {}, DiagnoseOptions{}, of_first).shape);
+    EXPECT_TRUE(of_first == kept);
+}
+
 TEST(Unknown, shape_stands_for_no_name_that_is_right) {
     Named n;
     n.bench.hide(a2(), 0.003), n.bench.hide(a1(), 0.3);

@@ -135,6 +135,7 @@ TEST(Description, of_a_curve_has_its_values_and_95_percent_at_its_knots) {
     }
     EXPECT_DOUBLE_EQ(u.gain, 0.125);
     EXPECT_EQ(describe(with(c, {0.5, -1, 2}, 0.1), 0).gain, 0);
+    EXPECT_DOUBLE_EQ(describe(with(c, {0.5, -1, 2}, 0.1), 0.5).gain, 50);
     EXPECT_EQ(u.balance, "shape");
     EXPECT_EQ(u.variable, axis_name(Axis::wheel_speed));
     EXPECT_EQ(u.unit_x, axis_unit(Axis::wheel_speed));

@@ -184,6 +184,11 @@ TEST(Error, less_what_may_be_scatter_is_the_root_of_what_is_left_and_never_below
     EXPECT_DOUBLE_EQ(less(0, 0), overall_error(p));
     EXPECT_DOUBLE_EQ(less(5, 2), 3); // (4 + 14) / 2
     EXPECT_EQ(less(50, 50), 0);
+    Dataset bare = hand_made::data_of(2, 4, 1); // a balance without rows is none that errs
+    bare.balance[1].measured.clear();
+    EXPECT_DOUBLE_EQ(
+        error_less(hand_made::problem_of(bare, {}, Eigen::MatrixXd(4, 0), Eigen::VectorXd::Constant(4, 2)), Eigen::VectorXd::Zero(4)),
+        std::sqrt(2.0));
     const Dataset nothing = hand_made::data_of(0, 10, 1);
     EXPECT_EQ(error_less(hand_made::problem_of(nothing, {}, Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)), Eigen::VectorXd(0)), 0);
 }
