@@ -167,6 +167,15 @@ TEST(Variants, are_every_combination_of_shapes_with_either_sign_where_there_are_
     EXPECT_EQ(speeds, spec("stribeck_friction", "speed_rad_s").variants);
 }
 
+TEST(Variants, are_counted_by_shapes_times_wheels) {
+    const Machine m;
+    std::map<std::string, int> count;
+    const std::vector<Candidate> all = catalogue_candidates(m.model, m.data, m.motion);
+    for (const Candidate &c : all) ++count[c.effect];
+    for (const Candidate &c : all) EXPECT_EQ(c.variants, count[c.effect]) << c.label();
+    EXPECT_GT(count["torque_ripple"], 9); // three at least, on both wheels and on either
+}
+
 TEST(Variants, are_put_where_the_effect_stands_and_nowhere_else) {
     const Machine m;
     const auto prepared = [&](Candidate c) {
@@ -525,6 +534,18 @@ TEST(Use, of_an_effect_has_its_sizes_and_its_shape_as_it_was_tried) {
     EXPECT_TRUE(order.given && order.fixed);
     c.effect = "my own"; // of no catalogue
     EXPECT_EQ(effect_of(c, {0.25}).parameters.at("order").unit, "");
+}
+
+TEST(Knots, are_a_fiftieth_of_the_range_apart_at_least_and_stay_where_a_log_does_not_come_but_on_wheel_speeds) {
+    std::vector<double> values; // quantiles of 0.02, 0.2, 0.4, .. at 0, 0.03, 0.045, 0.5, 0.8 and 1
+    for (const auto &[count, x] :
+         {std::pair{110, 0.0}, std::pair{190, 0.03}, std::pair{200, 0.045}, std::pair{200, 0.5}, std::pair{200, 0.8}, std::pair{100, 1.0}})
+        values.insert(values.end(), static_cast<std::size_t>(count), x);
+    EXPECT_EQ(knots_on(Axis::slip, values, false), (std::vector<double>{0, 0.03, 0.5, 0.8, 1}));
+    std::vector<double> two(100, -1.0), speeds(100, 1.0);
+    two.insert(two.end(), 100, 1.0), speeds.insert(speeds.end(), 100, 9.0);
+    EXPECT_EQ(knots_on(Axis::yaw_rate, two, false).size(), 6U);
+    EXPECT_EQ(knots_on(Axis::abs_wheel_speed, speeds, false).size(), 3U); // the ends, and of those between the one at 1.1
 }
 
 TEST(Knots, of_what_hardly_varies_are_few_and_of_a_voltage_that_does_not_none) {

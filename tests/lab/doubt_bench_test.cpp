@@ -199,6 +199,8 @@ TEST(Motor, that_is_missed_by_some_noises_is_told_what_would_describe_it) {
     EXPECT_EQ(d->suspects[0].quantity, "the torque constant (of the wheel's side of the gear)");
     EXPECT_NEAR(d->suspects[0].fitted, K, 0.05 * K);
     EXPECT_LT(d->suspects[0].error, 1.1);
+    EXPECT_TRUE(m.asked(0, 0.1)); // a shape that takes off a tenth; one that takes off all but the noise leaves nothing to a number
+    EXPECT_FALSE(m.asked(0, 1 - 1 / m.fit_error()));
     EXPECT_TRUE(m.asked(1)); // one number does far more than one name did
     EXPECT_TRUE(m.asked(2));
     Motor right(240, nullptr, 0.03); // named was what explains all: the number does no more
@@ -287,6 +289,37 @@ TEST(Motor, whose_current_wanders_by_itself_is_doubted_where_it_is_far_off) {
     std::snprintf(text, sizeof text, "as fitted it leaves %.0f %% of a measured signal",
                   100 * misfits(fitted_problem(far.model, far.data))[1]);
     EXPECT_EQ(d->text.find(text), 0U) << d->text;
+}
+
+// A resistance that stands at six of its deviations and leaves five noises, all in the balance of the voltage: no signal that is counted
+// is missed, so nothing but the bound says that something is wrong.
+TEST(Motor, whose_number_stands_at_its_limit_is_asked_though_no_counted_signal_is_missed) {
+    Motor m(960, nullptr, 0.06);
+    for (const char *known : {"back_emf_Vs_rad", "torque_constant_Nm_A", "coulomb_Nm", "viscous_Nms"}) m.stated(known, 1, 0.001);
+    m.stated("resistance_ohm", 1.6, 0.02);
+    const Problem first = fitted_problem(m.model, m.data);
+    ASSERT_LT(worst_misfit(first), 0.15);
+    ASSERT_LT(m.fit_error(), 25);
+    ASSERT_GT(m.fit_error(), 3);
+    const std::optional<Doubt> d = m.asked();
+    ASSERT_TRUE(d);
+    ASSERT_FALSE(d->suspects.empty());
+    EXPECT_EQ(d->suspects[0].quantity, "the motors' resistance");
+    EXPECT_NEAR(d->suspects[0].fitted, R, 0.1 * R);
+}
+
+// Four stated deviations and a gross ratio, but the error falls by 3 %: the log hardly asks for it.
+TEST(Motor, that_the_fit_moved_grossly_for_little_is_not_told) {
+    Motor m(2000, nullptr, 1.2);
+    m.stated("viscous_Nms", 2, 0.1);
+    const Problem first = fitted_problem(m.model, m.data);
+    double moved = 1;
+    for (std::size_t i = 0; i < first.parameters.size(); ++i)
+        if (first.parameters[i].key == "viscous_Nms" && !first.parameters[i].own)
+            moved = 1 + first.theta[static_cast<Eigen::Index>(i)] / first.parameters[i].base;
+    ASSERT_LT(moved, 1 / 1.4);
+    ASSERT_LT(moved, 1 - 3 * 0.1);
+    EXPECT_FALSE(m.asked());
 }
 
 } // namespace

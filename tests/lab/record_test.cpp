@@ -160,6 +160,14 @@ TEST(Result, tells_gain_interval_and_detectability_by_their_definitions) {
     EXPECT_EQ(r.evidence[0].first, std::make_pair(35.0, 40.0));
     EXPECT_DOUBLE_EQ(r.evidence[0].second, 0.75);
     EXPECT_EQ(r.evidence[1].first, std::make_pair(5.0, 10.0));
+    t.block_gain << 0.5, 0.25, 4, -9, 0.1, 3, 0, 0, 0.15, 0; // the three that gain the most, of all that gain
+    r = result_of(t, 0, screen());
+    ASSERT_EQ(r.evidence.size(), 3U);
+    EXPECT_EQ(r.evidence[2].first, std::make_pair(0.0, 5.0));
+    EXPECT_DOUBLE_EQ(r.evidence[2].second, 0.5 / 8);
+    EXPECT_FALSE(r.sheet_alone);
+    t.sheet_alone = 25;
+    EXPECT_EQ(result_of(t, 0, screen()).sheet_alone, 25);
 }
 
 CandidateResult named(const std::string &effect, int wheel = -1) {
@@ -395,6 +403,147 @@ TEST(Class, that_goes_moves_those_behind_it_up_and_not_those_before) {
     EXPECT_FALSE(d.ranking[1].class_index);
     EXPECT_EQ(d.ranking[2].class_index, 1);
     EXPECT_FALSE(d.ranking[3].class_index);
+}
+
+// Two effects of two strengths on wheels 0 and 1, increments 1, 2, .. about bases 10, 20, ..; of each parameter half an interval of 0.1 its
+// place.
+struct Fitted {
+    Dataset data = hand_made::data_of(1, 10, 0.5);
+    std::vector<ParameterError> errors;
+    Problem problem;
+    static std::vector<FreeParameter> parameters() {
+        std::vector<FreeParameter> list;
+        for (const char *owner : {"a", "b"})
+            for (const int wheel : {0, 1})
+                for (const char *key : {"cos_Nm", "sin_Nm", "edge_m"}) {
+                    FreeParameter p = hand_made::parameter(owner, key, 10 * static_cast<double>(list.size() + 1), 0);
+                    p.wheel = wheel, p.unit = std::string(key) == "edge_m" ? "m" : "N m";
+                    list.push_back(p);
+                }
+        return list;
+    }
+    Fitted() : problem(hand_made::problem_of(data, parameters(), Eigen::MatrixXd::Zero(10, 12), Eigen::VectorXd::Zero(10))) {
+        for (Eigen::Index i = 0; i < 12; ++i) {
+            problem.theta[i] = static_cast<double>(i + 1);
+            errors.push_back({0.01, 0.1 * static_cast<double>(i + 1)});
+        }
+    }
+};
+
+TEST(Values, of_an_accepted_effect_are_those_of_its_own_parameters) {
+    const Fitted f;
+    CandidateResult a;
+    a.candidate = candidate("b", 0);
+    a.candidate.strengths.resize(2);
+    a.candidate.strengths[0].key = "sin_Nm", a.candidate.strengths[1].key = "cos_Nm";
+    a.value = a.low = a.high = {0, 0};
+    take_values(a, f.problem, f.errors, 0);
+    EXPECT_EQ(a.value, (std::vector<double>{88, 77})); // the eighth and the seventh: 80 + 8, 70 + 7
+    EXPECT_NEAR(a.low[0], 88 - 0.8, 1e-9);
+    EXPECT_NEAR(a.high[0], 88 + 0.8, 1e-9);
+    EXPECT_NEAR(a.high[1], 77 + 0.7, 1e-9);
+    take_values(a, f.problem, f.errors, 0.5); // half of the size is not known beside
+    EXPECT_NEAR(a.low[1], 77 - 0.7 - 38.5, 1e-9);
+    EXPECT_NEAR(a.high[1], 77 + 0.7 + 38.5, 1e-9);
+    a.candidate.wheel = 2;
+    const std::vector<double> stays = a.value;
+    take_values(a, f.problem, f.errors, 0);
+    EXPECT_EQ(a.value, stays);
+}
+
+TEST(Shape, values_of_the_fit_are_told_and_held_an_edge_wider_by_half_a_row) {
+    const Fitted f;
+    CandidateResult a;
+    a.candidate = candidate("a", 1);
+    a.candidate.variant = {{"edge_m", 1}, {"sin_Nm", 2}, {"another", 3}};
+    take_shape_values(a, f.problem, f.errors, 0.25);
+    ASSERT_EQ(a.shapes.size(), 2U); // the fifth and the sixth: 50 + 5, 60 + 6
+    EXPECT_EQ(a.shapes[0].key, "sin_Nm");
+    EXPECT_EQ(a.shapes[0].unit, "N m");
+    EXPECT_EQ(a.shapes[0].value, 55);
+    EXPECT_NEAR(a.shapes[0].low, 55 - 0.5, 1e-9);
+    EXPECT_NEAR(a.shapes[0].high, 55 + 0.5, 1e-9);
+    EXPECT_EQ(a.shapes[1].value, 66);
+    EXPECT_NEAR(a.shapes[1].low, 66 - 0.6 - 0.25, 1e-9);
+    EXPECT_NEAR(a.shapes[1].high, 66 + 0.6 + 0.25, 1e-9);
+    EXPECT_EQ(a.candidate.variant[0].second, 66);
+    EXPECT_EQ(a.candidate.variant[1].second, 55);
+    EXPECT_EQ(a.candidate.variant[2].second, 3);
+    Model model;
+    for (const int wheel : {0, 1})
+        for (const char *name : {"a", "b"}) {
+            EffectUse use;
+            use.name = name, use.wheel = wheel;
+            for (const char *key : {"edge_m", "sin_Nm", "size"}) use.parameters[key].value = 1, use.parameters[key].minimum = 0;
+            model.effects.push_back(use);
+        }
+    fix_shapes(model, a);
+    for (const EffectUse &use : model.effects) {
+        const bool its = use.name == "a" && use.wheel == 1;
+        const Parameter &edge = use.parameters.at("edge_m"), &size = use.parameters.at("size");
+        EXPECT_EQ(edge.value, its ? 66 : 1);
+        EXPECT_EQ(edge.fixed, its);
+        EXPECT_EQ(std::isinf(edge.minimum) && std::isinf(edge.maximum) && edge.minimum < 0 && edge.maximum > 0, its);
+        EXPECT_EQ(size.value, 1);
+        EXPECT_FALSE(size.fixed);
+        if (its) {
+            EXPECT_EQ(edge.low, a.shapes[1].low);
+            EXPECT_EQ(edge.high, a.shapes[1].high);
+            EXPECT_EQ(use.parameters.at("sin_Nm").value, 55);
+        }
+    }
+}
+
+TEST(Shape, parameters_are_freed_of_the_effect_itself_where_it_has_any_on_a_scale) {
+    Model model;
+    for (const int wheel : {0, 1}) {
+        EffectUse use;
+        use.name = "stribeck_friction", use.wheel = wheel;
+        for (const char *key : {"speed_rad_s", "torque_Nm"}) use.parameters[key].value = 2, use.parameters[key].fixed = true;
+        model.effects.push_back(use);
+    }
+    Candidate c = candidate("stribeck_friction", 1);
+    EXPECT_TRUE(free_shapes(model, c, *sim::find_effect("stribeck_friction")));
+    EXPECT_TRUE(model.effects[0].parameters.at("speed_rad_s").fixed);
+    EXPECT_FALSE(model.effects[1].parameters.at("speed_rad_s").fixed);
+    EXPECT_NEAR(model.effects[1].parameters.at("speed_rad_s").maximum, 8, 1e-9);
+    EXPECT_TRUE(model.effects[1].parameters.at("torque_Nm").fixed); // a strength
+    c.wheel = 2;
+    EXPECT_FALSE(free_shapes(model, c, *sim::find_effect("stribeck_friction")));
+    EffectUse ripple;
+    ripple.name = "torque_ripple";
+    ripple.parameters["order"].value = 2;
+    model.effects = {ripple};
+    EXPECT_FALSE(free_shapes(model, candidate("torque_ripple"), *sim::find_effect("torque_ripple"))); // a kind
+}
+
+TEST(Accepted, that_is_taken_back_leaves_the_ladder_the_ranking_and_its_class) {
+    Diagnosis d;
+    const auto result = [](const char *effect, const char *verdict) {
+        CandidateResult r;
+        r.candidate = candidate(effect);
+        r.verdict = verdict;
+        return r;
+    };
+    d.accepted = {result("a", "class"), result("b", "named")};
+    d.ranking = {result("a", "class"), result("b", "named"), result("a", "not_significant"), result("c", "class")};
+    d.ladder = {{"baseline", 9, 9, 1}, {"+ a", 5, 5, 1}, {"+ b", 3, 3, 1}};
+    d.classes = {{{"a", "c"}, ""}};
+    d.accepted[0].class_index = 0;
+    take_back(d, 0);
+    ASSERT_EQ(d.accepted.size(), 1U);
+    EXPECT_EQ(d.accepted[0].candidate.label(), "b");
+    ASSERT_EQ(d.ladder.size(), 2U);
+    EXPECT_EQ(d.ladder[1].label, "+ b");
+    EXPECT_TRUE(d.classes.empty());
+    EXPECT_EQ(d.ranking[0].verdict, "not_needed");
+    EXPECT_EQ(d.ranking[1].verdict, "named");
+    EXPECT_EQ(d.ranking[2].verdict, "not_significant");
+    EXPECT_EQ(d.ranking[3].verdict, "class");
+    take_back(d, 0);
+    EXPECT_EQ(d.ranking[1].verdict, "not_needed");
+    EXPECT_TRUE(d.accepted.empty());
+    EXPECT_EQ(d.ladder.size(), 1U);
 }
 
 } // namespace

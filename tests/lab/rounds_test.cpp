@@ -1,6 +1,6 @@
 // A round of the forward selection, rule by rule (rounds.h): who is fitted in full, in which order, who is believed beyond his range.
 #include "host_tools/lab/decision/rounds.h"
-#include "tests/lab/hand_made.h"
+#include "tests/lab/linear_machine.h"
 
 #include <gtest/gtest.h>
 #include <map>
@@ -327,6 +327,70 @@ TEST(Round, asks_of_a_name_that_the_error_falls_notably_in_all_or_in_one_balance
     EXPECT_FALSE(falls(1, 0.981, 2));
     EXPECT_TRUE(falls(0.979, 3, 9)); // another may rise
     EXPECT_FALSE(falls(0.981, 3, 9));
+}
+
+TEST(Afar, the_one_that_gains_most_and_more_than_the_winner_may_take_its_place) {
+    std::vector<Trial> all = {trial("a", 0.1, 1), trial("b", 0.1, 1), trial("c", 0.1, 1)};
+    const double gains[] = {30, 50, 40};
+    for (std::size_t i = 0; i < 3; ++i) all[i].verdict = "passes", all[i].refitted = true, all[i].gain = gains[i];
+    EXPECT_EQ(most_beyond(all, 20), 1U);
+    EXPECT_EQ(most_beyond(all, 49.9), 1U);
+    EXPECT_EQ(most_beyond(all, 50), 3U); // none
+    all[1].refitted = false;
+    EXPECT_EQ(most_beyond(all, 20), 2U);
+    all[2].verdict = "not_held_out";
+    EXPECT_EQ(most_beyond(all, 20), 0U);
+    EXPECT_EQ(most_beyond(all, 30), 3U);
+    EXPECT_EQ(most_beyond({}, 0), 0U);
+}
+
+TEST(Increments, are_taken_of_the_same_parameter_of_the_same_stated_value_alone) {
+    const Dataset data = hand_made::data_of(1, 10, 0.5);
+    const auto with = [&](const FreeParameter &p, double theta) {
+        Problem one = hand_made::problem_of(data, {hand_made::parameter("other", "key", 1, 1), p}, Eigen::MatrixXd::Zero(10, 2),
+                                            Eigen::VectorXd::Zero(10));
+        one.theta[0] = -1, one.theta[1] = theta;
+        return one;
+    };
+    FreeParameter p = hand_made::parameter("motor", "coulomb_Nm", 0.05, 0.01);
+    p.wheel = 2, p.own = true;
+    const auto taken = [&](const FreeParameter &from) {
+        Problem to = with(p, 7);
+        take_increments(to, with(from, 3));
+        EXPECT_EQ(to.theta[0], -1);
+        return to.theta[1];
+    };
+    EXPECT_EQ(taken(p), 3);
+    FreeParameter q = p;
+    q.owner = "wheel";
+    EXPECT_EQ(taken(q), 7);
+    q = p, q.key = "viscous_Nms";
+    EXPECT_EQ(taken(q), 7);
+    q = p, q.wheel = 1;
+    EXPECT_EQ(taken(q), 7);
+    q = p, q.own = false;
+    EXPECT_EQ(taken(q), 7);
+    q = p, q.base = 0.06;
+    EXPECT_EQ(taken(q), 7);
+}
+
+// An offset of the radar that the first model has not: of one noise it is sure, of a hundredth it is not, and of the same model it is none.
+TEST(Prediction, is_better_where_the_fall_of_what_is_left_out_exceeds_its_scatter_by_either_scales) {
+    const auto better = [](double hidden, double scale_of_radar) {
+        hand_made::LinearMachine machine;
+        machine.hide(hand_made::r1(), hidden);
+        Problem before(machine.data, machine.physics, {hand_made::a0(0.1)}),
+            after(machine.data, machine.physics, {hand_made::a0(0.1), hand_made::r1()});
+        for (Problem *p : {&before, &after}) p->gauss_newton(2);
+        if (scale_of_radar != 1) { // rows that the fit's scales count for nothing
+            before.row_scale.segment(120, 120) *= scale_of_radar;
+            before.row_scale.head(120) *= 1e3;
+        }
+        return predicts_better(before, after);
+    };
+    EXPECT_TRUE(better(0.5, 1));
+    EXPECT_FALSE(better(1e-4, 1));
+    EXPECT_FALSE(better(0.5, 1e-6)); // sure in noises alone
 }
 
 } // namespace

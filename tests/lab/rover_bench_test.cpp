@@ -1,6 +1,8 @@
 // Whole diagnoses of a rover of one wheel that drives on soft ground: what is hidden moves the body, and is found by fits that are not
 // linear.
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/fit/heldout.h"
+#include "host_tools/lab/fit/ladder.h"
 #include "sim/physics/effects/catalogue.h"
 #include "tests/lab/hand_made.h"
 
@@ -88,7 +90,8 @@ void expect_told(std::initializer_list<Hidden> all) {
         std::vector<std::pair<std::string, double>> values;
         for (const sim::EffectParameter &p : effect->parameters)
             values.emplace_back(std::string(p.name), p.strength ? h.size : p.variants.empty() ? 0 : p.variants[0]);
-        const Diagnosis d = Rover(h.effect, values).ask();
+        const Rover rover(h.effect, values);
+        const Diagnosis d = rover.ask();
         ASSERT_EQ(d.accepted.size(), 1U) << h.effect << ": " << d.text;
         const CandidateResult &first = d.accepted[0];
         if (d.classes.empty()) {
@@ -106,6 +109,18 @@ void expect_told(std::initializer_list<Hidden> all) {
         EXPECT_LT(d.ladder.back().heldout, 1.05) << h.effect; // 1200 rows of noise: 2 %, and what is fitted to them
         EXPECT_GT(d.ladder.front().heldout, 1.9) << h.effect;
         EXPECT_FALSE(d.unknown) << d.text;
+        ASSERT_EQ(d.ladder.size(), 2U);
+        EXPECT_EQ(d.ladder[1].label, "+ " + first.candidate.label());
+        ASSERT_EQ(d.model.effects.size(), 1U);
+        EXPECT_EQ(d.model.effects[0].name, first.candidate.effect);
+        const Problem anew = fitted_problem(d.model, rover.data); // what is told is what a fit of the model finds
+        EXPECT_NEAR(d.ladder[1].train, overall_error(anew), 2e-3) << h.effect;
+        EXPECT_NEAR(d.ladder[1].heldout, held_out(anew).error, 5e-3) << h.effect;
+        for (std::size_t i = 0; i < anew.parameters.size(); ++i)
+            if (anew.parameters[i].owner == first.candidate.effect && first.shapes.empty()) {
+                const double size = anew.parameters[i].base + anew.theta[static_cast<Eigen::Index>(i)];
+                EXPECT_NEAR(first.value[0], size, 0.1 * (first.high[0] - first.low[0])) << h.effect;
+            }
         if (!d.messages.empty()) continue; // another was found first, and dropped: the ranking is of that round
         for (const CandidateResult &r : d.ranking) {
             const bool told =

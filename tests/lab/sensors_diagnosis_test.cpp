@@ -2,6 +2,7 @@
 // hidden is known, and how large it must be told is a textbook's regression.
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/decision/knots.h"
+#include "host_tools/lab/decision/shapes.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "tests/lab/linear_machine.h"
 
@@ -337,6 +338,45 @@ TEST(Bench, of_a_right_name_beside_a_proxys_keeps_the_right_one) {
     EXPECT_EQ(d.model.effects[0].name, "radar_scale");
 }
 
+// The radar's stated scale gives way by nearly six deviations, its rows gain less than is asked of rows alone, and the accelerometer jumps:
+// that leaves 2.3 and 4.7 times the noise, by which the deviations are widened. 36 squared deviations are more than 4 x 2.3^2 and less
+// than 4 x 4.7^2.
+TEST(Bench, whose_sheet_alone_speaks_for_a_name_is_told_it_beside_a_shape_only_where_little_is_left) {
+    DiagnoseOptions options;
+    options.least_gain = 0.5, options.least_gain_one = 0.6; // the radar's rows gain a tenth, the drift's as many as three quarters
+    const auto with_jump = [&](double jump) {
+        Bench bench;
+        bench.add(0, [=](double t) { return t > 60 ? jump : 0.0; });
+        bench.hide(r1(), 0.04);
+        return bench.ask(options);
+    };
+    const Diagnosis little = with_jump(0.3), much = with_jump(0.6);
+    EXPECT_EQ(little.kind, "partial") << little.text;
+    EXPECT_EQ(little.effects, Labels{"radar_scale"});
+    ASSERT_TRUE(little.accepted.at(0).sheet_alone);
+    EXPECT_LE(*little.accepted[0].sheet_alone, 36 + 1e-6); // of its own limit; what it leaves of it, and the bias's, is less
+    EXPECT_GT(*little.accepted[0].sheet_alone, 25);
+    EXPECT_EQ(much.kind, "unknown") << much.text;
+    EXPECT_TRUE(much.effects.empty() && much.model.effects.empty());
+    EXPECT_EQ(much.nearest, Labels{"accel_drift"}); // the name of the sheet is not even near
+    ASSERT_TRUE(much.unknown);
+    EXPECT_EQ(much.unknown->balance, "accelerometer(time)");
+    EXPECT_EQ(much.ladder.size(), 1U);
+    EXPECT_EQ(std::count(much.messages.begin(), much.messages.end(),
+                         "radar_scale was found, but for the data sheet's sake alone, whose numbers are bent by what the model lacks: not "
+                         "named"),
+              1);
+    EXPECT_EQ(of(much.ranking, "radar_scale").verdict, "not_needed");
+    // without the shape it stands, whatever is left; and with a shape where its rows speak
+    options.shapes = false;
+    const Diagnosis no_shape = with_jump(0.6);
+    EXPECT_EQ(no_shape.effects, (Labels{"accel_drift", "radar_scale"})) << no_shape.text;
+    options = {};
+    const Diagnosis by_rows = with_jump(0.6);
+    EXPECT_EQ(by_rows.effects, Labels{"radar_scale"}) << by_rows.text;
+    EXPECT_FALSE(by_rows.accepted[0].sheet_alone);
+}
+
 TEST(Bench, of_a_size_beyond_the_catalogues_says_that_it_is_a_least_one) {
     Bench bench;
     bench.hide(r1(), 1.5); // the fit may go to 0.6
@@ -374,6 +414,77 @@ TEST(Bench, of_an_empty_log_says_nothing_and_hands_on_what_the_log_said) {
     Bench brief;
     brief.machine.data.count = 2;
     EXPECT_EQ(brief.ask().text, d.text);
+}
+
+// The search's last question by itself: which names does one shape stand for?
+struct Named {
+    Bench bench;
+    std::vector<Candidate> names;
+    ShapeFindings found(const std::vector<std::string> &effects) {
+        Model with = bench.model;
+        names.clear();
+        for (const Candidate &c : catalogue_candidates(bench.model, bench.machine.data, Motion()))
+            if (std::count(effects.begin(), effects.end(), c.effect) == 1 && c.wheel < 0) {
+                names.push_back(c);
+                with.effects.push_back(effect_of(c, std::vector<double>(c.strengths.size(), 0)));
+            }
+        const Problem first = fitted_problem(bench.model, bench.machine.data), last = fitted_problem(with, bench.machine.data);
+        ShapeScores of_first;
+        return find_unknown(first, last, names, DiagnoseOptions{}, of_first);
+    }
+};
+
+TEST(Unknown, shape_that_explains_more_than_all_names_stands_for_those_that_say_the_same) {
+    Named n;
+    n.bench.add(0, [](double t) { return 0.012 * std::max(0.0, t - 60); });
+    const ShapeFindings both = n.found({"accel_bias", "accel_drift"});
+    ASSERT_TRUE(both.shape);
+    EXPECT_EQ(both.shape->balance, "accelerometer(time)");
+    EXPECT_EQ(both.replaced, (std::vector<std::size_t>{0, 1}));
+    EXPECT_GT(both.gain_squares, 120); // on the fit's scales each of the accelerometer's 240 rows counts one: most of them
+    const ShapeFindings none = n.found({});
+    ASSERT_TRUE(none.shape);
+    EXPECT_TRUE(none.replaced.empty() && !none.proxy && !none.cause);
+    EXPECT_EQ(none.gain_squares, 0);
+    n.bench.hide(r1(), 0.08);
+    const ShapeFindings other = n.found({"radar_scale"}); // about something else
+    ASSERT_TRUE(other.shape);
+    EXPECT_TRUE(other.replaced.empty() && !other.proxy);
+}
+
+TEST(Unknown, shapes_of_the_baseline_are_asked_once) {
+    Named n;
+    n.bench.add(0, [](double t) { return 0.012 * std::max(0.0, t - 60); });
+    const Problem first = fitted_problem(n.bench.model, n.bench.machine.data), same = first;
+    ShapeScores of_first;
+    EXPECT_TRUE(find_unknown(first, same, {}, DiagnoseOptions{}, of_first).shape);
+    EXPECT_TRUE(of_first == nullptr); // of another fit
+    EXPECT_TRUE(find_unknown(first, first, {}, DiagnoseOptions{}, of_first).shape);
+    ASSERT_TRUE(of_first != nullptr);
+    const ShapeScores kept = of_first;
+    EXPECT_TRUE(find_unknown(first, first, {}, DiagnoseOptions{}, of_first).shape);
+    EXPECT_TRUE(of_first == kept);
+}
+
+TEST(Unknown, shape_stands_for_no_name_that_is_right) {
+    Named n;
+    n.bench.hide(a2(), 0.003), n.bench.hide(a1(), 0.3);
+    const ShapeFindings right = n.found({"accel_bias", "accel_drift"});
+    EXPECT_FALSE(right.shape);
+    EXPECT_TRUE(right.replaced.empty() && !right.proxy && !right.cause);
+    const ShapeFindings half = n.found({"accel_bias"}); // the drift is left: a shape
+    ASSERT_TRUE(half.shape);
+    EXPECT_EQ(half.shape->balance, "accelerometer(time)");
+}
+
+TEST(Unknown, shape_beside_which_a_name_is_not_needed_is_its_cause) {
+    Named n;
+    n.bench.add(0, [](double t) { return t > 60 ? 0.4 : 0.0; });
+    n.bench.hide(r1(), 0.08);
+    const ShapeFindings found = n.found({"accel_drift", "radar_scale"});
+    ASSERT_TRUE(found.proxy && found.cause);
+    EXPECT_EQ(n.names[*found.proxy].effect, "accel_drift");
+    EXPECT_EQ(found.cause->balance, "accelerometer(time)");
 }
 
 } // namespace

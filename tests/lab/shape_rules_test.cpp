@@ -135,6 +135,7 @@ TEST(Description, of_a_curve_has_its_values_and_95_percent_at_its_knots) {
     }
     EXPECT_DOUBLE_EQ(u.gain, 0.125);
     EXPECT_EQ(describe(with(c, {0.5, -1, 2}, 0.1), 0).gain, 0);
+    EXPECT_DOUBLE_EQ(describe(with(c, {0.5, -1, 2}, 0.1), 0.5).gain, 50);
     EXPECT_EQ(u.balance, "shape");
     EXPECT_EQ(u.variable, axis_name(Axis::wheel_speed));
     EXPECT_EQ(u.unit_x, axis_unit(Axis::wheel_speed));
@@ -404,6 +405,24 @@ TEST(Proxy, of_the_flagged_shape_is_a_name_that_explains_no_less_unless_it_is_ne
     Eigen::MatrixXd of_other = rows.hats().colwise().reverse();
     const std::vector<ShapeScore> other = {rows.score("other", of_other)};
     EXPECT_FALSE(confounding_shape(both, line, other, &other[0], options));
+}
+
+TEST(Place, of_several_names_is_for_a_shape_that_does_nearly_as_much_and_of_one_for_what_does_surely_more) {
+    const DiagnoseOptions options; // 1.1 times
+    EXPECT_TRUE(takes_their_place(2, 95.1, 100, 50, true, options));
+    EXPECT_FALSE(takes_their_place(2, 95, 100, 0, false, options));
+    EXPECT_TRUE(takes_their_place(1, 110.1, 100, 5, false, options));
+    EXPECT_FALSE(takes_their_place(1, 109.9, 100, 1, false, options));
+    EXPECT_FALSE(takes_their_place(1, 110.1, 100, 5.1, false, options)); // two standard errors
+    EXPECT_FALSE(takes_their_place(1, 199, 100, 1, true, options));      // where the name leaves a shape
+    EXPECT_TRUE(takes_their_place(1, 201, 100, 1, true, options));
+    EXPECT_FALSE(takes_their_place(1, 201, 100, 51, true, options));
+}
+
+TEST(Left, is_anything_of_which_a_shape_explains_a_hundredth) {
+    EXPECT_TRUE(anything_left({worthy(5, 1), worthy(5, 10)}, 1000));
+    EXPECT_FALSE(anything_left({worthy(5, 1), worthy(5, 9.9)}, 1000));
+    EXPECT_FALSE(anything_left({}, 1000));
 }
 
 } // namespace

@@ -184,6 +184,11 @@ TEST(Error, less_what_may_be_scatter_is_the_root_of_what_is_left_and_never_below
     EXPECT_DOUBLE_EQ(less(0, 0), overall_error(p));
     EXPECT_DOUBLE_EQ(less(5, 2), 3); // (4 + 14) / 2
     EXPECT_EQ(less(50, 50), 0);
+    Dataset bare = hand_made::data_of(2, 4, 1); // a balance without rows is none that errs
+    bare.balance[1].measured.clear();
+    EXPECT_DOUBLE_EQ(
+        error_less(hand_made::problem_of(bare, {}, Eigen::MatrixXd(4, 0), Eigen::VectorXd::Constant(4, 2)), Eigen::VectorXd::Zero(4)),
+        std::sqrt(2.0));
     const Dataset nothing = hand_made::data_of(0, 10, 1);
     EXPECT_EQ(error_less(hand_made::problem_of(nothing, {}, Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)), Eigen::VectorXd(0)), 0);
 }
@@ -307,6 +312,61 @@ TEST(Suspects, are_told_in_words_three_at_most_and_where_there_is_none_what_is_l
     EXPECT_EQ(many.find("the mass"), std::string::npos);
     EXPECT_EQ(what_to_look_at({}, 0.934), "as fitted it leaves 93 % of a measured signal (but for noise). Look at the wheels' order and "
                                           "signs, radius, mass, units and gear, and the ground's law");
+}
+
+TEST(Search, that_ends_at_an_edge_goes_on_from_beyond_it) {
+    EXPECT_FALSE(from_the_edge(1, 1));
+    EXPECT_FALSE(from_the_edge(1, 0.031));
+    EXPECT_FALSE(from_the_edge(1, 5.49));
+    ASSERT_TRUE(from_the_edge(4, 0.03) && from_the_edge(4, 5.5));
+    EXPECT_DOUBLE_EQ(*from_the_edge(4, 0.03), 0.2); // a hundredth is where it may go: a twentieth of the begin
+    EXPECT_DOUBLE_EQ(*from_the_edge(4, 0.01), 0.2);
+    EXPECT_DOUBLE_EQ(*from_the_edge(4, 5.5), 20);
+    EXPECT_DOUBLE_EQ(*from_the_edge(4, 6), 20);
+}
+
+TEST(Suspicion, is_of_15_percent_of_a_signal_or_of_two_effects_that_take_a_quarter_off) {
+    EXPECT_FALSE(is_suspicious(0.149, 0, 10, 1));
+    EXPECT_TRUE(is_suspicious(0.15, 0, 1, 1));
+    EXPECT_FALSE(is_suspicious(0, 1, 10, 1));
+    EXPECT_TRUE(is_suspicious(0, 2, 1.31, 1));
+    EXPECT_FALSE(is_suspicious(0, 2, 1.3, 1));
+    EXPECT_TRUE(is_suspicious(0, 3, 2.7, 2));
+    EXPECT_FALSE(is_no_ground(25));
+    EXPECT_TRUE(is_no_ground(25.1));
+    EXPECT_FALSE(describes_nothing(0.899));
+    EXPECT_TRUE(describes_nothing(0.9));
+    EXPECT_TRUE(describes_nothing(std::nan(""))); // of which nothing is known
+}
+
+// Of a signal of 2 a residual of 1.3 at a noise of 0.5: sqrt(1.69 - 0.25) / 2 = 0.6.
+TEST(Misfit, is_what_is_left_of_a_signal_beyond_noise_and_the_worst_is_of_what_drives) {
+    Dataset data = hand_made::data_of(2, 4, 0.5);
+    for (Balance &b : data.balance) {
+        b.noise = 0.5;
+        for (double &y : b.measured) y = 2;
+    }
+    Eigen::VectorXd left = Eigen::VectorXd::Zero(8);
+    left.tail(4) << 1.3, -1.3, 1.3, -1.3;
+    left.head(4).setConstant(0.6); // sqrt(0.36 - 0.25) / 2 = 0.166
+    const auto of = [&](BalanceKind kind) {
+        data.balance[1].kind = kind;
+        return hand_made::problem_of(data, {}, Eigen::MatrixXd(8, 0), left);
+    };
+    const std::vector<double> m = misfits(of(BalanceKind::radar));
+    EXPECT_NEAR(m[0], std::sqrt(0.11) / 2, 1e-12);
+    EXPECT_NEAR(m[1], 0.6, 1e-12);
+    for (const BalanceKind kind :
+         {BalanceKind::radar, BalanceKind::current_torque, BalanceKind::camera_x, BalanceKind::force, BalanceKind::torque})
+        EXPECT_NEAR(worst_misfit(of(kind)), 0.6, 1e-12) << static_cast<int>(kind);
+    for (const BalanceKind kind :
+         {BalanceKind::accel, BalanceKind::yaw_rate, BalanceKind::camera_y, BalanceKind::camera_yaw, BalanceKind::current_voltage})
+        EXPECT_NEAR(worst_misfit(of(kind)), std::sqrt(0.11) / 2, 1e-12) << static_cast<int>(kind);
+    left.setConstant(0.1); // less than noise, and of no signal
+    EXPECT_EQ(worst_misfit(of(BalanceKind::radar)), 0);
+    left.setConstant(2);
+    for (double &y : data.balance[1].measured) y = 0;
+    EXPECT_EQ(misfits(of(BalanceKind::radar))[1], 0);
 }
 
 } // namespace

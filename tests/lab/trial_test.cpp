@@ -305,5 +305,45 @@ TEST(Nonlinear, are_play_and_lag_alone) {
     EXPECT_FALSE(strongly_nonlinear("body_drag") || strongly_nonlinear("") || strongly_nonlinear("slip_sinkage"));
 }
 
+TEST(Solid, is_an_effect_larger_than_its_uncertainty_in_one_strength_and_of_interest) {
+    CandidateResult r;
+    r.candidate = candidate("a"); // of interest from 0.1 on
+    const auto is = [&](double value, double low, double high) {
+        r.value = {value}, r.low = {low}, r.high = {high};
+        return is_solid(r);
+    };
+    EXPECT_TRUE(is(0.5, 0.01, 0.99));
+    EXPECT_FALSE(is(0.5, -0.01, 1.01));
+    EXPECT_FALSE(is(0.5, 0, 1));
+    EXPECT_TRUE(is(-0.5, -0.99, -0.01));
+    EXPECT_FALSE(is(0.09, 0.08, 0.1));
+    r.candidate.strengths.resize(2), r.candidate.of_interest = {0.1, 0.1};
+    r.value = {0.01, 0.5}, r.low = {-0.1, 0.4}, r.high = {0.12, 0.6};
+    EXPECT_TRUE(is_solid(r));
+    r.low[1] = -0.1;
+    EXPECT_FALSE(is_solid(r));
+}
+
+// The radar's own scale is of the soil in this machine: held where it stood without the candidate, the candidate takes all that is left.
+TEST(Ground, is_held_where_it_stood_and_the_rest_is_fitted_to_it) {
+    const Asked asked(0.5);
+    std::vector<FreeParameter> all = asked.own;
+    all.push_back(r1());
+    Problem with(asked.machine.data, asked.base->physics(), all);
+    with.keep_scales(*asked.base);
+    with.gauss_newton(2);
+    Problem before = *asked.base;
+    before.theta[1] = 0.3;
+    const Problem held = held_ground(with, before);
+    EXPECT_NEAR(held.theta[1], 0.3, 1e-12);
+    EXPECT_NEAR(held.parameters[1].minimum, held.parameters[1].base + 0.3, 1e-12);
+    EXPECT_NEAR(held.parameters[1].maximum, held.parameters[1].base + 0.3, 1e-12);
+    // r0 and r1 do the same, by the same rows: their sum stays, less what r0's stated deviation pulls of it
+    EXPECT_NEAR(held.theta[1] + held.theta[3], with.theta[1] + with.theta[3], 1e-3);
+    EXPECT_GT(std::fabs(with.theta[1] - 0.3), 0.1);
+    EXPECT_NEAR(held.theta[0], with.theta[0], 1e-3); // the others are where they were
+    EXPECT_EQ(held.parameters[0].minimum, with.parameters[0].minimum);
+}
+
 } // namespace
 } // namespace traction::lab

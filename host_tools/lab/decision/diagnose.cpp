@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -66,6 +65,11 @@ class Search {
     }
 
   private:
+    // The last rung of the ladder is this fit's.
+    void stands_at(const Problem &problem) {
+        d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
+    }
+
     void tick() {
         if (options_.progress) options_.progress(++done_, 500);
     }
@@ -74,12 +78,7 @@ class Search {
         const Physics physics = make_physics(model);
         Problem problem(data_, physics, free_parameters(model, physics));
         if (warm != nullptr) problem.start_near(*warm);
-        for (std::size_t i = 0; warm != nullptr && i < problem.parameters.size(); ++i)
-            for (std::size_t j = 0; j < warm->parameters.size(); ++j) {
-                const FreeParameter &a = problem.parameters[i], &b = warm->parameters[j];
-                if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
-                    problem.theta[static_cast<Eigen::Index>(i)] = warm->theta[static_cast<Eigen::Index>(j)];
-            }
+        if (warm != nullptr) take_increments(problem, *warm);
         problem.within_bounds(); // a linear step knows none, and from beyond them every step back costs
         problem.fit({});
         return problem;
@@ -88,16 +87,7 @@ class Search {
     // Values of what was accepted, by the joint fit.
     void refresh(const Problem &problem, const Screen &screen) {
         const std::vector<ParameterError> errors = screen.parameter_errors();
-        for (CandidateResult &a : d_.accepted)
-            for (std::size_t i = 0; i < problem.parameters.size(); ++i)
-                for (std::size_t j = 0; j < a.candidate.strengths.size(); ++j) {
-                    const FreeParameter &p = problem.parameters[i];
-                    if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
-                    a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
-                    const double half_width = errors[i].half_width + std::fabs(a.value[j]) * smoothing_loss(a.candidate, data_);
-                    a.low[j] = a.value[j] - half_width;
-                    a.high[j] = a.value[j] + half_width;
-                }
+        for (CandidateResult &a : d_.accepted) take_values(a, problem, errors, smoothing_loss(a.candidate, data_));
     }
 
     // Best shape of each effect and wheel, largest predicted reduction of the error first.
@@ -200,10 +190,7 @@ class Search {
     void prefer_from_afar(std::vector<Trial> &trials, std::size_t &winner, Next &next, Problem &problem, const Refit &refit_one) {
         const double gain = trials[winner].gain;
         if (!refit_from_afar(trials, refit_one)) return;
-        std::size_t best = trials.size();
-        for (std::size_t i = 0; i < trials.size(); ++i)
-            if (trials[i].verdict == "passes" && trials[i].refitted && trials[i].gain > (best < trials.size() ? trials[best].gain : gain))
-                best = i;
+        const std::size_t best = most_beyond(trials, gain);
         if (best == trials.size()) return;
         std::optional<Next> other = with(trials[best], problem);
         if (!other || !(other->held.error < next.held.error)) return;
@@ -255,7 +242,7 @@ class Search {
             const Scatter scatter(before);
             const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
             const auto take_off = [&](const Problem &fit) {
-                const Eigen::VectorXd smoothed = (scatter.squares - rounding_squares(data_, fit.physics())).cwiseProduct(scatter.part);
+                const Eigen::VectorXd smoothed = scatter.smoothed_by(data_, fit.physics());
                 scaled.sum -= smoothed.dot(weight);
                 noise.sum -= smoothed.dot(noise_weight(before));
             };
@@ -285,22 +272,9 @@ class Search {
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
         if (!pay && !falls_notably(held_, held, data_)) return std::nullopt;
+        if (!t.by_rows) t.sheet_alone = rival && broken == 0 ? spared : 0;
         problem.linearise();
         return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
-    }
-
-    // The fit with the soil's numbers where they stand without the candidate.
-    static Problem held_ground(const Problem &with, const Problem &before) {
-        Problem held = with;
-        for (std::size_t i = 0; i < before.parameters.size(); ++i) {
-            if (before.parameters[i].owner != "soil") continue;
-            const double stays = before.theta[static_cast<Eigen::Index>(i)];
-            held.parameters[i].minimum = held.parameters[i].maximum = before.parameters[i].base + stays;
-            held.theta[static_cast<Eigen::Index>(i)] = stays;
-        }
-        held.jacobian.resize(0, 0);
-        held.gauss_newton(2);
-        return held;
     }
 
     // Backward elimination: drops what no longer matters beside the others. `last`: the problem of the model as it stands, replaced with
@@ -308,9 +282,7 @@ class Search {
     void eliminate_backward(Problem &last) {
         for (std::size_t i = d_.accepted.size(); i-- > 0;) {
             const CandidateResult one = d_.accepted[i];
-            bool sure = false; // larger than its own uncertainty
-            for (std::size_t j = 0; j < one.value.size(); ++j) sure = sure || one.low[j] * one.high[j] > 0;
-            const bool solid = sure && large_enough(one.candidate, one.value);
+            const bool solid = is_solid(one);
             if (d_.accepted.size() == 1 && solid) return;
             Model without = model_without(d_.model, one.candidate);
             Problem problem = fitted(without, &last);
@@ -330,23 +302,28 @@ class Search {
         }
     }
 
-    // Does it predict blocks left out better, surely, by either's scales?
-    static bool predicts_better(const Problem &before, const Problem &after) {
-        const HeldOut left_before = held_out(before), left_after = held_out(after);
-        return fall_between(left_before, left_after, noise_weight(before)).sure() &&
-               fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
+    void remove(std::size_t i, Model without, const Problem &problem) {
+        take_back(d_, i);
+        if (d_.ladder.size() > 1) stands_at(problem);
+        d_.model = std::move(without);
+        refresh(problem, Screen(problem));
     }
 
-    void remove(std::size_t i, Model without, const Problem &problem) {
-        const std::string label = d_.accepted[i].candidate.label();
-        for (CandidateResult &r : d_.ranking)
-            if (r.candidate.label() == label && (r.verdict == "named" || r.verdict == "class")) r.verdict = "not_needed";
-        std::erase_if(d_.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
-        remove_class(d_, label);
-        if (d_.ladder.size() > 1) d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
-        d_.model = std::move(without);
-        d_.accepted.erase(d_.accepted.begin() + static_cast<std::ptrdiff_t>(i));
-        refresh(problem, Screen(problem));
+    // Beside a shape no name stands for which the stated tolerances alone speak, and too weakly for the error that is left: what the model
+    // lacks bends the sheet's numbers, and such a name straightens them. Whether one went.
+    bool drop_unsupported(Problem &last) {
+        for (std::size_t i = d_.accepted.size(); i-- > 0;) {
+            const std::optional<double> spared = d_.accepted[i].sheet_alone;
+            if (!spared || tolerances_pay(*spared, d_.ladder.back().heldout, 0, options_.least_prior_reduction)) continue;
+            const Candidate one = d_.accepted[i].candidate;
+            d_.messages.push_back(one.label() + " was found, but for the data sheet's sake alone, whose numbers are bent by what the model "
+                                                "lacks: not named");
+            Model without = model_without(d_.model, one);
+            last = fitted(without, &last);
+            remove(i, std::move(without), last);
+            return true;
+        }
+        return false;
     }
 
     // A shape that alone explains what was named, and more: no more than the first name stands, and only if it holds half of that. A name
@@ -365,6 +342,11 @@ class Search {
             std::vector<Candidate> named;
             for (const CandidateResult &a : d_.accepted) named.push_back(a.candidate);
             ShapeFindings findings = find_unknown(first, last, named, options_, of_first);
+            if ((findings.shape || (findings.proxy && may_take_its_place())) && drop_unsupported(last)) {
+                d_.unknown.reset();
+                again = true;
+                continue;
+            }
             if (findings.shape) d_.unknown = findings.shape;
             std::vector<std::size_t> &rest = findings.replaced;
             for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);
@@ -404,7 +386,7 @@ class Search {
         d_.model_fit = std::make_shared<const Problem>(fitted_problem(d_.model, data_));
         if (!(overall_error(*d_.model_fit) < overall_error(last))) return;
         last = *d_.model_fit;
-        d_.ladder.back().train = overall_error(last), d_.ladder.back().heldout = held_out(last).error;
+        stands_at(last);
         refresh(last, Screen(last));
     }
 
@@ -415,17 +397,7 @@ class Search {
             const sim::Effect *effect = sim::find_effect(a.candidate.effect);
             if (effect == nullptr) continue;
             Model freed = d_.model;
-            bool any = false;
-            for (EffectUse &use : freed.effects) {
-                if (use.name != a.candidate.effect || use.wheel != a.candidate.wheel) continue;
-                for (const sim::EffectParameter &spec : effect->parameters) {
-                    const auto found = use.parameters.find(std::string(spec.name));
-                    if (found == use.parameters.end() || !is_on_a_scale(spec)) continue;
-                    set_free(found->second, spec);
-                    any = true;
-                }
-            }
-            if (!any) continue;
+            if (!free_shapes(freed, a.candidate, *effect)) continue;
             Problem problem = fitted(freed, &last);
             if (!(overall_error(problem) < 1.0005 * overall_error(last))) continue;
             take_shapes(a, problem, freed);
@@ -435,27 +407,11 @@ class Search {
 
     void take_shapes(CandidateResult &a, Problem &problem, Model &freed) {
         const std::vector<ParameterError> errors = Screen(problem).parameter_errors();
-        for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-            const FreeParameter &p = problem.parameters[i];
-            if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel) continue;
-            const double value = p.base + problem.theta[static_cast<Eigen::Index>(i)];
-            for (auto &[key, variant] : a.candidate.variant) {
-                if (key != p.key) continue;
-                variant = value;
-                const double half = errors[i].half_width + (p.unit == "m" ? half_row_m(d_.model, data_) : 0);
-                a.shapes.push_back({p.key, p.unit, value, value - half, value + half});
-            }
-        }
+        take_shape_values(a, problem, errors, half_row_m(d_.model, data_));
         d_.model = std::move(freed);
         d_.model_fit.reset();
-        for (EffectUse &use : d_.model.effects)
-            for (const ShapeEstimate &shape : a.shapes)
-                if (use.name == a.candidate.effect && use.wheel == a.candidate.wheel) {
-                    Parameter &p = use.parameters.at(shape.key);
-                    p.value = shape.value, p.low = shape.low, p.high = shape.high, p.fixed = true;
-                    p.minimum = -std::numeric_limits<double>::infinity(), p.maximum = -p.minimum;
-                }
-        d_.ladder.back().train = overall_error(problem), d_.ladder.back().heldout = held_out(problem).error;
+        fix_shapes(d_.model, a);
+        stands_at(problem);
         refresh(problem, Screen(problem));
     }
 

@@ -12,10 +12,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double suspicious = 0.15;       // (1) of the worst balance, before effects
-constexpr double describes_nothing = 0.9; // (1) of the worst balance, with all that was accepted
-constexpr double never_nothing = 25;      // times noise: uneven ground leaves 3 to 6, what no effect or shape explains at 25 is no ground
-constexpr double beyond_a_sheet = 3;      // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
+constexpr double beyond_a_sheet = 3; // stated deviations: a datum that the fit itself takes beyond these and its gross ratio is wrong
 
 } // namespace
 
@@ -33,6 +30,18 @@ std::vector<double> misfits(const Problem &problem) {
         out.push_back(signal > 0 ? std::sqrt(std::max(0.0, left) / signal) : 0);
     }
     return out;
+}
+
+double worst_misfit(const Problem &problem) {
+    const std::vector<double> m = misfits(problem);
+    double worst = 0;
+    for (std::size_t b = 0; b < m.size(); ++b) {
+        const BalanceKind kind = problem.data().balance[b].kind;
+        if (kind == BalanceKind::current_torque || kind == BalanceKind::radar || kind == BalanceKind::camera_x ||
+            kind == BalanceKind::force || kind == BalanceKind::torque)
+            worst = std::max(worst, m[b]);
+    }
+    return worst;
 }
 
 namespace {
@@ -70,8 +79,9 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
             out.suspect = {datum.name, value, moved, unit, error, datum.gross, datum.more_is_an_effect};
             out.problem = std::move(problem);
         }
-        if (ratio > 0.03 && ratio < 5.5) return out;
-        start *= ratio < 1 ? 0.05 : 5;
+        const std::optional<double> next = from_the_edge(start, ratio);
+        if (!next) return out;
+        start = *next;
     }
     return out;
 }
@@ -157,31 +167,18 @@ std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
 
 std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &first, const Problem &last, std::size_t accepted,
                            double shape_gain) {
-    // Acceleration and yaw rate are near zero in a drive straight on at one speed, and what is left of them is ground: not asked.
-    const auto worst_of = [](const Problem &problem) {
-        const std::vector<double> m = misfits(problem);
-        double worst = 0;
-        for (std::size_t b = 0; b < m.size(); ++b) {
-            const BalanceKind kind = problem.data().balance[b].kind;
-            if (kind == BalanceKind::current_torque || kind == BalanceKind::radar || kind == BalanceKind::camera_x ||
-                kind == BalanceKind::force || kind == BalanceKind::torque)
-                worst = std::max(worst, m[b]);
-        }
-        return worst;
-    };
-    const double before = overall_error(first), after = overall_error(last), worst = worst_of(last);
+    const double before = overall_error(first), after = overall_error(last), worst = worst_misfit(last);
     bool at_bound = false;
     for (std::size_t i = 0; i < first.parameters.size(); ++i) at_bound = at_bound || first.at_bound(i);
-    const bool nothing_found = accepted == 0 && !(shape_gain > 0), far_off = nothing_found && after > never_nothing;
+    const bool nothing_found = accepted == 0 && !(shape_gain > 0), far_off = nothing_found && is_no_ground(after);
     Doubt out;
     out.error = before;
     if (nothing_found) out.suspects = moved_grossly(stated, first, out.error);
-    if (!at_bound && worst_of(first) < suspicious && !far_off && out.suspects.empty() && !(accepted >= 2 && before > 1.3 * after))
-        return std::nullopt;
+    if (!at_bound && !far_off && out.suspects.empty() && !is_suspicious(worst_misfit(first), accepted, before, after)) return std::nullopt;
     const double left = after * (1 - shape_gain);
     const double need = largest_share(accepted, before, left);
     std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
-    if (before > never_nothing)
+    if (is_no_ground(before))
         found = freed(stated, data, all_data());
     else if (data.independent_rows || fit_scatter(first) < need * before)
         found = freed(stated, data, promising_data(stated, first, need));
@@ -192,7 +189,7 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
             out.suspects.push_back(std::move(f.suspect));
     }
     out.suspects = told_once(std::move(out.suspects));
-    if (out.suspects.empty() && worst < describes_nothing && !far_off) return std::nullopt;
+    if (out.suspects.empty() && !describes_nothing(worst) && !far_off) return std::nullopt;
     out.text = what_to_look_at(out.suspects, worst);
     return out;
 }

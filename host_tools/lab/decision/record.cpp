@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace traction::lab {
 
@@ -71,6 +72,27 @@ void record(Diagnosis &d, const std::vector<Trial> &trials, std::size_t winner, 
     d.model.effects.push_back(effect_of(w.candidate, w.value));
 }
 
+void take_values(CandidateResult &a, const Problem &problem, const std::vector<ParameterError> &errors, double loss) {
+    for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+        for (std::size_t j = 0; j < a.candidate.strengths.size(); ++j) {
+            const FreeParameter &p = problem.parameters[i];
+            if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
+            a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
+            const double half_width = errors[i].half_width + std::fabs(a.value[j]) * loss;
+            a.low[j] = a.value[j] - half_width;
+            a.high[j] = a.value[j] + half_width;
+        }
+}
+
+void take_back(Diagnosis &d, std::size_t i) {
+    const std::string label = d.accepted[i].candidate.label();
+    for (CandidateResult &r : d.ranking)
+        if (r.candidate.label() == label && (r.verdict == "named" || r.verdict == "class")) r.verdict = "not_needed";
+    std::erase_if(d.ladder, [&](const LadderStep &r) { return r.label == "+ " + label; });
+    remove_class(d, label);
+    d.accepted.erase(d.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
 bool was_seen(const Diagnosis &d, const std::string &effect) {
     const auto is = [&](const std::string &label) { return label == effect || label.starts_with(effect + " on wheel"); };
     for (const ConfoundedClass &c : d.classes)
@@ -106,6 +128,44 @@ void set_free(Parameter &p, const sim::EffectParameter &spec) {
     p.minimum = std::max(spec.minimum, spec.unit == "m" ? p.value - reach_m : p.value / reach);
     p.maximum = std::min(spec.maximum, spec.unit == "m" ? p.value + reach_m : p.value * reach);
     if (spec.unit == "rad") p.minimum = p.value - 1.6, p.maximum = p.value + 1.6;
+}
+
+bool free_shapes(Model &model, const Candidate &c, const sim::Effect &effect) {
+    bool any = false;
+    for (EffectUse &use : model.effects) {
+        if (use.name != c.effect || use.wheel != c.wheel) continue;
+        for (const sim::EffectParameter &spec : effect.parameters) {
+            const auto found = use.parameters.find(std::string(spec.name));
+            if (found == use.parameters.end() || !is_on_a_scale(spec)) continue;
+            set_free(found->second, spec);
+            any = true;
+        }
+    }
+    return any;
+}
+
+void take_shape_values(CandidateResult &a, const Problem &problem, const std::vector<ParameterError> &errors, double half_row) {
+    for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+        const FreeParameter &p = problem.parameters[i];
+        if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel) continue;
+        const double value = p.base + problem.theta[static_cast<Eigen::Index>(i)];
+        for (auto &[key, variant] : a.candidate.variant) {
+            if (key != p.key) continue;
+            variant = value;
+            const double half = errors[i].half_width + (p.unit == "m" ? half_row : 0);
+            a.shapes.push_back({p.key, p.unit, value, value - half, value + half});
+        }
+    }
+}
+
+void fix_shapes(Model &model, const CandidateResult &a) {
+    for (EffectUse &use : model.effects)
+        for (const ShapeEstimate &shape : a.shapes)
+            if (use.name == a.candidate.effect && use.wheel == a.candidate.wheel) {
+                Parameter &p = use.parameters.at(shape.key);
+                p.value = shape.value, p.low = shape.low, p.high = shape.high, p.fixed = true;
+                p.minimum = -std::numeric_limits<double>::infinity(), p.maximum = -p.minimum;
+            }
 }
 
 double smoothing_loss(const Candidate &c, const Dataset &data) {

@@ -20,6 +20,13 @@ void note_not_excited(Diagnosis &diagnosis, const std::vector<Trial> &trials);
 void record(Diagnosis &diagnosis, const std::vector<Trial> &trials, std::size_t winner, const std::vector<std::size_t> &members,
             const std::string &rival, double base_error, const Screen &screen, bool is_first);
 
+// An accepted effect's sizes and 95 % intervals by the fit of the model that has it; `loss`: the share of a size that is not known beside
+// (smoothing_loss).
+void take_values(CandidateResult &accepted, const Problem &problem, const std::vector<ParameterError> &errors, double loss);
+
+// An accepted effect is none any more: not in the ladder, the ranking, the classes.
+void take_back(Diagnosis &diagnosis, std::size_t accepted);
+
 // What was found, or may be meant, can be seen in this log.
 bool was_seen(const Diagnosis &diagnosis, const std::string &effect);
 
@@ -32,6 +39,12 @@ Model model_without(const Model &model, const Candidate &candidate);
 // from the station at which it was found: a factor of four or a metre to either side, a quarter of a turn and a little of an angle.
 bool is_on_a_scale(const sim::EffectParameter &spec);
 void set_free(Parameter &parameter, const sim::EffectParameter &spec);
+
+// An accepted effect's shape parameters that are numbers on a scale, set free in the model; whether it has any.
+bool free_shapes(Model &model, const Candidate &candidate, const sim::Effect &effect);
+// Their values by the fit of that model, an edge along the way wider by `half_row`; and the model with them held there again.
+void take_shape_values(CandidateResult &accepted, const Problem &problem, const std::vector<ParameterError> &errors, double half_row);
+void fix_shapes(Model &model, const CandidateResult &accepted);
 
 // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses at the
 // ripple's frequency, at the mean speed of the turning wheels, is not known of its size. A share of it.

@@ -126,6 +126,29 @@ const Trial *better_place(const std::vector<Trial> &trials) {
     return best;
 }
 
+std::size_t most_beyond(const std::vector<Trial> &trials, double gain) {
+    std::size_t best = trials.size();
+    for (std::size_t i = 0; i < trials.size(); ++i)
+        if (trials[i].verdict == "passes" && trials[i].refitted && trials[i].gain > (best < trials.size() ? trials[best].gain : gain))
+            best = i;
+    return best;
+}
+
+void take_increments(Problem &problem, const Problem &from) {
+    for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+        for (std::size_t j = 0; j < from.parameters.size(); ++j) {
+            const FreeParameter &a = problem.parameters[i], &b = from.parameters[j];
+            if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
+                problem.theta[static_cast<Eigen::Index>(i)] = from.theta[static_cast<Eigen::Index>(j)];
+        }
+}
+
+bool predicts_better(const Problem &before, const Problem &after) {
+    const HeldOut left_before = held_out(before), left_after = held_out(after);
+    return fall_between(left_before, left_after, noise_weight(before)).sure() &&
+           fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
+}
+
 bool lost(const Trial &now, const Earlier &earlier) {
     if (now.candidate.variant != earlier.variant || (now.candidate.touched & stage_motion) == 0) return false;
     for (std::size_t j = 0; j < now.value.size(); ++j)

@@ -49,6 +49,15 @@ void judge_beyond_range(std::vector<Trial> &trials, double base_error, std::vect
 // A refit may find the baseline a better place while its own effect says nothing: the one that fell the most; nullptr: none did.
 const Trial *better_place(const std::vector<Trial> &trials);
 
+// Of those that were refitted and pass, the one that gains the most, and more than `gain`; trials.size(): none does.
+std::size_t most_beyond(const std::vector<Trial> &trials, double gain);
+
+// The increments of another problem's parameters of the same name and stated value.
+void take_increments(Problem &problem, const Problem &from);
+
+// Does `after` predict blocks left out better, surely, in noises and by the scales of `before`?
+bool predicts_better(const Problem &before, const Problem &after);
+
 // What passed in a round before, as it was found there.
 struct Earlier {
     std::vector<std::pair<std::string, double>> variant;

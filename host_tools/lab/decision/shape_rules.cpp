@@ -12,9 +12,11 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double some_wheels_share = 0.2; // of the chance of a false alarm, spent on shapes of one wheel or axle
-constexpr double some_wheels_tried = 125; // electric shapes, and straight lines of the ground, x wheels and axles
-constexpr double shapes_tried = 74;       // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double left_to_explain = 0.01;     // of the error: assumed
+constexpr double place_beside_a_shape = 2.0; // of what was named: assumed
+constexpr double some_wheels_share = 0.2;    // of the chance of a false alarm, spent on shapes of one wheel or axle
+constexpr double some_wheels_tried = 125;    // electric shapes, and straight lines of the ground, x wheels and axles
+constexpr double shapes_tried = 74;          // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 } // namespace
 
@@ -173,6 +175,17 @@ std::vector<std::size_t> explained_by_shape(const Problem &last, const std::vect
         list.push_back(i);
     }
     return list;
+}
+
+bool anything_left(const std::vector<ShapeScore> &scores, double heldout_error) {
+    return std::any_of(scores.begin(), scores.end(),
+                       [&](const ShapeScore &s) { return s.assessment.gain >= left_to_explain * heldout_error; });
+}
+
+bool takes_their_place(std::size_t names, double gain, double named_gain, double error, bool leaves_a_shape,
+                       const DiagnoseOptions &options) {
+    if (names > 1) return gain > place_of_several * named_gain;
+    return gain > (leaves_a_shape ? place_beside_a_shape : options.shape_margin) * named_gain && gain - named_gain >= 2 * error;
 }
 
 bool repeats(const ShapeScore &s) {

@@ -66,6 +66,16 @@ std::optional<UnknownShape> confounding_shape(const Problem &last, const Candida
 std::vector<std::size_t> explained_by_shape(const Problem &last, const std::vector<Candidate> &named, const std::string &shape,
                                             const std::vector<ShapeScore> &scores);
 
+// Where nothing is left that a shape would explain, a hundredth of the error, no shape does better than what was named.
+bool anything_left(const std::vector<ShapeScore> &scores, double heldout_error);
+
+// May one shape that gains `gain` stand for the `names` that say the same, where all that was named gains `named_gain`; `error`: the
+// standard error of their difference over blocks? In the place of several it is the simpler model; of one name it must do more, surely, and
+// twice as much where with the name a shape is left (`leaves_a_shape`): of one that leaves a shape behind only a proxy's name goes.
+inline constexpr double place_of_several = 0.95;
+bool takes_their_place(std::size_t names, double gain, double named_gain, double error, bool leaves_a_shape,
+                       const DiagnoseOptions &options);
+
 // Evidence that repeats: sure beside its scatter over blocks, or very sure by the test and not the work of two blocks alone.
 bool repeats(const ShapeScore &shape);
 

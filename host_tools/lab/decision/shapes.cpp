@@ -1,204 +1,13 @@
 #include "shapes.h"
 
-#include "candidate.h"
 #include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
-#include "host_tools/lab/fit/sparse_jacobian.h"
 #include "shape_rules.h"
+#include "shape_scores.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <memory>
-#include <numbers>
 
 namespace traction::lab {
-
-namespace {
-
-// Several shapes of equally many coefficients side by side: one pass serves them all.
-class StackedTerm : public Term {
-  public:
-    void add(std::shared_ptr<Term> term, std::size_t count) { part_.push_back(std::move(term)), count_ = count; }
-    double value(const Signals &signals, const double *c) const override {
-        double sum = 0;
-        for (std::size_t i = 0; i < part_.size(); ++i) sum += part_[i]->value(signals, c + i * count_);
-        return sum;
-    }
-    void weights(const Signals &signals, std::size_t, double *weight) const override {
-        for (std::size_t i = 0; i < part_.size(); ++i) part_[i]->weights(signals, count_, weight + i * count_);
-    }
-
-  private:
-    std::vector<std::shared_ptr<Term>> part_;
-    std::size_t count_ = 0;
-};
-
-// Columns of all shapes: those that move the body share the response to a unit of their target.
-class ShapeColumns {
-  public:
-    explicit ShapeColumns(Problem &problem) : problem_(problem), physics_(problem.physics()) {
-        plain_ = plain_currents(physics_) && physics_.terms.empty() && problem.forward().has_linear_base();
-    }
-
-    Eigen::MatrixXd of(const Candidate &c) {
-        Physics at = physics_;
-        c.prepare(at);
-        const Term &term = *at.terms.back().term;
-        const std::size_t count = c.strengths.size();
-        const bool electric = (c.touched & (stage_torque | stage_voltage)) != 0 && (c.touched & (stage_motion | stage_sensors)) == 0;
-        if (plain_ && count <= most_shapes && c.touched == stage_motion && c.target != TermTarget::body_force)
-            return problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), term, count);
-        if (plain_ && electric && !physics_.unsigned_current)
-            return problem_.row_scale.asDiagonal() * problem_.forward().shaped_electric(physics_, electric_unit(c.target), term, count);
-        Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
-        for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
-        return columns;
-    }
-
-    // Of a shape that moves the body, on each wheel alone; empty where that is not to be had in one pass.
-    std::vector<Eigen::MatrixXd> of_each_wheel(const Candidate &c) {
-        const std::size_t count = c.strengths.size(), wheels = physics_.wheel.size();
-        std::vector<Eigen::MatrixXd> list;
-        if (!plain_ || c.touched != stage_motion || wheels < 2 || wheels * count > most_shapes) return list;
-        Physics at = physics_;
-        c.prepare(at);
-        const Eigen::MatrixXd columns =
-            problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), *at.terms.back().term, count, true);
-        for (std::size_t i = 0; i < wheels; ++i)
-            list.push_back(columns.middleCols(static_cast<Eigen::Index>(i * count), static_cast<Eigen::Index>(count)));
-        return list;
-    }
-
-    // Of waves, which come many and alike: as many as one pass holds.
-    std::vector<Eigen::MatrixXd> of_waves(const std::vector<Candidate> &waves) {
-        std::vector<Eigen::MatrixXd> list;
-        for (std::size_t first = 0; first < waves.size(); first += most_shapes / 2) {
-            const std::size_t last = std::min(waves.size(), first + most_shapes / 2);
-            if (!plain_) {
-                for (std::size_t i = first; i < last; ++i) list.push_back(of(waves[i]));
-                continue;
-            }
-            StackedTerm all;
-            for (std::size_t i = first; i < last; ++i) all.add(make_periodic(waves[i].axis, waves[i].order), 2);
-            const Eigen::MatrixXd columns = problem_.row_scale.asDiagonal() *
-                                            problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
-            for (Eigen::Index i = 0; i < columns.cols(); i += 2) list.push_back(columns.middleCols(i, 2));
-        }
-        return list;
-    }
-
-  private:
-    const UnitResponse &unit(TermTarget target) {
-        auto found = units_.find(target);
-        if (found == units_.end())
-            found = units_.emplace(target, unit_response(problem_.data(), physics_, problem_.forward().motion(), target)).first;
-        return found->second;
-    }
-    const std::vector<Forward::ElectricSeries> &electric_unit(TermTarget target) {
-        auto found = electric_units_.find(target);
-        if (found == electric_units_.end())
-            found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
-        return found->second;
-    }
-
-    Problem &problem_;
-    Physics physics_;
-    bool plain_ = true;
-    std::map<TermTarget, UnitResponse> units_;
-    std::map<TermTarget, std::vector<Forward::ElectricSeries>> electric_units_;
-};
-
-ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Screen &screen, const Dataset *keep) {
-    ShapeScore s;
-    s.candidate = c;
-    s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
-    s.p_value = corrected(s.candidate, s.assessment);
-    if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(columns, s.assessment);
-    if (keep != nullptr) s.columns = SparseJacobian(*keep, columns);
-    return s;
-}
-
-// A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
-void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
-                        const Eigen::MatrixXd &columns, const Dataset *keep) {
-    const unsigned electric = stage_torque | stage_voltage;
-    if ((shape.touched & electric) == 0 || (shape.touched & ~electric) != 0 || shape.varies_between_wheels) return;
-    for (const std::vector<int> &group : wheel_groups(problem.physics(), true)) {
-        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
-        Eigen::Index first = 0;
-        for (const Balance &b : problem.data().balance) {
-            const auto n = static_cast<Eigen::Index>(b.measured.size());
-            if (std::find(group.begin(), group.end(), b.wheel) != group.end()) part.middleRows(first, n) = columns.middleRows(first, n);
-            first += n;
-        }
-        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
-    }
-}
-
-// One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.
-void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
-                               ShapeColumns &columns, const Dataset *keep) {
-    if (shape.touched != stage_motion || !is_straight(shape) || shape.order > 0) return;
-    const std::vector<Eigen::MatrixXd> each = columns.of_each_wheel(shape);
-    if (each.empty()) return;
-    for (const std::vector<int> &group : wheel_groups(problem.physics(), false)) {
-        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(each[0].rows(), each[0].cols());
-        for (const int i : group) part += each[static_cast<std::size_t>(i)];
-        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
-    }
-}
-
-std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keeps = false) {
-    const Dataset *keep = keeps ? &problem.data() : nullptr; // the columns: of no use where nothing is named
-    std::vector<ShapeScore> list;
-    ShapeColumns columns(problem);
-    std::vector<Candidate> waves;
-    for (const Candidate &c :
-         shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
-        if (c.order > 0 && c.target == TermTarget::soil_strength) {
-            waves.push_back(c);
-            continue;
-        }
-        const Eigen::MatrixXd C = columns.of(c);
-        list.push_back(scored(c, C, screen, keep));
-        add_on_some_wheels(list, problem, screen, c, C, keep);
-        add_moving_on_some_wheels(list, problem, screen, c, columns, keep);
-        for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
-            Candidate bump = c;
-            bump.effect += ", a bump";
-            const auto at = c.knots.begin() + j;
-            bump.knots.assign(at - 1, at + 2);
-            bump.strengths = {c.strengths[static_cast<std::size_t>(j)]};
-            list.push_back(scored(bump, C.col(j), screen, keep));
-        }
-    }
-    const std::vector<Eigen::MatrixXd> of_waves = columns.of_waves(waves);
-    for (std::size_t i = 0; i < waves.size(); ++i) list.push_back(scored(waves[i], of_waves[i], screen, keep));
-    std::stable_sort(list.begin(), list.end(),
-                     [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
-    return list;
-}
-
-// What a shape that moves the body gains by smoothing the encoders' scatter: no evidence (fit/scatter.h).
-class Smoothing {
-  public:
-    Smoothing(const Problem &problem, const Scatter &scatter) : problem_(problem), scatter_(scatter) {}
-    double of(const ShapeScore &s) {
-        if ((s.candidate.touched & stage_motion) == 0 || s.candidate.some_wheels) return 0;
-        Physics with = problem_.physics();
-        s.candidate.prepare(with);
-        for (std::size_t j = 0; j < with.terms.back().coefficients.size(); ++j)
-            with.terms.back().coefficients[j] = s.assessment.strength[static_cast<Eigen::Index>(j)];
-        return (scatter_.squares - rounding_squares(problem_.data(), with)).cwiseProduct(scatter_.part).dot(problem_.row_scale.cwiseAbs2());
-    }
-
-  private:
-    const Problem &problem_;
-    const Scatter &scatter_;
-};
-
-} // namespace
 
 ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options,
                            ShapeScores &of_first) {
@@ -215,18 +24,14 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     std::vector<ShapeScore> of_last;
     if (!alone) of_last = all_shapes(at_last, last_screen, named_count > 0);
     const std::vector<ShapeScore> &scores = alone ? beside_first(last_screen) : of_last;
-    Smoothing smoothing(last, scatter);
     const ShapeScore *best = worth_a_word(
-        scores, [&](const ShapeScore &shape) { return smoothing.of(shape); }, named_count > 0, last_screen.heldout_error(), scatter.share,
-        options);
+        scores, [&](const ShapeScore &shape) { return smoothed_by(shape, last, scatter); }, named_count > 0, last_screen.heldout_error(),
+        scatter.share, options);
     if (best != nullptr) findings.shape = describe(*best, last_screen.heldout_error());
     if (named_count == 0) return findings;
     for (std::size_t i = named_count; i-- > 0 && !findings.proxy;)
         if ((findings.cause = confounding_shape(last, named[i], scores, best, options))) findings.proxy = i;
-    // where nothing is left that any shape would explain, no shape can do better than what was named
-    double left = 0;
-    for (const ShapeScore &s : scores) left = std::max(left, s.assessment.gain);
-    if (!findings.shape && left < 0.01 * last_screen.heldout_error()) return findings;
+    if (!findings.shape && !anything_left(scores, last_screen.heldout_error())) return findings; // no shape can do better
     // does one shape alone do better than all that was named?
     const Screen first_screen(at_first);
     at_last.keep_scales(first);
@@ -234,14 +39,12 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     const Screen named_screen(at_last);
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : beside_first(first_screen)) {
-        if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > 0.95 * named_gain)) continue;
+        if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > place_of_several * named_gain))
+            continue;
         const std::vector<std::size_t> replaced = explained_by_shape(last, named, s.candidate.effect, scores);
         if (replaced.empty()) continue;
-        // one shape in place of several effects is the simpler model; of one effect that leaves a shape behind only a proxy's name
-        // goes
-        const double margin = replaced.size() > 1 ? 0.95 : findings.shape ? 2.0 : options.shape_margin;
         const double error = sum_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
-        if (!(s.assessment.gain > margin * named_gain) || (replaced.size() == 1 && s.assessment.gain - named_gain < 2 * error)) continue;
+        if (!takes_their_place(replaced.size(), s.assessment.gain, named_gain, error, findings.shape.has_value(), options)) continue;
         findings.shape = describe(s, first_screen.heldout_error());
         findings.replaced = replaced, findings.gain_squares = s.assessment.gain;
         return findings;

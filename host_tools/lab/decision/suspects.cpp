@@ -18,6 +18,10 @@ constexpr double much_better = 0.5;   // of the error as stated
 constexpr double better = 0.75;       // the same, where an effect was named
 constexpr double as_much = 1.02;      // of the error that what was named leaves
 constexpr double sure = 2;            // standard errors of the blocks' differences
+constexpr double suspicious = 0.15;   // (1) of doubt.h, before effects
+constexpr double all_of_it = 0.9;     // the same with all that was accepted: of the signal itself
+constexpr double never_ground = 25;   // times noise: what neither effect nor shape explains there is no ground
+constexpr double quarter_less = 1.3;  // of an error, that two effects and more take a quarter off
 constexpr double looked_at_s = 20;    // what is grossly wrong shows wherever the model fails: there each datum is tried first
 
 constexpr Datum data_of_a_model[] = {
@@ -66,6 +70,19 @@ bool set_free(Model &model, const Datum &datum, double start) {
     }
     return any;
 }
+
+std::optional<double> from_the_edge(double start, double ratio) {
+    if (ratio > 0.03 && ratio < 5.5) return std::nullopt;
+    return start * (ratio < 1 ? 0.05 : 5);
+}
+
+bool is_suspicious(double worst, std::size_t accepted, double before, double after) {
+    return !(worst < suspicious) || (accepted >= 2 && before > quarter_less * after);
+}
+
+bool is_no_ground(double error) { return error > never_ground; }
+
+bool describes_nothing(double worst) { return !(worst < all_of_it); }
 
 bool is_gross(const Suspect &s) { return s.fitted < s.stated / s.gross || (!s.more_is_an_effect && s.fitted > s.stated * s.gross); }
 

@@ -4,6 +4,7 @@
 #include "doubt.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,18 @@ std::vector<Parameter *> values_of(Model &model, const Datum &datum);
 // The datum times `start`, free from a hundredth to six times that. Whether the model has it.
 bool set_free(Model &model, const Datum &datum, double start);
 
+// A search that began at `start` times what is stated and ended at `ratio` times its own begin stands at the edge of what it may be: where
+// it goes on; nothing: it ended within.
+std::optional<double> from_the_edge(double start, double ratio);
+
 bool is_gross(const Suspect &suspect);
+
+// May some datum be at fault? `worst`, (1) of doubt.h before any effect, or two effects and more that take a quarter off the error: before
+// and after them, in noises. How much is left where no effect and no shape was found says it by itself (is_no_ground): uneven ground leaves
+// 3 to 6 times the noise. So does a balance that is left as a whole, whatever was named.
+bool is_suspicious(double worst, std::size_t accepted, double before, double after);
+bool is_no_ground(double error);
+bool describes_nothing(double worst);
 
 // The part of the log where the model leaves the most, balance by balance; a row counts as four times its balance's mean at most.
 Dataset worst_stretch(const Problem &first);

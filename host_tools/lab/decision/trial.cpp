@@ -82,6 +82,25 @@ bool large_enough(const Candidate &c, const std::vector<double> &value) {
     return std::sqrt(size) >= least;
 }
 
+bool is_solid(const CandidateResult &r) {
+    bool sure = false;
+    for (std::size_t j = 0; j < r.value.size(); ++j) sure = sure || r.low[j] * r.high[j] > 0;
+    return sure && large_enough(r.candidate, r.value);
+}
+
+Problem held_ground(const Problem &with, const Problem &before) {
+    Problem held = with;
+    for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+        if (before.parameters[i].owner != "soil") continue;
+        const double stays = before.theta[static_cast<Eigen::Index>(i)];
+        held.parameters[i].minimum = held.parameters[i].maximum = before.parameters[i].base + stays;
+        held.theta[static_cast<Eigen::Index>(i)] = stays;
+    }
+    held.jacobian.resize(0, 0);
+    held.gauss_newton(2);
+    return held;
+}
+
 // The ends of the 95 % intervals that lie nearer to zero.
 std::vector<double> near_ends(const Trial &t) {
     std::vector<double> near;
@@ -199,10 +218,10 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model
 }
 
 void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
-    const bool by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
-                         t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
-    const bool gains = t.gain > 0 && (by_rows || t.assessment.spared > options.least_prior_reduction);
-    if (!((by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
+    t.by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
+                t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
+    const bool gains = t.gain > 0 && (t.by_rows || t.assessment.spared > options.least_prior_reduction);
+    if (!((t.by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
         t.verdict = "wrong_sign";
@@ -230,6 +249,7 @@ CandidateResult result_of(const Trial &t, double base_error, const Screen &scree
     r.gain_high = (t.gain + 1.96 * t.gain_error) * unit;
     r.p_value = t.p_value;
     r.verdict = t.verdict;
+    r.sheet_alone = t.sheet_alone;
     if (const sim::Effect *effect = sim::find_effect(t.candidate.effect)) r.explains = std::string(effect->signature);
     std::vector<std::pair<double, std::size_t>> order;
     double positive = 0;

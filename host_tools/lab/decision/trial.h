@@ -5,6 +5,7 @@
 #include "diagnose.h"
 #include "host_tools/lab/fit/screen.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct Trial {
     Eigen::VectorXd start_change;                 // of the baseline's parameters there
     std::string verdict;
     bool refitted = false;
+    bool by_rows = false;              // the rows alone speak for it, whatever the stated tolerances gain (judge)
+    std::optional<double> sheet_alone; // of a name for which the rows alone do not speak: squared stated deviations that it spares
     bool smooths = false;     // most of what it gains is by not following the encoders' scatter: no evidence, of itself or beside another
     bool at_least = false;    // its size lies where the fit may go no further, yet nothing else explains as much
     Eigen::VectorXd baseline; // increments of the baseline's parameters, where refitted
@@ -43,11 +46,16 @@ void scan(Trial &trial, Problem &base, const Screen &screen);
 // Fits baseline plus candidate in full.
 void refit(Trial &trial, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data);
 
+// The fit of a model with a candidate, the soil's numbers where they stand in the fit without it, whose parameters are the first.
+Problem held_ground(const Problem &with, const Problem &before);
+
 // explainable: the part of the baseline's held-out error that is not noise (Screen).
 void judge(Trial &trial, double explainable, const DiagnoseOptions &options);
 bool large_enough(const Candidate &candidate, const std::vector<double> &value);
 bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
-bool strongly_nonlinear(const std::string &effect);                              // its slope at zero says little of its size
+// Of an effect that was named: larger than its own uncertainty, and of interest.
+bool is_solid(const CandidateResult &result);
+bool strongly_nonlinear(const std::string &effect); // its slope at zero says little of its size
 
 CandidateResult result_of(const Trial &trial, double base_error, const Screen &screen);
 

@@ -20,4 +20,8 @@ Scatter::Scatter(const Problem &problem)
     share = whole > 0 ? part.cwiseProduct(squares).dot(weight) / whole : 0;
 }
 
+Eigen::VectorXd Scatter::smoothed_by(const Dataset &data, const Physics &other) const {
+    return (squares - rounding_squares(data, other)).cwiseProduct(part);
+}
+
 } // namespace traction::lab

@@ -20,6 +20,8 @@ struct Scatter {
     Eigen::VectorXd part;    // of (1), row by row, that counts
     double share = 0;        // of the problem's scaled squares that scatter may be
     explicit Scatter(const Problem &problem);
+    // What another physics of the same data gains by smoothing, of each row's square; below nought where it roughens.
+    Eigen::VectorXd smoothed_by(const Dataset &data, const Physics &other) const;
 };
 
 } // namespace traction::lab

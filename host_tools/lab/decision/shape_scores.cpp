@@ -1,0 +1,178 @@
+#include "shape_scores.h"
+
+#include "host_tools/lab/fit/sparse_jacobian.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace traction::lab {
+
+namespace {
+
+// Several shapes of equally many coefficients side by side: one pass serves them all.
+class StackedTerm : public Term {
+  public:
+    void add(std::shared_ptr<Term> term, std::size_t count) { part_.push_back(std::move(term)), count_ = count; }
+    double value(const Signals &signals, const double *c) const override {
+        double sum = 0;
+        for (std::size_t i = 0; i < part_.size(); ++i) sum += part_[i]->value(signals, c + i * count_);
+        return sum;
+    }
+    void weights(const Signals &signals, std::size_t, double *weight) const override {
+        for (std::size_t i = 0; i < part_.size(); ++i) part_[i]->weights(signals, count_, weight + i * count_);
+    }
+
+  private:
+    std::vector<std::shared_ptr<Term>> part_;
+    std::size_t count_ = 0;
+};
+
+} // namespace
+
+ShapeColumns::ShapeColumns(Problem &problem) : problem_(problem), physics_(problem.physics()) {
+    plain_ = plain_currents(physics_) && physics_.terms.empty() && problem.forward().has_linear_base();
+}
+
+Eigen::MatrixXd ShapeColumns::of(const Candidate &c) {
+    Physics at = physics_;
+    c.prepare(at);
+    const Term &term = *at.terms.back().term;
+    const std::size_t count = c.strengths.size();
+    const bool electric = (c.touched & (stage_torque | stage_voltage)) != 0 && (c.touched & (stage_motion | stage_sensors)) == 0;
+    if (plain_ && count <= most_shapes && c.touched == stage_motion && c.target != TermTarget::body_force)
+        return problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), term, count);
+    if (plain_ && electric && !physics_.unsigned_current)
+        return problem_.row_scale.asDiagonal() * problem_.forward().shaped_electric(physics_, electric_unit(c.target), term, count);
+    Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
+    for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
+    return columns;
+}
+
+std::vector<Eigen::MatrixXd> ShapeColumns::of_each_wheel(const Candidate &c) {
+    const std::size_t count = c.strengths.size(), wheels = physics_.wheel.size();
+    std::vector<Eigen::MatrixXd> list;
+    if (!plain_ || c.touched != stage_motion || wheels < 2 || wheels * count > most_shapes) return list;
+    Physics at = physics_;
+    c.prepare(at);
+    const Eigen::MatrixXd columns =
+        problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), *at.terms.back().term, count, true);
+    for (std::size_t i = 0; i < wheels; ++i)
+        list.push_back(columns.middleCols(static_cast<Eigen::Index>(i * count), static_cast<Eigen::Index>(count)));
+    return list;
+}
+
+std::vector<Eigen::MatrixXd> ShapeColumns::of_waves(const std::vector<Candidate> &waves) {
+    std::vector<Eigen::MatrixXd> list;
+    for (std::size_t first = 0; first < waves.size(); first += most_shapes / 2) {
+        const std::size_t last = std::min(waves.size(), first + most_shapes / 2);
+        if (!plain_) {
+            for (std::size_t i = first; i < last; ++i) list.push_back(of(waves[i]));
+            continue;
+        }
+        StackedTerm all;
+        for (std::size_t i = first; i < last; ++i) all.add(make_periodic(waves[i].axis, waves[i].order), 2);
+        const Eigen::MatrixXd columns =
+            problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(TermTarget::soil_strength), all, 2 * (last - first));
+        for (Eigen::Index i = 0; i < columns.cols(); i += 2) list.push_back(columns.middleCols(i, 2));
+    }
+    return list;
+}
+
+const UnitResponse &ShapeColumns::unit(TermTarget target) {
+    auto found = units_.find(target);
+    if (found == units_.end())
+        found = units_.emplace(target, unit_response(problem_.data(), physics_, problem_.forward().motion(), target)).first;
+    return found->second;
+}
+
+const std::vector<Forward::ElectricSeries> &ShapeColumns::electric_unit(TermTarget target) {
+    auto found = electric_units_.find(target);
+    if (found == electric_units_.end()) found = electric_units_.emplace(target, problem_.forward().electric_unit(physics_, target)).first;
+    return found->second;
+}
+
+namespace {
+
+ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Screen &screen, const Dataset *keep) {
+    ShapeScore s;
+    s.candidate = c;
+    s.assessment = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
+    s.p_value = corrected(s.candidate, s.assessment);
+    if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(columns, s.assessment);
+    if (keep != nullptr) s.columns = SparseJacobian(*keep, columns);
+    return s;
+}
+
+// A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
+void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
+                        const Eigen::MatrixXd &columns, const Dataset *keep) {
+    const unsigned electric = stage_torque | stage_voltage;
+    if ((shape.touched & electric) == 0 || (shape.touched & ~electric) != 0 || shape.varies_between_wheels) return;
+    for (const std::vector<int> &group : wheel_groups(problem.physics(), true)) {
+        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+        Eigen::Index first = 0;
+        for (const Balance &b : problem.data().balance) {
+            const auto n = static_cast<Eigen::Index>(b.measured.size());
+            if (std::find(group.begin(), group.end(), b.wheel) != group.end()) part.middleRows(first, n) = columns.middleRows(first, n);
+            first += n;
+        }
+        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
+    }
+}
+
+// One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.
+void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
+                               ShapeColumns &columns, const Dataset *keep) {
+    if (shape.touched != stage_motion || !is_straight(shape) || shape.order > 0) return;
+    const std::vector<Eigen::MatrixXd> each = columns.of_each_wheel(shape);
+    if (each.empty()) return;
+    for (const std::vector<int> &group : wheel_groups(problem.physics(), false)) {
+        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(each[0].rows(), each[0].cols());
+        for (const int i : group) part += each[static_cast<std::size_t>(i)];
+        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
+    }
+}
+
+} // namespace
+
+std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keeps) {
+    const Dataset *keep = keeps ? &problem.data() : nullptr; // the columns: of no use where nothing is named
+    std::vector<ShapeScore> list;
+    ShapeColumns columns(problem);
+    std::vector<Candidate> waves;
+    for (const Candidate &c :
+         shape_candidates(problem.data(), problem.forward().motion(), problem.physics(), problem.forward().winding_current_A())) {
+        if (c.order > 0 && c.target == TermTarget::soil_strength) {
+            waves.push_back(c);
+            continue;
+        }
+        const Eigen::MatrixXd C = columns.of(c);
+        list.push_back(scored(c, C, screen, keep));
+        add_on_some_wheels(list, problem, screen, c, C, keep);
+        add_moving_on_some_wheels(list, problem, screen, c, columns, keep);
+        for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
+            Candidate bump = c;
+            bump.effect += ", a bump";
+            const auto at = c.knots.begin() + j;
+            bump.knots.assign(at - 1, at + 2);
+            bump.strengths = {c.strengths[static_cast<std::size_t>(j)]};
+            list.push_back(scored(bump, C.col(j), screen, keep));
+        }
+    }
+    const std::vector<Eigen::MatrixXd> of_waves = columns.of_waves(waves);
+    for (std::size_t i = 0; i < waves.size(); ++i) list.push_back(scored(waves[i], of_waves[i], screen, keep));
+    std::stable_sort(list.begin(), list.end(),
+                     [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; });
+    return list;
+}
+
+double smoothed_by(const ShapeScore &s, const Problem &problem, const Scatter &scatter) {
+    if ((s.candidate.touched & stage_motion) == 0 || s.candidate.some_wheels) return 0;
+    Physics with = problem.physics();
+    s.candidate.prepare(with);
+    for (std::size_t j = 0; j < with.terms.back().coefficients.size(); ++j)
+        with.terms.back().coefficients[j] = s.assessment.strength[static_cast<Eigen::Index>(j)];
+    return scatter.smoothed_by(problem.data(), with).dot(problem.row_scale.cwiseAbs2());
+}
+
+} // namespace traction::lab

@@ -1,0 +1,282 @@
+// Columns of structure-free shapes, as many in a pass as go (shape_scores.h), beside the differences of whole predictions: four wheels on
+// soft ground that turn unlike.
+#include "host_tools/lab/decision/columns.h"
+#include "host_tools/lab/decision/shape_scores.h"
+#include "host_tools/lab/decision/shapes.h"
+#include "host_tools/lab/forward/rounding.h"
+#include "tests/lab/four_wheels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace traction::lab {
+namespace {
+
+// A shape over the currents of others, which a prediction by a term of the model does not know: their sum at each wheel, step by step.
+struct OfOthers : Term {
+    std::shared_ptr<Term> hats;
+    std::vector<double> sum_A;
+    double start_s = 0, step_s = 0;
+    double value(const Signals &signals, const double *c) const override {
+        Signals at;
+        at.Io = at.Ia = at.Is = sum_A[static_cast<std::size_t>(std::lround((signals.t - start_s) / step_s))];
+        return hats->value(at, c);
+    }
+};
+
+struct Shaped : hand_made::FourWheels {
+    std::unique_ptr<Problem> problem;
+    std::unique_ptr<Screen> screen;
+    std::vector<ShapeScore> scores;
+    // `friction`: what all drives have beside, over the wheel's speed.
+    explicit Shaped(const std::string &more = "", double friction = 0) : FourWheels(more) {
+        const Physics physics = make_physics(model);
+        Physics truth = physics;
+        if (friction != 0) {
+            ExtraTerm term;
+            term.target = TermTarget::wheel_friction;
+            term.term = make_piecewise(Axis::abs_wheel_speed, {0, 4, 6, 8, 20});
+            term.coefficients = {0, 0, friction, 0, 0};
+            truth.terms.push_back(term);
+        }
+        measure(truth);
+        problem = std::make_unique<Problem>(data, physics, free_parameters(model, physics));
+        problem->gauss_newton(2);
+        screen = std::make_unique<Screen>(*problem);
+        scores = all_shapes(*problem, *screen, true);
+    }
+    const ShapeScore *find(const std::string &effect) const {
+        for (const ShapeScore &s : scores)
+            if (s.candidate.effect == effect) return &s;
+        return nullptr;
+    }
+    std::shared_ptr<Term> of_others(std::shared_ptr<Term> hats, Axis axis, int wheel) const {
+        auto term = std::make_shared<OfOthers>();
+        term->hats = std::move(hats), term->start_s = data.start_s, term->step_s = data.step_s;
+        term->sum_A.assign(data.count, 0);
+        for (int i = 0; i < 4; ++i) { // 0 and 1 in front, 0 and 2 to the left
+            const bool with = axis == Axis::other_current || (axis == Axis::axle_current ? i / 2 == wheel / 2 : i % 2 == wheel % 2);
+            if (i == wheel || !with) continue;
+            for (std::size_t k = 0; k < data.count; ++k)
+                term->sum_A[k] += problem->forward().winding_current_A()[static_cast<std::size_t>(i)][k];
+        }
+        return term;
+    }
+    // Of the shape's coefficient j on these wheels (-1: all), by predictions on either side of nothing.
+    Eigen::VectorXd difference(const Candidate &c, std::size_t j, const std::vector<int> &wheels) const {
+        const double size = c.target == TermTarget::soil_strength || c.target == TermTarget::motor_constant ? 1e-3 : 1e-4;
+        const auto at = [&](double x) {
+            Physics p = problem->physics();
+            const bool others = c.axis == Axis::other_current || c.axis == Axis::axle_current || c.axis == Axis::side_current;
+            for (const int wheel : others &&wheels[0] < 0 ? std::vector<int>{0, 1, 2, 3} : wheels) {
+                Candidate one = c;
+                one.wheel = wheel;
+                one.prepare(p);
+                p.terms.back().coefficients[j] = x;
+                if (others) p.terms.back().term = of_others(p.terms.back().term, c.axis, wheel);
+            }
+            return Forward(data).predict(p);
+        };
+        return ((at(size) - at(-size)) / (2 * size)).cwiseProduct(problem->row_scale);
+    }
+};
+
+const Shaped &four_wheels() {
+    static const Shaped one("", 0.03);
+    return one;
+}
+
+std::vector<int> wheels_of(const std::string &effect) {
+    std::vector<int> list;
+    if (const std::size_t at = effect.find(" on wheel"); at != std::string::npos)
+        for (const char c : effect.substr(at))
+            if (c >= '0' && c <= '9') list.push_back(c - '0');
+    return list.empty() ? std::vector<int>{-1} : list;
+}
+
+void expect_columns(const Shaped &f, const ShapeScore &s) {
+    const Eigen::MatrixXd C = s.columns.whole();
+    ASSERT_EQ(static_cast<std::size_t>(C.cols()), s.candidate.strengths.size());
+    for (Eigen::Index j = 0; j < C.cols(); ++j) {
+        const Eigen::VectorXd by = f.difference(s.candidate, static_cast<std::size_t>(j), wheels_of(s.candidate.effect));
+        // to first order of what bends: a hundredth of the column, and what a search of 1e-5 m/s leaves of a body's speed
+        EXPECT_LT((C.col(j) - by).norm(), 0.01 * by.norm() + 1e-3) << s.candidate.effect << ' ' << j;
+    }
+}
+
+TEST(ShapeColumns, of_all_wheels_are_what_predictions_differ_by) {
+    const Shaped &f = four_wheels();
+    std::map<TermTarget, int> seen;
+    for (const ShapeScore &s : f.scores) {
+        if (s.candidate.some_wheels || is_bump(s.candidate)) continue;
+        expect_columns(f, s);
+        ++seen[s.candidate.target];
+    }
+    for (const TermTarget target :
+         {TermTarget::wheel_torque, TermTarget::wheel_friction, TermTarget::rolling, TermTarget::voltage, TermTarget::soil_strength,
+          TermTarget::motor_constant, TermTarget::resistance, TermTarget::accel, TermTarget::radar})
+        EXPECT_GT(seen[target], 0) << target_name(target);
+    EXPECT_GT(seen[TermTarget::soil_strength], 16); // waves, more than two passes of eight columns
+}
+
+TEST(ShapeColumns, of_some_wheels_are_those_of_each_wheel_and_axle) {
+    const Shaped &f = four_wheels();
+    std::map<std::string, int> groups;
+    for (const ShapeScore &s : f.scores) {
+        if (!s.candidate.some_wheels) continue;
+        expect_columns(f, s);
+        ++groups[s.candidate.effect.substr(0, s.candidate.effect.find(" on wheel"))];
+    }
+    const unsigned electric = stage_torque | stage_voltage;
+    for (const ShapeScore &s : f.scores) {
+        const Candidate &c = s.candidate;
+        if (c.some_wheels || is_bump(c)) continue;
+        const bool of_motors = (c.touched & electric) != 0 && (c.touched & ~electric) == 0 && !c.varies_between_wheels,
+                   line_of_the_ground = c.touched == stage_motion && is_straight(c);
+        EXPECT_EQ(groups[c.effect], of_motors || line_of_the_ground ? 6 : 0) << c.effect; // four wheels, two axles
+    }
+    EXPECT_EQ(groups["soil strength(time), a straight line"], 6);
+    EXPECT_EQ(groups["torque(motor current)"], 6);
+}
+
+TEST(ShapeColumns, of_a_bump_are_the_inner_ones_of_its_curve) {
+    const Shaped &f = four_wheels();
+    const ShapeScore *curve = f.find("friction(wheel speed)");
+    ASSERT_TRUE(curve);
+    const Eigen::MatrixXd C = curve->columns.whole();
+    std::size_t bumps = 0;
+    for (const ShapeScore &s : f.scores) {
+        if (!is_bump(s.candidate)) continue;
+        ++bumps;
+        EXPECT_EQ(s.candidate.effect, "friction(wheel speed), a bump");
+        ASSERT_EQ(s.candidate.knots.size(), 3U);
+        const auto at = std::find(curve->candidate.knots.begin(), curve->candidate.knots.end(), s.candidate.knots[1]);
+        ASSERT_TRUE(at != curve->candidate.knots.begin() && at + 1 < curve->candidate.knots.end());
+        EXPECT_EQ(s.candidate.knots[0], *(at - 1));
+        EXPECT_EQ(s.candidate.knots[2], *(at + 1));
+        EXPECT_EQ(s.columns.whole().col(0), C.col(at - curve->candidate.knots.begin()));
+    }
+    EXPECT_EQ(bumps, curve->candidate.knots.size() - 2);
+}
+
+TEST(ShapeScores, are_sorted_by_gain_with_their_corrected_p_and_the_fall_of_a_balance_where_they_are_very_sure) {
+    const Shaped &f = four_wheels();
+    EXPECT_TRUE(std::is_sorted(f.scores.begin(), f.scores.end(),
+                               [](const ShapeScore &a, const ShapeScore &b) { return a.assessment.gain > b.assessment.gain; }));
+    bool sure = false, unsure = false;
+    for (const ShapeScore &s : f.scores) {
+        const Eigen::MatrixXd C = s.columns.whole();
+        EXPECT_NEAR(s.assessment.gain, f.screen->assess(C, Eigen::VectorXd::Zero(C.cols()), false).gain,
+                    1e-6 * std::fabs(s.assessment.gain) + 1e-6);
+        EXPECT_EQ(s.p_value, corrected(s.candidate, s.assessment));
+        EXPECT_EQ(s.balance_fall, s.p_value < 1e-4 ? f.screen->best_balance_fall(C, s.assessment) : 0) << s.candidate.effect;
+        (s.p_value < 1e-4 ? sure : unsure) = true;
+    }
+    EXPECT_TRUE(sure && unsure);
+    EXPECT_EQ(f.scores[0].candidate.target, TermTarget::wheel_friction) << f.scores[0].candidate.effect; // what is hidden
+    EXPECT_EQ(f.scores[0].candidate.axis, Axis::abs_wheel_speed);
+    Problem again = *f.problem;
+    for (const ShapeScore &s : all_shapes(again, *f.screen)) ASSERT_EQ(s.columns.cols(), 0); // not kept unasked
+}
+
+// A lag of the wheels' traction that begins at nothing, or heating, is in no pass beside the base: the columns are differences there.
+TEST(ShapeColumns, of_a_machine_that_remembers_are_differences) {
+    for (const char *more :
+         {"[[effect]]\nname = \"relaxation_length\"\nlength_m = 0.05\n", "[[effect]]\nname = \"current_gain\"\nchange = 0.1\n"}) {
+        Shaped f(more);
+        for (const char *effect : {"soil strength(time), a straight line", "torque(wheel speed)", "resistance(path)"}) {
+            const ShapeScore *s = f.find(effect);
+            ASSERT_TRUE(s) << effect;
+            expect_columns(f, *s);
+        }
+    }
+}
+
+TEST(Smoothed, is_what_a_shape_that_moves_the_body_takes_off_the_encoders_scatter) {
+    const Shaped &f = four_wheels();
+    const Scatter scatter(*f.problem);
+    EXPECT_GT(scatter.squares.sum(), 0);
+    const Eigen::VectorXd weight = f.problem->row_scale.cwiseAbs2();
+    ShapeScore s = *f.find("soil strength(speed)");
+    s.assessment.strength.setConstant(-0.5); // half of the grip
+    Physics soft = f.problem->physics();
+    for (WheelPhysics &w : soft.wheel) w.mu *= 0.5;
+    const Eigen::VectorXd squares = rounding_squares(f.data, soft);
+    const double by_hand = (scatter.squares - squares).cwiseProduct(scatter.part).dot(weight);
+    EXPECT_NEAR(smoothed_by(s, *f.problem, scatter), by_hand, 1e-6 * std::fabs(by_hand));
+    EXPECT_NE(by_hand, 0);
+    s.candidate.some_wheels = true; // of some wheels, and of what leaves the motion alone, nothing
+    EXPECT_EQ(smoothed_by(s, *f.problem, scatter), 0);
+    ShapeScore torque = *f.find("torque(wheel speed)");
+    torque.assessment.strength.setConstant(-0.5);
+    EXPECT_EQ(smoothed_by(torque, *f.problem, scatter), 0);
+}
+
+// Of a catalogue's law its strength from nothing, as it may be in a log: to either side, or to one where it has no other.
+Eigen::VectorXd difference(const Shaped &f, const Candidate &c, std::size_t j) {
+    const double size = 1e-4 * (c.maximum[j] - c.minimum[j]);
+    const auto at = [&](double x) {
+        Physics p = f.problem->physics();
+        c.prepare(p);
+        c.strengths[j].add(p, x);
+        return Forward(f.data).predict(p);
+    };
+    return ((at(size) - at(-size)) / (2 * size)).cwiseProduct(f.problem->row_scale);
+}
+
+TEST(Columns, of_the_catalogue_are_what_predictions_differ_by_on_all_wheels_and_on_each) {
+    const Shaped &f = four_wheels();
+    Problem at = *f.problem;
+    Columns::Cache cache;
+    Columns columns(at, cache);
+    std::map<std::string, int> seen;
+    for (const Candidate &c : catalogue_candidates(f.model, f.data, at.forward().motion())) {
+        if (find_handle(c.effect)->remembers || c.effect.ends_with("_patch") || c.wheel > 1) continue;
+        if (++seen[c.label()] > 2) continue; // two variants of each
+        const Eigen::MatrixXd C = columns.of(c);
+        ASSERT_EQ(static_cast<std::size_t>(C.cols()), c.strengths.size());
+        for (Eigen::Index j = 0; j < C.cols(); ++j) {
+            const Eigen::VectorXd by = difference(f, c, static_cast<std::size_t>(j));
+            EXPECT_LE((C.col(j) - by).norm(), 0.02 * by.norm() + 1e-6) << c.label() << ' ' << j;
+        }
+    }
+    EXPECT_GT(seen.size(), 40U);
+}
+
+// Patches whose edges lie on those of the cells are exact sums of them: 32 cells of the path at most, an eighth of a metre at least.
+TEST(Columns, of_a_patch_are_those_of_the_cells_that_it_covers) {
+    const Shaped &f = four_wheels();
+    Problem at = *f.problem;
+    Columns::Cache cache;
+    Columns columns(at, cache);
+    const std::vector<double> &path = at.forward().motion().path_m;
+    const auto [low, high] = std::minmax_element(path.begin(), path.end());
+    const double cell = std::max(0.125, (*high - *low) / 32);
+    for (const char *effect : {"soil_patch", "resistance_patch"}) {
+        Candidate c;
+        for (const Candidate &one : catalogue_candidates(f.model, f.data, at.forward().motion()))
+            if (one.effect == effect && one.wheel < 0) c = one;
+        ASSERT_FALSE(c.effect.empty()) << effect;
+        for (const auto &[first, count] : {std::pair{3, 9}, std::pair{0, 1}, std::pair{11, 14}}) {
+            c.variant = {{"start_m", *low + first * cell}, {"length_m", count * cell}};
+            const Eigen::VectorXd by = difference(f, c, 0), column = columns.of(c).col(0);
+            // an edge lies within a step of the grid: of few cells a part
+            EXPECT_LT((column - by).norm(), 0.1 * by.norm()) << effect << first;
+        }
+        const auto whole = [&](int first, double count) {
+            c.variant = {{"start_m", *low + first * cell}, {"length_m", count * cell}};
+            return Eigen::VectorXd(columns.of(c).col(0));
+        };
+        const Eigen::VectorXd half = whole(7, 2.5), two = whole(7, 2), three = whole(7, 3);
+        EXPECT_LT((half - 0.5 * (two + three)).norm(), 1e-9 * three.norm()) << effect;
+        EXPECT_LT((whole(5, 4) - whole(5, 3) - whole(8, 1)).norm(), 1e-9 * three.norm()) << effect;
+    }
+}
+
+} // namespace
+} // namespace traction::lab
