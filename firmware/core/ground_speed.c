@@ -20,6 +20,8 @@ enum {
     UNFELT_VALUES = 40
 }; // a window and the loud values after it; five seconds, in which a line is learnt (doppler_line.h)
 
+enum { SILENT_TICKS = 25 }; // two values missed: what was loud before tells nothing of now
+
 // (19): what stood and is faster than slow_m_s a second later was pushed, and the accelerometer has felt at least half of it.
 static bool was_pushed(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
@@ -41,7 +43,8 @@ static bool is_standing(const ground_speed_config_t *config, const ground_speed_
         return state->standstill && state->loud < UNFELT_VALUES && !was_pushed(config, state);
     }
     const bool slow = state->heard && fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < ground_speed_square(config->slow_m_s);
-    const bool parked = state->still_ticks >= config->parked_needed && (!heard || state->loud == 0);
+    const bool quiet = state->loud == 0 && state->unheard_ticks < SILENT_TICKS;
+    const bool parked = state->still_ticks >= config->parked_needed && (!heard || quiet);
     return slow || parked || state->quiet >= config->quiet_needed;
 }
 
@@ -55,8 +58,6 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
     state->quiet = input->doppler_quiet && !deaf ? state->quiet + (state->quiet < 1000 ? 1 : 0) : 0;
     state->loud = loud ? state->loud + (state->loud < 1000 ? 1 : 0) : 0;
 }
-
-enum { SILENT_TICKS = 25 }; // two values missed
 
 static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most = 5.0f / 12.0f;
 static const float creep_alike = 4.0f;    // [1]
@@ -146,6 +147,8 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
         ground_speed_watch_gyro(config, state);
     } else if (state->chore % CHORES == 3u) {
         ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
+    } else if (state->chore % CHORES == 4u && state->unheard_ticks >= SILENT_TICKS) {
+        state->loud = 0;
     } else if (state->chore % CHORES == 5u) {
         state_std(config, state);
     } else if (state->chore % CHORES == 6u) {
