@@ -64,7 +64,8 @@
 // overtake its wheels 5 % later where they part and the slowest of them speaks: it is the inner one of a turn.
 //   |X| > 1.5 |Rw - mean Rw|                                                          (21)
 // X holds what the wheels did as well, forgotten as their mean follows: wheels alone make |X| = |Rw - mean Rw|. Only beyond it the body
-// departs, and only then (13) and (23) are asked. A rim's leap counts in X: motors of small wheels make 20 m/s^2 where they spin.
+// departs, and only then (13) and (23) are asked and (7) needs less. Where a rim
+// leaps by more than 10 m/s^2 times the tick, X leaves it out, and what follows is no rolling: (13) waits for a second.
 //   d < slow, d at the end of the grid or noise/echo > 1/20:  |v| < d                 (22)
 // The search cannot end below the grid's first speed, and noise, which is even in frequency, draws it up: such a value is a limit. Within
 // it nothing is told and nothing corrected, unless less than that is known (then 0, give or take d); beyond it, it is a value as any.

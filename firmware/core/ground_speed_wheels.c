@@ -10,7 +10,7 @@ float ground_speed_told_by_wheels(const ground_speed_config_t *config, const gro
     return ground_speed_square(state->apart_m_s) - ground_speed_square(least_m_s) - config->apart_noise * state->speed_noise_m2_s2;
 }
 
-static const float wheel_jump_m_s2 = 10.0f; // faster, and just switched on, it is the first count
+static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: the first count after a start
 
 static const float rolling_slip_m2_s2 = 9e-4f; // (3 cm/s)^2: what slip changes by where a slope begins, assumed
 static const float sway_times = 2.0f;          // a sine's peak over its mean square
@@ -21,7 +21,7 @@ static const float beside_share = 0.25f;       // [1] of a value that enters its
 static const float wheels_share = 1.5f; // [1] of (21)
 static const float felt_sigmas = 4.0f;  // of X, beyond which it is no noise
 
-enum { FIRST_TICKS = 10, FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
+enum { FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
 
 // f of (13), over the last ticks.
 static float force_now(const ground_speed_config_t *config, const ground_speed_state_t *state)
@@ -32,7 +32,7 @@ static float force_now(const ground_speed_config_t *config, const ground_speed_s
 }
 
 // (21): X is what the body did beside the wheels, not what the wheels did.
-static bool body_departs(const ground_speed_state_t *state)
+bool ground_speed_body_departs(const ground_speed_state_t *state)
 {
     return fixed_greater(fabsf(state->apart_m_s), wheels_share * fabsf(state->wheel_m_s - state->wheel_mean_m_s));
 }
@@ -129,8 +129,10 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     const float change = (float)fixed_wrap_difference(now, state->wheel_q20) * (1.0f / 1048576.0f) -
                          state->bias_m_s2 * config->tick_s * ticks - (wheel - state->wheel_m_s);
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
-    if (state->slide.ticks > FIRST_TICKS || !fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
+    if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
         state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
+    } else {
+        state->rolls_wait = ROLL_AGAIN_TICKS + passed; // (21)
     }
     const float share = 1.0f - keep;
     state->apart_m2_s2 += share * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);
@@ -164,7 +166,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
         const float felt_m_s2 = ground_speed_felt_force(config, state, force);
         const bool pushed = fixed_greater(back ? felt_m_s2 : -felt_m_s2, config->slip_force_m_s2); // along the slip that X would be
         const bool told = ground_speed_gyro_tells(config, state); // the gyro has seen the slope: it is slip, unless the gyro lies
-        if (felt && body_departs(state) && !pushed && (!told || state->gyro_denied >= DENIED_VALUES) &&
+        if (felt && ground_speed_body_departs(state) && !pushed && (!told || state->gyro_denied >= DENIED_VALUES) &&
             !radar_departs(config, state, 0.0f)) {
             state->gyro_tried = told;
             begin_rolling(config, state);
@@ -181,7 +183,7 @@ void ground_speed_follow_wheels(const ground_speed_config_t *config, ground_spee
 {
     const float apart_m_s = state->apart_m_s;
     const float told = ground_speed_told_by_wheels(config, state, follow_least_m_s);
-    if (state->other_alive || state->rolls_ticks > 0 || !fixed_greater(told, 0.0f) || !body_departs(state)) {
+    if (state->other_alive || state->rolls_ticks > 0 || !fixed_greater(told, 0.0f) || !ground_speed_body_departs(state)) {
         return;
     }
     if (!creep && (fixed_greater(fabsf(apart_m_s), follow_most_m_s) || radar_departs(config, state, 0.0f))) {
