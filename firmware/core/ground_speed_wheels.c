@@ -21,7 +21,7 @@ static const float beside_share = 0.25f;       // [1] of a value that enters its
 static const float wheels_share = 1.5f; // [1] of (21)
 static const float felt_sigmas = 4.0f;  // of X, beyond which it is no noise
 
-enum { FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
+enum { FIRST_TICKS = 10, FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
 
 // f of (13), over the last ticks.
 static float force_now(const ground_speed_config_t *config, const ground_speed_state_t *state)
@@ -131,7 +131,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
     if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
         state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
-    } else {
+    } else if (state->slide.ticks > FIRST_TICKS) {
         state->rolls_wait = ROLL_AGAIN_TICKS + passed; // (21)
     }
     const float share = 1.0f - keep;
