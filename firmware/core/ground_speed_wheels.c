@@ -132,7 +132,7 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
         state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
     } else if (state->slide.ticks > FIRST_TICKS) {
-        state->rolls_wait = ROLL_AGAIN_TICKS + passed; // (21)
+        state->rolls_wait = ROLL_AGAIN_TICKS; // (21)
     }
     const float share = 1.0f - keep;
     state->apart_m2_s2 += share * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);

@@ -447,7 +447,7 @@ TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgo
         EXPECT_EQ(state.wheel_q20, state.integral_q20[state.head]);
         EXPECT_EQ(state.wheel_ticks, 0);
         EXPECT_NEAR(state.lean_mean_q8, was.lean_mean_q8 + (was.lean_q8 - was.lean_mean_q8) / 32.0, 1);
-        EXPECT_EQ(state.rolls_wait, leaps && was.slide.ticks > 10 ? 100 : std::max(0, was.rolls_wait - n)); // (21)
+        EXPECT_EQ(state.rolls_wait, leaps && was.slide.ticks > 10 ? 100 - n : std::max(0, was.rolls_wait - n)); // (21)
         EXPECT_FALSE(state.other_alive);
         // (14): of noise alone X has 12.5 Qv; what it has more of, over seconds, is no noise
         const double noise = 12.5 * wide(was.speed_noise_m2_s2), trust = std::fmin(1, noise / wide(was.apart_long_m2_s2));
