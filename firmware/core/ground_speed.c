@@ -20,6 +20,8 @@ enum {
     UNFELT_VALUES = 40
 }; // a window and the loud values after it; five seconds, in which a line is learnt (doppler_line.h)
 
+enum { SILENT_TICKS = 25 }; // two values missed: what was loud before tells nothing of now
+
 // (19): what stood and is faster than slow_m_s a second later was pushed, and the accelerometer has felt at least half of it.
 static bool was_pushed(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
@@ -41,7 +43,8 @@ static bool is_standing(const ground_speed_config_t *config, const ground_speed_
         return state->standstill && state->loud < UNFELT_VALUES && !was_pushed(config, state);
     }
     const bool slow = state->heard && fabsf(state->speed_m_s) < config->slow_m_s && state->p_vv < ground_speed_square(config->slow_m_s);
-    const bool parked = state->still_ticks >= config->parked_needed && (!heard || state->loud == 0);
+    const bool quiet = state->loud == 0 && state->unheard_ticks < SILENT_TICKS;
+    const bool parked = state->still_ticks >= config->parked_needed && (!heard || quiet);
     return slow || parked || state->quiet >= config->quiet_needed;
 }
 
@@ -56,10 +59,9 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
     state->loud = loud ? state->loud + (state->loud < 1000 ? 1 : 0) : 0;
 }
 
-enum { SILENT_TICKS = 25 }; // two values missed
-
-static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most_m_s = 0.05f;
-static const float creep_alike = 4.0f; // [1]
+static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most = 5.0f / 12.0f;
+static const float creep_alike = 4.0f;    // [1]
+static const float creep_sigmas2 = 6.25f; // of (25)
 
 // (20): a wheel's word counts.
 static bool wheels_creep(const ground_speed_config_t *config, const ground_speed_state_t *state, float wheel_m_s)
@@ -71,8 +73,12 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
     if (!fixed_greater(config->slow_m_s, mean_m_s)) {
         return false;
     }
-    return state->quiet > 0 || (state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) &&
-                                !fixed_greater(state->value_heard_m_s, mean_m_s + beside_most_m_s));
+    if (state->quiet > 0) {
+        return true;
+    }
+    const float beside_m_s = mean_m_s + beside_most * config->slow_m_s;
+    const float most_m_s = fixed_greater(config->lowest_m_s, beside_m_s) ? config->lowest_m_s : beside_m_s; // (22)
+    return state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) && !fixed_greater(state->value_heard_m_s, most_m_s);
 }
 
 // Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
@@ -83,8 +89,12 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
         creeps ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s) : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
     if (creeps) {
+        ground_speed_follow_wheels(config, state, true);
         ground_speed_track_t track = ground_speed_best_of(state);
         const float innovation = wheel_m_s - track.speed_m_s;
+        if (fixed_greater(ground_speed_square(innovation), creep_sigmas2 * (track.p_vv + noise))) { // (25)
+            track.p_vv += ground_speed_square(innovation);
+        }
         ground_speed_correct(config, &track, innovation, 0.0f, creep_alike * noise);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
@@ -137,6 +147,8 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
         ground_speed_watch_gyro(config, state);
     } else if (state->chore % CHORES == 3u) {
         ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
+    } else if (state->chore % CHORES == 4u && state->unheard_ticks >= SILENT_TICKS) {
+        state->loud = 0;
     } else if (state->chore % CHORES == 5u) {
         state_std(config, state);
     } else if (state->chore % CHORES == 6u) {
@@ -225,7 +237,8 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     state->lean_q8 = input->lean_q8;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
-    const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s)));
+    const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s))) &&
+                      fixed_greater(config->rest_m_s, fabsf(state->rest_mean_m_s)); // (24)
     state->unheard_ticks = fresh ? 0 : state->unheard_ticks + (state->unheard_ticks < 1000 ? 1 : 0);
     state->still_ticks = rest ? state->still_ticks + (state->still_ticks < 1000 ? 1 : 0) : 0;
     const float noise = input->accel_valid ? state->speed_noise_m2_s2 : config->blind_noise_m2_s2;

@@ -62,6 +62,22 @@
 // little. Each tells the same again, hence 4 (assumed; on simulated rovers they are 1 cm/s off there). The radar's own values have a
 // variance of (2 cm/s)^2 more below 0.09 m/s, less up to slow (its errors on a second generator: 1.7 to 2.2 cm/s). (12) takes a body to
 // overtake its wheels 5 % later where they part and the slowest of them speaks: it is the inner one of a turn.
+//   |X| > 1.5 |Rw - mean Rw|                                                          (21)
+// X holds what the wheels did as well, forgotten as their mean follows: wheels alone make |X| = |Rw - mean Rw|. Only beyond it the body
+// departs, and only then (13) and (23) are asked and (7) needs less. Where a rim
+// leaps by more than 10 m/s^2 times the tick, X leaves it out, and what follows is no rolling: (13) waits for a second.
+//   d < slow, d at the end of the grid or noise/echo > 1/20:  |v| < d                 (22)
+// The search cannot end below the grid's first speed, and noise, which is even in frequency, draws it up: such a value is a limit. Within
+// it nothing is told and nothing corrected, unless less than that is known (then 0, give or take d); beyond it, it is a value as any.
+//   k = 1 - (9 var X + least^2)/X^2 > 0:  v -= k X,  b += k X/0.25 s,  X -= k X,  P_vv += k X^2/4,  P_bb >= (1 - k) X^2/(0.25 s)^2  (23)
+// X has the mean 0.25 s (a - b - d(Rw)/dt). Wheels that roll, (18), and creep, (20), do as the body does, so this is the bias's error: a
+// slope that comes too slowly for (13) and for lean.h. A slide would look the same until the radar hears it; so wheels that roll are
+// followed up to 5 cm/s (0.2 m/s^2) while the radar's value stays beside them, those that creep, below what it hears, always.
+//   m += (Rw - m)/16 while |Rw| < still;  at rest: |m| < still/4                      (24)
+// One count a tick is rest, a mean of a quarter of one is not: coarse encoders creep at several cm/s with a count in some ticks.
+//   (Rw - v)^2 > 6.25 (P_vv + n^2):  P_vv += (Rw - v)^2                               (25)  n: the noise of (20), once
+// A track with the wrong sign near zero agrees with every value of a deaf radar and is sure of itself; creeping wheels that are 2.5 sigma
+// off show that it is not.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -95,6 +111,7 @@ typedef struct {
     float doppler_noise_m_s;
     float doppler_accel_s2;
     float deaf_noise_m2_s2, per_slow_s_m; // of a value below slow_m_s; 1/slow_m_s
+    float lowest_m_s;                     // of (22): the lowest speed that a value can tell
     float doppler_spread_s;               // k of (11)
     float gate_sigma;                     // innovations beyond this many sigma are refused
     int32_t gate_patience;                // refusals in a row after which (7) is believed
@@ -132,6 +149,7 @@ typedef struct {
     float gyro_steady_m2_s2;              // of (16): s^2
     float quiet_noise_m2_s2;              // R of that speed, taken as 0
     float still_m_s;                      // rim speed below which the wheels are at rest
+    float rest_m_s;                       // of (24): a quarter of it
     int32_t still_needed;                 // ticks of rest before the rover can be standing
     int32_t parked_needed;                // and before it is, where the radar tells of no speed
     int32_t loud_needed;                  // loud Doppler values in a row that end a standing
@@ -210,6 +228,7 @@ typedef struct {
     bool gyro_tried;                         // (13) is under way against the lean
     float apart_m2_s2, apart_mean_m_s;       // means of X^2 and X over a quarter of a second
     float value_beside_m_s, beside_mean_m_s; // the last value less the wheels' mean, and the mean of those before
+    float rest_mean_m_s;                     // of (24)
     float wheel_mean_m_s;                    // over a quarter of a second
     int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again
     int32_t rolls_wait;

@@ -62,6 +62,9 @@ static void watch_rolling(ground_speed_state_t *state)
 void ground_speed_watch_held(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
     watch_rolling(state);
+    if (state->rolls) {
+        ground_speed_follow_wheels(config, state, false);
+    }
     const float heard = state->value_heard_m_s;
     const float rim = fabsf(state->value_wheel_m_s);
     const float wheel_sign = state->value_wheel_m_s < 0.0f ? -1.0f : 1.0f;

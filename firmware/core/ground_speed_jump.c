@@ -86,7 +86,8 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
     state->agile_sum = fixed_clamp(
         state->agile_sum + fixed_clamp(state->value_cost - cost, -100.0f, config->agile_most) - config->agile_drift, 0.0f, 1000.0f);
     const bool known = fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb); // else X tells of that bias, not of a jump
-    const bool apart = known && ground_speed_told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
+    const bool apart =
+        known && ground_speed_body_departs(state) && ground_speed_told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
     if (state->agile_sum > (apart ? config->agile_sure : config->agile_limit)) {
         take_agile(config, state, at);
         state->other_alive = fabsf(odds) < config->sign_sure;

@@ -131,7 +131,11 @@ void ground_speed_gyro_lied(const ground_speed_config_t *config, ground_speed_st
 
 void ground_speed_weigh_wheels(const ground_speed_config_t *config, ground_speed_state_t *state);
 float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s);
+// (21)
+bool ground_speed_body_departs(const ground_speed_state_t *state);
 void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
+// (23), where the wheels roll or creep.
+void ground_speed_follow_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, bool creep);
 void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_state_t *state);
 // What a track that rolls needs of the past in place of (3): the wheels' speed, and its mean over about the window.
 ground_speed_past_t ground_speed_rolled(const ground_speed_state_t *state);

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+// [1] variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
+static const float early_noise = 2.5f;
 static const float early_accel_m_s2 = 0.2f; // [m/s^2] assumed: the speed changes by 0.05 m/s at most in the first half window
 
 // The paper drives forward only; the sign of the wheels extends its filter to reverse.
@@ -101,6 +103,37 @@ static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t
     ground_speed_forget_agile(state);
 }
 
+static const float hardly_heard = 1.2f; // [1] of a value's trust, noise of a twentieth of the echo; assumed
+
+// (22)
+static bool is_at_most(const ground_speed_config_t *config, float heard_m_s, float trust)
+{
+    return (fixed_greater(trust, hardly_heard) && fixed_greater(config->slow_m_s, heard_m_s)) ||
+           !fixed_greater(heard_m_s, config->lowest_m_s);
+}
+
+// (22): a value that tells of nothing but an upper limit, within which the track lies.
+static __attribute__((noinline)) void keep_below(const ground_speed_config_t *config, ground_speed_state_t *state,
+                                                 const ground_speed_past_t *window, float middle, float heard_m_s)
+{
+    ground_speed_track_t track = ground_speed_best_of(state);
+    const float limit = ground_speed_square(heard_m_s);
+    state->value_heard_m_s = heard_m_s;
+    state->value_accel_m_s2 = window->accel_m_s2;
+    state->value_m_s = heard_m_s;
+    state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
+    state->value_tau_s = window->tau_s;
+    state->value_change_m_s = window->change_m_s;
+    ground_speed_watch_radar(config, state);
+    ground_speed_remember(state);
+    if (fixed_greater(ground_speed_spread_of(&track, window->tau_s), limit)) {
+        ground_speed_correct(config, &track, -middle, window->tau_s, limit);
+        ground_speed_keep_best(state, &track);
+    }
+    state->accepted = true;
+    state->refused = 0;
+}
+
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
@@ -110,17 +143,19 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     ground_speed_past_t own = rolls ? ground_speed_rolled(state) : window;
     float middle = track.speed_m_s + own.tau_s * track.bias_m_s2 - own.change_m_s; // (3)
     const float own_accel = window.accel_m_s2 - track.bias_m_s2;
-    const bool early = input->doppler_late_s < 0.0f;
+    const bool early = fixed_greater(0.0f, input->doppler_late_s);
     if (early && fabsf(own_accel) > early_accel_m_s2) {
         return; // w of (3) is that of a full window
     }
-    const float shorter =
-        early ? 2.5f
-              : 1.0f; // variance of an early value over a full window's: 2.3 to 2.7 for half the samples, 1.7 to 2.3 with the mirror image
+    if (!early && is_at_most(config, heard, input->doppler_trust) && fixed_greater(heard, fabsf(middle))) {
+        keep_below(config, state, &window, middle, heard);
+        return;
+    }
     state->alike_m_s += 0.25f * (fixed_clamp(fixed_finite(input->doppler_misfit), 0.0f, 10.0f) * heard - state->alike_m_s);
     state->value_heard_m_s = heard;
     state->value_accel_m_s2 = window.accel_m_s2;
-    state->value_trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit * shorter;
+    const float trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit;
+    state->value_trust = early ? early_noise * trust : trust;
     ground_speed_watch_radar(config, state);
     const ground_speed_value_t value = ground_speed_value_for(config, state, &track, rolls ? 0.0f : own_accel);
     const float measured = value.speed_m_s;

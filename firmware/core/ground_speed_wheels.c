@@ -15,11 +15,13 @@ static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: 
 static const float rolling_slip_m2_s2 = 9e-4f; // (3 cm/s)^2: what slip changes by where a slope begins, assumed
 static const float sway_times = 2.0f;          // a sine's peak over its mean square
 static const float refuted = 100.0f;           // 2 ln of odds: for certain
+static const float rest_share = 0.0625f;       // [1] of a look that enters (24): about 16 ticks
 static const float beside_share = 0.25f;       // [1] of a value that enters its mean: half a second
 
-static const float felt_sigmas = 4.0f; // of X, beyond which it is no noise
+static const float wheels_share = 1.5f; // [1] of (21)
+static const float felt_sigmas = 4.0f;  // of X, beyond which it is no noise
 
-enum { FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
+enum { FIRST_TICKS = 10, FORCE_TICKS = 8, DENIED_VALUES = 2, ROLL_TICKS = 60, ROLL_AGAIN_TICKS = 100, LEAN_MEAN_BITS = 5 };
 
 // f of (13), over the last ticks.
 static float force_now(const ground_speed_config_t *config, const ground_speed_state_t *state)
@@ -27,6 +29,12 @@ static float force_now(const ground_speed_config_t *config, const ground_speed_s
     const int32_t now = state->integral_q20[state->head];
     const int32_t then = state->integral_q20[((uint32_t)state->head - FORCE_TICKS) % GROUND_SPEED_HISTORY];
     return (float)fixed_wrap_difference(now, then) * (config->per_tick_1_s / (1048576.0f * FORCE_TICKS));
+}
+
+// (21): X is what the body did beside the wheels, not what the wheels did.
+bool ground_speed_body_departs(const ground_speed_state_t *state)
+{
+    return fixed_greater(fabsf(state->apart_m_s), wheels_share * fabsf(state->wheel_m_s - state->wheel_mean_m_s));
 }
 
 // Whether the radar's last value, less the wheels' mean of its window, has left its own mean by more than noise and `slip` explain.
@@ -123,12 +131,16 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
     const float keep = 1.0f - config->apart_forget * (ticks < 10.0f ? ticks : 10.0f);
     if (!fixed_greater(fabsf(wheel - state->wheel_m_s), wheel_jump_m_s2 * config->tick_s * ticks)) {
         state->apart_m_s = keep * fixed_clamp(state->apart_m_s + change, -config->speed_max_m_s, config->speed_max_m_s);
+    } else if (state->slide.ticks > FIRST_TICKS) {
+        state->rolls_wait = ROLL_AGAIN_TICKS; // (21)
     }
     const float share = 1.0f - keep;
     state->apart_m2_s2 += share * (ground_speed_square(state->apart_m_s) - state->apart_m2_s2);
     state->apart_mean_m_s += share * (state->apart_m_s - state->apart_mean_m_s);
     state->wheel_m_s = wheel;
     state->wheel_mean_m_s += share * (wheel - state->wheel_mean_m_s);
+    const bool slow = fixed_greater(config->still_m_s, fabsf(wheel));
+    state->rest_mean_m_s = slow ? state->rest_mean_m_s + rest_share * (wheel - state->rest_mean_m_s) : 0.0f; // (24)
     state->wheel_q20 = now;
     state->wheel_ticks = 0;
     state->lean_mean_q8 += (state->lean_q8 - state->lean_mean_q8) >> LEAN_MEAN_BITS;
@@ -154,11 +166,40 @@ void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed
         const float felt_m_s2 = ground_speed_felt_force(config, state, force);
         const bool pushed = fixed_greater(back ? felt_m_s2 : -felt_m_s2, config->slip_force_m_s2); // along the slip that X would be
         const bool told = ground_speed_gyro_tells(config, state); // the gyro has seen the slope: it is slip, unless the gyro lies
-        if (felt && !pushed && (!told || state->gyro_denied >= DENIED_VALUES) && !radar_departs(config, state, 0.0f)) {
+        if (felt && ground_speed_body_departs(state) && !pushed && (!told || state->gyro_denied >= DENIED_VALUES) &&
+            !radar_departs(config, state, 0.0f)) {
             state->gyro_tried = told;
             begin_rolling(config, state);
         }
     }
+}
+
+static const float follow_least_m_s = 0.01f; // what slip may change by in a quarter of a second, assumed
+static const float follow_most_m_s = 0.05f; // 0.2 m/s^2: the radar would not hear a slide that begins so for a quarter of a second, assumed
+static const float per_forget_1_s = 4.0f;   // 1/0.25 s of (10)
+
+// (23)
+void ground_speed_follow_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, bool creep)
+{
+    const float apart_m_s = state->apart_m_s;
+    const float told = ground_speed_told_by_wheels(config, state, follow_least_m_s);
+    if (state->other_alive || state->rolls_ticks > 0 || !fixed_greater(told, 0.0f) || !ground_speed_body_departs(state)) {
+        return;
+    }
+    if (!creep && (fixed_greater(fabsf(apart_m_s), follow_most_m_s) || radar_departs(config, state, 0.0f))) {
+        return;
+    }
+    const float square = ground_speed_square(apart_m_s);
+    const float by_m_s = told / square * apart_m_s;
+    const float left = per_forget_1_s * per_forget_1_s * (square - told);
+    ground_speed_track_t track = ground_speed_best_of(state);
+    track.speed_m_s -= by_m_s;
+    track.bias_m_s2 += per_forget_1_s * by_m_s;
+    track.p_vv += 0.25f * told;
+    track.p_bb = fixed_greater(left, track.p_bb) ? left : track.p_bb;
+    ground_speed_hold(config, &track);
+    ground_speed_keep_best(state, &track);
+    state->apart_m_s -= by_m_s;
 }
 
 ground_speed_past_t ground_speed_rolled(const ground_speed_state_t *state)

@@ -144,6 +144,7 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .doppler_accel_s2 = 0.004f * (longer * longer),
         .deaf_noise_m2_s2 = 4e-4f * (deaf * deaf), // (2 cm/s)^2
         .per_slow_s_m = 1.0f / (0.12f * deaf),
+        .lowest_m_s = 1.02f * beam->speed_m_s[0] * v[ROVER_doppler_scale], // the grid's steps are 4 %
         .doppler_spread_s = beam->line ? 0.0f : 0.25f * longer,
         .gate_sigma = 3.5f,
         .gate_patience = 4,
@@ -182,6 +183,7 @@ static void build_ground_speed(const float *v, const doppler_template_t *beam, g
         .lean_told_q8 = (int32_t)(256.0f * 0.2f / v[ROVER_accel_m_s2_per_count] + 0.5f), // [m/s^2] 0.2: 1 deg, assumed
         .quiet_noise_m2_s2 = 9e-4f * (deaf * deaf), // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = v[ROVER_still_m_s],
+        .rest_m_s = 0.25f * v[ROVER_still_m_s],
         .still_needed = 25,            // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
         .parked_needed = 100,          // 1 s: eight values of the radar that tell of no speed, assumed
         .standing_noise_m2_s2 = 1e-4f, // (1 cm/s)^2 per tick

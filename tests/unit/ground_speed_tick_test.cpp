@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 namespace {
 
@@ -179,7 +180,7 @@ bool stands(const ground_speed_state_t &s, double felt_m_s) {
     }
     if (s.quiet >= 3) return true;                                                                 // three quiet echoes
     if (s.heard && std::fabs(wide(s.speed_m_s)) < slow && wide(s.p_vv) < slow * slow) return true; // a low speed that is known to as much
-    return s.still_ticks >= 100 && (silent || s.loud == 0); // at rest for a second, and nothing tells of a speed
+    return s.still_ticks >= 100 && (silent || (s.loud == 0 && s.unheard_ticks < 25)); // at rest for a second, and nothing tells of a speed
 }
 
 TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
@@ -199,8 +200,9 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
                 static_cast<int32_t>(-i * (bias_q20 + (i <= 99 ? step : 0)));
         }
         input.wheel_m_s = narrow(any.either() * (any.one_in(8) ? 1.01 : 0.99) * wide(ours().still_m_s));
+        state.rest_mean_m_s = narrow(any.either() * (any.one_in(8) ? 0.26 : 0.24) * wide(ours().still_m_s)); // (24)
         state.still_ticks = one_of({0, 22, 23, 24, 25, 97, 98, 99, 500, 1000});
-        state.unheard_ticks = one_of({0, 5, 98, 99, 100, 1000});
+        state.unheard_ticks = one_of({0, 5, 23, 24, 98, 99, 100, 1000});
         state.loud = one_of({0, 0, 1, 2, 3, 4, 39, 40, 41});
         state.quiet = one_of({0, 0, 0, 1, 2, 3, 4});
         state.standstill = any.one_in(2);
@@ -216,7 +218,9 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
         state.alike_m_s = 0.3f;
         state.gyro_doubt_m2_s2 = any.one_in(2) ? 0 : 0.002f;
         ground_speed_state_t now = state;
-        now.still_ticks = std::fabs(wide(input.wheel_m_s)) < wide(ours().still_m_s) ? std::min(1000, state.still_ticks + 1) : 0;
+        const bool rests = std::fabs(wide(input.wheel_m_s)) < wide(ours().still_m_s) &&
+                           std::fabs(wide(state.rest_mean_m_s)) < 0.25 * wide(ours().still_m_s);
+        now.still_ticks = rests ? std::min(1000, state.still_ticks + 1) : 0;
         now.unheard_ticks = std::min(1000, state.unheard_ticks + 1);
         if (std::fabs(std::fabs(felt) - 0.06) < 3e-4) continue; // whole units
         const bool is = stands(now, felt);
@@ -275,12 +279,14 @@ TEST(GroundSpeedTick, loud_and_quiet_values_are_counted_and_a_dead_front_end_is_
 TEST(GroundSpeedTick, each_chore_has_its_turn_and_a_busy_tick_has_none) {
     Any any{{35}};
     for (uint32_t chore = 0; chore < 16; ++chore) {
-        for (const bool busy : {false, true}) {
+        for (const auto &[busy, unheard] : {std::pair{false, 24}, {false, 23}, {true, 24}}) {
             ground_speed_state_t state = calm(any);
             state.chore = (chore + 15) % 16;
             state.accel_noise_m2_s2 = 1; // no noise is so large
             state.slow_noise_m2_s2 = 1;
             state.lean_q8 = 100;
+            state.loud = 50;
+            state.unheard_ticks = unheard;
             state.p_bb = 20; // beyond its bounds
             state.p_vv = 10;
             state.p_vb = 0;
@@ -294,6 +300,8 @@ TEST(GroundSpeedTick, each_chore_has_its_turn_and_a_busy_tick_has_none) {
             EXPECT_EQ(state.slow_noise_m2_s2 < 1, !busy && chore == 8) << chore;
             EXPECT_EQ(state.gyro_asked == state.slide.ticks, !busy && chore % 8 == 1) << chore;
             EXPECT_EQ(state.std_m_s != was.std_m_s, !busy && chore % 8 == 5) << chore;
+            EXPECT_EQ(state.loud == 0, !busy && unheard == 24 && chore % 8 == 4) << chore;    // two values are missed
+            if (chore % 8 == 3 && unheard == 23) continue;                                    // the last value may deny the wheels
             EXPECT_EQ(state.p_bb < 10, !busy && (chore % 8 == 6 || chore % 8 == 3)) << chore; // the wheels are asked, and it is held
         }
     }
@@ -310,7 +318,7 @@ TEST(GroundSpeedTick, each_chore_has_its_turn_and_a_busy_tick_has_none) {
 // (20), and what wheels tell where nothing is known.
 TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_known) {
     Any any{{36}};
-    int crept = 0, asked = 0, silent = 0, denied = 0;
+    int crept = 0, asked = 0, silent = 0, denied = 0, doubted = 0;
     for (int k = 0; k < 6000; ++k) {
         ground_speed_state_t state = calm(any);
         state.chore = any.one_in(2) ? 2 : 10;
@@ -344,7 +352,11 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         const bool denies = !silence && std::fabs(wide(was.value_m_s) - std::fabs(w)) > 2 * spread;
         const bool undecided = !silence && was.other_alive; // which sign it is, the radar tells
         const double P = was.rolls_ticks > 0 ? wide(was.p_vv) + wide(ours().roll_noise_m2_s2) : wide(was.p_vv) + 1e-6 * 0.01;
-        const double predicted = P + wide(was.speed_noise_m2_s2);
+        const double before = P + wide(was.speed_noise_m2_s2), beside2 = square(w - wide(was.speed_m_s));
+        const double beyond = beside2 / (6.25 * (before + spread * spread)); // (25)
+        if (std::fabs(beyond - 1) < 1e-4) continue;
+        const double predicted = before + (creeps && beyond > 1 ? beside2 : 0);
+        doubted += creeps && beyond > 1 ? 1 : 0;
         if (std::fabs(predicted / (1.2 * spread * spread) - 1) < 1e-3 ||
             std::fabs(std::fabs(wide(was.value_m_s) - std::fabs(w)) - 2 * spread) < 1e-5)
             continue;
@@ -355,7 +367,7 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         EXPECT_EQ(state.other_alive, was.other_alive && gain == 0) << k;
         crept += creeps ? 1 : 0, asked += !creeps && asks ? 1 : 0, silent += asks && silence ? 1 : 0, denied += denies && !creeps ? 1 : 0;
     }
-    EXPECT_GT(std::min({crept, asked, silent, denied}), 100);
+    EXPECT_GT(std::min({crept, asked, silent, denied, doubted, crept - doubted}), 100);
 }
 
 TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {

@@ -407,7 +407,7 @@ TEST(GroundSpeedTrack, a_quiet_echo_pulls_the_windows_mean_to_zero_unless_it_is_
 TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgotten) {
     const ground_speed_config_t &config = ours();
     Any any{{12}};
-    int leapt = 0;
+    int leapt = 0, rested = 0;
     for (int k = 0; k < 800; ++k) {
         ground_speed_state_t state = any.past(config);
         const int n = 1 + static_cast<int>(any.next() % 14);
@@ -420,12 +420,15 @@ TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgo
         state.lean_q8 = static_cast<int32_t>(any.between(-1e6, 1e6));
         state.lean_mean_q8 = static_cast<int32_t>(any.between(-1e6, 1e6));
         state.rolls_wait = static_cast<int32_t>(any.next() % 30);
+        state.rest_mean_m_s = narrow(any.between(-0.01, 0.01));
+        state.slide.ticks = any.one_in(2) ? 10 : 11;
         ground_speed_weigh_wheels(&config, &state);
-        const ground_speed_state_t was = state;
         ground_speed_input_t input = {};
         input.accel_valid = !any.one_in(4);
         input.wheels_part = any.one_in(4);
         const double turn = any.between(-0.15, 0.15) * n, keep = 1 - wide(config.apart_forget) * std::fmin(n, 10);
+        if (any.one_in(3)) state.wheel_m_s = narrow(any.either() * any.between(0.5, 1.5) * wide(config.still_m_s) - turn);
+        const ground_speed_state_t was = state;
         input.wheel_m_s = narrow(wide(was.wheel_m_s) + turn);
         if (std::fabs(std::fabs(turn) - 0.1 * n) < 1e-5) continue;
         ground_speed_watch_wheels(&config, &state, &input);
@@ -437,11 +440,14 @@ TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgo
         EXPECT_NEAR(state.apart_m2_s2, keep * wide(was.apart_m2_s2) + (1 - keep) * X * X, eps);
         EXPECT_NEAR(state.apart_mean_m_s, keep * wide(was.apart_mean_m_s) + (1 - keep) * X, eps);
         EXPECT_NEAR(state.wheel_mean_m_s, keep * wide(was.wheel_mean_m_s) + (1 - keep) * wide(input.wheel_m_s), eps);
+        const double w = wide(input.wheel_m_s), rest = wide(was.rest_mean_m_s); // (24)
+        EXPECT_NEAR(state.rest_mean_m_s, std::fabs(w) < wide(config.still_m_s) ? rest + (w - rest) / 16 : 0, 1e-8);
+        rested += std::fabs(w) < wide(config.still_m_s) ? 1 : 0;
         EXPECT_EQ(state.wheel_m_s, input.wheel_m_s);
         EXPECT_EQ(state.wheel_q20, state.integral_q20[state.head]);
         EXPECT_EQ(state.wheel_ticks, 0);
         EXPECT_NEAR(state.lean_mean_q8, was.lean_mean_q8 + (was.lean_q8 - was.lean_mean_q8) / 32.0, 1);
-        EXPECT_EQ(state.rolls_wait, std::max(0, was.rolls_wait - n));
+        EXPECT_EQ(state.rolls_wait, leaps && was.slide.ticks > 10 ? 100 - n : std::max(0, was.rolls_wait - n)); // (21)
         EXPECT_FALSE(state.other_alive);
         // (14): of noise alone X has 12.5 Qv; what it has more of, over seconds, is no noise
         const double noise = 12.5 * wide(was.speed_noise_m2_s2), trust = std::fmin(1, noise / wide(was.apart_long_m2_s2));
@@ -451,7 +457,7 @@ TEST(GroundSpeedTrack, what_accelerometer_and_wheels_part_by_is_summed_and_forgo
         EXPECT_NEAR(state.felt_m_s, input.accel_valid && !input.wheels_part ? felt : 0,
                     0.03 * std::fabs(felt) + eps); // 1 - exp(-x) within 0.03
     }
-    EXPECT_GT(leapt, 100);
+    EXPECT_GT(std::min(leapt, rested), 50);
 }
 
 TEST(GroundSpeedTrack, the_long_mean_of_what_they_part_by_follows_the_short_one_by_an_eighth) {
@@ -527,6 +533,10 @@ TEST(GroundSpeedTrack, where_a_slope_begins_under_rolling_wheels_their_word_is_t
         EXPECT_FALSE(begins([](S state, I) { state.value_beside_m_s = 0.07f; })); // the radar leaves the wheels: 6 (3e-5 + 2.9e-4)
         EXPECT_TRUE(begins([](S state, I) { state.value_beside_m_s = 0.035f; }));
         EXPECT_TRUE(begins([](S state, I) { state.value_beside_m_s = 0.07f, state.beside_mean_m_s = 0.05f; }));
+        // (21): wheels that left their mean by two thirds of X may be what X holds
+        EXPECT_FALSE(begins([](S state, I) { state.wheel_mean_m_s = 0.63f; }));
+        EXPECT_FALSE(begins([](S state, I) { state.wheel_mean_m_s = 0.37f; }));
+        EXPECT_TRUE(begins([](S state, I) { state.wheel_mean_m_s = 0.59f; }));
         // a lean that has just told of the slope: it is slip, unless the radar has stayed with the wheels for two values
         const int32_t leant = ours().lean_told_q8 + 100 - 3000;
         EXPECT_FALSE(begins([&](S state, I) { state.lean_q8 = 2 * leant, state.lean_mean_q8 = 0; }));
@@ -654,6 +664,93 @@ TEST(GroundSpeedTrack, the_radars_value_beside_the_wheels_is_averaged_and_refute
         (is ? denied : stood) += 1;
     }
     EXPECT_GT(std::min({refuted, denied, stood}), 50);
+}
+
+// (23): what is told of X is the bias's error, and each reason against it, alone, leaves all as it was.
+TEST(GroundSpeedTrack, where_wheels_roll_or_creep_what_the_body_does_beside_them_is_the_biass_error) {
+    const ground_speed_config_t &config = ours();
+    Any any{{18}};
+    int followed = 0, left = 0, told_by_creep = 0;
+    for (int k = 0; k < 4000; ++k) {
+        ground_speed_state_t state = any.past(config);
+        any.value(config, state);
+        state.speed_m_s = narrow(any.between(-1, 1));
+        state.bias_m_s2 = narrow(any.between(-1, 1));
+        state.p_vv = narrow(any.log_between(1e-5, 1e-2)), state.p_bb = narrow(any.log_between(1e-5, 1e-1)), state.p_vb = 0;
+        state.apart_m_s = narrow(any.either() * any.between(0.005, 0.08));
+        state.wheel_m_s = narrow(any.between(-0.5, 0.5));
+        state.wheel_mean_m_s = narrow(wide(state.wheel_m_s) + any.between(-0.05, 0.05));
+        state.beside_mean_m_s = 0;
+        state.value_beside_m_s = any.one_in(4) ? 0.5f : 0;
+        state.other_alive = any.one_in(6);
+        state.rolls_ticks = any.one_in(6) ? 10 : 0;
+        const bool creep = any.one_in(2);
+        const ground_speed_state_t was = state;
+        const double X = wide(was.apart_m_s), turned = std::fabs(wide(was.wheel_m_s) - wide(was.wheel_mean_m_s));
+        const double noise = 1e-4 + 112 * wide(was.speed_noise_m2_s2), told = X * X - noise; // (1 cm/s)^2 of slip, and three sigma
+        if (std::fabs(told) < 1e-7 || std::fabs(std::fabs(X) - 1.5 * turned) < 1e-5 || std::fabs(std::fabs(X) - 0.05) < 1e-5) continue;
+        ground_speed_follow_wheels(&config, &state, creep);
+        const bool stays = std::fabs(X) < 0.05 && was.value_beside_m_s < 0.1f; // a slide is not heard yet, and was none
+        const bool follows = told > 0 && std::fabs(X) > 1.5 * turned && !was.other_alive && was.rolls_ticks == 0 && (creep || stays);
+        const double by = follows ? told / X : 0;
+        EXPECT_NEAR(state.speed_m_s, wide(was.speed_m_s) - by, eps) << k;
+        EXPECT_NEAR(state.bias_m_s2, wide(was.bias_m_s2) + 4 * by, eps) << k;
+        EXPECT_NEAR(state.apart_m_s, X - by, 1e-6) << k;
+        EXPECT_NEAR(state.p_vv, wide(was.p_vv) + (follows ? told / 4 : 0), 1e-7) << k;
+        EXPECT_NEAR(state.p_bb, follows ? std::fmax(wide(was.p_bb), 16 * noise) : wide(was.p_bb), 1e-6) << k;
+        followed += follows ? 1 : 0, left += follows ? 0 : 1, told_by_creep += follows && !stays ? 1 : 0;
+    }
+    EXPECT_GT(std::min({followed, left, told_by_creep}), 100);
+}
+
+// (22): at the grid's end, or hardly heard and slow, a value is a limit: within it nothing moves, beyond it it corrects as any.
+TEST(GroundSpeedTrack, a_value_at_the_grids_end_or_of_an_echo_in_noise_is_an_upper_limit) {
+    const ground_speed_config_t &config = ours();
+    const double lowest = wide(rover_config_default().doppler.beam->speed_m_s[0]);
+    Any any{{19}};
+    int kept = 0, unknown = 0, corrected = 0;
+    for (int k = 0; k < 3000; ++k) {
+        ground_speed_state_t state = any.past(config);
+        std::fill(std::begin(state.integral_q20), std::end(state.integral_q20), 0); // it coasts
+        state.speed_m_s = narrow(any.between(-0.2, 0.2));
+        state.bias_m_s2 = 0;
+        state.p_vv = narrow(any.log_between(1e-5, 1e-1)), state.p_bb = 1e-4f, state.p_vb = 0;
+        state.accepted = any.one_in(2);
+        state.refused = any.one_in(2) ? 1 : 0;
+        state.other_alive = false;
+        state.slide.held = 2;
+        state.waits = 0;
+        ground_speed_input_t input = {};
+        input.doppler_fresh = true;
+        input.doppler_late_s = any.one_in(6) ? -0.12f : 0;
+        const double trust = any.one_in(2) ? any.between(1, 1.19) : any.between(1.21, 2);
+        input.doppler_trust = narrow(trust);
+        const double heard = any.one_in(3) ? lowest * any.between(0.95, 1.015) : any.between(1.03 * lowest, 0.16);
+        input.doppler_m_s = narrow(heard);
+        input.wheel_m_s = state.speed_m_s;
+        if (std::fabs(heard - 0.12) < 1e-5 || std::fabs(heard - std::fabs(wide(state.speed_m_s))) < 1e-4) continue;
+        const ground_speed_state_t was = state;
+        ground_speed_update_doppler(&config, &state, &input);
+        const bool limit = heard < 1.02 * lowest || (trust > 1.2 && heard < 0.12);
+        if (!limit || input.doppler_late_s < 0 || std::fabs(wide(was.speed_m_s)) > heard) {
+            EXPECT_EQ(state.waits, 2) << k; // as any value, which the others see later
+            corrected++;
+            continue;
+        }
+        const double tau = wide(config.window->tau_s), S = wide(was.p_vv) + tau * tau * 1e-4;
+        const bool known = S < heard * heard;
+        const double gain = known ? 0 : wide(was.p_vv) / (S + heard * heard);
+        EXPECT_NEAR(state.speed_m_s, wide(was.speed_m_s) * (1 - gain), 1e-5) << k;
+        EXPECT_NEAR(state.p_vv, wide(was.p_vv) * (1 - gain), 1e-5 * wide(was.p_vv)) << k;
+        EXPECT_TRUE(state.accepted);
+        EXPECT_EQ(state.refused, 0);
+        EXPECT_FALSE(state.other_alive);
+        EXPECT_EQ(state.slide.held, 3); // (15) wants to know of it
+        EXPECT_EQ(state.value_heard_m_s, input.doppler_m_s);
+        EXPECT_EQ(state.waits, 0);
+        (known ? kept : unknown) += 1;
+    }
+    EXPECT_GT(std::min({kept, unknown, corrected}), 100);
 }
 
 // --- a gyro that lies, (16)

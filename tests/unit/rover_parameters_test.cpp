@@ -90,6 +90,7 @@ static ground_speed_config_t ground_speed_default() {
         .doppler_accel_s2 = 0.004f,
         .deaf_noise_m2_s2 = 4e-4f, // (2 cm/s)^2
         .per_slow_s_m = 1.0f / 0.12f,
+        .lowest_m_s = 1.02f * doppler_template_mdu1130.speed_m_s[0],
         .doppler_spread_s = 0.25f,
         .gate_sigma = 3.5f,
         .gate_patience = 4,
@@ -128,6 +129,7 @@ static ground_speed_config_t ground_speed_default() {
         .gyro_steady_m2_s2 = 4e-4f,
         .quiet_noise_m2_s2 = 9e-4f, // (0.03 m/s)^2: the band-pass blinds below 0.05 m/s
         .still_m_s = 0.006f,        // one encoder pulse a tick
+        .rest_m_s = 0.0015f,        // a quarter of it
         .still_needed = 25,         // 0.25 s, assumed: blocked wheels stop 0.12 m/s within 0.05 s on any soil
         .parked_needed = 100,       // 1 s: eight values of the radar that tell of no speed, assumed
         .loud_needed = 3,
