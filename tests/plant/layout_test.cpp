@@ -188,6 +188,22 @@ TEST(layout, a_ball_drags_against_its_velocity_whichever_way_it_rolls) {
     }
 }
 
+// However suddenly it is pushed, or turned round: its damping lends no more than the resistance that there is.
+TEST(layout, a_ball_that_is_pushed_suddenly_drags_with_its_resistance_at_most) {
+    double largest = 0;
+    for (double way = 0; way < 6.2; way += 0.37) {
+        ContactState state;
+        for (int k = 0; k < 60; ++k) {
+            const double speed_m_s = k < 20 ? 0.1 : k < 40 ? -0.3 : 0.02;
+            const RollingShare share = drag_step(state, speed_m_s * std::cos(way), speed_m_s * std::sin(way), 0.3, 0.6, 0.001);
+            const double size = std::hypot(share.along, share.across);
+            ASSERT_LE(size, 1 + 1e-12) << way << ' ' << k;
+            largest = std::max(largest, size);
+        }
+    }
+    EXPECT_GT(largest, 1 - 1e-12); // it was there
+}
+
 // What a carriage pulls is what the ground gives less what rolling takes: Fm (1 - sc/s (1 - exp(-s/sc))) - Rr = drawbar.
 TEST(layout, a_carriage_settles_where_the_soils_curve_meets_the_drawbar_pull) {
     for (const double drawbar_N : {0.5, 1.5, 2.5}) {
