@@ -30,6 +30,8 @@ std::size_t RowSpool::bind(const std::vector<std::size_t> &columns) {
     for (const std::size_t column : columns) fresh.columns.push_back(static_cast<std::uint16_t>(column));
     fresh.last.resize(columns.size()), fresh.ever.resize(columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) fresh.never[i / 64] |= std::uint64_t{1} << (i % 64);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        if (columns_[columns[i]].absent_is_zero) fresh.zeros.push_back(static_cast<std::uint8_t>(i));
     fresh.unknown = fresh.never;
     for (Lane &lane : lanes_) make_room(lane);
     return bound_.size() - 1;
@@ -103,7 +105,8 @@ void RowSpool::put_together(std::size_t bound, double t_s, const std::int32_t *w
             columns[at] = column[i], values[at] = whole[i];
             at += whole[i] != last[i] ? 1 : 0;
         }
-        for (std::size_t i = 0; i < count; ++i) ever[i] |= whole[i], last[i] = whole[i];
+        std::copy_n(whole, count, last);
+        for (const std::uint8_t i : to.zeros) ever[i] |= whole[i];
     } else {
         for (std::size_t i = 0; i < count; ++i) {
             if (is_absent(absent, i)) continue;

@@ -89,7 +89,8 @@ class RowSpool {
     };
     struct Bound : Place { // columns that come together; last_s and count of theirs are not kept while they do
         std::vector<std::uint16_t> columns;
-        std::vector<std::int32_t> last, ever; // the last values; the bits that any had
+        std::vector<std::int32_t> last, ever; // the last values; the bits that any had, of those in zeros
+        std::vector<std::uint8_t> zeros;      // which may be left out where they are always 0
         Absent never{}, unknown{};            // by column: no sample yet; last is not what it holds
     };
     struct Chunk { // on the disk

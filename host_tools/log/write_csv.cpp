@@ -24,6 +24,13 @@ constexpr auto pairs = [] {
     return out;
 }();
 
+// Of them, up to the last that is not 0: no loop that ends here or there.
+constexpr auto digits_until = [] {
+    std::array<int, 100> out{};
+    for (std::size_t i = 0; i < 100; ++i) out[i] = i % 10 != 0 ? 2 : i != 0 ? 1 : 0;
+    return out;
+}();
+
 char *put_pair(char *to, std::uint64_t number) {
     std::memcpy(to, &pairs[2 * number], 2);
     return to + 2;
@@ -246,9 +253,9 @@ char *put_millionths(char *to, std::int32_t millionths) {
         to = put_digits(to, above);
     if (below == 0) return to;
     *to++ = '.';
-    to = put_pair(put_pair(put_pair(to, below / 10000), below / 100 % 100), below % 100);
-    while (to[-1] == '0') --to;
-    return to;
+    const std::uint32_t first = below / 10000, middle = below / 100 % 100, last = below % 100;
+    put_pair(put_pair(put_pair(to, first), middle), last);
+    return to + std::max({digits_until[first], middle == 0 ? 0 : 2 + digits_until[middle], last == 0 ? 0 : 4 + digits_until[last]});
 }
 
 } // namespace
