@@ -155,6 +155,31 @@ TEST(Map, a_time_in_seconds_and_nanoseconds_is_one) {
     EXPECT_HAS(refusal("format = \"traction-map 1\"\n[time]\nrow_period_s = 1\nnanoseconds = \"nsec\"\n"), "stands without 'column'");
 }
 
+// The example for ROS, on a file as PlotJuggler writes it: a row for each stamp, empty where a topic is silent.
+TEST(Map, the_example_for_ros_reads_what_it_says) {
+    std::string names = "__time", motors = "", pose = ",0.5,-0.25,0,0,0.6,0.8";
+    for (const char *wheel : {"rear_left", "rear_right", "front_left", "front_right"}) {
+        const std::string at = std::string(wheel);
+        names += ",/joint_states/" + at + "_wheel/position,/motors/" + at + "/current_mA,/motors/" + at + "/pwm,/motors/" + at + "/forward";
+        motors += ",3.14,-250,51,0";
+    }
+    names += ",/battery_state/voltage,/imu/data/linear_acceleration/x,/imu/data/angular_velocity/z";
+    for (const char *part : {"position/x", "position/y", "orientation/x", "orientation/y", "orientation/z", "orientation/w"})
+        names += std::string(",/mocap/pose/") + part;
+    const File log("foreign.csv", names + "\n1732600000.25" + motors + ",24.1,0.5,-0.02" + ",,,,,,\n1732600000.26" + std::string(16, ',') +
+                                      ",,," + pose + "\n");
+    const Log read = read_csv(log.path(), "models/maps/ros_skid_steer.toml");
+    for (int wheel = 0; wheel < 4; ++wheel) {
+        const std::string name = "wheel" + std::to_string(wheel) + '.';
+        EXPECT_EQ(read.find(name + "angle_rad")->value, (std::vector<double>{3.14}));
+        EXPECT_EQ(read.find(name + "current_A")->value, (std::vector<double>{-0.25}));
+        EXPECT_DOUBLE_EQ(read.find(name + "duty")->value.at(0), -0.2);
+    }
+    EXPECT_EQ(read.find("battery.voltage_V")->value, (std::vector<double>{24.1}));
+    EXPECT_NEAR(read.find("camera.yaw_rad")->value.at(0), 2 * std::atan2(0.6, 0.8), 1e-12);
+    EXPECT_NEAR(read.find("camera.x_m")->t_s.at(0), 0.01, 5e-7);
+}
+
 TEST(Map, missing_numbers_repeats_filters_and_skipped_rows_are_left_out) {
     const Log log = through("format = \"traction-map 1\"\nskip_rows = 2\nseparator = \";\"\n[time]\ncolumn = \"t\"\nfrom_zero = "
                             "true\n[[where]]\ncolumn = \"ok\"\nequals = 1\n" +
