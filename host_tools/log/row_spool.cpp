@@ -136,7 +136,8 @@ void RowSpool::change(const Place &by, Lane &lane, std::size_t column, std::uint
 // The number of the pattern that the lane's row has, a new one where it is new.
 std::uint32_t RowSpool::pattern_of(const Lane &lane) {
     const auto is_this = [&lane](const std::vector<std::uint32_t> &pattern) {
-        return pattern.size() == lane.size && std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
+        if (pattern.size() != lane.size || pattern[0] != lane.columns[0]) return false;
+        return lane.size == 1 || std::memcmp(pattern.data(), lane.columns.data(), lane.size * sizeof lane.columns[0]) == 0;
     };
     if (lane.pattern < patterns_.size() && is_this(patterns_[lane.pattern])) return lane.pattern;
     const auto found = static_cast<std::uint32_t>(std::find_if(patterns_.begin(), patterns_.end(), is_this) - patterns_.begin());
@@ -149,9 +150,7 @@ std::uint32_t RowSpool::pattern_of(const Lane &lane) {
 
 void RowSpool::close_row(Lane &lane) {
     if (lane.size == 0) return;
-    const bool alone = lane.size == 1 && lane.pattern < patterns_.size() && patterns_[lane.pattern].size() == 1 &&
-                       patterns_[lane.pattern][0] == lane.columns[0]; // a radar's sample: five of six rows
-    if (!alone) lane.pattern = pattern_of(lane);
+    lane.pattern = pattern_of(lane);
     const bool in_bytes = columns_.size() <= 256;
     const RowHead head{lane.now_s, lane.pattern | (in_bytes ? RowHead::in_bytes : 0), static_cast<std::uint16_t>(lane.whole),
                        static_cast<std::uint16_t>(lane.changed)};
