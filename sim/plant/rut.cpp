@@ -65,7 +65,7 @@ double RutMemory::depth(double x_m, double y_m) const {
                 const double here = overlap * (p.depth0_m + share * (p.depth1_m - p.depth0_m));
                 if (!(here > found)) continue;
                 found = here;
-                far_m = 1.0001 * (width_m_ * (1 - found / deepest_m_) + longest_m_), far2 = far_m * far_m; // beyond, none is deeper
+                far_m = 1.0001 * (width_m_ * (1 - found / deepest_m_) + longest_m_), far2 = far_m * far_m; // beyond, none is deeper by (1)
             }
         }
     return found;

@@ -197,6 +197,31 @@ TEST(abreast, every_width_of_vectors_gives_the_same_bits) {
         draw_soil(soil.normal_N, -1, 9), draw_soil(soil.largest_N, 0, 6), draw_soil(soil.shear_slip, 0.05, 0.5);
         draw_soil(soil.traction_N, -6, 6), draw_soil(soil.torque_Nm, -0.3, 0.3), draw_soil(soil.resistance_N, 0, 2);
         draw(given.free_N, 0, 2), draw(given.free_Nm, 0, 0.1);
+        std::array<double, 12> turns[2];
+        std::array<double, 3> moves[2][3];
+        std::array<double, 2> headings[2];
+        for (std::size_t side = 0; side < 2; ++side) { // the left half is wheel 0's, the right one wheel 1's
+            for (std::size_t k = 0; k < 3; ++k) {
+                for (std::size_t c = 0; c < 3; ++c) turns[side][4 * k + c] = on.turn[3 * k + c][side];
+                moves[side][0][k] = on.at_m[k][side], moves[side][1][k] = on.velocity_m_s[k][side],
+                moves[side][2][k] = on.spin_rad_s[k][side];
+            }
+            for (std::size_t k = 0; k < 2; ++k) headings[side][k] = on.heading[k][side];
+        }
+        const auto half = [&](std::size_t side) -> HalfNow {
+            return {turns[side].data(), moves[side][0].data(), moves[side][1].data(), moves[side][2].data(), headings[side].data()};
+        };
+        for (const Vectors vectors : {Vectors::narrow, Vectors::avx2}) {
+            FourCarriers ridden;
+            four_steps_in(vectors).ride(half(0), half(1), ridden);
+            for (std::size_t i = 0; i < 4; ++i) {
+                for (std::size_t k = 0; k < 9; ++k) ASSERT_EQ(ridden.turn[k][i], on.turn[k][i % 2]);
+                for (std::size_t k = 0; k < 3; ++k)
+                    ASSERT_TRUE(ridden.at_m[k][i] == on.at_m[k][i % 2] && ridden.velocity_m_s[k][i] == on.velocity_m_s[k][i % 2] &&
+                                ridden.spin_rad_s[k][i] == on.spin_rad_s[k][i % 2]);
+                for (std::size_t k = 0; k < 2; ++k) ASSERT_EQ(ridden.heading[k][i], on.heading[k][i % 2]);
+            }
+        }
         FourWheels narrow = wide;
         for (FourWheels *w : {&wide, &narrow}) {
             const FourSteps &steps = four_steps_in(w == &wide ? Vectors::avx2 : Vectors::narrow);
