@@ -139,7 +139,9 @@ def test_the_table_is_the_same_for_two_workers_and_after_a_kill(reference, tmp_p
     code = "import json,sys,traction; traction.campaign(json.load(open(sys.argv[1])), sys.argv[2], workers=2)"
     process = subprocess.Popen([sys.executable, "-c", code, str(file), str(folder)])
     deadline = time.monotonic() + 120
-    while process.poll() is None and time.monotonic() < deadline and not list(folder.glob("inbox/*.jsonl")):
+    while process.poll() is None and time.monotonic() < deadline:
+        if any(b"\n" in inbox.read_bytes() for inbox in folder.glob("inbox/*.jsonl")):  # a drive is done, not only begun to be written
+            break
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL  # it was under way
