@@ -34,18 +34,26 @@ struct BlockHead {
 };
 
 // A row: this, the columns that changed to whole numbers of their unit, their values (int32), the other ones, theirs (double). Columns are
-// uint16 each, or bytes.
+// uint16 each, or bytes. Rows of a clock: this, a Clock, and `whole` values (int32) of their pattern's one column, each a row.
 struct RowHead {
-    static constexpr std::uint32_t in_bytes = 1u << 31u;
-    double t_s;
-    std::uint32_t marked_pattern; // in_bytes: its columns are
+    static constexpr std::uint32_t in_bytes = 1u << 31u, by_clock = 1u << 30u;
+    double t_s;                   // of the first
+    std::uint32_t marked_pattern; // in_bytes: its columns are; by_clock: it is rows of a clock
     std::uint16_t whole, changed;
-    std::uint32_t pattern() const { return marked_pattern & ~in_bytes; }
+    std::uint32_t pattern() const { return marked_pattern & ~(in_bytes | by_clock); }
+    bool is_by_clock() const { return (marked_pattern & by_clock) != 0; }
     std::size_t column_size() const { return (marked_pattern & in_bytes) != 0 ? 1 : sizeof(std::uint16_t); }
-    std::size_t size() const {
-        return sizeof *this + whole * (column_size() + sizeof(std::int32_t)) + changed * (column_size() + sizeof(double));
-    }
+    inline std::size_t size() const;
 };
+struct Clock {
+    double rate_Hz;
+    std::uint32_t first, unused; // the number of the first sample
+    double t_s(std::size_t i) const { return static_cast<double>(first + static_cast<std::uint32_t>(i)) / rate_Hz; } // of the i-th from it
+};
+std::size_t RowHead::size() const {
+    if (is_by_clock()) return sizeof *this + sizeof(Clock) + whole * sizeof(std::int32_t);
+    return sizeof *this + whole * (column_size() + sizeof(std::int32_t)) + changed * (column_size() + sizeof(double));
+}
 
 // CRC-32C (Castagnoli, reflected 0x82f63b78) of bytes that follow others, whose it is; 0 at the beginning.
 std::uint32_t crc_after(std::uint32_t crc, const void *bytes, std::size_t size);

@@ -60,24 +60,41 @@ class Bytes {
 // One lane of a block of rows.
 class LaneRows {
   public:
-    explicit LaneRows(std::string_view bytes) : rest_(bytes) { next(); }
+    LaneRows(std::string_view bytes, const std::vector<std::vector<std::uint32_t>> &patterns) : rest_(bytes), patterns_(patterns) {
+        next();
+    }
     double t_s() const { return head_.t_s; } // never: behind the last row
     std::uint32_t pattern() const { return head_.pattern(); }
     // whole(column, number) and other(column, value) of what changed.
     template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) {
-        if (head_.column_size() == 1)
+        if (head_.is_by_clock())
+            whole(column_, values_.number<std::int32_t>());
+        else if (head_.column_size() == 1)
             each<std::uint8_t, std::int32_t>(head_.whole, whole), each<std::uint8_t, double>(head_.changed, other);
         else
             each<std::uint16_t, std::int32_t>(head_.whole, whole), each<std::uint16_t, double>(head_.changed, other);
     }
     void next() { // behind each_change
-        head_.t_s = never;
-        if (rest_.empty()) return;
-        head_ = rest_.number<part::RowHead>();
+        if (head_.is_by_clock() && !values_.empty()) {
+            head_.t_s = clock_.t_s(++of_clock_);
+        } else {
+            head_ = {.t_s = never, .marked_pattern = 0, .whole = 0, .changed = 0};
+            if (rest_.empty()) return;
+            head_ = rest_.number<part::RowHead>();
+            if (head_.is_by_clock()) begin_clock();
+        }
         need(std::isfinite(head_.t_s), "a row's time is no number");
     }
 
   private:
+    void begin_clock() {
+        clock_ = rest_.number<part::Clock>();
+        values_ = Bytes(rest_.take(head_.whole * sizeof(std::int32_t)));
+        of_clock_ = 0;
+        need(!values_.empty(), "a clock has no sample");
+        need(head_.pattern() < patterns_.size() && patterns_[head_.pattern()].size() == 1, "a clock is not of one column");
+        column_ = patterns_[head_.pattern()][0];
+    }
     template <typename Column, typename Value, typename Do> void each(std::size_t count, const Do &what) {
         Bytes columns(rest_.take(count * sizeof(Column))), values(rest_.take(count * sizeof(Value)));
         for (std::size_t i = 0; i < count; ++i) {
@@ -85,8 +102,12 @@ class LaneRows {
             what(column, values.number<Value>());
         }
     }
-    Bytes rest_;
+    Bytes rest_, values_{{}}; // values_: of the clock
+    const std::vector<std::vector<std::uint32_t>> &patterns_;
     part::RowHead head_{};
+    part::Clock clock_{};
+    std::uint32_t column_ = 0;
+    std::size_t of_clock_ = 0;
 };
 
 // What the blocks say, into a log.
@@ -152,7 +173,7 @@ class Reading {
         Bytes numbers(block.take(block.number<std::uint32_t>() * std::size_t{sizeof(std::uint32_t)}));
         while (!numbers.empty()) sizes.push_back(numbers.number<std::uint32_t>());
         std::vector<LaneRows> lanes;
-        for (const std::uint32_t size : sizes) lanes.emplace_back(block.take(size));
+        for (const std::uint32_t size : sizes) lanes.emplace_back(block.take(size), patterns_);
         for (;;) {
             const auto first =
                 std::min_element(lanes.begin(), lanes.end(), [](const LaneRows &a, const LaneRows &b) { return a.t_s() < b.t_s(); });

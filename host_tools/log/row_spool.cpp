@@ -44,7 +44,9 @@ void RowSpool::make_room(Lane &lane) const {
     lane.whole_values.resize(count);
     lane.changed_columns.resize(count);
     lane.changed_bits.resize(count);
-    const std::size_t room = 2 * chunk_bytes + sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t));
+    const std::size_t one_row = sizeof(RowHead) + count * (sizeof(std::uint16_t) + sizeof(std::uint64_t));
+    const std::size_t of_clock = sizeof(RowHead) + sizeof(part::Clock) + by_clock_most * sizeof(std::int32_t);
+    const std::size_t room = 2 * chunk_bytes + one_row + of_clock;
     auto bytes = std::make_unique_for_overwrite<char[]>(room); // half of it is seldom touched
     std::copy_n(lane.bytes.get(), lane.used, bytes.get());
     lane.bytes = std::move(bytes);
@@ -84,6 +86,43 @@ void RowSpool::put_in_new_row(std::size_t column, double t_s, double value) {
 void RowSpool::put_whole_in_new_row(std::size_t column, double t_s, std::int32_t whole) {
     Column &to = columns_[column];
     if (Lane *lane = new_row(to, column, t_s, value_of(to.unit, whole)); lane != nullptr) add_whole(to, *lane, column, t_s, whole);
+}
+
+void RowSpool::put_by_clock(std::size_t column, std::uint32_t first, double rate_Hz, std::span<const std::int32_t> whole) {
+    while (!whole.empty()) {
+        const std::span<const std::int32_t> some = whole.first(std::min(whole.size(), by_clock_most));
+        const part::Clock clock{rate_Hz, first, 0};
+        if (const double last_s = clock.t_s(some.size() - 1); some.size() > 1 && clock.t_s(0) < last_s && last_s < never) {
+            put_rows_of(clock, column, some);
+            whole = whole.subspan(some.size()), first += static_cast<std::uint32_t>(some.size());
+        } else { // the clock's numbers begin anew
+            put_whole(column, clock.t_s(0), whole[0]);
+            whole = whole.subspan(1), ++first;
+        }
+    }
+}
+
+void RowSpool::put_rows_of(const part::Clock &clock, std::size_t column, std::span<const std::int32_t> whole) {
+    Column &to = columns_[column];
+    const double t_s = clock.t_s(0);
+    Lane *lane = new_row(to, column, t_s, value_of(to.unit, whole[0]));
+    if (lane == nullptr) return; // nothing is written any more
+    close_row(*lane);            // what came with this time already
+    if (lane->used >= 2 * chunk_bytes) put_by();
+    add(to, *lane, column, t_s);
+    lane->pattern = pattern_of(*lane);
+    lane->size = 0;
+    const RowHead head{t_s, lane->pattern | RowHead::by_clock, static_cast<std::uint16_t>(whole.size()), 0};
+    char *at = lane->bytes.get() + lane->used;
+    std::memcpy(at, &head, sizeof head);
+    std::memcpy(at + sizeof head, &clock, sizeof clock);
+    std::memcpy(at + sizeof head + sizeof clock, whole.data(), whole.size_bytes());
+    lane->used += head.size();
+    full_ = full_ || lane->used >= chunk_bytes;
+    lane->now_s = to.last_s = clock.t_s(whole.size() - 1);
+    to.count += whole.size() - 1;
+    to.whole = whole.back();
+    for (const std::int32_t one : whole) to.all_zero = to.all_zero && one == 0;
 }
 
 void RowSpool::put_together(std::size_t bound, double t_s, const std::int32_t *whole, const Absent &absent, std::span<const Other> others) {
@@ -260,12 +299,22 @@ class RowSpool::Reader {
     std::uint32_t pattern() const { return head_.pattern(); }
     // whole(column, number) and other(column, value) of what changed.
     template <typename Whole, typename Other> void each_change(const Whole &whole, const Other &other) const {
-        if (head_.column_size() == 1)
+        if (head_.is_by_clock()) {
+            std::int32_t value = 0;
+            std::memcpy(&value, row_ + of_clock_ * sizeof value, sizeof value);
+            whole(column_, value);
+        } else if (head_.column_size() == 1) {
             each_change_in<std::uint8_t>(whole, other);
-        else
+        } else {
             each_change_in<std::uint16_t>(whole, other);
+        }
     }
     void next() {
+        if (head_.is_by_clock() && ++of_clock_ < head_.whole) {
+            head_.t_s = clock_.t_s(of_clock_);
+            return;
+        }
+        head_ = {};
         if (at_ == size_ && !open_chunk()) {
             head_.t_s = never;
             return;
@@ -273,6 +322,7 @@ class RowSpool::Reader {
         std::memcpy(&head_, data_ + at_, sizeof head_);
         row_ = data_ + at_ + sizeof head_;
         at_ += head_.size();
+        if (head_.is_by_clock()) begin_clock();
     }
 
   private:
@@ -291,6 +341,12 @@ class RowSpool::Reader {
             what(column, value);
         }
         return values + count * sizeof(Value);
+    }
+    void begin_clock() {
+        std::memcpy(&clock_, row_, sizeof clock_);
+        row_ += sizeof clock_;
+        column_ = spool_.shown_patterns_[head_.pattern()][0];
+        of_clock_ = 0;
     }
     bool open_chunk() {
         at_ = size_ = 0;
@@ -311,6 +367,9 @@ class RowSpool::Reader {
     const RowSpool &spool_;
     const Lane &lane_;
     RowHead head_{};
+    part::Clock clock_{};      // where the head is by one
+    std::uint32_t column_ = 0; // its column
+    std::size_t of_clock_ = 0; // which of its rows
     const char *row_ = nullptr, *data_ = nullptr;
     std::vector<char> loaded_;
     std::size_t number_ = 0, at_ = 0, size_ = 0;

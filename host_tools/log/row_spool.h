@@ -60,7 +60,8 @@ class RowSpool {
             put_whole_in_new_row(column, t_s, whole);
     }
     void put_together(std::size_t bound, double t_s, const std::int32_t *whole, const Absent &absent,
-                      std::span<const Other> others);                                  // Spool's
+                      std::span<const Other> others);                                                                // Spool's
+    void put_by_clock(std::size_t column, std::uint32_t first, double rate_Hz, std::span<const std::int32_t> whole); // Spool's
     void begin(const std::map<std::string, std::string> &header) { header_ = header; } // before the first sample: for the part
     const std::string &part() const { return scratch_.part(); }
     void instant_is_over() { // all that is of one instant is there: a good place for a block's end. Throws FileError.
@@ -71,7 +72,8 @@ class RowSpool {
     void write(const std::map<std::string, std::string> &header);
 
   private:
-    static constexpr std::size_t copied = 16; // bytes at a time, of a short row
+    static constexpr std::size_t copied = 16;         // bytes at a time, of a short row
+    static constexpr std::size_t by_clock_most = 128; // values of a clock, at a time
     static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
     struct Lane;
     struct Place { // where samples come in
@@ -136,6 +138,7 @@ class RowSpool {
     }
     void put_in_new_row(std::size_t column, double t_s, double value); // not in the same row of its lane as what came before
     void put_whole_in_new_row(std::size_t column, double t_s, std::int32_t whole);
+    void put_rows_of(const part::Clock &clock, std::size_t column, std::span<const std::int32_t> whole);
     Lane *new_row(Place &to, std::size_t column, double t_s, double value);
     void change(const Place &by, Lane &lane, std::size_t column, std::uint64_t bits);
     void close_row(Lane &lane);

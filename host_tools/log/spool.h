@@ -52,6 +52,15 @@ class Spool {
         else
             put_in_columns(bound, t_s, whole, absent, others);
     }
+    // Samples first, first + 1 and so on of a clock that has rate_Hz, whole numbers of the column's unit: as put_whole of each at its
+    // number/rate_Hz, for less.
+    void put_by_clock(std::size_t column, std::uint32_t first, double rate_Hz, std::span<const std::int32_t> whole) {
+        if (rows_)
+            rows_->put_by_clock(column, first, rate_Hz, whole);
+        else
+            for (const std::int32_t one : whole)
+                put_in_column(column, static_cast<double>(first++) / rate_Hz, value_of(columns_[column].unit, one));
+    }
 
     // All that is of one instant is there: the part may end here, and what is made of it. Throws FileError.
     void instant_is_over() {

@@ -2,6 +2,7 @@
 
 #include "sim/plant/steering.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -159,12 +160,13 @@ void Recorder::add_frame(const sensor_frame_t &frame) {
 // Samples keep the converter's own clock, n/rate; what was recorded already is not recorded again.
 void Recorder::add_radar(const sensor_frame_t &frame) {
     if ((frame.present & FRAME_RADAR) == 0u) return;
-    for (std::uint32_t i = 0; i < frame.radar_samples; i++) {
-        const std::uint32_t n = frame.radar_sequence + i;
-        if (static_cast<std::int32_t>(n - radar_next_) < 0) continue;
-        spool_.put_whole(at_.radar_count, static_cast<double>(n) / radar_rate_Hz_, frame.radar_count[i]);
-        radar_next_ = n + 1;
-    }
+    std::array<std::int32_t, RADAR_SAMPLES_PER_TICK_MAX> fresh;
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < frame.radar_samples; i++)
+        if (static_cast<std::int32_t>(frame.radar_sequence + i - radar_next_) >= 0) fresh[count++] = frame.radar_count[i];
+    const std::uint32_t first = frame.radar_sequence + frame.radar_samples - static_cast<std::uint32_t>(count);
+    spool_.put_by_clock(at_.radar_count, first, radar_rate_Hz_, {fresh.data(), count});
+    if (count > 0) radar_next_ = frame.radar_sequence + frame.radar_samples;
 }
 
 void Recorder::add_command(const command_t &command) {
