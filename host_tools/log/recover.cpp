@@ -132,6 +132,8 @@ class Reading {
         case part::Kind::samples:
             take_samples(Bytes(payload));
             return;
+        case part::Kind::filling:
+            return;
         }
         throw Damage("it is of a kind that this version does not know");
     }

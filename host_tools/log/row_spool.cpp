@@ -117,8 +117,7 @@ void RowSpool::put_rows_of(const part::Clock &clock, std::size_t column, std::sp
     std::memcpy(at, &head, sizeof head);
     std::memcpy(at + sizeof head, &clock, sizeof clock);
     std::memcpy(at + sizeof head + sizeof clock, whole.data(), whole.size_bytes());
-    lane->used += head.size();
-    full_ = full_ || lane->used >= chunk_bytes;
+    has_grown(*lane, head.size());
     lane->now_s = to.last_s = clock.t_s(whole.size() - 1);
     to.count += whole.size() - 1;
     to.whole = whole.back();
@@ -221,9 +220,8 @@ void RowSpool::close_row(Lane &lane) {
         put_columns(lane.changed_columns, lane.changed);
         put(lane.changed_bits.data(), lane.changed * sizeof lane.changed_bits[0]);
     }
-    lane.used += head.size();
+    has_grown(lane, head.size());
     lane.size = lane.whole = lane.changed = 0;
-    full_ = full_ || lane.used >= chunk_bytes;
 }
 
 std::vector<std::uint32_t> RowSpool::columns_of(const Lane &lane) const {
@@ -270,6 +268,7 @@ void RowSpool::tell_new_names() {
 void RowSpool::put_by() {
     for (Lane &lane : lanes_) close_row(lane);
     full_ = false;
+    used_ = 0;
     std::vector<std::uint32_t> sizes{static_cast<std::uint32_t>(lanes_.size())};
     std::vector<std::string_view> pieces{{}};
     std::size_t size = 0;
@@ -289,6 +288,9 @@ void RowSpool::put_by() {
         place += lane.used;
         lane.used = 0;
     }
+    constexpr std::size_t row_that_ends_it = 1024; // and the block's head
+    enough_ = scratch_.left_of_stretch();
+    enough_ += (enough_ < chunk_bytes / 2 ? Scratch::stretch : 0) - row_that_ends_it;
 }
 
 // One lane, row after row.

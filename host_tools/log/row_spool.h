@@ -35,8 +35,9 @@ class RowSpool {
     using RowHead = part::RowHead;
 
   public:
-    // Of a lane, filled in memory; where nobody says that an instant is over, twice that.
-    static constexpr std::size_t chunk_bytes = 65536;
+    // Of all lanes, filled in memory, half more where the part's stretch asks for it; of one where nobody says that an instant is over,
+    // twice.
+    static constexpr std::size_t chunk_bytes = Scratch::stretch;
 
     RowSpool(std::string path, Scratch::Name name) : scratch_(std::move(path), name) {}
 
@@ -142,6 +143,10 @@ class RowSpool {
     Lane *new_row(Place &to, std::size_t column, double t_s, double value);
     void change(const Place &by, Lane &lane, std::size_t column, std::uint64_t bits);
     void close_row(Lane &lane);
+    void has_grown(Lane &lane, std::size_t by) {
+        lane.used += by, used_ += by;
+        full_ = used_ >= enough_;
+    }
     std::uint32_t pattern_of(const Lane &lane);
     void start_lane();
     void tell_new_names();
@@ -153,7 +158,8 @@ class RowSpool {
     Scratch scratch_;
     std::map<std::string, std::string> header_;
     std::size_t told_columns_ = 0, told_patterns_ = 0;
-    bool full_ = false; // a lane has a chunk
+    std::size_t used_ = 0, enough_ = chunk_bytes; // of all lanes; of a block
+    bool full_ = false;                           // there is enough
     std::vector<Column> columns_;
     std::vector<Bound> bound_;
     std::vector<std::string> names_;

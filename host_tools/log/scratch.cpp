@@ -9,6 +9,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
@@ -36,6 +37,20 @@ int unnamed_file(const std::string &folder) {
     if (named >= 0) unlink(name.c_str());
     return named;
 }
+
+// The head of a block, its checks made.
+part::BlockHead head_of(part::Kind kind, std::span<const std::string_view> pieces) {
+    part::BlockHead head{static_cast<std::uint32_t>(kind), 0, 0, 0, 0};
+    for (const std::string_view piece : pieces) {
+        head.size += static_cast<std::uint32_t>(piece.size());
+        head.payload_check = part::crc_after(head.payload_check, piece.data(), piece.size());
+    }
+    head.check = part::head_check(head);
+    return head;
+}
+std::string_view bytes_of(const part::BlockHead &head) { return {reinterpret_cast<const char *>(&head), sizeof head}; }
+
+constexpr std::array<char, Scratch::filled_most> nothing{};
 
 } // namespace
 
@@ -98,15 +113,17 @@ void Scratch::put(std::vector<std::string_view> pieces) {
 
 std::uint64_t Scratch::append(part::Kind kind, std::span<const std::string_view> pieces) {
     open();
-    part::BlockHead head{static_cast<std::uint32_t>(kind), 0, 0, 0, 0};
-    for (const std::string_view piece : pieces) {
-        head.size += static_cast<std::uint32_t>(piece.size());
-        head.payload_check = part::crc_after(head.payload_check, piece.data(), piece.size());
-    }
-    head.check = part::head_check(head);
+    const part::BlockHead head = head_of(kind, pieces);
     const std::uint64_t place = end_ + sizeof head;
-    std::vector<std::string_view> whole{{reinterpret_cast<const char *>(&head), sizeof head}};
+    std::vector<std::string_view> whole{bytes_of(head)};
     whole.insert(whole.end(), pieces.begin(), pieces.end());
+    const std::size_t left = stretch - (place + head.size) % stretch;
+    part::BlockHead filling{};
+    if (left >= sizeof filling && left <= filled_most) {
+        const std::string_view zeros(nothing.data(), left - sizeof filling);
+        filling = head_of(part::Kind::filling, {&zeros, 1});
+        whole.insert(whole.end(), {bytes_of(filling), zeros});
+    }
     put(std::move(whole));
     if (!lasts()) return place;
     if (const auto now = std::chrono::steady_clock::now(); now - synced_ >= sync_every) {

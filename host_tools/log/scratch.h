@@ -20,6 +20,8 @@ namespace traction::log {
 class Scratch {
   public:
     enum class Name { part, none };
+    // Blocks that end where a stretch of this size does are written, read and removed for two thirds of the time: pages come together.
+    static constexpr std::size_t stretch = 65536, filled_most = 4096;
     static constexpr std::chrono::seconds sync_every{5}; // of the wall clock, while something is appended: a power cut costs no more
 
     Scratch(std::string path, Name name); // path: of the log; nothing is opened before open or the first append
@@ -28,8 +30,9 @@ class Scratch {
     Scratch &operator=(const Scratch &) = delete;
 
     void open(); // now, where it is not; throws FileError
-    // A block, its payload in pieces; the place of the payload. Throws FileError.
+    // A block, its payload in pieces; the place of the payload. What little is left of the stretch behind it is filled. Throws FileError.
     std::uint64_t append(part::Kind kind, std::span<const std::string_view> pieces);
+    std::size_t left_of_stretch() const { return stretch - end_ % stretch; }
     std::uint64_t append(part::Kind kind, std::string_view payload) { return append(kind, {&payload, 1}); }
     void read(std::uint64_t at, void *bytes, std::size_t size) const;
     bool lasts() const { return !part_.empty(); }     // it is open, and has a name
