@@ -380,7 +380,7 @@ class RowSpool::Reader {
 // The rows of all lanes, straight into the file.
 class RowSpool::Rows {
   public:
-    Rows(const RowSpool &spool, WholeFile &file) : file_(file) {
+    Rows(const RowSpool &spool, const std::string &head, WholeFile &file) : file_(file) {
         std::vector<std::uint32_t> place(spool.columns_.size(), left_out);
         for (std::size_t i = 0; i < place.size(); ++i)
             if (!spool.columns_[i].left_out()) place[i] = static_cast<std::uint32_t>(columns_++);
@@ -396,9 +396,9 @@ class RowSpool::Rows {
         }
         for (const Lane &lane : spool.lanes_) readers_.emplace_back(spool, lane);
         room_ = (columns_ + 2) * (number_room + 1) + commas.size();
-        size_ = room_ + (1u << 20);
+        size_ = std::max(head.size(), at_once) + room_;
         text_ = std::make_unique_for_overwrite<char[]>(size_);
-        to_ = text_.get();
+        to_ = std::copy(head.begin(), head.end(), text_.get());
     }
     void write() {
         for (;;) {
@@ -418,11 +418,12 @@ class RowSpool::Rows {
             }
             if (!cells->empty()) put_row(now_s, *cells);
         }
-        flush();
+        file_.write({text_.get(), static_cast<std::size_t>(to_ - text_.get())});
     }
 
   private:
     static constexpr std::uint32_t left_out = static_cast<std::uint32_t>(-1);
+    static constexpr std::size_t at_once = 4 * Scratch::stretch; // of the file
     static constexpr std::size_t many_commas = 96, few_commas = 16;
     static constexpr auto commas = [] {
         std::array<char, many_commas> all{};
@@ -469,9 +470,10 @@ class RowSpool::Rows {
             std::memset(to, ',', count);
         return to + count;
     }
-    void flush() {
-        file_.write({text_.get(), static_cast<std::size_t>(to_ - text_.get())});
-        to_ = text_.get();
+    void flush() { // to the end of a stretch
+        const auto used = static_cast<std::size_t>(to_ - text_.get()), whole = used - used % Scratch::stretch;
+        file_.write({text_.get(), whole});
+        to_ = std::copy(text_.get() + whole, to_, text_.get());
     }
 
     WholeFile &file_;
@@ -495,8 +497,7 @@ void RowSpool::write(const std::map<std::string, std::string> &header) {
     for (std::size_t i = 0; i < columns_.size(); ++i)
         if (!columns_[i].left_out()) names.push_back(names_[i]);
     WholeFile file(scratch_.path());
-    file.write(csv_head(header, names, scratch_.path()));
-    Rows(*this, file).write();
+    Rows(*this, csv_head(header, names, scratch_.path()), file).write();
     file.keep();
     scratch_.remove();
 }
