@@ -24,10 +24,21 @@ constexpr auto pairs = [] {
     return out;
 }();
 
-// Of them, up to the last that is not 0: no loop that ends here or there.
-constexpr auto digits_until = [] {
-    std::array<int, 100> out{};
-    for (std::size_t i = 0; i < 100; ++i) out[i] = i % 10 != 0 ? 2 : i != 0 ? 1 : 0;
+// 000 to 999, and how many digits there are up to the last that is not 0: no loop that ends here or there.
+struct Three {
+    std::array<char, 3> text;
+    char until;
+};
+constexpr auto threes = [] {
+    std::array<Three, 1000> out{};
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const auto digit = [](std::size_t d) { return static_cast<char>('0' + d); };
+        out[i] = {{digit(i / 100), digit(i / 10 % 10), digit(i % 10)},
+                  static_cast<char>(i % 10 != 0    ? 3
+                                    : i % 100 != 0 ? 2
+                                    : i != 0       ? 1
+                                                   : 0)};
+    }
     return out;
 }();
 
@@ -253,9 +264,10 @@ char *put_millionths(char *to, std::int32_t millionths) {
         to = put_digits(to, above);
     if (below == 0) return to;
     *to++ = '.';
-    const std::uint32_t first = below / 10000, middle = below / 100 % 100, last = below % 100;
-    put_pair(put_pair(put_pair(to, first), middle), last);
-    return to + std::max({digits_until[first], middle == 0 ? 0 : 2 + digits_until[middle], last == 0 ? 0 : 4 + digits_until[last]});
+    const Three &first = threes[below / 1000], &last = threes[below % 1000];
+    std::memcpy(to, &first, sizeof first); // a byte more than its digits, which the others write over
+    std::memcpy(to + 3, &last, sizeof last);
+    return to + (last.until == 0 ? first.until : 3 + last.until);
 }
 
 } // namespace
