@@ -7,6 +7,7 @@
 #include "files.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <map>
@@ -55,6 +56,7 @@ class Drive {
         spool.begin(header);
         fast_ = spool.add("radar.adc_count"), wheel_ = spool.add("wheel0.speed_rad_s"), late_ = spool.add("camera.x_m");
         zero_ = spool.add("command.slip", true), spool.add("wheel1.speed_rad_s");
+        clocked_ = spool.add("imu.accel_x_count", false, 0, Unit::count);
     }
     void step(int k) {
         const double t_s = k / 100.0;
@@ -64,13 +66,15 @@ class Drive {
             spool_.put_whole(wheel_, t_s, k / 3);
         spool_.put(zero_, t_s, 0);
         for (int i = 0; i < 3; ++i) spool_.put(fast_, t_s - 0.009 + i * 0.003, 37 * k % 1024);
+        const std::int32_t five[] = {k, 2 * k, 0, 3, -k};
+        spool_.put_by_clock(clocked_, static_cast<std::uint32_t>(5 * k + 1), 512, five);
         if (k % 7 == 3) spool_.put(late_, t_s - (k % 2 == 0 ? 0.055 : 0.0), 1.0 / k);
         spool_.instant_is_over();
     }
 
   private:
     Spool &spool_;
-    std::size_t fast_ = 0, wheel_ = 0, late_ = 0, zero_ = 0;
+    std::size_t fast_ = 0, wheel_ = 0, late_ = 0, zero_ = 0, clocked_ = 0;
 };
 
 // Every sample of `log` is one of the run's, none is left out before its last one, all end at one step. How many steps.
@@ -97,6 +101,13 @@ std::size_t expect_of_the_run(const Log &log) {
     EXPECT_EQ(late.size(), (count + 3) / 7);
     for (std::size_t k = 0; k < fast.size(); ++k) EXPECT_EQ(fast[k], static_cast<double>(37 * (k / 3) % 1024));
     for (std::size_t k = 0; k < late.size(); ++k) EXPECT_EQ(late[k], 1.0 / (3 + 7 * static_cast<double>(k)));
+    const std::vector<double> clocked = values("imu.accel_x_count");
+    EXPECT_EQ(clocked.size(), 5 * count);
+    for (std::size_t n = 0; n < clocked.size(); ++n) {
+        const double k = static_cast<double>(n / 5);
+        EXPECT_EQ(clocked[n], (std::array{k, 2 * k, 0.0, 3.0, -k})[n % 5]);
+        EXPECT_EQ(log.find("imu.accel_x_count")->t_s[n], static_cast<double>(n + 1) / 512);
+    }
     return count;
 }
 
@@ -281,10 +292,17 @@ TEST(Part, content_that_cannot_be_is_told) {
         text.append(reinterpret_cast<const char *>(&column), sizeof column);
         return text.append(reinterpret_cast<const char *>(&value), sizeof value);
     };
+    const auto clock = [](double rate_Hz, std::uint32_t pattern, std::vector<std::int32_t> whole) {
+        const part::RowHead head{2, pattern | part::RowHead::by_clock, static_cast<std::uint16_t>(whole.size()), 0};
+        const part::Clock begun{rate_Hz, 1, 0};
+        std::string text(reinterpret_cast<const char *>(&head), sizeof head);
+        text.append(reinterpret_cast<const char *>(&begun), sizeof begun);
+        return text.append(part::bytes_of(whole));
+    };
     const auto lane = [&](const std::string &rows) { return words({1, static_cast<std::uint32_t>(rows.size())}) + rows; };
     const std::string good = std::string(part::magic) + block(part::Kind::columns, "- a.x_m\n- b.x_m\n") +
                              block(part::Kind::pattern, words({0})) + block(part::Kind::pattern, words({1})) +
-                             block(part::Kind::rows, lane(row(1, 0, 0, 5)));
+                             block(part::Kind::pattern, words({0, 1})) + block(part::Kind::rows, lane(row(1, 0, 0, 5)));
     const test::File out("part_content.csv", "");
     const auto told = [&](const std::string &more) {
         const test::File file("part_content.part", good + more);
@@ -292,8 +310,10 @@ TEST(Part, content_that_cannot_be_is_told) {
     };
     EXPECT_EQ(told("").damage, "");
     EXPECT_EQ(told(block(part::Kind::rows, lane(row(2, 0, 0, 6)))).samples, 2u);
+    EXPECT_EQ(told(block(part::Kind::rows, lane(clock(0.25, 0, {6, 7, 8})))).samples, 4u);
+    EXPECT_EQ(told(block(part::Kind::filling, std::string(77, '\0')) + block(part::Kind::rows, lane(row(2, 0, 0, 6)))).samples, 2u);
     for (const std::string &bad : {
-             block(part::Kind::rows, lane(row(2, 2, 0, 6))),                       // a pattern that is not
+             block(part::Kind::rows, lane(row(2, 3, 0, 6))),                       // a pattern that is not
              block(part::Kind::rows, lane(row(2, 0, 2, 6))),                       // a column that is not
              block(part::Kind::rows, lane(row(2, 1, 0, 6))),                       // a sample of b, which holds nothing
              block(part::Kind::rows, lane(row(std::nan(""), 0, 0, 6))),            // no time
@@ -302,6 +322,10 @@ TEST(Part, content_that_cannot_be_is_told) {
              block(part::Kind::rows, words({0xffffffffu, 16})),                    // lanes without end
              block(part::Kind::rows, words({1, 0xffffffffu})),                     // a lane beyond its end
              block(part::Kind::rows, ""),                                          // nothing
+             block(part::Kind::rows, lane(clock(0.25, 3, {6, 7, 8}))),             // a clock's
+             block(part::Kind::rows, lane(clock(0.25, 2, {6, 7, 8}))),             // a clock of two columns
+             block(part::Kind::rows, lane(clock(0.25, 0, {}))),                    // of nothing
+             block(part::Kind::rows, lane(clock(0.25, 0, {6, 7}).substr(0, 39))),  // cut
              block(part::Kind::samples, words({1, 2, 1}) + std::string(16, '\0')), // a column that is not
              block(part::Kind::samples, words({1, 0, 9}) + std::string(16, '\0')), // more samples than there are
              block(part::Kind::columns, "c.x_m\n"),                                // neither kept nor left out
@@ -315,6 +339,30 @@ TEST(Part, content_that_cannot_be_is_told) {
         EXPECT_EQ(found.samples, 1u) << found.damage;
         EXPECT_EQ(found.lost_at, good.size());
     }
+}
+
+// What a run appends begins and ends where stretches of the file do, but for the first blocks and what is put by between.
+TEST(Part, its_blocks_are_as_long_as_a_stretch) {
+    const test::File log("part_stretch.csv", "");
+    const Parts parts(log.path());
+    std::string bytes;
+    {
+        Spool spool(log.path());
+        Drive run(spool);
+        for (int k = 0; k < 20000; ++k) run.step(k);
+        bytes = bytes_of(log.path() + ".part");
+    }
+    const std::vector<std::size_t> begins = blocks_of(bytes);
+    ASSERT_GT(bytes.size(), 8 * Scratch::stretch);
+    const auto at_a_stretch = std::count_if(begins.begin(), begins.end(), [](std::size_t at) { return at % Scratch::stretch == 0; });
+    EXPECT_GE(static_cast<std::size_t>(at_a_stretch), bytes.size() / Scratch::stretch - 1);
+    std::size_t filled = 0;
+    for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+        part::BlockHead head{};
+        std::memcpy(&head, bytes.data() + begins[i], sizeof head);
+        filled += head.kind == static_cast<std::uint32_t>(part::Kind::filling) ? sizeof head + head.size : 0;
+    }
+    EXPECT_LT(filled, bytes.size() / 20);
 }
 
 TEST(Part, is_no_log_and_says_what_makes_one) {

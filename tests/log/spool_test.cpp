@@ -234,6 +234,69 @@ TEST(Spool, columns_that_come_together_are_written_as_one_by_one) {
     }
 }
 
+// Runs of every length, one longer than a row of the spool takes, none; times that other columns have too, before and behind; a clock
+// beside it, and one that is always 0.
+TEST(Spool, samples_of_a_clock_are_written_as_one_by_one) {
+    for (const char *name : {"spool_grown.csv", "spool_grown.ulg"}) {
+        const test::File at_once(std::string("spool_at_once") + (name + 11), ""), grown(name, "");
+        Spool memory, disk(grown.path());
+        for (Spool *spool : {&memory, &disk}) {
+            const std::size_t fast = spool->add("a.adc_count", false, 0, Unit::count), tick = spool->add("b.x_m"),
+                              twin = spool->add("c.x_m", false, 0, Unit::millionth), zero = spool->add("d.adc_count", true, 0, Unit::count),
+                              once = spool->add("e.adc_count", true, 0, Unit::count);
+            const auto put = [spool, &memory](std::size_t column, std::uint32_t first, double rate_Hz,
+                                              const std::vector<std::int32_t> &whole) {
+                if (spool != &memory)
+                    spool->put_by_clock(column, first, rate_Hz, whole);
+                else
+                    for (std::size_t i = 0; i < whole.size(); ++i)
+                        spool->put_whole(column, static_cast<double>(first + i) / rate_Hz, whole[i]);
+            };
+            std::uint32_t next = 1;
+            for (std::uint32_t k = 0; k < 20000; ++k) {
+                std::vector<std::int32_t> whole(k % 1000 == 999 ? 700 : k % 7), zeros(whole.size()), other;
+                for (std::size_t i = 0; i < whole.size(); ++i) whole[i] = static_cast<std::int32_t>((next + i) * 37 % 1024) - 512;
+                for (const std::int32_t one : whole) other.push_back(one * 1000 + 1);
+                spool->put(tick, next / 512.0, k);
+                put(fast, next, 512, whole);
+                put(twin, next, 512, other);
+                if (k > 3) put(zero, next, 512, zeros);
+                if (k == 15000) zeros.assign(zeros.size(), 1);
+                put(once, next, 512, zeros);
+                next += static_cast<std::uint32_t>(whole.size());
+                if (!whole.empty() && k % 3 == 0)
+                    spool->put(tick, (next - 1) / 512.0 + (whole.size() == 1 ? 1e-3 : 0), 0.5); // its last time
+                next += k % 11 == 0 ? 5 : 1;                                                    // lost ones
+                spool->instant_is_over();
+            }
+        }
+        const Log log = memory.take();
+        if (names_a_ulog(grown.path()))
+            write_ulog(log, at_once.path());
+        else
+            write_csv(log, at_once.path());
+        disk.write({});
+        EXPECT_TRUE(at_once.text() == grown.text()) << name;
+        EXPECT_EQ(log.find("d.adc_count"), nullptr) << "absent is 0";
+        EXPECT_NE(log.find("e.adc_count"), nullptr);
+    }
+}
+
+TEST(Spool, refuses_a_clock_that_goes_back) {
+    const test::File kept("spool_refused.csv", "as it was");
+    const std::vector<std::int32_t> whole{1, 2, 3, 4, 5};
+    for (const auto &[first, rate_Hz] : std::vector<std::pair<std::uint32_t, double>>{
+             {104, 512}, {1, 512}, {200, 0}, {200, -512}, {200, std::numeric_limits<double>::quiet_NaN()}, {0xfffffffeu, 512}}) {
+        Spool spool(kept.path());
+        const std::size_t column = spool.add("radar.adc_count", false, 0, Unit::count);
+        spool.put_by_clock(column, 100, 512, whole);
+        spool.put_by_clock(column, first, rate_Hz, whole); // the last: its numbers begin anew, and so do its times
+        EXPECT_THROW(spool.write({}), LogError) << first << ' ' << rate_Hz;
+        std::remove((kept.path() + ".part").c_str());
+        EXPECT_EQ(kept.text(), "as it was");
+    }
+}
+
 // Up to 256 columns a row names each with a byte, beyond with two.
 TEST(Spool, many_columns_are_written_as_at_once) {
     for (const std::size_t count : {std::size_t{256}, std::size_t{257}, std::size_t{600}}) {
