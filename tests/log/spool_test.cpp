@@ -291,7 +291,13 @@ TEST(Spool, refuses_a_clock_that_goes_back) {
         const std::size_t column = spool.add("radar.adc_count", false, 0, Unit::count);
         spool.put_by_clock(column, 100, 512, whole);
         spool.put_by_clock(column, first, rate_Hz, whole); // the last: its numbers begin anew, and so do its times
-        EXPECT_THROW(spool.write({}), LogError) << first << ' ' << rate_Hz;
+        try {
+            spool.write({});
+            ADD_FAILURE() << first << ' ' << rate_Hz;
+        } catch (const LogError &error) {
+            const std::string sample = first == 0xfffffffeu ? "sample 7;" : "sample 5;";
+            EXPECT_NE(std::string(error.what()).find(sample), std::string::npos) << error.what();
+        }
         std::remove((kept.path() + ".part").c_str());
         EXPECT_EQ(kept.text(), "as it was");
     }
