@@ -32,7 +32,7 @@ namespace traction::cli {
 namespace {
 
 struct SimulateArguments {
-    std::string scenario, out, truth, frames, seal, seeds, firmware, model, rover, believes, live, can;
+    std::string scenario, out, truth, radar, frames, seal, seeds, firmware, model, rover, believes, live, can;
     std::int64_t seed = -1, hide = -1;
     int hide_count = 1, jobs = 1;
     double seconds = 0; // 0: the scenario's own
@@ -61,6 +61,7 @@ SimulateOptions options_of(const SimulateArguments &arguments, SimulateOptions o
     const auto name = [&](const std::string &path) { return batch && !path.empty() ? with_seed(path, seed) : path; };
     options.log_path = name(arguments.out);
     options.truth_path = name(arguments.truth);
+    options.radar_path = name(arguments.radar);
     if (arguments.hide >= 0)
         options.hide = sim::HiddenDraw{
             .seed = static_cast<std::uint64_t>(arguments.hide) + (seed - first), .count = arguments.hide_count, .among = {}};
@@ -245,7 +246,7 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     if (!arguments.live.empty()) live.emplace();
     if (live) options.after_tick = [&live](const trace_t &trace) { live->row(trace); };
 
-    for (const std::string &path : {arguments.out, arguments.truth})
+    for (const std::string &path : {arguments.out, arguments.truth, arguments.radar})
         if (!path.empty() && std::filesystem::exists(path + ".part"))
             std::printf("note: %s.part is what an earlier run had when it was ended; traction recover makes a log of it\n", path.c_str());
 
@@ -271,7 +272,7 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     std::printf("%s: %ld run%s, %.1f s simulated in %.2f s (%.0f x real time)%s%s\n", scenario.name.c_str(), count, count == 1 ? "" : "s",
                 simulated_s, spent_s, simulated_s / spent_s, arguments.out.empty() ? "" : ", log in ", arguments.out.c_str());
     outcome.json["spent_s"] = spent_s;
-    if (arguments.out.empty() && arguments.truth.empty() && arguments.frames.empty())
+    if (arguments.out.empty() && arguments.truth.empty() && arguments.radar.empty() && arguments.frames.empty())
         std::printf("the log was not kept; --out LOG keeps it\n");
     tell_faults(outcome);
     if (const int signal = StopSignal::asked(); signal != 0) {
@@ -285,8 +286,8 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
 
 Verb verb_simulate() {
     const auto arguments = std::make_shared<SimulateArguments>();
-    const std::vector<std::string> of_firmware = {"--out",  "--truth",    "--frames",    "--firmware", "--believes",
-                                                  "--live", "--realtime", "--self-test", "--seeds"};
+    const std::vector<std::string> of_firmware = {"--out",      "--truth", "--radar",    "--frames",    "--firmware",
+                                                  "--believes", "--live",  "--realtime", "--self-test", "--seeds"};
     return {.name = "simulate",
             .summary = "drive the simulated rover through a scenario and write the log",
             .options =
@@ -303,6 +304,11 @@ Verb verb_simulate() {
                  {.name = "--truth",
                   .into = &arguments->truth,
                   .help = "what really happened, in a file of its own",
+                  .value = "FILE",
+                  .kind = Kind::output},
+                 {.name = "--radar",
+                  .into = &arguments->radar,
+                  .help = "the radar's samples, 512 a second, in a log of their own instead of in --out, which then has few empty cells",
                   .value = "FILE",
                   .kind = Kind::output},
                  {.name = "--seed", .into = &arguments->seed, .help = "instead of the scenario's seed", .range = Range{.low = 0}},

@@ -6,6 +6,7 @@
 #include "host_tools/loop/loop.h"
 #include "host_tools/rover/rover.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -123,6 +124,10 @@ std::vector<LoggedTick> logged_ticks(const log::Log &log) {
         if (log.find(name) == nullptr)
             throw log::LogError(log.source, 0, 0, std::string("there is no column ") + name + ", so its frames cannot be replayed",
                                 "replay a log that `traction simulate` or the on-board log wrote whole");
+    if (const log::Signal *samples = log.find("frame.radar_samples"); samples != nullptr && log.find("radar.adc_count") == nullptr)
+        if (std::any_of(samples->value.begin(), samples->value.end(), [](double count) { return count > 0; }))
+            throw log::LogError(log.source, 0, 0, "there is no column radar.adc_count, and its frames had samples of the radar",
+                                "give the file that has them with --radar");
     const log::Signal &clock = *log.find("frame.present");
     Columns columns(log);
     std::vector<LoggedTick> ticks;

@@ -26,6 +26,20 @@ struct Tidy {
 
 } // namespace
 
+void Recorder::begin(const std::map<std::string, std::string> &header) {
+    spool_.begin(header);
+    if (radar_spool_) radar_spool_->begin(header);
+}
+
+void Recorder::put_by() {
+    spool_.put_by();
+    if (radar_spool_) radar_spool_->put_by();
+}
+
+void Recorder::write_radar(const std::map<std::string, std::string> &header) {
+    if (radar_spool_) radar_spool_->write(header);
+}
+
 void Recorder::large(std::size_t slot, double value) { others_.push_back({slot, value}); }
 
 inline void Recorder::tidy(std::size_t slot, float value) {
@@ -43,9 +57,11 @@ std::size_t Recorder::column(const std::string &name, log::Unit unit, bool absen
     return spool_.add(name, absent_is_zero, name.rfind("camera", 0) == 0 ? 0 : expected_, unit);
 }
 
-Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path, unsigned wheels)
+Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path, unsigned wheels,
+                   const std::string &radar_path)
     : expected_(expected_ticks), spool_(path), radar_rate_Hz_(radar_rate_Hz), wheels_(wheels) {
     using log::Unit;
+    if (!radar_path.empty()) radar_spool_.emplace(radar_path);
     std::vector<std::size_t> bound;
     const auto slot = [&](const std::string &name, Unit unit, bool absent_is_zero = false) {
         bound.push_back(column(name, unit, absent_is_zero));
@@ -73,7 +89,7 @@ Recorder::Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std
     }
     at_ = {.battery = slot("battery.voltage_V", Unit::millionth),
            .battery_count = slot("battery.voltage_count", Unit::count),
-           .radar_count = column("radar.adc_count", Unit::count),
+           .radar_count = (radar_spool_ ? *radar_spool_ : spool_).add("radar.adc_count", false, 0, Unit::count),
            .radar_speed = column("radar.speed_m_s", Unit::millionth),
            .accel = slot("imu.accel_x_m_s2", Unit::millionth),
            .accel_count = slot("imu.accel_x_count", Unit::count),
@@ -165,7 +181,7 @@ void Recorder::add_radar(const sensor_frame_t &frame) {
     for (std::uint32_t i = 0; i < frame.radar_samples; i++)
         if (static_cast<std::int32_t>(frame.radar_sequence + i - radar_next_) >= 0) fresh[count++] = frame.radar_count[i];
     const std::uint32_t first = frame.radar_sequence + frame.radar_samples - static_cast<std::uint32_t>(count);
-    spool_.put_by_clock(at_.radar_count, first, radar_rate_Hz_, {fresh.data(), count});
+    (radar_spool_ ? *radar_spool_ : spool_).put_by_clock(at_.radar_count, first, radar_rate_Hz_, {fresh.data(), count});
     if (count > 0) radar_next_ = frame.radar_sequence + frame.radar_samples;
 }
 

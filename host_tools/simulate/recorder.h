@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,16 +21,22 @@ class Recorder {
   public:
     // path: of the log, for write; empty: it stays in memory, for take.
     // wheels: bit i: the rover has wheel i; of the others nothing is written.
-    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path = "", unsigned wheels = 0xf);
+    // radar_path: of a log of its own for the radar's samples, so that the other rows have no empty cells for them; empty: they are in it.
+    Recorder(std::uint64_t expected_ticks, double radar_rate_Hz, const std::string &path = "", unsigned wheels = 0xf,
+             const std::string &radar_path = "");
 
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
     void add_camera(std::span<const sim::Pose> poses);
     // Columns that never held anything but 0 are left out where 0 is what absence means.
-    void begin(const std::map<std::string, std::string> &header) { spool_.begin(header); } // log::Spool's
-    void tick_is_over() { spool_.instant_is_over(); }                                      // log::Spool's
-    void put_by() { spool_.put_by(); }
+    void begin(const std::map<std::string, std::string> &header); // log::Spool's
+    void tick_is_over() {                                         // log::Spool's
+        spool_.instant_is_over();
+        if (radar_spool_) radar_spool_->instant_is_over();
+    }
+    void put_by();
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
+    void write_radar(const std::map<std::string, std::string> &header); // where it has a path
 
   private:
     std::size_t column(const std::string &name, log::Unit unit, bool absent_is_zero = false);
@@ -48,6 +55,7 @@ class Recorder {
 
     std::uint64_t expected_;
     log::Spool spool_;
+    std::optional<log::Spool> radar_spool_;
     double radar_rate_Hz_;
     unsigned wheels_;
     std::uint32_t radar_next_ = 1; // the sample at t = 0 belongs to no tick

@@ -83,7 +83,7 @@ class Session : public Link {
             std::uint64_t expected_ticks)
         : options_(options), world_(world), person_(scenario), camera_faults_(scenario, seed),
           recorder_(options.record ? expected_ticks : 0, scenario.sensors.radar.rate_Hz, options.log_path,
-                    sim::firmware_wheels(believed(scenario).layout())),
+                    sim::firmware_wheels(believed(scenario).layout()), options.radar_path),
           truth_(options.truth_path, !scenario.plant.ground.terrain.flat(), scenario.plant.rover.layout) {
         if (!options.frames_path.empty())
             frames_ = std::make_unique<FrameWriter>(options.frames_path, options.firmware.value_or(scenario.firmware.config));
@@ -119,6 +119,7 @@ class Session : public Link {
         result.interrupted = interrupted_;
         for (log::Log *log : {&result.log, &result.truth})
             if (interrupted_) log->header["ended"] = "interrupted";
+        recorder_.write_radar(result.log.header);
         if (!options_.log_path.empty())
             recorder_.write(result.log.header);
         else if (options_.record)
@@ -131,7 +132,7 @@ class Session : public Link {
     }
 
   private:
-    bool records() const { return options_.record || !options_.log_path.empty(); }
+    bool records() const { return options_.record || !options_.log_path.empty() || !options_.radar_path.empty(); }
     const SimulateOptions &options_;
     const hal::SimHal &world_;
     hal::PlanOperator person_;

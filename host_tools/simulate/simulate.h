@@ -25,6 +25,7 @@ struct SimulateOptions {
     bool record = true;                     // false: run only (benchmarks)
     bool truth = false;                     // fill SimulationResult::truth
     std::string log_path, truth_path;       // written as CSV instead of kept in memory, which does not grow with the run; empty: not
+    std::string radar_path;                 // where the radar's samples go instead of into the log, as truth_path; empty: they stay
     bool realtime = false;                  // keep pace with the wall clock
     bool warm = false;                      // a restart: the windings are taken to be warm
     bool self_test = false;                 // before the drive plan; what fails ends the run

@@ -44,6 +44,7 @@ says 2 "give a whole number" simulate cruise --seed x
 says 2 "is given twice" check a.csv --log b.csv
 says 2 "one argument too many" effects backlash torque_ripple
 says 2 "name the same file" simulate cruise --out same.csv --truth ./same.csv
+says 2 "name the same file" simulate cruise --out same.csv --radar same.csv
 says 2 "give one of default, paper; did you mean 'paper'?" simulate cruise --firmware papr
 says 2 "give a verb" # nothing at all
 [ -e same.csv ] && bad "a refused command line made a file"
@@ -55,6 +56,15 @@ says 4 "no_log.csv" check no_log.csv
 says 4 "no_scenario.toml" simulate no_scenario.toml
 says 4 "no_rover: cannot be read: No such file or directory" simulate cruise --believes no_rover
 says 4 "no/such/run.csv: cannot be written: No such file" simulate cruise --out no/such/run.csv
+
+# the radar's samples apart
+gives 0 "log in few.csv" simulate cruise --out few.csv --radar radar.csv --for 4
+gives 0 "1 run, 4.0 s" simulate cruise --seed 9 --radar radar9.csv --for 4
+says 3 "give the file that has them with --radar" replay few.csv
+says 3 "seed is 9, of the log 4" replay few.csv --radar radar9.csv
+says 3 "there is no column radar.adc_count" replay few.csv --radar few.csv
+gives 0 "400 ticks replayed: every trace equals" replay few.csv --radar radar.csv
+gives 0 "2048 samples at 512 Hz" speed radar.csv
 
 # scenarios and models from any folder; what was not kept is told
 gives 0 "the log was not kept; --out LOG keeps it" simulate scenarios/cruise.toml

@@ -14,11 +14,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <string>
+#include <vector>
 
 using namespace traction;
 
@@ -356,6 +358,34 @@ TEST(SecondRover, its_log_replays) {
     EXPECT_GT(replay::replay_log(stripped, replay::logged_ticks(stripped)).differing, 0u);
     stripped.header["firmware.wheel_size"] = "1";
     EXPECT_THROW(replay::logged_config(stripped), log::LogError);
+    std::erase_if(stripped.signals, [](const log::Signal &signal) { return signal.name == "radar.adc_count"; });
+    EXPECT_THROW(replay::logged_ticks(stripped), log::LogError) << "its frames had samples";
+}
+
+// The radar's samples in a log of their own: together the two are the whole, and the first has no row for a sample alone.
+TEST(Simulate, keeps_the_radars_samples_apart) {
+    const std::string folder = ::testing::TempDir();
+    SimulateOptions whole, apart;
+    whole.log_path = folder + "whole.csv";
+    apart.log_path = folder + "few.csv", apart.radar_path = folder + "radar.csv";
+    const sim::Scenario scenario = drive("sand", cruise(0.4, 4), 5);
+    simulate(scenario, whole);
+    simulate(scenario, apart);
+    const log::Log all = log::read_csv(whole.log_path), few = log::read_csv(apart.log_path), radar = log::read_csv(apart.radar_path);
+    ASSERT_EQ(radar.signals.size(), 1u);
+    EXPECT_EQ(radar.header, all.header);
+    EXPECT_EQ(few.header, all.header);
+    EXPECT_EQ(few.find("radar.adc_count"), nullptr);
+    EXPECT_EQ(few.signals.size() + 1, all.signals.size());
+    for (const log::Signal &signal : all.signals) {
+        const log::Signal *same = signal.name == "radar.adc_count" ? &radar.signals[0] : few.find(signal.name);
+        ASSERT_NE(same, nullptr) << signal.name;
+        EXPECT_EQ(same->t_s, signal.t_s);
+        EXPECT_EQ(same->value, signal.value);
+    }
+    const std::string text = text_of(apart.log_path);
+    EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500 + 40 + 100) << "ticks, camera, header";
+    for (const std::string &path : {whole.log_path, apart.log_path, apart.radar_path}) std::remove(path.c_str());
 }
 
 // One wheel of its own radius: the plant has it, the firmware the mean, so the wheel's slip reads 1 - (1 - s) R_i/R_mean.
