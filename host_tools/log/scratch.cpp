@@ -39,7 +39,7 @@ int unnamed_file(const std::string &folder) {
 }
 
 // The head of a block, its checks made.
-part::BlockHead head_of(part::Kind kind, std::span<const std::string_view> pieces) {
+part::BlockHead block_head(part::Kind kind, std::span<const std::string_view> pieces) {
     part::BlockHead head{static_cast<std::uint32_t>(kind), 0, 0, 0, 0};
     for (const std::string_view piece : pieces) {
         head.size += static_cast<std::uint32_t>(piece.size());
@@ -113,7 +113,7 @@ void Scratch::put(std::vector<std::string_view> pieces) {
 
 std::uint64_t Scratch::append(part::Kind kind, std::span<const std::string_view> pieces) {
     open();
-    const part::BlockHead head = head_of(kind, pieces);
+    const part::BlockHead head = block_head(kind, pieces);
     const std::uint64_t place = end_ + sizeof head;
     std::vector<std::string_view> whole{bytes_of(head)};
     whole.insert(whole.end(), pieces.begin(), pieces.end());
@@ -121,7 +121,7 @@ std::uint64_t Scratch::append(part::Kind kind, std::span<const std::string_view>
     part::BlockHead filling{};
     if (left >= sizeof filling && left <= filled_most) {
         const std::string_view zeros(nothing.data(), left - sizeof filling);
-        filling = head_of(part::Kind::filling, {&zeros, 1});
+        filling = block_head(part::Kind::filling, {&zeros, 1});
         whole.insert(whole.end(), {bytes_of(filling), zeros});
     }
     put(std::move(whole));
