@@ -52,6 +52,8 @@ TEST(GroundSpeedTick, at_reset_nothing_is_known_but_that_it_is_slow_and_rather_l
     EXPECT_EQ(state.p_bb, 1); // +-1 m/s^2: 6 deg
     EXPECT_EQ(state.speed_m_s, 0);
     EXPECT_EQ(state.misfit, 1);
+    EXPECT_EQ(state.scatter, 1); // (29): nothing is earned yet
+    EXPECT_EQ(state.calm, 1);
     EXPECT_EQ(state.speed_noise_m2_s2, ours().speed_noise_m2_s2);
     EXPECT_EQ(state.felt_trust, 1);
     EXPECT_NEAR(state.per_felt_most_s2_m2, 1 / (16 * 12.5 * wide(ours().speed_noise_m2_s2)), 1);
@@ -373,9 +375,12 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
 TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
     Any any{{37}};
     const ground_speed_config_t &config = ours();
-    std::array<int, 4> seen = {};
+    std::array<int, 6> seen = {};
     for (int k = 0; k < 2000; ++k) {
         ground_speed_state_t state = calm(any);
+        state.calm = narrow(any.one_in(3) ? 1 : any.between(0.25, 1));
+        state.calm_at_m2_s2 = narrow(any.log_between(1e-4, 0.1));
+        state.calm_less_m2_s2 = (1 - state.calm) * state.calm_at_m2_s2;
         state.chore = any.one_in(2) ? 4 : 12;
         state.apart_m_s = narrow(any.one_in(3) ? 0 : any.between(-0.3, 0.3));
         state.apart_m2_s2 = narrow(any.one_in(2) ? 0 : any.log_between(1e-4, 0.1));
@@ -393,12 +398,13 @@ TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
         const double unseen = q * wide(config.window->tau_ticks) * (1 - taken);
         const double told = square(wide(state.apart_m_s)) - least2 - 112 * q, shaken = wide(state.apart_m2_s2) - least2 - 112 * q / 9;
         const double apart2 = std::clamp(std::fmax(told, shaken), 0.0, wide(config.speed_max_m_s));
-        const double variance = wide(state.p_vv) + unseen + apart2 + square(wide(state.alike_m_s)) +
+        const double own = wide(state.p_vv) + unseen, R = wide(state.calm_at_m2_s2); // (29)
+        const double variance = own - (1 - wide(state.calm)) * std::fmin(own, R) + apart2 + square(wide(state.alike_m_s)) +
                                 (state.other_alive ? wide(state.doubt_m2_s2) : 0) + wide(state.gyro_doubt_m2_s2);
         EXPECT_NEAR(out.std_m_s, std::sqrt(variance), 1e-5 + 1e-5 * std::sqrt(variance)) << k;
         EXPECT_NEAR(out.speed_m_s, wide(state.speed_m_s) - wide(state.felt_m_s) - (state.other_alive ? 0.03 : 0), eps);
         seen[0] += taken > 0 ? 1 : 0, seen[1] += told > 0 && told > shaken ? 1 : 0, seen[2] += shaken > 0 && shaken > told ? 1 : 0;
-        seen[3] += apart2 <= 0 ? 1 : 0;
+        seen[3] += apart2 <= 0 ? 1 : 0, seen[4] += state.calm < 1 && own > R ? 1 : 0, seen[5] += state.calm < 1 && own < R ? 1 : 0;
     }
     EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 50);
 }
