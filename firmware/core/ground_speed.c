@@ -72,7 +72,8 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
         return false;
     }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
-    if (!fixed_greater(config->slow_m_s, mean_m_s)) {
+    const float gains_m_s = fabsf(wheel_m_s - state->wheel_mean_m_s);
+    if (!fixed_greater(config->slow_m_s, mean_m_s) || fixed_greater(gains_m_s, beside_most * config->slow_m_s)) {
         return false;
     }
     if (state->quiet > 0) {

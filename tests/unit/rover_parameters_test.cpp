@@ -78,7 +78,7 @@ static ground_speed_config_t ground_speed_default() {
         .tick_s = tick_s,
         .per_tick_1_s = 100.0f,
         .tick_q20_s = tick_s * 1048576.0f,
-        .speed_noise_m2_s2 = 1e-6f,     // [m^2/s^2] per tick: (0.1 m/s^2 T)^2, assumed: (6) measures what is more
+        .speed_noise_m2_s2 = 4e-6f,     // [m^2/s^2] per tick: (0.2 m/s^2 T)^2, accelerometer noise assumed
         .speed_noise_max_m2_s2 = 4e-4f, // (2 m/s^2 T)^2, assumed: above, it is no noise
         .blind_noise_m2_s2 = 7.5e-4f,   // without an accelerometer: 0.5 m/s^2 that lasts for 0.3 s, assumed
         .bias_noise_m2_s4 = 5e-7f,      // [m^2/s^4] per tick: 5e-5 per second; jumps are found by (4)
