@@ -72,7 +72,7 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
         return false;
     }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
-    const float gains_m_s = fabsf(wheel_m_s - state->wheel_mean_m_s);
+    const float gains_m_s = fabsf(wheel_m_s - state->asked_m_s);
     if (!fixed_greater(config->slow_m_s, mean_m_s) || fixed_greater(gains_m_s, beside_most * config->slow_m_s)) {
         return false;
     }
@@ -88,6 +88,7 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
 static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
     const bool creeps = wheels_creep(config, state, wheel_m_s);
+    state->asked_m_s = wheel_m_s;
     const float spread =
         creeps ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s) : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);

@@ -57,12 +57,12 @@
 //   |V(t) - V(t - 1 s) - b 1 s| > slow/2                                                (19)
 // What stood and is loud a second later was pushed, and felt it; else the values are a lamp's or a creep's remains, and for five seconds,
 // in which a line is learnt, it stands on. Less than half of it is the noise of a second, and what the bias lags (assumed).
-//   |R w| < slow,  d < slow,  d < |m| + 0.05 m/s,  |R w - m| < 0.05 m/s:  v = R w + n,  var n = 4 (0.015 m/s + |R w|/5)^2  (20)
-// m: mean of R w; eight times a second. Wheels that spin up pass through such speeds within a quarter of a second, hence the last. Where
-// the radar's band-pass is deaf, wheels that creep as slowly are the better witness of speed and sign: their slip is a share of little.
-// Each tells the same again, hence 4 (assumed; on simulated rovers they are 1 cm/s off there). The radar's own values have a variance of (2
-// cm/s)^2 more below 0.09 m/s, less up to slow (its errors on a second generator: 1.7 to 2.2 cm/s). (12) takes a body to overtake its
-// wheels 5 % later where they part and the slowest of them speaks: it is the inner one of a turn.
+//   |R w| < slow,  d < slow,  d < |m| + 0.05 m/s,  |R w - R w'| < 0.05 m/s:  v = R w + n,  var n = 4 (0.015 m/s + |R w|/5)^2  (20)
+// m: mean of R w; eight times a second, R w' the time before: wheels that spin up pass through such speeds. Where the radar's band-pass is
+// deaf, wheels that creep as slowly are the better witness of speed and sign: their slip is a share of little. Each tells the same again,
+// hence 4 (assumed; on simulated rovers they are 1 cm/s off there). The radar's own values have a variance of (2 cm/s)^2 more below 0.09
+// m/s, less up to slow (its errors on a second generator: 1.7 to 2.2 cm/s). (12) takes a body to overtake its wheels 5 % later where they
+// part and the slowest of them speaks: it is the inner one of a turn.
 //   |X| > 1.5 |Rw - mean Rw|                                                          (21)
 // X holds what the wheels did as well, forgotten as their mean follows: wheels alone make |X| = |Rw - mean Rw|. Only beyond it the body
 // departs, and only then (13) and (23) are asked and (7) needs less. Where a rim
@@ -242,6 +242,7 @@ typedef struct {
     float value_beside_m_s, beside_mean_m_s; // the last value less the wheels' mean, and the mean of those before
     float rest_mean_m_s;                     // of (24)
     float wheel_mean_m_s;                    // over a quarter of a second
+    float asked_m_s;                         // R w' of (20)
     int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again
     int32_t rolls_wait;
     int32_t refused;

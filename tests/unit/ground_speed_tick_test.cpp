@@ -326,6 +326,7 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         state.chore = any.one_in(2) ? 2 : 10;
         state.wheel_m_s = narrow(any.one_in(3) ? any.between(-1, 1) : any.between(-0.15, 0.15));
         state.wheel_mean_m_s = narrow(any.one_in(2) ? wide(state.wheel_m_s) : any.between(-0.15, 0.15));
+        state.asked_m_s = narrow(wide(state.wheel_m_s) + any.between(-0.08, 0.08));
         state.apart_m_s = 0;
         state.wheel_ticks = 0;
         state.speed_m_s = narrow(any.between(-0.5, 0.5));
@@ -349,7 +350,8 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         const bool silence = was.unheard_ticks + 1 >= 25; // two values missed
         if (std::fabs(mean - slow) < 1e-5 || std::fabs(heard - mean - 0.05) < 1e-5) continue;
         const bool deaf = was.quiet > 0 || (was.accepted && heard < slow && heard < mean + 0.05);
-        const double gains = 0.96 * std::fabs(w - wide(was.wheel_mean_m_s)); // a rim that spins up passes through there
+        const double gains = std::fabs(w - wide(was.asked_m_s)); // a rim that spins up passes through there
+        EXPECT_EQ(state.asked_m_s, was.wheel_m_s);
         if (std::fabs(gains - 0.05) < 1e-5) continue;
         const bool steady = std::fabs(w) < slow && mean < slow && !silence && was.rolls_ticks == 0 && deaf, creeps = steady && gains < 0.05;
         spun += steady && !creeps ? 1 : 0;
