@@ -133,7 +133,7 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
     const float own = state->p_vv + unseen;
-    const float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (29)
+    const float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (28)
     float variance = calm + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
     variance += fixed_bits(state->gyro_doubt_m2_s2) == 0u ? 0.0f : state->gyro_doubt_m2_s2;
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);

@@ -79,12 +79,11 @@
 //   (Rw - v)^2 > 6.25 (P_vv + n^2):  P_vv += (Rw - v)^2                               (25)  n: the noise of (20), once
 // A track with the wrong sign near zero agrees with every value of a deaf radar and is sure of itself; creeping wheels that are 2.5 sigma
 // off show that it is not.
-// (26): where the other sign wins, L of (7) is about a track that is the best no longer, and begins anew. Not where values scatter,
-// f > 1.5: while a line is learnt the winner may be the next value's error, and a bias that may jump is the way out. (27): that values
-// have refuted the sign of wheels that agree with the radar answers the wheels' question; it is not asked again for two seconds, unless a
-// line was taken off. (28): while the best refuses values, none tells more than a third of what it may about a sign: of a value that
-// nothing expects neither track is the better for its wider guess.
-//   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Qv tau,  g = 2 mean e^2/S, from 0.25 to 1         (29)
+// (26): where the other sign wins, L of (7) is about a track that is the best no longer, and begins anew. Not while the best refuses values
+// or they scatter, f > 1.5: a line that is being learnt makes either win by chance, and a bias that may jump is the way out. (27): that
+// values have refuted the sign that the wheels had asked for answers them; they do not ask again for two seconds, unless a line was taken
+// off. A refutation that nobody asked for, as at a start, answers nothing.
+//   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Qv tau,  g = 2 mean e^2/S, from 0.25 to 1         (28)
 // Values share three quarters of their samples with the one before, and R counts each as if it stood alone: where the claim is right, e^2/S
 // is a half in the mean (outdoors_bench --only calm: 0.46 to 0.65). Where it is less for eight seconds, this radar on this ground is better
 // than R, and so is the claim; the filter's gains, odds and limits stay with R. Not while both signs live or wheels part.
@@ -219,7 +218,7 @@ typedef struct {
     float integral_rest_m_s;                    // part of V below one unit
     float one_sided;                            // m of (4)
     float misfit;                               // of (8), 1 or more
-    float scatter;                              // of (29): mean of e^2/S
+    float scatter;                              // of (28): mean of e^2/S
     float calm, calm_at_m2_s2, calm_less_m2_s2; // g, R, (1 - g) R
     float apart_m_s;                            // X of (10)
     float alike_m_s;                            // error that values of a strange spectrum may share: their mean does not make it smaller

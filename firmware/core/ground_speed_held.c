@@ -58,12 +58,12 @@ static void watch_rolling(ground_speed_state_t *state)
     state->rolls = state->parted_values == 0 && is_close(state->value_beside_m_s, rim) && is_close(state->beside_mean_m_s, rim);
 }
 
-static const float scatter_share = 0.015f; // [1] of a value that enters the mean of (29): eight seconds
+static const float scatter_share = 0.015f; // [1] of a value that enters the mean of (28): eight seconds
 static const float scatter_most = 12.25f;  // [1] the gate's square
 static const float calm_times = 2.0f;      // [1] 1 over what e^2/S is where the claim is right
 static const float calm_least = 0.25f;     // [1] half of the standard deviation, assumed
 
-// (29)
+// (28)
 static void watch_scatter(ground_speed_state_t *state)
 {
     state->scatter += scatter_share * (fixed_clamp(state->value_scatter, 0.0f, scatter_most) - state->scatter);

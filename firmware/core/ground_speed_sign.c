@@ -103,7 +103,7 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
         ground_speed_split(state, &state->other, &mirror);
         state->odds = config->against_odds;
         state->other_alive = true;
-        state->against = 0;
+        state->against = -1; // (27): asked
     }
 }
 
@@ -167,9 +167,8 @@ static float doubt_of(float odds)
     return 1.0f / (1.0f + ground_speed_square(ground_speed_square(ground_speed_square(a))));
 }
 
-static const float most_told = 12.0f;   // [1] of one value about a sign: no single value decides (assumed)
-static const float most_refused = 4.0f; // [1] of (28), a third of it, assumed
-static const float scatters = 1.5f;     // [1] f of (26), assumed
+static const float most_told = 12.0f; // [1] of one value about a sign: no single value decides (assumed)
+static const float scatters = 1.5f;   // [1] f of (26), assumed
 
 enum { ANSWERED_VALUES = 12 }; // of (27), and then those of any question
 
@@ -185,8 +184,7 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     if (state->rolls && with < 0 && fixed_greater(state->odds, config->against_odds)) {
         state->odds = config->against_odds; // (18) asks anew
     }
-    const float most = state->refused > 0 ? most_refused : most_told;
-    state->odds += fixed_clamp(cost - state->value_cost, -most, most) +
+    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
                    (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) * (float)with +
                    config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
     const bool won = state->odds < 0.0f;
@@ -200,10 +198,10 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const float apart = state->speed_m_s - state->other.at.speed_m_s;
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
     const bool refuted = !(state->odds < config->sign_sure);
-    state->against = refuted && !won && with < 0 ? -ANSWERED_VALUES : state->against; // (27)
+    state->against = refuted && !won && with < 0 && state->against < 0 ? -ANSWERED_VALUES : state->against; // (27)
     state->other_alive = !one && !refuted;
     if (won) {
-        if (fixed_greater(scatters, state->misfit)) {
+        if (state->refused == 0 && fixed_greater(scatters, state->misfit)) {
             ground_speed_forget_agile(state); // (26)
         }
         ground_speed_no_rolling(state);

@@ -52,7 +52,7 @@ TEST(GroundSpeedTick, at_reset_nothing_is_known_but_that_it_is_slow_and_rather_l
     EXPECT_EQ(state.p_bb, 1); // +-1 m/s^2: 6 deg
     EXPECT_EQ(state.speed_m_s, 0);
     EXPECT_EQ(state.misfit, 1);
-    EXPECT_EQ(state.scatter, 1); // (29): nothing is earned yet
+    EXPECT_EQ(state.scatter, 1); // (28): nothing is earned yet
     EXPECT_EQ(state.calm, 1);
     EXPECT_EQ(state.speed_noise_m2_s2, ours().speed_noise_m2_s2);
     EXPECT_EQ(state.felt_trust, 1);
@@ -403,7 +403,7 @@ TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
         const double unseen = q * wide(config.window->tau_ticks) * (1 - taken);
         const double told = square(wide(state.apart_m_s)) - least2 - 112 * q, shaken = wide(state.apart_m2_s2) - least2 - 112 * q / 9;
         const double apart2 = std::clamp(std::fmax(told, shaken), 0.0, wide(config.speed_max_m_s));
-        const double own = wide(state.p_vv) + unseen, R = wide(state.calm_at_m2_s2); // (29)
+        const double own = wide(state.p_vv) + unseen, R = wide(state.calm_at_m2_s2); // (28)
         const double variance = own - (1 - wide(state.calm)) * std::fmin(own, R) + apart2 + square(wide(state.alike_m_s)) +
                                 (state.other_alive ? wide(state.doubt_m2_s2) : 0) + wide(state.gyro_doubt_m2_s2);
         EXPECT_NEAR(out.std_m_s, std::sqrt(variance), 1e-5 + 1e-5 * std::sqrt(variance)) << k;

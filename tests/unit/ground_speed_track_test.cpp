@@ -318,7 +318,7 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         }
         EXPECT_EQ(state.relieved, input.doppler_relieved && before.relieved);
         EXPECT_EQ(state.against, -5);
-        EXPECT_NEAR(state.value_scatter, cost, 1e-3 * (1 + cost));                                           // of (29), refused or not
+        EXPECT_NEAR(state.value_scatter, cost, 1e-3 * (1 + cost));                                           // of (28), refused or not
         const double m = 0.75 * wide(before.one_sided) + 0.25 * std::clamp(e * std::fabs(e) / S, -4.0, 4.0); // (4)
         const bool jump = std::fabs(m) > wide(config.jump_limit);
         if (std::fabs(std::fabs(m) - 2) > 1e-3) {
