@@ -84,7 +84,7 @@ TEST(GroundSpeedSign, wheels_and_friction_witness_to_the_sign) {
 TEST(GroundSpeedSign, the_slowest_of_wheels_that_part_is_the_hint_where_it_rolls) {
     Any any{{22}};
     int rolled = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 8000; ++k) {
         ground_speed_input_t input = {};
         input.slowest_m_s = narrow(any.one_in(4) ? any.between(-0.03, 0.03) : any.between(-1, 1));
         input.wheel_m_s = narrow(any.between(-2, 2));
@@ -179,7 +179,7 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
     const ground_speed_config_t &config = ours();
     Any any{{25}};
     int won = 0, stayed = 0, merged = 0, given_up = 0, anew = 0, answered = 0, unasked = 0, kept = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 8000; ++k) {
         ground_speed_state_t state = any.past(config);
         any.value(config, state);
         if (any.one_in(2)) state.value_m_s = narrow(std::fabs(wide(state.value_wheel_m_s)) * any.between(0.8, 1.1));
@@ -434,7 +434,7 @@ TEST(GroundSpeedSign, a_line_through_zero_is_found_where_it_fits_and_the_straigh
     const ground_speed_config_t &config = ours();
     Any any{{27}};
     std::array<int, 5> seen = {};
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 8000; ++k) {
         ground_speed_state_t state = any.past(config);
         const int count = any.one_in(2) ? 6 : 5;
         state.slide.ticks = static_cast<uint32_t>(any.next());
