@@ -12,6 +12,8 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
     state->p_bb = config->bias_start_m_s2 * config->bias_start_m_s2;
     state->speed_noise_m2_s2 = config->speed_noise_m2_s2;
     state->misfit = 1.0f;
+    state->scatter = 1.0f;
+    state->calm = 1.0f;
     ground_speed_weigh_wheels(config, state);
 }
 
@@ -70,7 +72,8 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
         return false;
     }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
-    if (!fixed_greater(config->slow_m_s, mean_m_s)) {
+    const float gains_m_s = fabsf(wheel_m_s - state->asked_m_s);
+    if (!fixed_greater(config->slow_m_s, mean_m_s) || fixed_greater(gains_m_s, beside_most * config->slow_m_s)) {
         return false;
     }
     if (state->quiet > 0) {
@@ -85,6 +88,7 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
 static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
     const bool creeps = wheels_creep(config, state, wheel_m_s);
+    state->asked_m_s = wheel_m_s;
     const float spread =
         creeps ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s) : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
@@ -128,7 +132,9 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
     const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, config->speed_max_m_s);
     const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
     const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
-    float variance = state->p_vv + unseen + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
+    const float own = state->p_vv + unseen;
+    const float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (28)
+    float variance = calm + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
     variance += fixed_bits(state->gyro_doubt_m2_s2) == 0u ? 0.0f : state->gyro_doubt_m2_s2;
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }

@@ -92,7 +92,8 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
     const float force = ground_speed_force_odds(config, state);
     const bool dragged = fixed_greater(state->speed_m_s < 0.0f ? force : -force, force_against);
     const bool against = dragged || with_wheels(config, state, state->value_m_s, state->value_wheel_m_s) < 0;
-    state->against = !against ? 0 : state->against + (state->against >= 1000 ? 0 : state->rolls ? 2 : 1);
+    const int32_t more = against && state->rolls ? 2 : 1;
+    state->against = against || state->against < 0 ? state->against + (state->against >= 1000 ? 0 : more) : 0;
     if (state->against >= config->against_values) {
         const ground_speed_track_t best = ground_speed_best_of(state);
         const float bias = 2.0f * state->value_accel_m_s2 - best.bias_m_s2;                 // (2) of the mirror image
@@ -102,7 +103,7 @@ void ground_speed_ask_again(const ground_speed_config_t *config, ground_speed_st
         ground_speed_split(state, &state->other, &mirror);
         state->odds = config->against_odds;
         state->other_alive = true;
-        state->against = 0;
+        state->against = -1; // (27): asked
     }
 }
 
@@ -167,6 +168,9 @@ static float doubt_of(float odds)
 }
 
 static const float most_told = 12.0f; // [1] of one value about a sign: no single value decides (assumed)
+static const float scatters = 1.5f;   // [1] f of (26), assumed
+
+enum { ANSWERED_VALUES = 12 }; // of (27), and then those of any question
 
 // The other sign sees the value one tick later, in a tick that has time.
 void ground_speed_update_other(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -193,8 +197,13 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     }
     const float apart = state->speed_m_s - state->other.at.speed_m_s;
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
-    state->other_alive = !one && state->odds < config->sign_sure;
+    const bool refuted = !(state->odds < config->sign_sure);
+    state->against = refuted && !won && with < 0 && state->against < 0 ? -ANSWERED_VALUES : state->against; // (27)
+    state->other_alive = !one && !refuted;
     if (won) {
+        if (state->refused == 0 && fixed_greater(scatters, state->misfit)) {
+            ground_speed_forget_agile(state); // (26)
+        }
         ground_speed_no_rolling(state);
     }
     const float doubt = doubt_of(state->odds);

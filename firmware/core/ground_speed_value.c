@@ -98,6 +98,7 @@ static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t
     state->bias_m_s2 = state->value_accel_m_s2; // as if it rolled along, give or take
     state->misfit = 1.0f;
     state->other_alive = false;
+    state->against = 0;
     state->rolls_ticks = 0;
     state->slide.held = 0;
     ground_speed_forget_agile(state);
@@ -180,6 +181,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_tau_s = window.tau_s;
     state->value_change_m_s = window.change_m_s;
     state->value_cost = cost + ground_speed_ln_rough(spread);
+    state->value_scatter = cost;
     state->value_sign = middle < 0.0f ? -1.0f : 1.0f;
     state->value_parts = input->wheels_part;
     state->value_wheel_m_s = ground_speed_hint(config, input, measured);

@@ -34,7 +34,7 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
     N(ground_speed.lean_q8, -66977792, 66977792)  N(ground_speed.gyro_denied, 0, 2)              \
        \
     N(ground_speed.refused, 0, 8) N(ground_speed.chore, 0, 15) N(ground_speed.quiet, 0, 1000) N(ground_speed.loud, 0, 1000)                \
-     N(ground_speed.against, 0, 1000)  \
+     N(ground_speed.against, -12, 1000) \
     N(ground_speed.slide.newest, 0, 5) N(ground_speed.slide.held, 0, 6) N(ground_speed.slide.due, 0, 2)                                    \
     N(ground_speed.other.ticks, 0, 1000) N(ground_speed.agile.ticks, 0, 1000) N(ground_speed.agile_left, 0, 4)                             \
     N(ground_speed.held_values, 0, 6) N(ground_speed.waits, 0, 2) N(safety.turn, 0, 3) N(safety.radar_samples, 0, 31)

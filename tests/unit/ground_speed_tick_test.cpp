@@ -52,6 +52,8 @@ TEST(GroundSpeedTick, at_reset_nothing_is_known_but_that_it_is_slow_and_rather_l
     EXPECT_EQ(state.p_bb, 1); // +-1 m/s^2: 6 deg
     EXPECT_EQ(state.speed_m_s, 0);
     EXPECT_EQ(state.misfit, 1);
+    EXPECT_EQ(state.scatter, 1); // (28): nothing is earned yet
+    EXPECT_EQ(state.calm, 1);
     EXPECT_EQ(state.speed_noise_m2_s2, ours().speed_noise_m2_s2);
     EXPECT_EQ(state.felt_trust, 1);
     EXPECT_NEAR(state.per_felt_most_s2_m2, 1 / (16 * 12.5 * wide(ours().speed_noise_m2_s2)), 1);
@@ -318,12 +320,13 @@ TEST(GroundSpeedTick, each_chore_has_its_turn_and_a_busy_tick_has_none) {
 // (20), and what wheels tell where nothing is known.
 TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_known) {
     Any any{{36}};
-    int crept = 0, asked = 0, silent = 0, denied = 0, doubted = 0;
+    int crept = 0, asked = 0, silent = 0, denied = 0, doubted = 0, spun = 0;
     for (int k = 0; k < 6000; ++k) {
         ground_speed_state_t state = calm(any);
         state.chore = any.one_in(2) ? 2 : 10;
         state.wheel_m_s = narrow(any.one_in(3) ? any.between(-1, 1) : any.between(-0.15, 0.15));
         state.wheel_mean_m_s = narrow(any.one_in(2) ? wide(state.wheel_m_s) : any.between(-0.15, 0.15));
+        state.asked_m_s = narrow(wide(state.wheel_m_s) + any.between(-0.08, 0.08));
         state.apart_m_s = 0;
         state.wheel_ticks = 0;
         state.speed_m_s = narrow(any.between(-0.5, 0.5));
@@ -347,7 +350,11 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         const bool silence = was.unheard_ticks + 1 >= 25; // two values missed
         if (std::fabs(mean - slow) < 1e-5 || std::fabs(heard - mean - 0.05) < 1e-5) continue;
         const bool deaf = was.quiet > 0 || (was.accepted && heard < slow && heard < mean + 0.05);
-        const bool creeps = std::fabs(w) < slow && mean < slow && !silence && was.rolls_ticks == 0 && deaf;
+        const double gains = std::fabs(w - wide(was.asked_m_s)); // a rim that spins up passes through there
+        EXPECT_EQ(state.asked_m_s, was.wheel_m_s);
+        if (std::fabs(gains - 0.05) < 1e-5) continue;
+        const bool steady = std::fabs(w) < slow && mean < slow && !silence && was.rolls_ticks == 0 && deaf, creeps = steady && gains < 0.05;
+        spun += steady && !creeps ? 1 : 0;
         const double spread = creeps ? 0.015 + 0.2 * std::fabs(w) : 0.1 + 0.5 * std::fabs(w);
         const bool denies = !silence && std::fabs(wide(was.value_m_s) - std::fabs(w)) > 2 * spread;
         const bool undecided = !silence && was.other_alive; // which sign it is, the radar tells
@@ -367,15 +374,18 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         EXPECT_EQ(state.other_alive, was.other_alive && gain == 0) << k;
         crept += creeps ? 1 : 0, asked += !creeps && asks ? 1 : 0, silent += asks && silence ? 1 : 0, denied += denies && !creeps ? 1 : 0;
     }
-    EXPECT_GT(std::min({crept, asked, silent, denied, doubted, crept - doubted}), 100);
+    EXPECT_GT(std::min({crept, asked, silent, denied, doubted, crept - doubted, spun}), 100);
 }
 
 TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
     Any any{{37}};
     const ground_speed_config_t &config = ours();
-    std::array<int, 4> seen = {};
+    std::array<int, 6> seen = {};
     for (int k = 0; k < 2000; ++k) {
         ground_speed_state_t state = calm(any);
+        state.calm = narrow(any.one_in(3) ? 1 : any.between(0.25, 1));
+        state.calm_at_m2_s2 = narrow(any.log_between(1e-4, 0.1));
+        state.calm_less_m2_s2 = (1 - state.calm) * state.calm_at_m2_s2;
         state.chore = any.one_in(2) ? 4 : 12;
         state.apart_m_s = narrow(any.one_in(3) ? 0 : any.between(-0.3, 0.3));
         state.apart_m2_s2 = narrow(any.one_in(2) ? 0 : any.log_between(1e-4, 0.1));
@@ -393,12 +403,13 @@ TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
         const double unseen = q * wide(config.window->tau_ticks) * (1 - taken);
         const double told = square(wide(state.apart_m_s)) - least2 - 112 * q, shaken = wide(state.apart_m2_s2) - least2 - 112 * q / 9;
         const double apart2 = std::clamp(std::fmax(told, shaken), 0.0, wide(config.speed_max_m_s));
-        const double variance = wide(state.p_vv) + unseen + apart2 + square(wide(state.alike_m_s)) +
+        const double own = wide(state.p_vv) + unseen, R = wide(state.calm_at_m2_s2); // (28)
+        const double variance = own - (1 - wide(state.calm)) * std::fmin(own, R) + apart2 + square(wide(state.alike_m_s)) +
                                 (state.other_alive ? wide(state.doubt_m2_s2) : 0) + wide(state.gyro_doubt_m2_s2);
         EXPECT_NEAR(out.std_m_s, std::sqrt(variance), 1e-5 + 1e-5 * std::sqrt(variance)) << k;
         EXPECT_NEAR(out.speed_m_s, wide(state.speed_m_s) - wide(state.felt_m_s) - (state.other_alive ? 0.03 : 0), eps);
         seen[0] += taken > 0 ? 1 : 0, seen[1] += told > 0 && told > shaken ? 1 : 0, seen[2] += shaken > 0 && shaken > told ? 1 : 0;
-        seen[3] += apart2 <= 0 ? 1 : 0;
+        seen[3] += apart2 <= 0 ? 1 : 0, seen[4] += state.calm < 1 && own > R ? 1 : 0, seen[5] += state.calm < 1 && own < R ? 1 : 0;
     }
     EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 50);
 }

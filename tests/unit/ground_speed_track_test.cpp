@@ -247,6 +247,7 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
         state.relieved = any.one_in(2);
         state.slide.held = 3;
         state.agile_left = 2;
+        state.against = -5;
         const double late = any.one_in(4) ? -0.12 : any.one_in(2) ? 0 : 0.034;
         const ground_speed_past_t window = ground_speed_look_back(&config, &state, narrow(late));
         const ground_speed_track_t was = ground_speed_best_of(&state);
@@ -300,6 +301,8 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
             ground_speed_track_t at = {was.speed_m_s, window.accel_m_s2, 1, 0, 1}; // (1 m/s)^2, (1 m/s^2)^2, as if it rolled along
             const double m = any_state::mean_of(at, tau) - wide(window.change_m_s), spread = 1 + tau * tau + R;
             const double nearest = (m < 0 ? -z : z) - m, share = nearest * std::fabs(nearest) / spread;
+            EXPECT_EQ(state.against, 0); // (27): what the line had answered is open
+            EXPECT_NEAR(state.value_scatter, std::fabs(share), 1e-3 * (1 + std::fabs(share)));
             EXPECT_NEAR(state.value_cost, std::fabs(share) + wide(ground_speed_ln_rough(narrow(spread))), 1e-3);
             EXPECT_NEAR(state.misfit, std::fabs(share) > 12.25 ? 1 : std::fmax(1, 1 + 0.02 * (std::fabs(share) - 1)), 1e-3);
             const double sided = 0.75 * wide(before.one_sided) + 0.25 * std::clamp(share, -4.0, 4.0);
@@ -314,6 +317,8 @@ TEST(GroundSpeedTrack, a_value_corrects_or_is_refused_and_is_kept_for_the_others
             continue;
         }
         EXPECT_EQ(state.relieved, input.doppler_relieved && before.relieved);
+        EXPECT_EQ(state.against, -5);
+        EXPECT_NEAR(state.value_scatter, cost, 1e-3 * (1 + cost));                                           // of (28), refused or not
         const double m = 0.75 * wide(before.one_sided) + 0.25 * std::clamp(e * std::fabs(e) / S, -4.0, 4.0); // (4)
         const bool jump = std::fabs(m) > wide(config.jump_limit);
         if (std::fabs(std::fabs(m) - 2) > 1e-3) {
