@@ -546,5 +546,12 @@ TEST(Accepted, that_is_taken_back_leaves_the_ladder_the_ranking_and_its_class) {
     EXPECT_EQ(d.ladder.size(), 1U);
 }
 
+TEST(Refined, shapes_are_kept_where_the_fit_is_no_worse_for_them) {
+    EXPECT_TRUE(no_worse(2, 2));
+    EXPECT_TRUE(no_worse(2.0009, 2));
+    EXPECT_FALSE(no_worse(2.0011, 2));
+    EXPECT_FALSE(no_worse(std::nan(""), 2));
+}
+
 } // namespace
 } // namespace traction::lab

@@ -188,6 +188,10 @@ bool takes_their_place(std::size_t names, double gain, double named_gain, double
     return gain > (leaves_a_shape ? place_beside_a_shape : options.shape_margin) * named_gain && gain - named_gain >= 2 * error;
 }
 
+bool gives_way(const std::vector<std::size_t> &replaced, const std::vector<CandidateResult> &accepted, double shape_gain) {
+    return replaced.size() > 1 || (!replaced.empty() && accepted[replaced[0]].gain_squares < 0.5 * shape_gain);
+}
+
 bool repeats(const ShapeScore &s) {
     if (s.assessment.gain > 2.5 * s.assessment.gain_error) return true;
     Eigen::VectorXd gain = s.assessment.block_gain;
