@@ -43,6 +43,10 @@ struct InputBuilder {
     swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
     double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel
     void wheel_motion(std::size_t i);
+    bool is_measured(std::size_t i) const;
+    // A driven wheel whose speed the log has not: its motor holds it, so that it neither stands nor rolls freely. The mean of those driven
+    // wheels of its side that are measured.
+    void turn_with_side(std::size_t i);
     void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
     static double rounding_of(const std::vector<double> &angle_rad);
     static double scatter_of(const std::vector<double> &angle_rad, double count_rad);
