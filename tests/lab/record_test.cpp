@@ -151,6 +151,8 @@ TEST(Result, tells_gain_interval_and_detectability_by_their_definitions) {
     EXPECT_EQ(r.explains, sim::find_effect("slip_sinkage")->signature);
     EXPECT_TRUE(r.evidence.empty());
     t.error = {0, 0, 0};
+    for (const double error : {0.5, 2.0}) // a share of whatever the error is
+        EXPECT_NEAR(result_of(t, error, screen()).heldout_gain, t.gain / error, 1e-12 * t.gain);
     r = result_of(t, 0, screen());
     EXPECT_EQ(r.detectability, 0);
     EXPECT_EQ(r.heldout_gain, 0);

@@ -4,6 +4,7 @@
 #include "host_tools/lab/fit/distribution.h"
 #include "tests/lab/linear_machine.h"
 
+#include <functional>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -187,6 +188,22 @@ TEST(Scan, ends_where_the_error_has_risen_by_a_fiftieth_and_leaves_out_what_is_o
     Scanned tiny(0.03, 400);
     EXPECT_FALSE(tiny.at(0.03, 0.29).start.empty());
     EXPECT_TRUE(tiny.at(0.03, 0.31).start.empty() || tiny.at(0.03, 0.31).start[0] > 0.031); // less than a tenth of interest
+}
+
+TEST(Scan, is_of_one_strength_that_moves_the_body_and_has_a_range) {
+    const auto scanned = [](const std::function<void(Candidate &)> &change) {
+        Scanned s(1);
+        s.c.touched = stage_motion, s.c.of_interest = {0.02};
+        Trial t;
+        t.candidate = s.c, t.value = {0.3}, t.error_reduction = 5;
+        change(t.candidate);
+        scan(t, *s.base, *s.screen);
+        return !t.start.empty() || t.error_reduction != 5;
+    };
+    EXPECT_TRUE(scanned([](Candidate &) {}));
+    EXPECT_FALSE(scanned([](Candidate &c) { c.touched = stage_sensors; }));
+    EXPECT_FALSE(scanned([](Candidate &c) { c.strengths.push_back(c.strengths[0]); }));
+    EXPECT_FALSE(scanned([](Candidate &c) { c.maximum.clear(); }));
 }
 
 TEST(Scan, keeps_the_fall_that_the_step_saw_where_the_sizes_see_less) {
