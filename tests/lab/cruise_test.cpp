@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace traction::lab {
 namespace {
@@ -69,6 +70,13 @@ TEST(Cruise, believes_nothing_of_one_wheel_that_moves_the_rover) {
     EXPECT_TRUE(says(d, "wheel_radius on wheel 2 would explain a part, but only with one wheel unlike the others, and this drive has "
                         "one manner: not named"))
         << d.text;
+}
+
+// The ground that gets firmer along the way takes the numbers of the model far away; a refit of another law finds them a better place.
+TEST(Cruise, begins_anew_where_a_refit_found_the_model_a_better_place) {
+    const Diagnosis d = told(use_of("soil_gradient", "change_per_m", -0.2), true);
+    EXPECT_EQ(d.kind, "named") << d.text; // with no shape beside it: nothing else is hidden
+    EXPECT_EQ(d.effects, std::vector<std::string>{"soil_gradient"});
 }
 
 // What leaves the motion alone is seen in that wheel's own current.

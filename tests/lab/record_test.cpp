@@ -54,7 +54,7 @@ TEST(Excited, is_what_three_sizes_of_interest_change_by_two_deviations_alone_and
     EXPECT_NE(noted(100, 0.151), "");
     EXPECT_EQ(noted(1, 0.1, 0.049), ""); // the log says something of it
     EXPECT_NE(noted(1, 0.1, 0.05), "");
-    EXPECT_EQ(noted(1, 0.1, 0.5, 2), ""); // of one wheel nothing is said
+    for (const int wheel : {0, 1, 2}) EXPECT_EQ(noted(1, 0.1, 0.5, wheel), ""); // of one wheel nothing is said
 }
 
 TEST(Excited, are_two_strengths_of_which_one_is) {

@@ -441,6 +441,8 @@ TEST(Unknown, shape_that_explains_more_than_all_names_stands_for_those_that_say_
     ASSERT_TRUE(both.shape);
     EXPECT_EQ(both.shape->balance, "accelerometer(time)");
     EXPECT_EQ(both.replaced, (std::vector<std::size_t>{0, 1}));
+    const Problem stated = fitted_problem(n.bench.model, n.bench.machine.data);
+    EXPECT_NEAR(both.shape->gain, both.gain_squares / Screen(stated).heldout_error(), 1e-9); // of what the model leaves with no name
     EXPECT_GT(both.gain_squares, 120); // on the fit's scales each of the accelerometer's 240 rows counts one: most of them
     const ShapeFindings none = n.found({});
     ASSERT_TRUE(none.shape);

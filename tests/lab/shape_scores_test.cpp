@@ -154,6 +154,26 @@ TEST(ShapeColumns, of_some_wheels_are_those_of_each_wheel_and_axle) {
     EXPECT_EQ(groups["torque(motor current)"], 6);
 }
 
+// Two wheels would hold a curve's columns of each in one pass; of what moves the body it is lines alone that are tried on one wheel.
+TEST(ShapeColumns, of_one_wheel_that_move_the_body_are_of_lines_alone) {
+    hand_made::FourWheels two;
+    two.model.wheel.resize(2), two.data.wheel.resize(2);
+    std::erase_if(two.data.balance, [](const Balance &b) { return b.wheel > 1; });
+    two.measure(make_physics(two.model));
+    const Physics physics = make_physics(two.model);
+    Problem problem(two.data, physics, free_parameters(two.model, physics));
+    problem.gauss_newton(2);
+    const Screen screen(problem);
+    int lines = 0, curves = 0;
+    for (const ShapeScore &s : all_shapes(problem, screen)) {
+        if (!s.candidate.some_wheels || s.candidate.touched != stage_motion) continue;
+        EXPECT_TRUE(is_straight(s.candidate) && s.candidate.order == 0) << s.candidate.effect;
+        (is_straight(s.candidate) ? lines : curves) += 1;
+    }
+    EXPECT_GT(lines, 0);
+    EXPECT_EQ(curves, 0);
+}
+
 TEST(ShapeColumns, of_a_bump_are_the_inner_ones_of_its_curve) {
     const Shaped &f = four_wheels();
     const ShapeScore *curve = f.find("friction(wheel speed)");
