@@ -246,6 +246,10 @@ class Search {
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
         if (!pay && !falls_notably(held_, held, data_)) return std::nullopt;
+        if (strains_sheet(spared, held_.error, held.error, options_.least_prior_reduction)) {
+            t.verdict = "strains_sheet";
+            return std::nullopt;
+        }
         if (!t.by_rows) t.sheet_alone = rival && broken == 0 ? spared : 0;
         problem.linearise();
         return Next{std::move(problem), std::move(held), support.tolerance_as_much ? rival->name : ""};
