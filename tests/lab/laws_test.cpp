@@ -93,6 +93,19 @@ TEST(Sensors, an_accelerometer_filtered_and_late_as_such_parts_are_gets_no_name)
 }
 
 // On concrete a count is a force of a newton; a relaxation length smooths it, and was named in stop and go (error 2.1 -> 1.1 x noise).
+// Nothing is hidden. By a gain of the current sensors the error of blocks left out falls by 3 %, surely, with numbers that lie 58 squared
+// deviations farther from the sheet; it was told.
+TEST(Sheet, is_strained_for_no_name_that_explains_little) {
+    const generator::BlindCase clean = generator::draw_fleet_case(850017, "clean");
+    ASSERT_TRUE(clean.config.hidden.empty());
+    const Answer a = ask(clean.config);
+    EXPECT_EQ(a.d.effects, std::vector<std::string>()) << a.d.text;
+    const auto strained =
+        std::find_if(a.d.ranking.begin(), a.d.ranking.end(), [](const CandidateResult &r) { return r.verdict == "strains_sheet"; });
+    ASSERT_NE(strained, a.d.ranking.end());
+    EXPECT_EQ(strained->candidate.effect, "current_gain");
+}
+
 TEST(Rounding, what_only_smooths_the_encoders_noise_is_not_named) {
     GeneratorConfig config = rover(Soil::concrete, 240004);
     config.drive = "stop_and_go";
