@@ -1,6 +1,7 @@
 // Whole diagnoses of a drive of one manner (manner.h), a sixth of a second each: what may be named from one velocity.
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/decision/manner.h"
+#include "tests/lab/consistent.h"
 #include "tests/lab/four_wheels.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,9 @@ EffectUse use_of(const std::string &name, const std::string &key, double size, i
 Diagnosis told(const EffectUse &hidden, bool cruise) {
     hand_made::FourWheels rover("", cruise);
     rover.hide({hidden});
-    return diagnose(rover.model, rover.data, {});
+    Diagnosis d = diagnose(rover.model, rover.data, {});
+    expect_consistent(d, rover.model, rover.data);
+    return d;
 }
 
 bool says(const Diagnosis &d, const std::string &words) {
@@ -55,6 +58,20 @@ TEST(Cruise, of_what_one_speed_cannot_tell_apart_names_the_number_that_the_model
     ASSERT_EQ(d.ladder.size(), 2U);
     EXPECT_EQ(d.ladder[1].label, "+ rolling_resistance");
     EXPECT_LT(d.ladder[1].heldout, 1.1);
+}
+
+// Another drive says what it says: of the class the one that explains the most of what is left out, be it a drag.
+TEST(Cruise, is_what_puts_the_stated_number_first_and_no_other_drive) {
+    const Diagnosis d = told(use_of("rolling_resistance", "coefficient", 0.09), false);
+    ASSERT_EQ(d.classes.size(), 1U) << d.text;
+    const std::vector<std::string> &members = d.classes[0].members;
+    EXPECT_EQ(std::count(members.begin(), members.end(), "rolling_resistance"), 1);
+    const auto gain = [&](const std::string &label) {
+        return std::find_if(d.ranking.begin(), d.ranking.end(), [&](const CandidateResult &r) { return r.candidate.label() == label; })
+            ->gain_squares;
+    };
+    for (const std::string &member : members) EXPECT_GE(gain(members.front()), gain(member)) << member;
+    EXPECT_NE(members.front(), "rolling_resistance"); // hidden so that the drag happens to explain more
 }
 
 // What moves the rover must act on all wheels: else a note says with what it would have to be believed.

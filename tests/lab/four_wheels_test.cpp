@@ -3,6 +3,7 @@
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "sim/physics/effects/catalogue.h"
+#include "tests/lab/consistent.h"
 #include "tests/lab/four_wheels.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,9 @@ EffectUse use_of(const std::string &name, double size, int wheel = -1) {
 
 Diagnosis told(const std::vector<EffectUse> &hidden, hand_made::FourWheels &rover) {
     rover.hide(hidden);
-    return diagnose(rover.model, rover.data, {});
+    Diagnosis d = diagnose(rover.model, rover.data, {});
+    expect_consistent(d, rover.model, rover.data);
+    return d;
 }
 
 // Each that is hidden is an accepted effect or of the class of one, on its own wheel; nothing else is accepted; noise is left; and what is

@@ -196,8 +196,12 @@ TEST(Class, tells_two_apart_by_blocks_that_agree_unless_their_traces_are_one) {
     other.gain = 95, other.error_reduction = 104;
     other.block_gain = Eigen::VectorXd::Constant(10, 9.5);
     EXPECT_EQ(class_of(good("a"), other).size(), 1U); // one trace
-    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
-    EXPECT_TRUE(class_of(good("a"), other).empty());
+    for (const double size : {1.0, 30.0, 0.03}) {     // a trace is one by its direction
+        other.assessment.projected = size * Eigen::Vector3d(0.8, 0.6, 0);
+        EXPECT_TRUE(class_of(good("a"), other).empty());
+        other.assessment.projected = size * Eigen::Vector3d(0.95, 0.31, 0);
+        EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    }
     other.assessment.projected = Eigen::Vector3d(-0.95, 0.31, 0); // nearly parallel, whatever its sign
     EXPECT_EQ(class_of(good("a"), other).size(), 1U);
     other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);

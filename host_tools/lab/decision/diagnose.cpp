@@ -55,6 +55,7 @@ class Search {
             Problem left = fitted(without, &problem);
             remove(i, std::move(without), left);
             d_.model_fit.reset();
+            settle_last(left);
             return left;
         });
         refine_shapes(problem);
@@ -114,7 +115,12 @@ class Search {
         for (Trial &t : trials) judge(t, screen.explainable(), options_);
         const Refit refit_one = [&](Trial &t) { return refit_and_judge(t, problem, screen); };
         refit_likely(trials, options_.refits, refit_one);
-        if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
+        if (may_restart && restart_from_refit(trials, problem)) {
+            const Screen anew(problem);
+            held_ = held_out(problem); // or the next name would be given what the place has gained
+            if (!is_first) stands_at(problem), refresh(problem, anew);
+            return forward_step(problem, anew, is_first, false);
+        }
         judge_beyond_range(trials, base_error, d_.messages);
         std::optional<Next> next;
         std::size_t winner = trials.size();
