@@ -1,7 +1,6 @@
 #include "make_dataset.h"
 
 #include "motion.h"
-#include "reversal.h"
 #include "rounding.h"
 #include "smoothing_bias.h"
 #include "wheel_laws.h"
@@ -97,7 +96,6 @@ Dataset best_smoothed(const Model &model, const log::Log &log) {
 
 Dataset make_dataset(const Model &model, const log::Log &log, const log::Log *repeat) {
     Dataset data = best_smoothed(model, log);
-    add_reversal(model, data);
     if (repeat != nullptr) noise_from_repeat(data, measured_data(model, *repeat));
     return data;
 }

@@ -19,8 +19,6 @@ namespace traction::lab {
 inline constexpr double rest_speed_m_s = 0.01; // below it slip is taken against this speed: no encoder tells it there, and the soil
                                                // would be too stiff for any step; assumed
 
-inline constexpr double resist_speed_m_s = 5e-3; // rolling resistance reverses over this speed: assumed (reversal.h)
-
 inline constexpr double most_side_slip = 4; // a lagging one stays within: beyond it the ground slides whatever it is
 
 namespace law {

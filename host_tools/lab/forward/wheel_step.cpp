@@ -8,7 +8,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double scrub_speed_m_s = 5e-3; // and sideways scrub over this one, where the wheels' sideways speed is that of turning alone;
+constexpr double resist_speed_m_s = 5e-3; // rolling resistance reverses over this speed: assumed, below any sensor's resolution
+constexpr double scrub_speed_m_s = 5e-3;  // and sideways scrub over this one, where the wheels' sideways speed is that of turning alone;
 constexpr double drift_speed_m_s =
     15e-3; // over this one where the body drifts as well: every small swerve would meet all of it otherwise; assumed
 constexpr double least_combined_m_s = 0.02; // combined slip is taken against at least this speed: assumed
