@@ -67,6 +67,11 @@ TEST(Sizes, are_the_catalogues_for_the_rover_that_it_is_of) {
     Machine near; // within a third of it
     near.times("mass_kg", 1.45), near.times("resistance_ohm", 0.7);
     for (const auto &[unit, factor] : scales(near)) EXPECT_EQ(factor, 1) << unit;
+    for (const double factor : {1.55, 2.5, 0.64, 0.4}) { // another one
+        Machine other;
+        other.times("mass_kg", factor);
+        EXPECT_NEAR(of(scales(other), "N"), factor, 1e-9);
+    }
 }
 
 // By what a motor can: stall torque K U / R, damping K^2 / R, stall current U / R, speed U / K, and a rover's weight and half diagonal.

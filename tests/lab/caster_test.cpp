@@ -105,10 +105,10 @@ TEST(Caster, is_told_and_a_motors_wheel_without_a_speed_is_told_otherwise) {
     };
     const Model model = two_and_caster();
     EXPECT_EQ(told(model, "wheel 2 has no motor and no speed in the log: taken to roll freely"), 1);
-    EXPECT_EQ(told(model, "taken as standing still"), 0);
+    EXPECT_EQ(told(model, "taken to turn as the others of its side"), 0);
     Model driven_by_it = model;
     driven_by_it.wheel[caster].driven = true;
-    EXPECT_EQ(told(driven_by_it, "wheel 2 has no speed in the log: taken as standing still"), 1);
+    EXPECT_EQ(told(driven_by_it, "wheel 2 has no speed in the log: taken to turn as the others of its side"), 1);
     EXPECT_EQ(told(driven_by_it, "taken to roll freely"), 0);
 }
 

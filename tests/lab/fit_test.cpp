@@ -7,6 +7,7 @@
 #include "host_tools/lab/fit/remainder.h"
 #include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/sparse_jacobian.h"
+#include "tests/lab/four_wheels.h"
 #include "tests/lab/linear_machine.h"
 
 #include <gtest/gtest.h>
@@ -323,6 +324,48 @@ TEST(Scales, follow_the_drive) {
     }
     EXPECT_NEAR(slow, 0.5, 0.12);
     EXPECT_NEAR(fast, 1.0 / 6, 0.03);
+}
+
+// Of a rover whose wheels slip, each square of a balance made to be one of the things that it may follow: nearly all is told as that.
+TEST(Scales, tell_each_thing_that_what_is_left_may_follow) {
+    const FourWheels rover;
+    const Physics physics = make_physics(rover.model);
+    Problem p(rover.data, physics, free_parameters(rover.model, physics));
+    p.linearise();
+    const Motion &m = p.forward().motion();
+    const auto squares = [&](Eigen::Index part, std::size_t balance, std::size_t r) {
+        const Balance &b = rover.data.balance[balance];
+        const auto at = [&](double t) { return static_cast<std::size_t>(t / rover.data.step_s); };
+        const std::size_t k = at(0.5 * (b.t0_s[r] + b.t1_s[r]));
+        const auto [low, high] = std::minmax_element(m.v_m_s.begin() + static_cast<std::ptrdiff_t>(at(b.t0_s[r])),
+                                                     m.v_m_s.begin() + static_cast<std::ptrdiff_t>(at(b.t1_s[r])) + 1);
+        double of_wheels = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (b.wheel >= 0 && static_cast<std::size_t>(b.wheel) != i) continue; // the body's sensors see all
+            const WheelInput &w = rover.data.wheel[i];
+            of_wheels += std::pow(part == 1   ? m.wheel[i].traction_N[k]
+                                  : part == 2 ? w.accel_rad_s2[k]
+                                              : std::exp(-std::fabs(m.wheel[i].slip[k]) / 0.1) / std::max(0.2, std::fabs(w.speed_rad_s[k])),
+                                  2);
+        }
+        return part == 0 ? 1 : part == 4 ? std::pow(m.v_m_s[k], 2) : part == 5 ? std::pow(*high - *low, 2) : of_wheels;
+    };
+    const Eigen::VectorXd noise = p.noise_rows();
+    for (const std::size_t balance : {std::size_t(1), std::size_t(8)})
+        for (Eigen::Index part = 0; part < 6; ++part) {
+            Eigen::VectorXd wanted(120);
+            for (std::size_t r = 0; r < 120; ++r) wanted[static_cast<Eigen::Index>(r)] = squares(part, balance, r);
+            wanted *= 25 / wanted.mean();
+            const double cut = 4 * 1.4826 * 5; // no less than the four robust deviations of which a residual is clipped may be
+            ASSERT_GT(wanted.mean(), 1);
+            const auto first = static_cast<Eigen::Index>(p.forward().first_row(balance));
+            for (Eigen::Index r = 0; r < 120; ++r) p.residual[first + r] = (r % 2 == 0 ? 1 : -1) * std::sqrt(wanted[r]) * noise[first + r];
+            const Eigen::VectorXd told = p.variance_parts(balance);
+            if (wanted.maxCoeff() < cut * cut) {
+                EXPECT_NEAR(told.sum(), 25, 2.5) << part;
+            }
+            EXPECT_GT(told[part], 0.9 * told.sum()) << part << ": " << told.transpose();
+        }
 }
 
 TEST(Scales, are_kept_of_another_problem_with_what_its_rows_tell_alike) {

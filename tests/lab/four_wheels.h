@@ -13,7 +13,8 @@ namespace traction::lab::hand_made {
 struct FourWheels {
     Model model;
     Dataset data;
-    explicit FourWheels(const std::string &more = "") : data(data_of(10, 120, 0.5)) {
+    // cruise: at one speed but for the first seconds, a little to and fro about it.
+    explicit FourWheels(const std::string &more = "", bool cruise = false) : data(data_of(10, 120, 0.5)) {
         model = parse_model("[rover]\nmass_kg = 6\n[wheels]\nradius_m = 0.05\n[motor]\ntorque_constant_Nm_A = 0.3\n"
                             "back_emf_Vs_rad = 0.3\nresistance_ohm = 3\ncoulomb_Nm = 0.05\nviscous_Nms = 0.002\ninertia_kg_m2 = 0.002\n"
                             "[soil]\nmu = 0.7\nshear_slip = 0.2\nrolling_coefficient = 0.05\n[[wheel]]\nx_m = 0.1\ny_m = 0.1\n"
@@ -32,10 +33,13 @@ struct FourWheels {
             WheelInput w;
             double angle = 0, integral = 0;
             for (std::size_t k = 0; k < data.count; ++k) {
-                const double t = data.time(k), speed = 6 + 4 * std::sin(0.5 * t + 0.1 * i) + (1.5 + 0.2 * i) * std::sin(1.7 * t),
+                const double t = data.time(k), begun = std::exp(-0.5 * t),
+                             speed = cruise ? 8 * (1 - begun) + 0.3 * std::sin(1.7 * t + i)
+                                            : 6 + 4 * std::sin(0.5 * t + 0.1 * i) + (1.5 + 0.2 * i) * std::sin(1.7 * t),
                              u = 0.35 * speed + 0.5 + 0.3 * std::sin(0.9 * t + i);
                 w.speed_rad_s.push_back(speed);
-                w.accel_rad_s2.push_back(2 * std::cos(0.5 * t + 0.1 * i) + (1.5 + 0.2 * i) * 1.7 * std::cos(1.7 * t));
+                w.accel_rad_s2.push_back(cruise ? 4 * begun + 0.51 * std::cos(1.7 * t + i)
+                                                : 2 * std::cos(0.5 * t + 0.1 * i) + (1.5 + 0.2 * i) * 1.7 * std::cos(1.7 * t));
                 w.angle_rad.push_back(angle), w.travel_rad.push_back(angle);
                 w.voltage_V.push_back(u), w.voltage_t_s.push_back(t), w.voltage_integral_Vs.push_back(integral);
                 angle += 0.1 * speed, integral += 0.1 * u;

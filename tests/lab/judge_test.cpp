@@ -196,8 +196,12 @@ TEST(Class, tells_two_apart_by_blocks_that_agree_unless_their_traces_are_one) {
     other.gain = 95, other.error_reduction = 104;
     other.block_gain = Eigen::VectorXd::Constant(10, 9.5);
     EXPECT_EQ(class_of(good("a"), other).size(), 1U); // one trace
-    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
-    EXPECT_TRUE(class_of(good("a"), other).empty());
+    for (const double size : {1.0, 30.0, 0.03}) {     // a trace is one by its direction
+        other.assessment.projected = size * Eigen::Vector3d(0.8, 0.6, 0);
+        EXPECT_TRUE(class_of(good("a"), other).empty());
+        other.assessment.projected = size * Eigen::Vector3d(0.95, 0.31, 0);
+        EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    }
     other.assessment.projected = Eigen::Vector3d(-0.95, 0.31, 0); // nearly parallel, whatever its sign
     EXPECT_EQ(class_of(good("a"), other).size(), 1U);
     other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
@@ -648,6 +652,19 @@ TEST(Tolerances, pay_as_the_error_that_is_left_lets_them) {
     EXPECT_TRUE(tolerances_pay(9.1, 1.5, 0, 9));  // 4 * 2.25 = 9
     EXPECT_FALSE(tolerances_pay(3.9, 0.1, 0, 1));
     EXPECT_TRUE(tolerances_pay(4.1, 0.1, 0, 1));
+}
+
+// The other way about: numbers that go farther from the sheet by more than that, for less than a tenth of the error.
+TEST(Tolerances, are_strained_by_what_is_no_law_of_the_machine) {
+    EXPECT_TRUE(strains_sheet(-36.1, 3.2, 3, 9));
+    EXPECT_FALSE(strains_sheet(-35.9, 3.2, 3, 9)); // four of three noises
+    EXPECT_TRUE(strains_sheet(-9.1, 0.5, 0.49, 9));
+    EXPECT_FALSE(strains_sheet(-8.9, 0.5, 0.49, 9)); // never less than stated
+    EXPECT_FALSE(strains_sheet(36.1, 3.2, 3, 9));
+    EXPECT_FALSE(strains_sheet(-1e6, 1, 0.89, 9)); // more than a tenth of the error: what explains as much may
+    EXPECT_TRUE(strains_sheet(-1e6, 1, 0.91, 9));
+    EXPECT_TRUE(strains_sheet(-4.1, 0.1, 0.1, 1));
+    EXPECT_FALSE(strains_sheet(-3.9, 0.1, 0.1, 1));
 }
 
 TEST(SumError, is_the_scatter_of_the_blocks_by_the_root_of_their_number) {

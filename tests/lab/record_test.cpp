@@ -54,7 +54,7 @@ TEST(Excited, is_what_three_sizes_of_interest_change_by_two_deviations_alone_and
     EXPECT_NE(noted(100, 0.151), "");
     EXPECT_EQ(noted(1, 0.1, 0.049), ""); // the log says something of it
     EXPECT_NE(noted(1, 0.1, 0.05), "");
-    EXPECT_EQ(noted(1, 0.1, 0.5, 2), ""); // of one wheel nothing is said
+    for (const int wheel : {0, 1, 2}) EXPECT_EQ(noted(1, 0.1, 0.5, wheel), ""); // of one wheel nothing is said
 }
 
 TEST(Excited, are_two_strengths_of_which_one_is) {
@@ -151,6 +151,8 @@ TEST(Result, tells_gain_interval_and_detectability_by_their_definitions) {
     EXPECT_EQ(r.explains, sim::find_effect("slip_sinkage")->signature);
     EXPECT_TRUE(r.evidence.empty());
     t.error = {0, 0, 0};
+    for (const double error : {0.5, 2.0}) // a share of whatever the error is
+        EXPECT_NEAR(result_of(t, error, screen()).heldout_gain, t.gain / error, 1e-12 * t.gain);
     r = result_of(t, 0, screen());
     EXPECT_EQ(r.detectability, 0);
     EXPECT_EQ(r.heldout_gain, 0);
@@ -544,6 +546,13 @@ TEST(Accepted, that_is_taken_back_leaves_the_ladder_the_ranking_and_its_class) {
     EXPECT_EQ(d.ranking[1].verdict, "not_needed");
     EXPECT_TRUE(d.accepted.empty());
     EXPECT_EQ(d.ladder.size(), 1U);
+}
+
+TEST(Refined, shapes_are_kept_where_the_fit_is_no_worse_for_them) {
+    EXPECT_TRUE(no_worse(2, 2));
+    EXPECT_TRUE(no_worse(2.0009, 2));
+    EXPECT_FALSE(no_worse(2.0011, 2));
+    EXPECT_FALSE(no_worse(std::nan(""), 2));
 }
 
 } // namespace

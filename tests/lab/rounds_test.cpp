@@ -298,6 +298,25 @@ HeldOut held(const Eigen::VectorXd &residual, double error) {
     return h;
 }
 
+TEST(Round, keeps_a_name_that_is_solid_and_passes_again_or_without_which_more_is_left_out_wrongly) {
+    int asked = 0;
+    const auto predicts = [&](bool it) {
+        return [&asked, it] {
+            ++asked;
+            return it;
+        };
+    };
+    for (const char *verdict : {"passes", "beyond_range"}) {
+        EXPECT_TRUE(stays(verdict, true, predicts(false)));
+        EXPECT_FALSE(stays(verdict, false, predicts(true)));
+    }
+    EXPECT_EQ(asked, 0); // it costs twenty predictions and more
+    EXPECT_TRUE(stays("not_significant", true, predicts(true)));
+    EXPECT_FALSE(stays("not_significant", true, predicts(false)));
+    EXPECT_EQ(asked, 2);
+    EXPECT_FALSE(stays("too_small", false, predicts(true)));
+}
+
 TEST(Round, knows_the_balance_that_is_missed_the_most_in_its_own_noise) {
     const Dataset data = hand_made::data_of(3, 2, 1);
     const Eigen::VectorXd residual = (Eigen::VectorXd(6) << 3, 4, 10, 10, 1, 1).finished(),

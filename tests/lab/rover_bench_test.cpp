@@ -4,6 +4,7 @@
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "sim/physics/effects/catalogue.h"
+#include "tests/lab/consistent.h"
 #include "tests/lab/hand_made.h"
 
 #include <gtest/gtest.h>
@@ -68,8 +69,13 @@ struct Rover {
         for (Balance &b : data.balance)
             for (double &one : b.measured) one = y[row++] + b.noise * normal(random);
     }
-    Diagnosis ask() const { return diagnose(model, data, {}); }
+    Diagnosis ask() const {
+        Diagnosis d = diagnose(model, data, {});
+        expect_consistent(d, model, data);
+        return d;
+    }
 };
+
 TEST(Rover, of_which_nothing_is_hidden_names_nothing) {
     const Diagnosis d = Rover().ask();
     EXPECT_EQ(d.kind, "nothing") << d.text;

@@ -4,6 +4,7 @@
 #include "host_tools/lab/decision/knots.h"
 #include "host_tools/lab/decision/shapes.h"
 #include "host_tools/lab/fit/ladder.h"
+#include "tests/lab/consistent.h"
 #include "tests/lab/linear_machine.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +50,11 @@ struct Bench {
         Balance &b = machine.data.balance[balance];
         for (std::size_t r = 0; r < b.measured.size(); ++r) b.measured[r] += of_time(0.5 * (b.t0_s[r] + b.t1_s[r]));
     }
-    Diagnosis ask(const DiagnoseOptions &options = {}) const { return diagnose(model, machine.data, options); }
+    Diagnosis ask(const DiagnoseOptions &options = {}) const {
+        Diagnosis d = diagnose(model, machine.data, options);
+        if (!machine.data.balance.empty() && machine.data.count > 2) expect_consistent(d, model, machine.data);
+        return d;
+    }
 
     // Size of the last parameter and its standard error by regression on all rows and the stated deviations; and what is left, in noises.
     struct Textbook {
@@ -441,6 +446,8 @@ TEST(Unknown, shape_that_explains_more_than_all_names_stands_for_those_that_say_
     ASSERT_TRUE(both.shape);
     EXPECT_EQ(both.shape->balance, "accelerometer(time)");
     EXPECT_EQ(both.replaced, (std::vector<std::size_t>{0, 1}));
+    const Problem stated = fitted_problem(n.bench.model, n.bench.machine.data);
+    EXPECT_NEAR(both.shape->gain, both.gain_squares / Screen(stated).heldout_error(), 1e-9); // of what the model leaves with no name
     EXPECT_GT(both.gain_squares, 120); // on the fit's scales each of the accelerometer's 240 rows counts one: most of them
     const ShapeFindings none = n.found({});
     ASSERT_TRUE(none.shape);

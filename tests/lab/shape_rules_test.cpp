@@ -419,6 +419,33 @@ TEST(Place, of_several_names_is_for_a_shape_that_does_nearly_as_much_and_of_one_
     EXPECT_FALSE(takes_their_place(1, 201, 100, 51, true, options));
 }
 
+TEST(Place, of_names_is_asked_for_by_what_is_sure_no_line_and_does_nearly_as_much) {
+    DiagnoseOptions options;
+    options.shape_p_limit = 0.02;
+    ShapeScore s;
+    s.candidate.free_shape = true, s.candidate.knots = {0, 1, 2, 3}, s.candidate.strengths.resize(4);
+    s.p_value = 0.019, s.assessment.gain = 96;
+    ASSERT_FALSE(is_straight(s.candidate));
+    EXPECT_TRUE(may_replace(s, 100, options));
+    EXPECT_FALSE(may_replace(s, 101.1, options));
+    s.p_value = 0.02;
+    EXPECT_FALSE(may_replace(s, 100, options));
+    s.p_value = 0, s.candidate.knots = {0, 1}, s.candidate.strengths.resize(2);
+    ASSERT_TRUE(is_straight(s.candidate));
+    EXPECT_FALSE(may_replace(s, 100, options));
+}
+
+TEST(Place, of_all_names_but_the_first_goes_and_of_that_one_where_it_holds_less_than_half) {
+    std::vector<CandidateResult> accepted(3);
+    accepted[0].gain_squares = 40, accepted[1].gain_squares = 60, accepted[2].gain_squares = 1000;
+    EXPECT_TRUE(gives_way({0, 2}, accepted, 1));
+    EXPECT_TRUE(gives_way({0}, accepted, 81));
+    EXPECT_FALSE(gives_way({0}, accepted, 80));
+    EXPECT_TRUE(gives_way({1}, accepted, 121)); // the first of those that say the same
+    EXPECT_FALSE(gives_way({1}, accepted, 81));
+    EXPECT_FALSE(gives_way({}, accepted, 1000));
+}
+
 TEST(Left, is_anything_of_which_a_shape_explains_a_hundredth) {
     EXPECT_TRUE(anything_left({worthy(5, 1), worthy(5, 10)}, 1000));
     EXPECT_FALSE(anything_left({worthy(5, 1), worthy(5, 9.9)}, 1000));

@@ -356,11 +356,10 @@ TEST(Misfit, is_what_is_left_of_a_signal_beyond_noise_and_the_worst_is_of_what_d
     const std::vector<double> m = misfits(of(BalanceKind::radar));
     EXPECT_NEAR(m[0], std::sqrt(0.11) / 2, 1e-12);
     EXPECT_NEAR(m[1], 0.6, 1e-12);
-    for (const BalanceKind kind :
-         {BalanceKind::radar, BalanceKind::current_torque, BalanceKind::camera_x, BalanceKind::force, BalanceKind::torque})
+    for (const BalanceKind kind : {BalanceKind::radar, BalanceKind::current_torque, BalanceKind::current_voltage, BalanceKind::camera_x,
+                                   BalanceKind::force, BalanceKind::torque})
         EXPECT_NEAR(worst_misfit(of(kind)), 0.6, 1e-12) << static_cast<int>(kind);
-    for (const BalanceKind kind :
-         {BalanceKind::accel, BalanceKind::yaw_rate, BalanceKind::camera_y, BalanceKind::camera_yaw, BalanceKind::current_voltage})
+    for (const BalanceKind kind : {BalanceKind::accel, BalanceKind::yaw_rate, BalanceKind::camera_y, BalanceKind::camera_yaw})
         EXPECT_NEAR(worst_misfit(of(kind)), std::sqrt(0.11) / 2, 1e-12) << static_cast<int>(kind);
     left.setConstant(0.1); // less than noise, and of no signal
     EXPECT_EQ(worst_misfit(of(BalanceKind::radar)), 0);

@@ -4,6 +4,7 @@
 #include "host_tools/lab/fit/distribution.h"
 #include "tests/lab/linear_machine.h"
 
+#include <functional>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,6 +88,16 @@ TEST(Step, that_is_sure_tells_the_balance_that_falls_most) {
     EXPECT_NEAR(t.best_balance_gain, sure.screen->best_balance_fall(sure.machine.columns({r1()}), t.assessment), 1e-9);
     EXPECT_GT(t.best_balance_gain, 0.1);
     EXPECT_EQ(unsure.stepped().best_balance_gain, 0);
+    int below = 0, above = 0; // sizes whose p is about 0.01
+    for (double size = 0.1; size < 1; size += 0.005) {
+        Asked near(size);
+        const Trial one = near.stepped();
+        if (one.p_value > 0.006 && one.p_value < 0.02) {
+            EXPECT_EQ(one.best_balance_gain > 0, one.p_value < 0.01) << one.p_value;
+            ++(one.p_value < 0.01 ? below : above);
+        }
+    }
+    EXPECT_TRUE(below > 0 && above > 0);
 }
 
 TEST(Step, of_a_sign_that_cannot_be_predicts_nothing) {
@@ -167,6 +178,8 @@ TEST(Scan, of_a_small_step_goes_over_a_tenth_a_quarter_and_a_half_of_the_range) 
     Scanned none(0.03); // a step of a tenth and more is no small one: then a tenth is not asked
     const Trial t = none.at(0.21);
     EXPECT_TRUE(t.start.empty() || t.start[0] != 0.2);
+    Scanned twice(0.42, 400);
+    twice.expect_start(twice.at(0.21), 0.42); // of 0.21, 0.42 and 1; a small step would have been asked at 0.5
 }
 
 TEST(Scan, of_a_slope_that_says_little_begins_at_the_size_of_interest_and_goes_to_four_fifths) {
@@ -187,6 +200,22 @@ TEST(Scan, ends_where_the_error_has_risen_by_a_fiftieth_and_leaves_out_what_is_o
     Scanned tiny(0.03, 400);
     EXPECT_FALSE(tiny.at(0.03, 0.29).start.empty());
     EXPECT_TRUE(tiny.at(0.03, 0.31).start.empty() || tiny.at(0.03, 0.31).start[0] > 0.031); // less than a tenth of interest
+}
+
+TEST(Scan, is_of_one_strength_that_moves_the_body_and_has_a_range) {
+    const auto scanned = [](const std::function<void(Candidate &)> &change) {
+        Scanned s(1);
+        s.c.touched = stage_motion, s.c.of_interest = {0.02};
+        Trial t;
+        t.candidate = s.c, t.value = {0.3}, t.error_reduction = 5;
+        change(t.candidate);
+        scan(t, *s.base, *s.screen);
+        return !t.start.empty() || t.error_reduction != 5;
+    };
+    EXPECT_TRUE(scanned([](Candidate &) {}));
+    EXPECT_FALSE(scanned([](Candidate &c) { c.touched = stage_sensors; }));
+    EXPECT_FALSE(scanned([](Candidate &c) { c.strengths.push_back(c.strengths[0]); }));
+    EXPECT_FALSE(scanned([](Candidate &c) { c.maximum.clear(); }));
 }
 
 TEST(Scan, keeps_the_fall_that_the_step_saw_where_the_sizes_see_less) {

@@ -205,7 +205,7 @@ class Source:
 
 
 def run(command, timeout=None, **environment):
-    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout, env=dict(os.environ, **environment))
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=timeout, env=dict(os.environ, **environment))
 
 
 def compile_mutated(source, command, target, name, headers):

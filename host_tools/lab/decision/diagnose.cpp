@@ -2,12 +2,13 @@
 
 #include "classes.h"
 #include "doubt.h"
+#include "evidence.h"
 #include "host_tools/lab/fit/heldout.h"
-#include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
 #include "manner.h"
 #include "record.h"
 #include "rounds.h"
+#include "shape_rules.h"
 #include "shapes.h"
 #include "tolerance.h"
 #include "trial.h"
@@ -54,6 +55,7 @@ class Search {
             Problem left = fitted(without, &problem);
             remove(i, std::move(without), left);
             d_.model_fit.reset();
+            settle_last(left);
             return left;
         });
         refine_shapes(problem);
@@ -113,7 +115,12 @@ class Search {
         for (Trial &t : trials) judge(t, screen.explainable(), options_);
         const Refit refit_one = [&](Trial &t) { return refit_and_judge(t, problem, screen); };
         refit_likely(trials, options_.refits, refit_one);
-        if (may_restart && restart_from_refit(trials, problem)) return forward_step(problem, Screen(problem), is_first, false);
+        if (may_restart && restart_from_refit(trials, problem)) {
+            const Screen anew(problem);
+            held_ = held_out(problem); // or the next name would be given what the place has gained
+            if (!is_first) stands_at(problem), refresh(problem, anew);
+            return forward_step(problem, anew, is_first, false);
+        }
         judge_beyond_range(trials, base_error, d_.messages);
         std::optional<Next> next;
         std::size_t winner = trials.size();
@@ -167,15 +174,9 @@ class Search {
     bool restart_from_refit(const std::vector<Trial> &trials, Problem &problem) const {
         const Trial *best = better_place(trials);
         if (best == nullptr) return false;
-        Problem moved = problem;
-        const double before = moved.cost();
-        moved.theta = best->baseline;
-        moved.within_bounds();
-        moved.jacobian.resize(0, 0);
-        moved.gauss_newton(3, false);
-        if (moved.cost() > before - least_reduction) return false;
-        moved.fit({});
-        problem = std::move(moved);
+        std::optional<Problem> moved = fitted_from(*best, problem);
+        if (!moved) return false;
+        problem = std::move(*moved);
         return true;
     }
 
@@ -237,34 +238,13 @@ class Search {
         compared.jacobian.resize(0, 0);
         compared.gauss_newton(2);
         HeldOut held = held_out(compared);
-        Fall scaled = fall_between(held_, held, before.row_scale.cwiseAbs2()), noise = fall_between(held_, held, noise_weight(before));
-        if ((t.candidate.touched & stage_motion) != 0) { // what only smooths the encoders' noise is no evidence
-            const Scatter scatter(before);
-            const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
-            const auto take_off = [&](const Problem &fit) {
-                const Eigen::VectorXd smoothed = scatter.smoothed_by(data_, fit.physics());
-                scaled.sum -= smoothed.dot(weight);
-                noise.sum -= smoothed.dot(noise_weight(before));
-            };
-            const double least = of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight);
-            take_off(compared);
-            if (!(scaled.sum > least)) { // a softer ground beside it may be all that smooths: what does it explain on the ground as it was?
-                Problem on_ground = held_ground(compared, before);
-                const HeldOut there = held_out(on_ground);
-                scaled = fall_between(held_, there, weight), noise = fall_between(held_, there, noise_weight(before));
-                take_off(on_ground);
-            }
-            t.smooths = !(scaled.sum > least);
-            if (t.smooths) return std::nullopt;
-        }
+        const Evidence evidence = evidence_of(t.candidate, before, held_, compared, held);
+        t.smooths = evidence.smooths;
+        if (t.smooths) return std::nullopt;
         const std::optional<ToleranceRival> rival = tolerance_rival(before, compared, t.value.size());
-        const bool falls = scaled.sure() && noise.sure();
-        // where the rows alone say nothing because the stated tolerances give way, those decide, and are told beside it
-        const double spared =
-            before.theta.cwiseAbs2().dot(before.stated_precision()) - compared.theta.cwiseAbs2().dot(compared.stated_precision());
-        const bool by_priors = rival && tolerances_decide(scaled, noise, spared, options_.least_prior_reduction);
-        const bool as_much = rival && (rival->explains_as_much() || !falls);
-        if (!falls && !by_priors) return std::nullopt;
+        const double spared = spared_by(before, compared);
+        const Support support = support_of(evidence, rival, spared, options_.least_prior_reduction);
+        if (!support.enough) return std::nullopt;
         const std::size_t broken = newly_at_limits(before, compared); // before it moves: `spared` is of this fit too
         if (HeldOut own = held_out(problem); own.error < held_.error)
             held = std::move(own);
@@ -272,9 +252,13 @@ class Search {
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
         if (!pay && !falls_notably(held_, held, data_)) return std::nullopt;
+        if (strains_sheet(spared, held_.error, held.error, options_.least_prior_reduction)) {
+            t.verdict = "strains_sheet";
+            return std::nullopt;
+        }
         if (!t.by_rows) t.sheet_alone = rival && broken == 0 ? spared : 0;
         problem.linearise();
-        return Next{std::move(problem), std::move(held), as_much ? rival->name : ""};
+        return Next{std::move(problem), std::move(held), support.tolerance_as_much ? rival->name : ""};
     }
 
     // Backward elimination: drops what no longer matters beside the others. `last`: the problem of the model as it stands, replaced with
@@ -293,8 +277,7 @@ class Search {
             t.start = one.value;
             refit(t, problem, screen, without, data_);
             judge(t, screen.explainable(), options_);
-            if ((t.verdict == "passes" || t.verdict == "beyond_range") && solid) continue; // accepted as a least size, it stays one
-            if (solid && predicts_better(problem, last)) continue;
+            if (stays(t.verdict, solid, [&] { return predicts_better(problem, last); })) continue;
             d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");
             remove(i, std::move(without), problem);
             last = std::move(problem);
@@ -349,8 +332,7 @@ class Search {
             }
             if (findings.shape) d_.unknown = findings.shape;
             std::vector<std::size_t> &rest = findings.replaced;
-            for (; rest.size() > 1 || (rest.size() == 1 && d_.accepted[rest[0]].gain_squares < 0.5 * findings.gain_squares);
-                 rest.pop_back()) {
+            for (; gives_way(rest, d_.accepted, findings.gain_squares); rest.pop_back()) {
                 if (!may_take_its_place()) break;
                 reject_as_nearest(rest.back(), last);
                 again = true;
@@ -399,7 +381,7 @@ class Search {
             Model freed = d_.model;
             if (!free_shapes(freed, a.candidate, *effect)) continue;
             Problem problem = fitted(freed, &last);
-            if (!(overall_error(problem) < 1.0005 * overall_error(last))) continue;
+            if (!no_worse(overall_error(problem), overall_error(last))) continue;
             take_shapes(a, problem, freed);
             last = std::move(problem);
         }

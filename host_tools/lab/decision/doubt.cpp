@@ -37,8 +37,8 @@ double worst_misfit(const Problem &problem) {
     double worst = 0;
     for (std::size_t b = 0; b < m.size(); ++b) {
         const BalanceKind kind = problem.data().balance[b].kind;
-        if (kind == BalanceKind::current_torque || kind == BalanceKind::radar || kind == BalanceKind::camera_x ||
-            kind == BalanceKind::force || kind == BalanceKind::torque)
+        if (kind == BalanceKind::current_torque || kind == BalanceKind::current_voltage || kind == BalanceKind::radar ||
+            kind == BalanceKind::camera_x || kind == BalanceKind::force || kind == BalanceKind::torque)
             worst = std::max(worst, m[b]);
     }
     return worst;

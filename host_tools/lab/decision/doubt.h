@@ -33,8 +33,8 @@ struct Doubt {
 // (1) of every balance of a fitted problem.
 std::vector<double> misfits(const Problem &problem);
 
-// The largest (1) of currents, radar and camera, forces and torques. Acceleration and yaw rate are near zero in a drive straight on at one
-// speed, and what is left of them is ground: not asked.
+// The largest (1) of currents by either balance, radar and camera, forces and torques. Acceleration and yaw rate are near zero in a drive
+// straight on at one speed, and what is left of them is ground: not asked.
 double worst_misfit(const Problem &problem);
 
 // Every datum of the model that a log can tell, each grossly free by itself; least error first.

@@ -168,6 +168,8 @@ void fix_shapes(Model &model, const CandidateResult &a) {
             }
 }
 
+bool no_worse(double refined, double at_station) { return refined < 1.0005 * at_station; }
+
 double smoothing_loss(const Candidate &c, const Dataset &data) {
     if (c.effect != "torque_ripple" || c.variant.empty()) return 0;
     double squares = 0, n = 0;

@@ -46,6 +46,9 @@ bool free_shapes(Model &model, const Candidate &candidate, const sim::Effect &ef
 void take_shape_values(CandidateResult &accepted, const Problem &problem, const std::vector<ParameterError> &errors, double half_row);
 void fix_shapes(Model &model, const CandidateResult &accepted);
 
+// A fit whose shapes were free is kept where it leaves no more than the one at the station; both end where a search ends.
+bool no_worse(double refined, double at_station);
+
 // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses at the
 // ripple's frequency, at the mean speed of the turning wheels, is not known of its size. A share of it.
 double smoothing_loss(const Candidate &candidate, const Dataset &data);

@@ -149,6 +149,10 @@ bool predicts_better(const Problem &before, const Problem &after) {
            fall_between(left_before, left_after, before.row_scale.cwiseAbs2()).sure();
 }
 
+bool stays(const std::string &verdict, bool solid, const std::function<bool()> &predicts) {
+    return solid && (verdict == "passes" || verdict == "beyond_range" || predicts());
+}
+
 bool lost(const Trial &now, const Earlier &earlier) {
     if (now.candidate.variant != earlier.variant || (now.candidate.touched & stage_motion) == 0) return false;
     for (std::size_t j = 0; j < now.value.size(); ++j)

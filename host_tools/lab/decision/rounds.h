@@ -58,6 +58,10 @@ void take_increments(Problem &problem, const Problem &from);
 // Does `after` predict blocks left out better, surely, in noises and by the scales of `before`?
 bool predicts_better(const Problem &before, const Problem &after);
 
+// Asked again beside the others, does a name stay? It must be solid (is_solid), and pass by its refit, or as one that was accepted as a
+// least size, or the model must predict blocks left out better with it (`predicts`, asked last).
+bool stays(const std::string &verdict, bool solid, const std::function<bool()> &predicts);
+
 // What passed in a round before, as it was found there.
 struct Earlier {
     std::vector<std::pair<std::string, double>> variant;

@@ -188,6 +188,14 @@ bool takes_their_place(std::size_t names, double gain, double named_gain, double
     return gain > (leaves_a_shape ? place_beside_a_shape : options.shape_margin) * named_gain && gain - named_gain >= 2 * error;
 }
 
+bool may_replace(const ShapeScore &shape, double named_gain, const DiagnoseOptions &options) {
+    return shape.p_value < options.shape_p_limit && !is_straight(shape.candidate) && shape.assessment.gain > place_of_several * named_gain;
+}
+
+bool gives_way(const std::vector<std::size_t> &replaced, const std::vector<CandidateResult> &accepted, double shape_gain) {
+    return replaced.size() > 1 || (!replaced.empty() && accepted[replaced[0]].gain_squares < 0.5 * shape_gain);
+}
+
 bool repeats(const ShapeScore &s) {
     if (s.assessment.gain > 2.5 * s.assessment.gain_error) return true;
     Eigen::VectorXd gain = s.assessment.block_gain;

@@ -76,6 +76,13 @@ inline constexpr double place_of_several = 0.95;
 bool takes_their_place(std::size_t names, double gain, double named_gain, double error, bool leaves_a_shape,
                        const DiagnoseOptions &options);
 
+// May a shape be asked for the place of names that gain `named_gain` together? It is sure, no straight line, and gains nearly as much.
+bool may_replace(const ShapeScore &shape, double named_gain, const DiagnoseOptions &options);
+
+// Of the names that a shape stands for, in order, does the last one go? All but the first do; that one where it holds less than half of
+// what the shape gains.
+bool gives_way(const std::vector<std::size_t> &replaced, const std::vector<CandidateResult> &accepted, double shape_gain);
+
 // Evidence that repeats: sure beside its scatter over blocks, or very sure by the test and not the work of two blocks alone.
 bool repeats(const ShapeScore &shape);
 

@@ -39,8 +39,7 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     const Screen named_screen(at_last);
     const double named_gain = first_screen.heldout_error() - named_screen.heldout_error();
     for (const ShapeScore &s : beside_first(first_screen)) {
-        if (!(s.p_value < options.shape_p_limit) || is_straight(s.candidate) || !(s.assessment.gain > place_of_several * named_gain))
-            continue;
+        if (!may_replace(s, named_gain, options)) continue;
         const std::vector<std::size_t> replaced = explained_by_shape(last, named, s.candidate.effect, scores);
         if (replaced.empty()) continue;
         const double error = sum_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace traction::lab {
 
@@ -24,6 +25,13 @@ bool has_electric_terms(const Physics &physics) {
 bool shares_leads(const Physics &physics) {
     return std::any_of(physics.wheel.begin(), physics.wheel.end(), [](const WheelPhysics &w) { return w.shared_ohm != 0; });
 }
+
+bool follows_others(const ExtraTerm &term) {
+    return (target_stages(term.target) & (stage_torque | stage_voltage)) != 0 && term.term->of_other_motors();
+}
+
+// A wheel's current is then part of what others read.
+bool asks_for_others(const Physics &physics) { return std::any_of(physics.terms.begin(), physics.terms.end(), follows_others); }
 
 // Of a piecewise constant voltage up to a time; times asked for one after the other are found at once.
 class VoltageIntegral {
@@ -210,7 +218,8 @@ void Forward::torque_of_traction(const Physics &physics, const Motion &motion, s
     rows_of(balance, *series_, current_delay_s(physics.body), true, out);
 }
 
-Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k) const {
+Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k,
+                            const std::vector<std::vector<double>> &current) const {
     const Dataset &d = *data_;
     const WheelInput &in = d.wheel[wheel];
     const double gain = count_gain(physics.wheel[wheel]);
@@ -225,16 +234,31 @@ Signals Forward::signals_of(const Physics &physics, const Motion &motion, std::s
     s.a = motion.accel_m_s2[k], s.V = motion.v_m_s[k], s.r = motion.yaw_rate_rad_s[k];
     s.u = in.voltage_V.empty() ? 0 : in.voltage_V[k] / sim::law::voltage_gain(1, physics.body.voltage_gain);
     s.X = motion.path_m[k], s.d = in.travel_rad.empty() ? 0 : gain * in.travel_rad[k], s.Io = s.Ia = s.Is = 0;
-    for (std::size_t j = 0; j < base_current_.size(); ++j) {
-        if (j == wheel || base_current_[j].size() != d.count) continue;
-        s.Io += base_current_[j][k];
-        if (same_axle(physics.wheel[wheel], physics.wheel[j])) s.Ia += base_current_[j][k];
-        if (same_side(physics.wheel[wheel], physics.wheel[j])) s.Is += base_current_[j][k];
+    for (std::size_t j = 0; j < current.size(); ++j) {
+        if (j == wheel || current[j].size() != d.count) continue;
+        s.Io += current[j][k];
+        if (same_axle(physics.wheel[wheel], physics.wheel[j])) s.Ia += current[j][k];
+        if (same_side(physics.wheel[wheel], physics.wheel[j])) s.Is += current[j][k];
     }
     return s;
 }
 
+void Forward::currents_for_terms(const Physics &physics, const Motion &motion) const {
+    term_current_.clear();
+    if (!asks_for_others(physics)) return;
+    lead_current_.clear(); // a lead takes nothing from a winding's current, which follows from the torque
+    Physics without = physics;
+    std::erase_if(without.terms, follows_others);
+    std::vector<std::vector<double>> current(physics.wheel.size());
+    for (const Physics *at : std::initializer_list<const Physics *>{&without, &physics}) {
+        for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+            if (is_motor(physics, i)) electric_series(*at, motion, i, current[i], *electric_);
+        term_current_ = current;
+    }
+}
+
 void Forward::share_leads(const Physics &physics, const Motion &motion) const {
+    currents_for_terms(physics, motion);
     lead_current_.clear();
     if (!shares_leads(physics)) return;
     std::vector<std::vector<double>> current(physics.wheel.size());
@@ -303,7 +327,7 @@ void Forward::electric_steps(const Physics &physics, const Motion &motion, std::
         double gear = friction * side, current_factor = sim::law::current_gain(1, p.current_gain);
         gear += sim::periodic_Nm<law::Library>(p, angle, false) + sim::periodic_Nm<law::Library>(p, angle, true) * side;
         if (!cold && !terms.empty()) {
-            Signals s = signals_of(physics, motion, wheel, k);
+            Signals s = signals_of(physics, motion, wheel, k, term_current_);
             s.I = KG > 0 ? (gear + p.J * dw + radius * traction[k]) / KG : 0;
             for (const ExtraTerm *term : terms) {
                 const double f = term->term->value(s, term->coefficients.data());
@@ -449,7 +473,7 @@ Eigen::VectorXd Forward::predict(const Physics &physics, unsigned touched) {
 
 void Forward::observe_beside(const Physics &physics, const Motion &motion, unsigned touched, int wheel, Eigen::VectorXd &out) const {
     const bool moves = (touched & stage_motion) != 0, electric = (touched & (stage_torque | stage_voltage)) != 0,
-               terms = has_electric_terms(physics), shared = shares_leads(physics);
+               terms = has_electric_terms(physics), shared = shares_leads(physics) || asks_for_others(physics);
     const unsigned stages = moves ? stage_torque | stage_voltage : touched;
     share_leads(physics, motion);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {

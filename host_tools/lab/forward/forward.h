@@ -98,8 +98,12 @@ class Forward {
     // Currents of all wheels, for those that share a lead; nothing where none does.
     void share_leads(const Physics &physics, const Motion &motion) const;
     double current_of_others(const Physics &physics, std::size_t wheel, std::size_t k) const;
-    Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel,
-                       std::size_t k) const; // of the torque and voltage terms, I left out
+    // Winding currents of all motors, for the terms that ask for those of the others (theirs follow from what such terms leave out, and
+    // once more with them: to first order of the terms); nothing where none asks.
+    void currents_for_terms(const Physics &physics, const Motion &motion) const;
+    // Of the torque and voltage terms, I left out; current: of all motors.
+    Signals signals_of(const Physics &physics, const Motion &motion, std::size_t wheel, std::size_t k,
+                       const std::vector<std::vector<double>> &current) const;
     void lead(std::size_t balance, const std::vector<double> &series, double share, double delay_s, Eigen::VectorXd &out) const;
     void sensors(const Physics &physics, const Motion &motion, Eigen::VectorXd &out) const;
     void torque_of_traction(const Physics &physics, const Motion &motion, std::size_t wheel, Eigen::VectorXd &out) const;
@@ -120,6 +124,7 @@ class Forward {
     mutable Scratch<std::vector<double>> series_, current_, shaft_now_, shaft_before_;
     mutable Scratch<ElectricSeries> electric_;
     mutable std::vector<std::vector<double>> lead_current_; // per wheel, where leads are shared
+    mutable std::vector<std::vector<double>> term_current_; // per wheel, where terms ask for the others'
     Scratch<std::vector<Motion>> shaped_, beside_;
     mutable std::vector<Windows> windows_;
     std::vector<std::size_t> windows_of_; // per balance: currents are read in the same windows, at one delay

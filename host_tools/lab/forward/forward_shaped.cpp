@@ -71,7 +71,7 @@ Eigen::MatrixXd Forward::shaped_electric(const Physics &base, const std::vector<
     for (std::size_t i = 0; i < unit.size(); ++i) {
         if (!is_motor(base, i)) continue;
         for (std::size_t k = 0; k < d.count; ++k) {
-            Signals s = signals_of(base, *base_motion_, i, k);
+            Signals s = signals_of(base, *base_motion_, i, k, base_current_);
             s.I = base_current_[i].empty() ? 0 : base_current_[i][k];
             term.weights(s, count, &weight[k * count]);
         }

@@ -280,6 +280,7 @@ struct Builder : InputBuilder {
 
     void balances() {
         for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+            if (model.wheel[i].driven && !is_measured(i)) continue; // what it would read is not known
             currents(i);
             const std::string w = "wheel" + std::to_string(i);
             simple(w + ".drawbar_pull_N", "drawbar pull of wheel " + std::to_string(i), "N", BalanceKind::force, static_cast<int>(i),

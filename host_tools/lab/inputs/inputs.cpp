@@ -118,6 +118,8 @@ bool InputBuilder::grid_and_wheels() {
         for (std::size_t i = 0; i < model.wheel.size(); ++i)
             if (model.wheel[i].drive < 0) wheel_motion(i), travel(data.wheel[i]);
         for (std::size_t i = 0; i < model.wheel.size(); ++i)
+            if (model.wheel[i].drive < 0) turn_with_side(i);
+        for (std::size_t i = 0; i < model.wheel.size(); ++i)
             if (model.wheel[i].drive >= 0) data.wheel[i] = data.wheel[model.motor_of(i)], data.wheel[i].turns_with = model.wheel[i].drive;
         return true;
     };
@@ -181,7 +183,7 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.rolls_freely = !model.wheel[i].driven;
         say("wheel " + std::to_string(i) +
             (input.rolls_freely ? " has no motor and no speed in the log: taken to roll freely"
-                                : " has no speed in the log: taken as standing still, its balances are left out"));
+                                : " has no speed in the log: taken to turn as the others of its side, its balances are left out"));
         input.angle_rad.assign(data.count, 0);
         input.speed_rad_s = input.accel_rad_s2 = input.angle_rad;
         return;
@@ -231,6 +233,31 @@ void InputBuilder::wheel_motion(std::size_t i) {
         for (std::size_t k = 1; k < data.count; ++k)
             input.angle_rad[k] = input.angle_rad[k - 1] + 0.5 * data.step_s * (input.speed_rad_s[k] + input.speed_rad_s[k - 1]);
     }
+}
+
+void InputBuilder::turn_with_side(std::size_t i) {
+    if (!model.wheel[i].driven || is_measured(i)) return;
+    const auto left = [&](std::size_t j) { return parameter(model.wheel[j].geometry, "y_m") > 0; };
+    for (const bool of_its_side : {true, false}) { // of its side none: as all
+        std::vector<const WheelInput *> others;
+        for (std::size_t j = 0; j < model.wheel.size(); ++j)
+            if (model.wheel[j].driven && is_measured(j) && (!of_its_side || left(i) == left(j)))
+                others.push_back(&data.wheel[model.motor_of(j)]);
+        if (others.empty()) continue;
+        WheelInput &input = data.wheel[i];
+        for (std::vector<double> WheelInput::*series : {&WheelInput::angle_rad, &WheelInput::speed_rad_s, &WheelInput::accel_rad_s2}) {
+            (input.*series).assign(data.count, 0);
+            for (const WheelInput *other : others)
+                for (std::size_t k = 0; k < data.count; ++k) (input.*series)[k] += (other->*series)[k] / static_cast<double>(others.size());
+        }
+        input.travel_rad.clear();
+        return travel(input);
+    }
+}
+
+bool InputBuilder::is_measured(std::size_t i) const {
+    double scale = 0;
+    return motion_signal(i, scale) != nullptr;
 }
 
 // One count of an encoder, as an angle.

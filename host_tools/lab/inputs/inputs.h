@@ -11,7 +11,7 @@ namespace traction::lab {
 // A wheel stands below a rim speed of a centimetre a second, where slip is taken against that speed (rest_speed_m_s), and how friction
 // and rolling resistance reverse is known of no machine; but at least below the first and at most below the second share of the log's own
 // top speed, so that an axis of natural units and a rover that crawls are read too.
-inline constexpr double stands_m_s = 0.01, standstill_share[] = {0.0125, 0.03};
+inline constexpr double stands_m_s = 0.01, standstill_share[] = {0.0125, 0.1};
 
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
@@ -43,6 +43,10 @@ struct InputBuilder {
     swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
     double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel
     void wheel_motion(std::size_t i);
+    bool is_measured(std::size_t i) const;
+    // A driven wheel whose speed the log has not: its motor holds it, so that it neither stands nor rolls freely. The mean of those driven
+    // wheels of its side that are measured.
+    void turn_with_side(std::size_t i);
     void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
     static double rounding_of(const std::vector<double> &angle_rad);
     static double scatter_of(const std::vector<double> &angle_rad, double count_rad);

@@ -58,6 +58,7 @@ class Piecewise : public Term {
         if (knots_.size() > 1) weight[i - 1] = 1 - f;
         weight[i] = f;
     }
+    bool of_other_motors() const override { return is_of_other_motors(axis_); }
 
   private:
     Axis axis_;
@@ -125,6 +126,8 @@ class Expression : public Term {
             parser_.DefineConst("pi", M_PI);
             parser_.SetExpr(text);
             parser_.Eval(); // finds syntax errors and unknown names now
+            const auto &used = parser_.GetUsedVar();
+            of_others_ = used.count("Io") + used.count("Ia") + used.count("Is") > 0;
         } catch (const mu::Parser::exception_type &error) {
             throw std::runtime_error(error.GetMsg());
         }
@@ -135,8 +138,10 @@ class Expression : public Term {
         const double result = parser_.Eval();
         return std::isfinite(result) ? result : 0.0; // 1/0 at standstill is no force
     }
+    bool of_other_motors() const override { return of_others_; }
 
   private:
+    bool of_others_ = false;
     mutable Signals s_;
     mutable std::vector<double> coefficients_;
     mu::Parser parser_;
@@ -239,6 +244,8 @@ double axis_value(Axis axis, const Signals &s) {
     }
     return 0;
 }
+
+bool is_of_other_motors(Axis axis) { return axis == Axis::other_current || axis == Axis::axle_current || axis == Axis::side_current; }
 
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots) { return std::make_shared<Piecewise>(axis, std::move(knots)); }
 std::shared_ptr<Term> make_cells(Axis axis, double start, double length) { return std::make_shared<Cells>(axis, start, length); }

@@ -63,6 +63,7 @@ class Term {
     virtual double value(const Signals &signals, const double *coefficients) const = 0;
     // What each coefficient counts, of a shape that is linear in them: value = sum of weight times coefficient.
     virtual void weights(const Signals &signals, std::size_t count, double *weight) const;
+    virtual bool of_other_motors() const { return false; } // asks for Io, Ia or Is
 };
 
 enum class Axis {
@@ -90,6 +91,7 @@ enum class Axis {
 std::string_view axis_name(Axis axis);
 std::string_view axis_unit(Axis axis);
 double axis_value(Axis axis, const Signals &signals);
+bool is_of_other_motors(Axis axis); // Io, Ia, Is
 
 // sum_k c_k * hat_k(X): piecewise linear through the knots, constant outside them.
 std::shared_ptr<Term> make_piecewise(Axis axis, std::vector<double> knots);

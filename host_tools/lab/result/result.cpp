@@ -83,19 +83,21 @@ std::string candidate_words(const CandidateResult &r, const Diagnosis &d) {
     for (const std::string &name : d.effects) names += (names.empty() ? "" : ", ") + name;
     if (verdict == "not_needed" && !names.empty()) return "not needed beside " + names;
     if (verdict == "not_needed" && d.unknown) return "not needed beside " + d.unknown->balance;
-    static const std::pair<const char *, const char *> words[] = {{"named", "found"},
-                                                                  {"class", "possible: this log cannot tell it from the others marked so"},
-                                                                  {"nearest", "comes near, and is not the cause"},
-                                                                  {"not_needed", "not needed beside what was found"},
-                                                                  {"not_held_out", "predicts the rest of the log no better"},
-                                                                  {"not_significant", "no sure help"},
-                                                                  {"too_little", "there, but helps too little to matter"},
-                                                                  {"too_small", "there, but not surely large enough to matter"},
-                                                                  {"beyond_range", "helps only at a size that is not plausible"},
-                                                                  {"conflict", "not to be believed of a drive of one manner"},
-                                                                  {"wrong_sign", "helps only with a sign that is not physical"},
-                                                                  {"not_excited", "this log cannot show it"},
-                                                                  {"wrong_model", "not judged: the model's numbers come first"}};
+    static const std::pair<const char *, const char *> words[] = {
+        {"named", "found"},
+        {"class", "possible: this log cannot tell it from the others marked so"},
+        {"nearest", "comes near, and is not the cause"},
+        {"not_needed", "not needed beside what was found"},
+        {"not_held_out", "predicts the rest of the log no better"},
+        {"strains_sheet", "takes the model's numbers farther from their data sheet"},
+        {"not_significant", "no sure help"},
+        {"too_little", "there, but helps too little to matter"},
+        {"too_small", "there, but not surely large enough to matter"},
+        {"beyond_range", "helps only at a size that is not plausible"},
+        {"conflict", "not to be believed of a drive of one manner"},
+        {"wrong_sign", "helps only with a sign that is not physical"},
+        {"not_excited", "this log cannot show it"},
+        {"wrong_model", "not judged: the model's numbers come first"}};
     for (const auto &[word, said] : words)
         if (verdict == word) return said;
     return verdict;

@@ -1,0 +1,60 @@
+#include "evidence.h"
+
+#include "host_tools/lab/fit/scatter.h"
+#include "rounds.h"
+
+namespace traction::lab {
+
+namespace {
+
+Evidence falls_of(const Problem &before, const HeldOut &left_before, const HeldOut &left_with) {
+    return {fall_between(left_before, left_with, before.row_scale.cwiseAbs2()), fall_between(left_before, left_with, noise_weight(before))};
+}
+
+} // namespace
+
+Evidence evidence_of(const Candidate &candidate, const Problem &before, const HeldOut &left_before, const Problem &with,
+                     const HeldOut &left_with) {
+    Evidence out = falls_of(before, left_before, left_with);
+    if ((candidate.touched & stage_motion) == 0) return out;
+    const Scatter scatter(before);
+    const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
+    const double least = of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight);
+    const auto take_off = [&](const Problem &fit) {
+        const Eigen::VectorXd smoothed = scatter.smoothed_by(before.data(), fit.physics());
+        out.scaled.sum -= smoothed.dot(weight);
+        out.noise.sum -= smoothed.dot(noise_weight(before));
+    };
+    take_off(with);
+    if (!(out.scaled.sum > least)) {
+        const Problem on_ground = held_ground(with, before);
+        out = falls_of(before, left_before, held_out(on_ground));
+        take_off(on_ground);
+    }
+    out.smooths = !(out.scaled.sum > least);
+    return out;
+}
+
+double spared_by(const Problem &before, const Problem &with) {
+    return before.theta.cwiseAbs2().dot(before.stated_precision()) - with.theta.cwiseAbs2().dot(with.stated_precision());
+}
+
+Support support_of(const Evidence &evidence, const std::optional<ToleranceRival> &rival, double spared, double least) {
+    if (evidence.smooths) return {};
+    const bool by_sheet = rival && tolerances_decide(evidence.scaled, evidence.noise, spared, least);
+    return {evidence.falls() || by_sheet, rival && (rival->explains_as_much() || !evidence.falls())};
+}
+
+std::optional<Problem> fitted_from(const Trial &refitted, const Problem &problem) {
+    Problem moved = problem;
+    const double before = moved.cost();
+    moved.theta = refitted.baseline;
+    moved.within_bounds();
+    moved.jacobian.resize(0, 0);
+    moved.gauss_newton(3, false);
+    if (moved.cost() > before - least_reduction) return std::nullopt;
+    moved.fit({});
+    return moved;
+}
+
+} // namespace traction::lab
