@@ -1,7 +1,6 @@
 // What the later laws of the catalogue are for: real drives show them, and an independent rover that hides one is told its name; sensors
 // that are late within what such sensors are give none.
 #include "host_tools/lab/decision/diagnose.h"
-#include "host_tools/lab/fit/problem.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/rounding.h"
 #include "host_tools/lab/model/model.h"
@@ -105,23 +104,6 @@ TEST(Sheet, is_strained_for_no_name_that_explains_little) {
         std::find_if(a.d.ranking.begin(), a.d.ranking.end(), [](const CandidateResult &r) { return r.verdict == "strains_sheet"; });
     ASSERT_NE(strained, a.d.ranking.end());
     EXPECT_EQ(strained->candidate.effect, "current_gain");
-}
-
-// The generator's rolling resistance reverses by another law than the lab's and over another speed, as any machine's would: read down to 4
-// mm/s, a drive of 1 to 10 cm/s took it six stated deviations off, its limit.
-TEST(Sheet, is_kept_to_where_a_rover_creeps) {
-    GeneratorConfig config = rover(Soil::sand, 850015);
-    config.duration_s = 150;
-    config.drive = "slow";
-    const Model model = parse_model(generator::data_sheet(config), "sheet");
-    const Dataset data = make_dataset(model, generator::generate(config));
-    const Physics physics = make_physics(model);
-    Problem problem(data, physics, free_parameters(model, physics));
-    problem.fit({});
-    for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-        if (problem.parameters[i].key != "rolling_coefficient") continue;
-        EXPECT_LT(std::fabs(problem.theta[static_cast<Eigen::Index>(i)]), 3 * problem.parameters[i].prior);
-    }
 }
 
 TEST(Rounding, what_only_smooths_the_encoders_noise_is_not_named) {
