@@ -8,9 +8,10 @@ rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
 work=$(pwd)
-running=
+running= server=
+# the ssh server may miss a TERM that comes just before it waits
 # shellcheck disable=SC2086 # several numbers
-trap '[ -z "$running" ] || kill $running 2>/dev/null || true' EXIT
+trap '[ -z "$running" ] || kill $running 2>/dev/null || true; [ -z "$server" ] || kill -9 "$server" 2>/dev/null || true' EXIT
 fail() { echo "FAILED: $*"; for file in out err starter.txt; do [ ! -s "$file" ] || { echo "--- $file"; tail -n 25 "$file"; }; done; exit 1; }
 run() { # run EXPECTED_CODE COMMAND...
     expected=$1
@@ -294,7 +295,8 @@ cp id.pub home/.ssh/authorized_keys
 chmod 600 home/.ssh/authorized_keys
 dropbearkey -t ed25519 -f host_key >/dev/null 2>&1
 port=$((20000 + $$ % 20000))
-unshare -m sh -c "mount --bind '$work/home' '$home' && exec dropbear -F -E -s -r host_key -P dropbear.pid -p 127.0.0.1:$port" 2>dropbear.txt &
+unshare -m sh -c "mount --bind '$work/home' '$home' && exec dropbear -F -E -s -r host_key -P dropbear.pid -p 127.0.0.1:$port" </dev/null >dropbear.txt 2>&1 &
+server=$!
 running="$running $!"
 until_true 'no ssh server' sh -c "ssh-keyscan -p $port 127.0.0.1 2>/dev/null | grep -q ."
 : >known
