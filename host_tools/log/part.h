@@ -26,8 +26,8 @@ enum class Kind : std::uint32_t {
     columns = 2, // text, a line each: "-", or "0" (left out where it never held anything but 0); a letter of the unit; the name
     pattern = 3, // uint32 each: the columns of a row
     rows = 4, // uint32 lanes, uint32 bytes of each, then their rows (row_spool.h), to be merged by time; a column goes on from what it held
-    filling = 6, // nothing: what comes next begins where the file system's pages do
     samples = 5, // uint32 columns; of each uint32 its number, uint32 count; then of each its times and its values, double
+    filling = 6, // zeros, and nothing said: what comes next begins where the file system's pages do
 };
 
 struct BlockHead {

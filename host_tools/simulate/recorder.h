@@ -26,6 +26,7 @@ class Recorder {
              const std::string &radar_path = "");
 
     void add(const sensor_frame_t &frame, const command_t &command, const trace_t &trace);
+    void add_radar(const sensor_frame_t &frame); // of add, where nothing else of the tick is wanted
     void add_camera(std::span<const sim::Pose> poses);
     // Columns that never held anything but 0 are left out where 0 is what absence means.
     void begin(const std::map<std::string, std::string> &header); // log::Spool's
@@ -48,7 +49,6 @@ class Recorder {
     void leave_out(std::size_t slot) { absent_[slot / 64] |= std::uint64_t{1} << (slot % 64); }
     void add_wheel(int wheel, const sensor_frame_t &frame, const command_t &command, const wheel_trace_t &trace);
     void add_frame(const sensor_frame_t &frame);
-    void add_radar(const sensor_frame_t &frame);
     void add_command(const command_t &command);
     void add_estimates(const trace_t &trace);
     bool has_wheel(int wheel) const { return (wheels_ >> static_cast<unsigned>(wheel) & 1u) != 0u; }

@@ -101,8 +101,10 @@ class Session : public Link {
             camera_faults_.apply(world_.camera(), poses_);
             recorder_.add(frame, command, trace);
             recorder_.add_camera(poses_);
-            recorder_.tick_is_over();
+        } else if (!options_.radar_path.empty()) {
+            recorder_.add_radar(frame);
         }
+        recorder_.tick_is_over();
         if (options_.truth || !options_.truth_path.empty()) truth_.add(world_.truth());
         if (frames_) frames_->add(frame, command);
         if (options_.after_tick) options_.after_tick(trace);
@@ -132,7 +134,7 @@ class Session : public Link {
     }
 
   private:
-    bool records() const { return options_.record || !options_.log_path.empty() || !options_.radar_path.empty(); }
+    bool records() const { return options_.record || !options_.log_path.empty(); }
     const SimulateOptions &options_;
     const hal::SimHal &world_;
     hal::PlanOperator person_;

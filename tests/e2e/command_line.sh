@@ -201,10 +201,11 @@ grep -q '^# ended: interrupted$' long.csv || bad "the log does not say that it w
 gives 0 '"interrupted"' check long.csv --json -
 [ "$(ls -A | grep long | tr '\n' ' ')" = "long.csv long.toml long_truth.csv " ] || bad "a stopped run leaves $(ls -A | grep long)"
 [ "$(head -n 100 long.csv | grep '^t_s' | tr -cd , | wc -c)" -eq "$(tail -n 1 long.csv | tr -cd , | wc -c)" ] || bad "the last row is cut"
-# 1000 s with log and truth in 100 MB of address space
+# 1000 s with log and truth, and of the radar's samples alone, in 100 MB of address space
 sed 's/^duration_s = .*/duration_s = 1000/' "$root/scenarios/cruise.toml" >long.toml
 (ulimit -v 100000 && "$cli" simulate long.toml --quiet --out long.csv --truth long_truth.csv) || bad "memory grows with the run"
-rm -f long.csv long_truth.csv
+(ulimit -v 100000 && "$cli" simulate long.toml --quiet --radar long_radar.csv) || bad "memory grows with a run of which the radar alone is kept"
+rm -f long.csv long_truth.csv long_radar.csv
 gives 0 '' simulate "$root/scenarios/cruise.toml" --seeds 3..5 --jobs 2 --hide 7 --seal seal.json --out many.csv
 "$cli" simulate "$root/scenarios/cruise.toml" --quiet --seed 4 --hide 8 --seal alone.json --out alone.csv
 cmp many.4.csv alone.csv && cmp seal.4.json alone.json || bad "the second run does not hide what the next seed says"
