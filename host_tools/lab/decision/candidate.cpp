@@ -231,10 +231,12 @@ void Candidate::prepare(Physics &physics) const {
         ExtraTerm term;
         term.name = effect;
         term.target = target;
-        term.wheel = wheel;
         term.term = order > 0 ? make_periodic(axis, order) : make_piecewise(axis, knots);
         term.coefficients.assign(strengths.size(), 0);
-        physics.terms.push_back(std::move(term));
+        for (const int i : on.empty() ? std::vector<int>{wheel} : on) {
+            term.wheel = i;
+            physics.terms.push_back(term);
+        }
         return;
     }
     const EffectHandle *handle = find_handle(effect);

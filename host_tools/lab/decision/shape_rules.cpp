@@ -56,6 +56,7 @@ std::vector<std::vector<int>> wheel_groups(const Physics &physics, bool motors) 
 Candidate on_wheels(const Candidate &shape, const std::vector<int> &group) {
     Candidate c = shape;
     c.some_wheels = true;
+    c.on = group;
     c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
     for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
     return c;
@@ -204,7 +205,8 @@ bool repeats(const ShapeScore &s) {
 }
 
 const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std::function<double(const ShapeScore &)> &smoothed_by,
-                               bool beside_names, double heldout_error, double scatter_share, const DiagnoseOptions &options) {
+                               const std::function<bool(const ShapeScore &)> &holds, bool beside_names, double heldout_error,
+                               double scatter_share, const DiagnoseOptions &options) {
     const double least = beside_names ? 0.05 : options.least_shape_gain;
     // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
     const auto material = [&](const ShapeScore &s) {
@@ -226,6 +228,7 @@ const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std:
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
             continue;
+        if (!holds(s)) continue;
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
     }
