@@ -1,5 +1,6 @@
 // A shape fitted in full: what counts as worth a word, and that its term acts where its name says.
 #include "host_tools/lab/decision/shape_refit.h"
+#include "host_tools/lab/decision/shape_scores.h"
 #include "tests/lab/four_wheels.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +55,8 @@ TEST(ShapeRefit, finds_what_acts_on_one_wheel_and_holds_there_alone) {
     Problem problem(rover.data, physics, free_parameters(rover.model, physics));
     problem.fit({});
     ShapeScore shape;
-    for (const Candidate &c : shape_candidates(rover.data, problem.forward().motion(), problem.physics(), problem.forward().winding_current_A()))
+    for (const Candidate &c :
+         shape_candidates(rover.data, problem.forward().motion(), problem.physics(), problem.forward().winding_current_A()))
         if (c.axis == Axis::wheel_speed && c.target == TermTarget::wheel_torque && c.knots.size() > 3) shape.candidate = c;
     ASSERT_FALSE(shape.candidate.strengths.empty());
     const Scatter scatter(problem);
@@ -72,6 +74,26 @@ TEST(ShapeRefit, finds_what_acts_on_one_wheel_and_holds_there_alone) {
     EXPECT_NEAR(std::fabs(strength[strength.size() - 1] - strength[0]), 0.01 * (knots.back() - knots.front()), 0.01) << strength;
     EXPECT_TRUE(is_worth_a_word(fall_by(on(2), problem, left, scatter), scatter.share));
     EXPECT_GT(fall_by(on(2), problem, left, scatter).share, 3 * std::max(0.01, fall_by(on(1), problem, left, scatter).share));
+}
+
+// Of a bump the middle one of three values is free.
+TEST(ShapeRefit, of_a_bump_moves_its_middle_alone) {
+    hand_made::FourWheels rover;
+    const Physics physics = make_physics(rover.model);
+    Problem problem(rover.data, physics, free_parameters(rover.model, physics));
+    problem.fit({});
+    const Screen screen(problem);
+    std::size_t bumps = 0;
+    for (const ShapeScore &s : all_shapes(problem, screen)) {
+        if (!is_bump(s.candidate)) continue;
+        ++bumps;
+        Physics at = physics;
+        s.candidate.prepare(at);
+        ASSERT_EQ(at.terms.size(), 1U) << s.candidate.effect;
+        s.candidate.strengths[0].add(at, 0.5);
+        EXPECT_EQ(at.terms[0].coefficients, (std::vector<double>{0, 0.5, 0})) << s.candidate.effect;
+    }
+    EXPECT_GT(bumps, 0U);
 }
 
 } // namespace

@@ -8,8 +8,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double least_share = 0.035; // of clean logs (four of the fleet, three strange) the falls were up to 0.033, of hidden laws that the
-                                      // catalogue lacks 0.049 and more, but for one at 0.030
+constexpr double least_share = 0.035; // of clean logs (four of the fleet, three strange) the falls were up to 0.033, of hidden laws that
+                                      // the catalogue lacks 0.049 and more, but for one at 0.030
 constexpr double least_balance_share = 0.15; // as the linear step is asked for (shape_rules.cpp)
 constexpr double sure_errors = 2;
 constexpr int most_failures = 3;
@@ -25,16 +25,9 @@ bool sure(const Fall &fall) {
 Problem with_shape(const Problem &without, const ShapeScore &shape) {
     const Eigen::Index n = without.theta.size(), k = shape.assessment.strength.size();
     Physics physics = without.physics_at(Eigen::VectorXd::Zero(n));
-    const std::size_t first = physics.terms.size();
     shape.candidate.prepare(physics);
     std::vector<FreeParameter> parameters = without.parameters;
-    for (FreeParameter p : shape.candidate.strengths) {
-        const Slot slot = p.slots.at(0);
-        p.slots.clear();
-        for (std::size_t term = first; term < physics.terms.size(); ++term)
-            p.slots.push_back(slot), p.slots.back().term = static_cast<int>(term);
-        parameters.push_back(p);
-    }
+    parameters.insert(parameters.end(), shape.candidate.strengths.begin(), shape.candidate.strengths.end());
     Problem with(without.data(), physics, parameters);
     with.keep_scales(without);
     with.start_near(without);

@@ -57,6 +57,15 @@ Candidate on_wheels(const Candidate &shape, const std::vector<int> &group) {
     Candidate c = shape;
     c.some_wheels = true;
     c.on = group;
+    for (FreeParameter &p : c.strengths) {
+        std::vector<Slot> of_each;
+        for (std::size_t i = 0; i < group.size(); ++i)
+            for (Slot slot : p.slots) {
+                slot.term = Slot::last_term - static_cast<int>(i);
+                of_each.push_back(slot);
+            }
+        p.slots = of_each;
+    }
     c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
     for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
     return c;
