@@ -207,20 +207,10 @@ ShapeScore worthy(std::size_t coefficients = 5, double gain = 100) {
     return s;
 }
 
-std::ptrdiff_t worth(
-    const std::vector<ShapeScore> &scores, double smoothed = 0, bool beside_names = false, double scatter = 0,
-    const std::function<bool(const ShapeScore &)> &holds = [](const ShapeScore &) { return true; }) {
+std::ptrdiff_t worth(const std::vector<ShapeScore> &scores, double smoothed = 0, bool beside_names = false, double scatter = 0) {
     const ShapeScore *one = worth_a_word(
-        scores, [&](const ShapeScore &) { return smoothed; }, holds, beside_names, 1000, scatter, DiagnoseOptions{});
+        scores, [&](const ShapeScore &) { return smoothed; }, beside_names, 1000, scatter, DiagnoseOptions{});
     return one == nullptr ? -1 : one - scores.data();
-}
-
-TEST(Worth, what_does_not_hold_when_it_is_fitted_is_no_word_and_the_next_has_its_turn) {
-    const std::vector<ShapeScore> three = {worthy(5, 100), worthy(5, 90), worthy(1, 80)};
-    EXPECT_EQ(worth(three), 0);
-    EXPECT_EQ(worth(three, 0, false, 0, [](const ShapeScore &s) { return s.assessment.gain < 100; }), 2); // nearly as well, fewer numbers
-    EXPECT_EQ(worth(three, 0, false, 0, [](const ShapeScore &s) { return s.candidate.strengths.size() == 5; }), 0);
-    EXPECT_EQ(worth(three, 0, false, 0, [](const ShapeScore &) { return false; }), -1);
 }
 
 TEST(Worth, a_word_is_a_shape_of_two_percent_or_five_beside_names_and_half_of_that_on_some_wheels) {

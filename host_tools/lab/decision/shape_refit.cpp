@@ -12,7 +12,6 @@ constexpr double least_share = 0.035; // of clean logs (four of the fleet, three
                                       // the catalogue lacks 0.049 and more, but for one at 0.030
 constexpr double least_balance_share = 0.15; // as the linear step is asked for (shape_rules.cpp)
 constexpr double sure_errors = 2;
-constexpr int most_failures = 3;
 
 bool sure(const Fall &fall) {
     Eigen::VectorXd of = fall.of_block;
@@ -72,12 +71,9 @@ bool is_worth_a_word(const ShapeFall &fall, double scatter_share) {
            (fall.balance_share > least_balance_share + scatter_share && fall.whole.sure() && sure(fall.balance));
 }
 
-bool HoldsRefitted::operator()(const ShapeScore &shape) {
-    if (failed_ == most_failures) return false;
-    if (!left_) left_ = held_out(without_);
-    if (is_worth_a_word(fall_by(shape, without_, *left_, scatter_), scatter_.share)) return true;
-    ++failed_;
-    return false;
+bool holds_refitted(const ShapeScore &shape, const Problem &without) {
+    const Scatter scatter(without);
+    return is_worth_a_word(fall_by(shape, without, held_out(without), scatter), scatter.share);
 }
 
 } // namespace traction::lab

@@ -8,8 +8,6 @@
 #include "host_tools/lab/fit/scatter.h"
 #include "shape_rules.h"
 
-#include <optional>
-
 namespace traction::lab {
 
 // Both models fitted, on the scales of the one without the shape: fall of the squares of blocks left out, less what the shape gains by
@@ -27,18 +25,7 @@ ShapeFall fall_by(const ShapeScore &shape, const Problem &without, const HeldOut
 // Surely (twice its error over blocks, and not by two blocks alone), and by enough: of all squares, or of one balance's.
 bool is_worth_a_word(const ShapeFall &fall, double scatter_share);
 
-// The same of shapes beside one model, whose own held-out error is found when first asked for. After three that do not hold no more are
-// fitted: what follows explains less.
-class HoldsRefitted {
-  public:
-    HoldsRefitted(const Problem &without, const Scatter &scatter) : without_(without), scatter_(scatter) {}
-    bool operator()(const ShapeScore &shape);
-
-  private:
-    const Problem &without_;
-    const Scatter &scatter_;
-    std::optional<HeldOut> left_;
-    int failed_ = 0;
-};
+// Of a shape that would be told beside what was named.
+bool holds_refitted(const ShapeScore &shape, const Problem &without);
 
 } // namespace traction::lab

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace traction::lab {
@@ -78,6 +79,7 @@ bool uneven(const Candidate &c) {
 
 UnknownShape describe(const ShapeScore &s, double base_error) {
     UnknownShape u;
+    u.score = std::make_shared<const ShapeScore>(s);
     static const char *units[] = {"N m", "N m", "N", "N", "N", "V", "1", "1", "1", "1", "m/s^2", "1", "1", "1"};
     u.variable = std::string(axis_name(s.candidate.axis));
     u.target = std::string(target_name(s.candidate.target));
@@ -214,8 +216,7 @@ bool repeats(const ShapeScore &s) {
 }
 
 const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std::function<double(const ShapeScore &)> &smoothed_by,
-                               const std::function<bool(const ShapeScore &)> &holds, bool beside_names, double heldout_error,
-                               double scatter_share, const DiagnoseOptions &options) {
+                               bool beside_names, double heldout_error, double scatter_share, const DiagnoseOptions &options) {
     const double least = beside_names ? 0.05 : options.least_shape_gain;
     // a precise balance weighs little among all: there a shape may stand on that balance alone, if it is very sure
     const auto material = [&](const ShapeScore &s) {
@@ -237,7 +238,6 @@ const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std:
         // of shapes that do nearly as well, the one with the fewest coefficients
         if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
             continue;
-        if (!holds(s)) continue;
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
     }

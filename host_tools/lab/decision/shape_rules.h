@@ -86,10 +86,9 @@ bool gives_way(const std::vector<std::size_t> &replaced, const std::vector<Candi
 // Evidence that repeats: sure beside its scatter over blocks, or very sure by the test and not the work of two blocks alone.
 bool repeats(const ShapeScore &shape);
 
-// The shape that is worth a word: sure, large and repeated, also without what it gains by smoothing the encoders' scatter (`smoothed_by`),
-// and when it is fitted in full (`holds`: shape_refit.h); nullptr: none is. `scatter_share`: of the error that scatter may be.
+// The shape that is worth a word: sure, large and repeated, also without what it gains by smoothing the encoders' scatter (`smoothed_by`);
+// nullptr: none is. `scatter_share`: of the error that scatter may be.
 const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std::function<double(const ShapeScore &)> &smoothed_by,
-                               const std::function<bool(const ShapeScore &)> &holds, bool beside_names, double heldout_error,
-                               double scatter_share, const DiagnoseOptions &options);
+                               bool beside_names, double heldout_error, double scatter_share, const DiagnoseOptions &options);
 
 } // namespace traction::lab

@@ -2,7 +2,6 @@
 
 #include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
-#include "shape_refit.h"
 #include "shape_rules.h"
 #include "shape_scores.h"
 
@@ -26,8 +25,8 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
     if (!alone) of_last = all_shapes(at_last, last_screen, named_count > 0);
     const std::vector<ShapeScore> &scores = alone ? beside_first(last_screen) : of_last;
     const ShapeScore *best = worth_a_word(
-        scores, [&](const ShapeScore &shape) { return smoothed_by(shape, last, scatter); }, HoldsRefitted(last, scatter), named_count > 0,
-        last_screen.heldout_error(), scatter.share, options);
+        scores, [&](const ShapeScore &shape) { return smoothed_by(shape, last, scatter); }, named_count > 0, last_screen.heldout_error(),
+        scatter.share, options);
     if (best != nullptr) findings.shape = describe(*best, last_screen.heldout_error());
     if (named_count == 0) return findings;
     for (std::size_t i = named_count; i-- > 0 && !findings.proxy;)
