@@ -44,7 +44,8 @@
 // interference had told is forgotten when it is taken off (doppler_relieved): speed, slope and sign begin anew.
 //   r += T/(g t1 t2) (b - m) s^2/(s^2 + var X),  m += T/t1 (b - m)                    (16)
 // r: what the gyro about y reads too much since its offset was learned. A lean that its offset turns is no slope, so b runs against it at
-// g r; of a slope that the gyro tells rightly b sees nothing. What sways tells less of it. Var v grows by (|b - m| beyond its noise)^2 s^2.
+// g r; of a slope that the gyro tells rightly b sees nothing. What sways tells less of it. Until a gyro has told of anything m is b, for
+// the slope on which it wakes up is none of its doing. Var v grows by (|b - m| beyond its noise)^2 s^2.
 // Where (13) has an accuser in the lean itself, but value after value the radar stays with the wheels, the wheels' word is tried as well:
 // if it stands, the gyro lies, and what it turned last is its offset. So it is where b nears its limit against the lean. While no value
 // comes, nothing tells of a lean that runs off: the bias is known the less the longer that lasts.

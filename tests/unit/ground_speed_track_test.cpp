@@ -802,7 +802,8 @@ TEST(GroundSpeedTrack, the_bias_that_runs_against_a_lean_is_learned_as_the_gyros
         const ground_speed_state_t was = state;
         ground_speed_watch_gyro(&config, &state);
         EXPECT_EQ(state.gyro_asked, was.slide.ticks);
-        if (was.lean_q8 == 0) {
+        if (was.lean_q8 == 0) { // nothing leans yet: a bias that it wakes up with is a slope, and no gyro's
+            EXPECT_EQ(state.bias_mean_m_s2, was.bias_m_s2);
             EXPECT_EQ(state.gyro_q8, was.gyro_q8);
             EXPECT_EQ(state.p_bb, was.p_bb);
             EXPECT_EQ(state.gyro_alone_ticks, was.gyro_alone_ticks);
