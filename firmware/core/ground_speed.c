@@ -12,7 +12,10 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
     state->p_bb = config->bias_start_m_s2 * config->bias_start_m_s2;
     state->speed_noise_m2_s2 = config->speed_noise_m2_s2;
     state->misfit = 1.0f;
-    state->scatter = 1.0f;
+    state->scatter = 0.5f;
+    state->usual_noise_m2_s2 = config->speed_noise_m2_s2;
+    state->usual_slow_m2_s2 = config->speed_noise_m2_s2;
+    state->unseen_m2_s2 = config->speed_noise_m2_s2 * config->window->tau_ticks;
     state->calm = 1.0f;
     ground_speed_weigh_wheels(config, state);
 }
@@ -119,22 +122,39 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
 // tests/unit/ground_speed_test: 0.68 claims 18 % too much, 0.95 a twentieth).
 static const float felt_takes = 0.95f;
 
-static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
+static const float wheels_own = 1.0f / 9.0f; // [1] of X^2, a third of X, assumed (measured with any_rover_run: a seventh to a quarter)
+
+// What X widens the claim by, (10), (31).
+static void watch_apart(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
-    // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
-    const float rest = fixed_bits(state->felt_m_s) == 0u ? 1.0f : 1.0f - felt_takes * state->felt_trust; // of it, that (14) leaves
-    const float unseen =
-        config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : state->speed_noise_m2_s2 * config->window->tau_ticks * rest;
+    const float noise = config->apart_noise * state->speed_noise_m2_s2;
     const float told = ground_speed_told_by_wheels(config, state, config->apart_least_m_s);
     // of a body that sways on its wheels: the mean square, less what noise makes on average, a ninth of what it may make
-    const float shaken =
-        state->apart_m2_s2 - ground_speed_square(config->apart_least_m_s) - (1.0f / 9.0f) * config->apart_noise * state->speed_noise_m2_s2;
+    const float shaken = state->apart_m2_s2 - ground_speed_square(config->apart_least_m_s) - (1.0f / 9.0f) * noise;
     const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, config->speed_max_m_s);
-    const float slope = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : config->apart_share * apart2;
-    const float alike = config->method == GROUND_SPEED_PAPER || state->standstill ? 0.0f : ground_speed_square(state->alike_m_s);
-    const float own = state->p_vv + unseen;
-    const float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (28)
-    float variance = calm + slope + alike + (state->other_alive ? state->doubt_m2_s2 : 0.0f);
+    const float wheels2 = ground_speed_square(state->wheel_m_s - state->wheel_mean_m_s);
+    const bool theirs = state->rolls_wait > 0 || (fixed_greater(wheels2, noise) && !ground_speed_body_departs(state));
+    state->apart_claim_m2_s2 = (theirs ? wheels_own : 1.0f) * config->apart_share * apart2;
+}
+
+static const float stands_share = 0.16f; // [1] of (29), derived there
+
+static void state_std(const ground_speed_config_t *config, ground_speed_state_t *state)
+{
+    float variance;
+    if (state->standstill) {
+        const float stands = stands_share * state->apart_m2_s2 + ground_speed_square(state->rest_mean_m_s); // (29)
+        variance = fixed_greater(state->p_vv, stands) ? stands : state->p_vv;
+    } else if (config->method == GROUND_SPEED_PAPER) {
+        variance = state->p_vv;
+    } else {
+        // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
+        const float rest = fixed_bits(state->felt_m_s) == 0u ? 1.0f : 1.0f - felt_takes * state->felt_trust; // of it, that (14) leaves
+        const float own = state->p_vv + state->unseen_m2_s2 * rest;
+        const float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (28)
+        variance = calm + state->apart_claim_m2_s2 + ground_speed_square(state->alike_m_s);
+        variance += state->other_alive ? state->doubt_m2_s2 : 0.0f;
+    }
     variance += fixed_bits(state->gyro_doubt_m2_s2) == 0u ? 0.0f : state->gyro_doubt_m2_s2;
     state->std_m_s = sqrtf(variance > 0.0f ? variance : 0.0f);
 }
@@ -155,7 +175,10 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
         ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
     } else if (state->chore % CHORES == 4u && state->unheard_ticks >= SILENT_TICKS) {
         state->loud = 0;
+    } else if (state->chore % CHORES == 2u) {
+        watch_apart(config, state);
     } else if (state->chore % CHORES == 5u) {
+        watch_apart(config, state);
         state_std(config, state);
     } else if (state->chore % CHORES == 6u) {
         ground_speed_track_t track = ground_speed_best_of(state);
