@@ -80,10 +80,11 @@
 //   (Rw - v)^2 > 6.25 (P_vv + n^2):  P_vv += (Rw - v)^2                               (25)  n: the noise of (20), once
 // A track with the wrong sign near zero agrees with every value of a deaf radar and is sure of itself; creeping wheels that are 2.5 sigma
 // off show that it is not.
-// (26): where the other sign wins, L of (7) is about a track that is the best no longer, and begins anew. Not while the best refuses values
-// or they scatter, f > 1.5: a line that is being learnt makes either win by chance, and a bias that may jump is the way out. (27): that
-// values have refuted the sign that the wheels had asked for answers them; they do not ask again for two seconds, unless a line was taken
-// off. A refutation that nobody asked for, as at a start, answers nothing.
+// (26): where the other sign wins, L of (7) is about a track that is the best no longer, and begins anew. Not while the best refuses
+// values or they scatter, f > 1.5: a line that is being learnt makes either win by chance, and a bias that may jump is the way out; but
+// what that value tells, it tells against the winner's cost. (27): that values have refuted the sign that the wheels had asked for answers
+// them; they do not ask again for two seconds, unless a line was taken off. A refutation that nobody asked for, as at a start, answers
+// nothing.
 //   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Q tau,  g = 2 mean e^2/S, from 0.25 to 1         (28)
 // Values share three quarters of their samples with the one before, and R counts each as if it stood alone: where the claim is right, e^2/S
 // is a half in the mean (outdoors_bench --only calm: 0.46 to 0.65), and so it is taken to be at first. Where it is less for eight seconds,
