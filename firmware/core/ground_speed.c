@@ -133,7 +133,10 @@ static void watch_apart(const ground_speed_config_t *config, ground_speed_state_
     const float shaken = state->apart_m2_s2 - ground_speed_square(config->apart_least_m_s) - (1.0f / 9.0f) * noise;
     const float apart2 = fixed_clamp(fixed_greater(shaken, told) ? shaken : told, 0.0f, config->speed_max_m_s);
     const float wheels2 = ground_speed_square(state->wheel_m_s - state->wheel_mean_m_s);
-    const bool theirs = state->rolls_wait > 0 || (fixed_greater(wheels2, noise) && !ground_speed_body_departs(state));
+    const bool against = fixed_greater(0.0f, state->speed_m_s * state->wheel_m_s);
+    const bool leapt = state->rolls_wait > 0;
+    const bool own = fixed_greater(wheels2, noise) && !ground_speed_body_departs(state);
+    const bool theirs = !against && (leapt || own);
     state->apart_claim_m2_s2 = (theirs ? wheels_own : 1.0f) * config->apart_share * apart2;
 }
 
