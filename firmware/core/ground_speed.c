@@ -62,6 +62,11 @@ static void count_values(const ground_speed_config_t *config, ground_speed_state
     state->heard = true;
     state->quiet = input->doppler_quiet && !deaf ? state->quiet + (state->quiet < 1000 ? 1 : 0) : 0;
     state->loud = loud ? state->loud + (state->loud < 1000 ? 1 : 0) : 0;
+    if (loud && state->standstill) { // (32)
+        const bool leaps = fixed_greater(fabsf(input->doppler_m_s - state->loud_m_s), 0.5f * config->slow_m_s);
+        state->loud = leaps && state->loud > config->loud_needed ? config->loud_needed : state->loud;
+        state->loud_m_s = input->doppler_m_s;
+    }
 }
 
 static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most = 5.0f / 12.0f;
@@ -219,6 +224,7 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         ground_speed_correct(config, &track, -track.speed_m_s, 0.0f, config->standing_noise_m2_s2);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
+        state->accepted = true; // rest is known: a first value is gated as any
         state->waits = 0;
         state->agile_left = 0;
         state->agile_sum = 0.0f;

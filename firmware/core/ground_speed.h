@@ -100,6 +100,9 @@
 // (31): X widens the claim by a ninth where it is the wheels' own, beyond noise and not beyond (21), or within a second of a rim's leap,
 // which X has left out while the body follows it. Not where the
 // estimate runs against the wheels: then one of both is wrong by more than X.
+//   |d - d'| > slow/2                                                                 (32)  d' the loud value before
+// What changes so fast from one value to the next while (19) has felt nothing is not the body: grass in the wind, a person's feet. The five
+// seconds of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -268,6 +271,7 @@ typedef struct {
     uint32_t chore;                  // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
+    float loud_m_s;        // the last such value while it stood
     int32_t unheard_ticks; // since the last Doppler value, quiet or not
     int32_t against;
     int32_t still_ticks;

@@ -238,6 +238,7 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
         EXPECT_EQ(state.other_alive, !is);
         EXPECT_EQ(state.agile_left, is ? 0 : 3);
         EXPECT_EQ(state.agile_sum, is ? 0 : 1);
+        EXPECT_EQ(state.accepted, is); // rest is known: what the radar says next is no first value
         const double P = wide(now.p_vv), R = wide(ours().standing_noise_m2_s2), share = is ? R / (P + R) : 1;
         EXPECT_NEAR(state.speed_m_s, wide(now.speed_m_s) * share, eps); // (1 cm/s)^2 per tick
         EXPECT_NEAR(out.speed_m_s, wide(state.speed_m_s) - (is ? 0 : 0.01), eps);
@@ -256,7 +257,7 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
 
 TEST(GroundSpeedTick, loud_and_quiet_values_are_counted_and_a_dead_front_end_is_not_quiet) {
     Any any{{34}};
-    int loud = 0, quiet = 0, deaf = 0;
+    int loud = 0, quiet = 0, deaf = 0, leapt = 0;
     for (int k = 0; k < 600; ++k) {
         ground_speed_state_t state = calm(any);
         const bool dead = any.one_in(2);
@@ -270,17 +271,23 @@ TEST(GroundSpeedTick, loud_and_quiet_values_are_counted_and_a_dead_front_end_is_
         state.quiet = any.one_in(4) ? 1000 : 5;
         state.loud = any.one_in(4) ? 1000 : 5;
         state.heard = false;
+        state.standstill = any.one_in(2);
+        state.loud_m_s = narrow(wide(input.doppler_m_s) + any.either() * wide(ours().slow_m_s) / 2 * any.between(0, 2));
         const ground_speed_state_t was = state;
+        if (std::fabs(std::fabs(wide(input.doppler_m_s) - wide(was.loud_m_s)) - 0.06) < 1e-6) continue;
         ground_speed_step(&ours(), &state, &input);
         const bool is_loud = !input.doppler_quiet && wide(input.doppler_m_s) > wide(ours().slow_m_s);
         const bool is_deaf = dead && std::fabs(wide(input.wheel_m_s)) > 0.1; // wheels that turn make noise
         EXPECT_TRUE(state.heard);
         EXPECT_EQ(state.unheard_ticks, 0);
-        EXPECT_EQ(state.loud, is_loud ? std::min(1000, was.loud + 1) : 0);
+        const bool leaps = was.standstill && std::fabs(wide(input.doppler_m_s) - wide(was.loud_m_s)) > 0.06; // (32): half of slow
+        EXPECT_EQ(state.loud, !is_loud ? 0 : leaps ? 3 : std::min(1000, was.loud + 1)) << k;
+        EXPECT_EQ(state.loud_m_s, is_loud && was.standstill ? input.doppler_m_s : was.loud_m_s);
+        leapt += is_loud && leaps ? 1 : 0;
         EXPECT_EQ(state.quiet, input.doppler_quiet && !is_deaf ? std::min(1000, was.quiet + 1) : 0);
         loud += is_loud ? 1 : 0, quiet += state.quiet > 0 ? 1 : 0, deaf += is_deaf ? 1 : 0;
     }
-    EXPECT_GT(std::min({loud, quiet, deaf}), 50);
+    EXPECT_GT(std::min({loud, quiet, deaf, leapt}), 50);
 }
 
 // --- chores: each at its place in a turn of sixteen
