@@ -275,6 +275,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     state->lean_q8 = input->lean_q8;
     const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
+    const bool stood = state->standstill;
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s))) &&
                       fixed_greater(config->rest_m_s, fabsf(state->rest_mean_m_s)); // (24)
     state->unheard_ticks = fresh ? 0 : state->unheard_ticks + (state->unheard_ticks < 1000 ? 1 : 0);
@@ -308,7 +309,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     if (!input->busy) { // else it is as it was
         state->bias_m_s2 = fixed_clamp(state->bias_m_s2, -config->bias_max_m_s2, config->bias_max_m_s2);
     }
-    if (fresh || state->standstill || fixed_bits(state->std_m_s) == 0u) { // a root is dear
+    if (fresh || stood || state->standstill || fixed_bits(state->std_m_s) == 0u) { // a root is dear; (29) ends with the rest
         state_std(config, state);
     }
     const ground_speed_output_t out = {

@@ -93,7 +93,7 @@
 //   at rest:  std^2 = min(P_vv, 0.16 mean X^2 + m^2)                                  (29)  m of (24)
 // What moves a standing estimate is the accelerometer's noise q a tick, held by v = 0 give or take 1 cm/s in each of them: (1 - k)^2 q/(1 -
 // (1 - k)^2) = 2 q with the gain k = 0.18 of the stated noise, and X has 12.5 q (derived here). A body that rocks on its wheels is in X
-// as well; m is what a wheel may creep by.
+// as well; m is what a wheel may creep by. It ends in the tick in which the rest ends.
 //   Q = min(Qv, max(u1, u4)),  u *= q > u ? 2 : 0.85, q of the last look              (30)
 // What the accelerometer's noise has done since the window's middle is claimed as most looks find it, four of five (ln 2 over ln 2 - ln
 // 0.85): Qv is at least the stated noise and a mean, in which a start or a turn stays for seconds. The filter keeps Qv.

@@ -248,6 +248,9 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
             EXPECT_NEAR(out.std_m_s, std::sqrt(std::fmin(P * share, shakes) + wide(now.gyro_doubt_m2_s2)), 1e-5); // whatever else parted
             (shakes < P * share ? calmer : shaken) += 1;
         }
+        if (!is) {
+            EXPECT_EQ(out.std_m_s != now.std_m_s, now.standstill) << k; // (29) ends with the rest
+        }
         (is ? stood : moved) += 1;
         if (now.still_ticks >= 25 && now.loud >= 3 && now.loud < 40 && now.standstill && now.unheard_ticks < 100)
             (is ? unfelt : pushed) += 1;
