@@ -84,11 +84,12 @@ set(TRACTION_SANITIZED_LABELS unit hal replay)
 set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
     lab_model_test lab_smooth_test lab_inputs_test lab_wheel_step_test lab_tangent_test lab_score svg_test)
 
-# traction_test(NAME LABEL label [NIGHTLY pattern...] SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry, run under the
-# emulator when cross-compiling. What the patterns name takes long beside what it adds: every night, with all the rest, as NAME_whole
+# traction_test(NAME LABEL label [COST s] [TIMEOUT s] [NIGHTLY pattern...] SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry,
+# run under the emulator when cross-compiling. COST: about its seconds on the host, of those that take more than a few: ctest starts the
+# dearest first, so that none of them is left to run alone at the end. What the patterns name takes long beside what it adds: every night, with all the rest, as NAME_whole
 # (ctest --preset host -C nightly), so that the daily suite stays short (goal: ten minutes).
 function(traction_test name)
-  cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LIBS;NIGHTLY" ${ARGN})
+  cmake_parse_arguments(T "" "LABEL;TIMEOUT;COST" "SOURCES;LIBS;NIGHTLY" ${ARGN})
   if(TRACTION_SANITIZE AND NOT TRACTION_SANITIZE_EVERY AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)
     return()
   endif()
@@ -102,10 +103,13 @@ function(traction_test name)
   if(NOT T_TIMEOUT)
     set(T_TIMEOUT 120)
   endif()
+  if(NOT T_COST)
+    set(T_COST 2)
+  endif()
   if(TRACTION_SANITIZE)
     math(EXPR T_TIMEOUT "4 * ${T_TIMEOUT}") # the sanitizers' price
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT} COST ${T_TIMEOUT}) # the long ones first
+  set_tests_properties(${name} PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT} COST ${T_COST})
   if(T_NIGHTLY)
     list(JOIN T_NIGHTLY ":" patterns)
     set_tests_properties(${name} PROPERTIES ENVIRONMENT "GTEST_FILTER=-${patterns}")

@@ -44,7 +44,8 @@
 // interference had told is forgotten when it is taken off (doppler_relieved): speed, slope and sign begin anew.
 //   r += T/(g t1 t2) (b - m) s^2/(s^2 + var X),  m += T/t1 (b - m)                    (16)
 // r: what the gyro about y reads too much since its offset was learned. A lean that its offset turns is no slope, so b runs against it at
-// g r; of a slope that the gyro tells rightly b sees nothing. What sways tells less of it. Var v grows by (|b - m| beyond its noise)^2 s^2.
+// g r; of a slope that the gyro tells rightly b sees nothing. What sways tells less of it. Until a gyro has told of anything m is b, for
+// the slope on which it wakes up is none of its doing. Var v grows by (|b - m| beyond its noise)^2 s^2.
 // Where (13) has an accuser in the lean itself, but value after value the radar stays with the wheels, the wheels' word is tried as well:
 // if it stands, the gyro lies, and what it turned last is its offset. So it is where b nears its limit against the lean. While no value
 // comes, nothing tells of a lean that runs off: the bias is known the less the longer that lasts.
@@ -79,14 +80,29 @@
 //   (Rw - v)^2 > 6.25 (P_vv + n^2):  P_vv += (Rw - v)^2                               (25)  n: the noise of (20), once
 // A track with the wrong sign near zero agrees with every value of a deaf radar and is sure of itself; creeping wheels that are 2.5 sigma
 // off show that it is not.
-// (26): where the other sign wins, L of (7) is about a track that is the best no longer, and begins anew. Not while the best refuses values
-// or they scatter, f > 1.5: a line that is being learnt makes either win by chance, and a bias that may jump is the way out. (27): that
-// values have refuted the sign that the wheels had asked for answers them; they do not ask again for two seconds, unless a line was taken
-// off. A refutation that nobody asked for, as at a start, answers nothing.
-//   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Qv tau,  g = 2 mean e^2/S, from 0.25 to 1         (28)
+// (26): where the other sign wins, L of (7) is about a track that is the best no longer, and begins anew. Not while the best refuses
+// values or they scatter, f > 1.5: a line that is being learnt makes either win by chance, and a bias that may jump is the way out; but
+// what that value tells, it tells against the winner's cost. (27): that values have refuted the sign that the wheels had asked for answers
+// them; they do not ask again for two seconds, unless a line was taken off. A refutation that nobody asked for, as at a start, answers
+// nothing.
+//   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Q tau,  g = 2 mean e^2/S, from 0.25 to 1         (28)
 // Values share three quarters of their samples with the one before, and R counts each as if it stood alone: where the claim is right, e^2/S
-// is a half in the mean (outdoors_bench --only calm: 0.46 to 0.65). Where it is less for eight seconds, this radar on this ground is better
-// than R, and so is the claim; the filter's gains, odds and limits stay with R. Not while both signs live or wheels part.
+// is a half in the mean (outdoors_bench --only calm: 0.46 to 0.65), and so it is taken to be at first. Where it is less for eight seconds,
+// this radar on this ground is better than R, and so is the claim; the filter's gains, odds and limits stay with R. Not while both signs
+// live or wheels part.
+//   at rest:  std^2 = min(P_vv, 0.16 mean X^2 + m^2)                                  (29)  m of (24)
+// What moves a standing estimate is the accelerometer's noise q a tick, held by v = 0 give or take 1 cm/s in each of them: (1 - k)^2 q/(1 -
+// (1 - k)^2) = 2 q with the gain k = 0.18 of the stated noise, and X has 12.5 q (derived here). A body that rocks on its wheels is in X
+// as well; m is what a wheel may creep by. It ends in the tick in which the rest ends.
+//   Q = min(Qv, max(u1, u4)),  u *= q > u ? 2 : 0.85, q of the last look              (30)
+// What the accelerometer's noise has done since the window's middle is claimed as most looks find it, four of five (ln 2 over ln 2 - ln
+// 0.85): Qv is at least the stated noise and a mean, in which a start or a turn stays for seconds. The filter keeps Qv.
+// (31): X widens the claim by a ninth where it is the wheels' own, beyond noise and not beyond (21), or within a second of a rim's leap,
+// which X has left out while the body follows it. Not where the
+// estimate runs against the wheels: then one of both is wrong by more than X.
+//   |d - d'| > slow/2                                                                 (32)  d' the loud value before
+// What changes so fast from one value to the next while (19) has felt nothing is not the body: grass in the wind, a person's feet. The five
+// seconds of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -211,6 +227,9 @@ typedef struct {
     float accel_noise_m2_s2;                    // mean of (6) per tick
     float slow_noise_m2_s2;                     // the same of four ticks at a time
     float speed_noise_m2_s2;                    // Qv in force
+    float usual_noise_m2_s2, usual_slow_m2_s2;  // q1 and q4 that most looks have found, (30)
+    float unseen_m2_s2;                         // of the claim: what the accelerometer's noise does since the window's middle
+    float apart_claim_m2_s2;                    // and X, (31)
     int32_t integral_q20[GROUND_SPEED_HISTORY]; // V, a ring [2^-20 m/s]
     int32_t head;
     int32_t behind_ticks; // that the covariance has not seen, and Qv in them
@@ -252,6 +271,7 @@ typedef struct {
     uint32_t chore;                  // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
+    float loud_m_s;        // the last such value while it stood
     int32_t unheard_ticks; // since the last Doppler value, quiet or not
     int32_t against;
     int32_t still_ticks;

@@ -36,8 +36,9 @@ void ground_speed_watch_gyro(const ground_speed_config_t *config, ground_speed_s
     const uint32_t passed = state->slide.ticks - state->gyro_asked;
     const float ticks = passed < 100u ? (float)(int32_t)passed : 100.0f;
     state->gyro_asked = state->slide.ticks;
-    if (state->lean_q8 == 0) {
-        return; // no gyro has told of anything
+    if (state->lean_q8 == 0) { // no gyro has told of anything
+        state->bias_mean_m_s2 = state->bias_m_s2;
+        return;
     }
     const bool alone = state->unheard_ticks > UNHEARD || state->refused > 0; // what is refused tells nothing
     state->gyro_alone_ticks = !alone ? 0 : state->gyro_alone_ticks < 1000 ? state->gyro_alone_ticks + (int32_t)passed % 100 : 1000;

@@ -194,6 +194,7 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
         ground_speed_keep_best(state, &state->other.at);
         ground_speed_split(state, &state->other, &best);
         state->odds = -state->odds;
+        state->value_cost = cost; // the best's, for (7)
     }
     const float apart = state->speed_m_s - state->other.at.speed_m_s;
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));

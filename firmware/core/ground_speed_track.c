@@ -80,6 +80,16 @@ static const float slow_most = 3.0f; // [1] times the white noise: beyond, it is
 
 enum { SLOW_TICKS = 4, SLOW_BENDS = 6, SLOW_LIMIT = 16383 };
 
+static const float usual_more = 2.0f, usual_less = 0.85f; // [1] of (30): four looks of five find less, assumed
+static const float usual_least = 4e-8f;                   // [m^2/s^2] (0.02 m/s^2 T)^2: no accelerometer on wheels is quieter, assumed
+static const float usual_most = 4e-4f;                    // [m^2/s^2] as the filter's own
+
+// (30)
+static void watch_usual(float *usual, float found)
+{
+    *usual = fixed_clamp(*usual * (fixed_greater(found, *usual) ? usual_more : usual_less), usual_least, usual_most);
+}
+
 // (6'), of sums over four ticks
 void ground_speed_watch_slow_noise(ground_speed_state_t *state)
 {
@@ -97,6 +107,7 @@ void ground_speed_watch_slow_noise(ground_speed_state_t *state)
     }
     const float mean = (float)sum * (1.0f / (2.0f * SLOW_TICKS * SLOW_BENDS * 65536.0f * 65536.0f));
     state->slow_noise_m2_s2 += noise_share * (mean - state->slow_noise_m2_s2);
+    watch_usual(&state->usual_slow_m2_s2, mean);
 }
 
 void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -121,6 +132,11 @@ void ground_speed_watch_noise(const ground_speed_config_t *config, ground_speed_
         noise = fixed_greater(state->slow_noise_m2_s2, most) ? most : state->slow_noise_m2_s2;
     }
     state->speed_noise_m2_s2 = fixed_clamp(noise, config->speed_noise_m2_s2, config->speed_noise_max_m2_s2);
+    watch_usual(&state->usual_noise_m2_s2, mean);
+    const float slow = state->usual_slow_m2_s2;
+    const float usual = fixed_greater(slow, state->usual_noise_m2_s2) ? slow : state->usual_noise_m2_s2;
+    const float claimed = fixed_greater(state->speed_noise_m2_s2, usual) ? usual : state->speed_noise_m2_s2;
+    state->unseen_m2_s2 = claimed * config->window->tau_ticks;
     ground_speed_weigh_wheels(config, state);
 }
 

@@ -17,7 +17,6 @@ static uint32_t turn(uint32_t x, uint32_t by) { return x >> by | x << (32u - by)
 static void take_block(uint32_t state[8], const uint8_t *block)
 {
     uint32_t w[64];
-    uint32_t v[8];
     for (int t = 0; t < 16; t++) {
         w[t] = (uint32_t)block[4 * t] << 24 | (uint32_t)block[4 * t + 1] << 16 | (uint32_t)block[4 * t + 2] << 8 | block[4 * t + 3];
     }
@@ -26,18 +25,28 @@ static void take_block(uint32_t state[8], const uint8_t *block)
         const uint32_t s1 = turn(w[t - 2], 17) ^ turn(w[t - 2], 19) ^ w[t - 2] >> 10;
         w[t] = s1 + w[t - 7] + s0 + w[t - 16];
     }
-    memcpy(v, state, sizeof v);
-    for (int t = 0; t < 64; t++) {
-        const uint32_t sum1 = turn(v[4], 6) ^ turn(v[4], 11) ^ turn(v[4], 25), choice = (v[4] & v[5]) ^ (~v[4] & v[6]);
-        const uint32_t t1 = v[7] + sum1 + choice + k[t] + w[t];
-        const uint32_t sum0 = turn(v[0], 2) ^ turn(v[0], 13) ^ turn(v[0], 22), most = (v[0] & v[1]) ^ (v[0] & v[2]) ^ (v[1] & v[2]);
-        memmove(v + 1, v, 7 * sizeof *v);
-        v[4] += t1;
-        v[0] = t1 + sum0 + most;
+    uint32_t a = state[0], b = state[1], c = state[2], d = state[3], e = state[4], f = state[5], g = state[6], h = state[7];
+    for (int t = 0; t < 64; t++) { // eight names, not an array: they stay in registers
+        const uint32_t sum1 = turn(e, 6) ^ turn(e, 11) ^ turn(e, 25), choice = (e & f) ^ (~e & g);
+        const uint32_t t1 = h + sum1 + choice + k[t] + w[t];
+        const uint32_t sum0 = turn(a, 2) ^ turn(a, 13) ^ turn(a, 22), most = (a & b) ^ (a & c) ^ (b & c);
+        h = g;
+        g = f;
+        f = e;
+        e = d + t1;
+        d = c;
+        c = b;
+        b = a;
+        a = t1 + sum0 + most;
     }
-    for (int i = 0; i < 8; i++) {
-        state[i] += v[i];
-    }
+    state[0] += a;
+    state[1] += b;
+    state[2] += c;
+    state[3] += d;
+    state[4] += e;
+    state[5] += f;
+    state[6] += g;
+    state[7] += h;
 }
 
 void sha256_begin(sha256_t *hash)
@@ -73,16 +82,14 @@ void sha256_add(sha256_t *hash, const void *bytes, size_t length)
 
 void sha256_end(sha256_t *hash, uint8_t out[SHA256_BYTES])
 {
-    static const uint8_t one = 0x80, zero = 0;
+    static const uint8_t padding[SHA256_BLOCK] = {0x80};
     const uint64_t bits = hash->length * 8u;
+    const size_t used = (size_t)(hash->length % SHA256_BLOCK);
     uint8_t count[8];
     for (int i = 0; i < 8; i++) {
         count[i] = (uint8_t)(bits >> (56 - 8 * i));
     }
-    sha256_add(hash, &one, 1);
-    while (hash->length % SHA256_BLOCK != 56u) {
-        sha256_add(hash, &zero, 1);
-    }
+    sha256_add(hash, padding, used < 56u ? 56u - used : 120u - used);
     sha256_add(hash, count, sizeof count);
     for (int i = 0; i < SHA256_BYTES; i++) {
         out[i] = (uint8_t)(hash->state[i / 4] >> (24 - 8 * (i % 4)));

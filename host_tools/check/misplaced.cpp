@@ -90,8 +90,9 @@ void gyro(const Grid &grid, Findings &findings) {
     for (double &v : size) v = std::fabs(v);
     if (!(quantile(size, 0.95) > 0.1) || correlation(seen, before) < 0.3) return; // too little turning, or the camera's own noise
     const double alike = correlation(rate, seen), folded = correlation(rate, size), widest = quantile(rate, 0.995);
+    const double fast = quantile(size, 0.98);
     double back_s = 0;
-    for (const double v : seen) back_s += v < -0.3 * quantile(size, 0.98) ? step_s : 0;
+    for (const double v : seen) back_s += v < -0.3 * fast ? step_s : 0;
     if (quantile(rate, 0.005) > -0.05 * widest && back_s > 1 && folded > alike + 0.2) {
         add_error(findings, "magnitude", "imu.gyro_z_rad_s", "the gyro never reads a turn to the right, but the camera sees them",
                   "log the rate with its sign: a turn to the left is positive", alike);

@@ -133,10 +133,11 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 ++samples;
                 const double z = shakes * now.heave_m * std::sin(2 * pi * now.heave_Hz * t) + (now.lift_m ? now.lift_m(t) : 0),
                              pitch = shakes * now.pitch_rad * std::sin(2 * pi * 5 * t);
+                const double way = path + 0.3 * pitch + (now.waves_m ? now.waves_m(t) : 0);
                 const bool dead = now.radar_dead && now.radar_dead(t);
                 const double share = now.echo_share ? now.echo_share(t) : 1;
-                const double heard = now.scatterers ? front.filtered(share * ground->echo(path + 0.3 * pitch, z))
-                                                    : low.step(high.step(share * now.echo_count * echo->at(path + 0.3 * pitch, z)));
+                const double heard = now.scatterers ? front.filtered(share * ground->echo(way, z))
+                                                    : low.step(high.step(share * now.echo_count * echo->at(way, z)));
                 const double own = dead ? 0.3 : now.scatterers ? 0 : white; // noise of the converter
                 const double count = 512 + now.offset_count + own * noise.normal() +
                                      (dead ? 0 : heard + now.tone_count * std::sin(2 * pi * now.tone_Hz * t));
@@ -159,7 +160,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                              (now.gyros ? shakes * gravity * now.pitch_rad * std::sin(2 * pi * 5 * t) : 0);
         last_speed = speed;
         ++since;
-        if (now.missed_share > 0 && luck.uniform() < now.missed_share) {
+        if ((now.missed_share > 0 && luck.uniform() < now.missed_share) || (now.stalled && now.stalled(t))) {
             continue; // the next tick finds what has come meanwhile
         }
         const bool radar_lost = luck.uniform() < now.lost_ticks_share;
@@ -178,7 +179,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
             frame.current_count[i] = static_cast<std::uint16_t>(std::clamp(2048 + current / 0.002 + 5 * accel_noise.normal(), 1.0, 4094.0));
         }
         frame.battery_count = 1800;
-        frame.accel_x_count = static_cast<std::int16_t>(std::floor(accel / 0.004 + 0.5));
+        frame.accel_x_count = static_cast<std::int16_t>(std::floor(std::clamp(accel, -now.accel_rail, now.accel_rail) / 0.004 + 0.5));
         (void)heave_accel;
         if (now.gyros) {
             frame.present |= FRAME_GYRO_XY | FRAME_ACCEL_YZ;

@@ -68,6 +68,9 @@ struct Case {
     std::function<double(double)> echo_share;               // amplitude of the ground's echo over echo_count: a puddle, other ground
     std::function<double(double)> lift_m;                   // of the radar: a kerb
     std::function<double(double)> accel_more;               // what the accelerometer reads too much: a blow, warmth [m/s^2]
+    std::function<double(double)> waves_m;                  // way that what lies on the ground goes by itself: grass in the wind
+    double accel_rail = 1e9;                                // [m/s^2] the accelerometer reads no more
+    std::function<bool(double)> stalled;                    // nobody looks at the sensors
     std::function<double(double)> turn;                     // rim speed that the right wheels have more, the left ones less [m/s]
     // closed loop
     bool closed = false;

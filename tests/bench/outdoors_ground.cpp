@@ -126,6 +126,48 @@ void add_warmth(Rows &all) {
     }
 }
 
+void add_first_hour(Rows &all) {
+    for (const double gust :
+         {0.05, 0.15, 0.3}) { // grass below the radar goes to and fro by itself, up to that speed; the rover stands, and goes
+        Case now;
+        now.duration_s = 40, now.settle_s = 2;
+        now.waves_m = [gust](double t) { return gust / (2 * pi * 0.6) * std::sin(2 * pi * 0.6 * t) * (t > 5 && t < 30 ? 1 : 0); };
+        now.speed = [](double t) { return ramp(t, 30, 30.5, 0, 0.3); };
+        add(all, "stands on grass in the wind, by m/s", gust, now);
+    }
+    for (const double v : {0.3, 0.6}) {
+        Case now; // 40 m/s^2 for 20 ms and back in 80, of which an accelerometer of 2 g loses half a metre a second
+        now.speed = [v](double) { return v; };
+        now.accel_rail = 19.6;
+        now.accel_more = [](double t) { return t > 8 && t < 8.02 ? -40 : t >= 8.02 && t < 8.1 ? 10 : 0; };
+        add(all, "a blow beyond the accelerometer's rail", v, now);
+        now = {};
+        now.speed = [v](double t) { return ramp(t, 2, 2 + v / 0.5, 0, v) - ramp(t, 12, 12 + v / 0.5, 0, v); };
+        now.echo_share = [speed = now.speed](double t) { return 1 / (1 + 10 * speed(t)); };
+        add(all, "the echo falls with speed, to", v, now);
+        now = {};
+        now.speed = [v](double t) { return v + 0.1 * std::sin(t); };
+        now.echo_count = 7.5, now.snr_dB = 5;
+        add(all, "wet ground, an echo 20 dB less", v, now);
+        now = {};
+        now.speed = [v](double t) { return v + 0.1 * std::sin(t); };
+        now.stalled = [](double t) { return std::fmod(t, 5) > 4.965; };
+        add(all, "three ticks missed in a row, every 5 s", v, now);
+    }
+    for (const double up_m : {0.2, 0.5}) { // carried: up within a second, askew, and down; then it drives off
+        Case now;
+        now.duration_s = 24, now.settle_s = 2;
+        now.lift_m = [up_m](double t) { return ramp(t, 6, 7, 0, up_m) - ramp(t, 11, 12, 0, up_m); };
+        now.slope = [](double t) { return 12 * deg * (ramp(t, 6, 7, 0, 1) - ramp(t, 10, 12, 0, 1.5) + ramp(t, 12, 12.2, 0, 0.5)); };
+        now.echo_share = [up_m](double t) { return 1 - (ramp(t, 6, 7, 0, 1) - ramp(t, 11, 12, 0, 1)) * (1 - 0.1 / (0.1 + up_m)); };
+        now.speed = [](double t) { return ramp(t, 15, 15.5, 0, 0.3); };
+        add(all, "is lifted, and set down, by m", up_m, now);
+    }
+    Case now; // by hand, motors off: no slip, and as jerkily as a hand does
+    now.wheel = now.speed = [](double t) { return t < 5 ? 0 : 0.4 * std::sin(1.3 * (t - 5)) * std::fabs(std::cos(0.7 * (t - 5))); };
+    add(all, "is pushed by hand, to", 0.4, now);
+}
+
 } // namespace
 
 std::vector<Row> ground_rows() {
@@ -136,6 +178,7 @@ std::vector<Row> ground_rows() {
     add_turns(all);
     add_ends_of_the_band(all);
     add_warmth(all);
+    add_first_hour(all);
     return all;
 }
 

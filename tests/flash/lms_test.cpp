@@ -88,6 +88,22 @@ TEST(sha256, gives_the_standards_examples) {
     EXPECT_EQ(hex_of(sha, sizeof sha), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+// The hash of the hashes of n bytes, byte i of them 7 i + n, n = 0 to 199: each place of the padding in a block. By Python's hashlib
+// (OpenSSL): h = sha256(); for n in range(200): h.update(sha256(bytes((7 * i + n) % 256 for i in range(n))).digest())
+TEST(sha256, of_every_length_up_to_three_blocks_is_that_of_another_library) {
+    sha256_t all;
+    sha256_begin(&all);
+    std::uint8_t sha[SHA256_BYTES];
+    for (std::size_t n = 0; n < 200; ++n) {
+        Bytes bytes(n);
+        for (std::size_t i = 0; i < n; ++i) bytes[i] = static_cast<std::uint8_t>(7 * i + n);
+        sha256(bytes.data(), n, sha);
+        sha256_add(&all, sha, sizeof sha);
+    }
+    sha256_end(&all, sha);
+    EXPECT_EQ(hex_of(sha, sizeof sha), "8c7c9ff69da76fc28823a1cb97268672663e628e1ea955868b16db46bab0545d");
+}
+
 TEST(lms, verifies_the_rfcs_signature_and_none_with_a_byte_changed) {
     const Bytes key = bytes_of(rfc8554::case1_key), message = bytes_of(rfc8554::case1_message);
     Bytes signature = bytes_of(rfc8554::case1_signature);

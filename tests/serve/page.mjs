@@ -32,7 +32,8 @@ export const launch = (executablePath, more) => chromium.launch({ executablePath
 
 export const ready = (page) => page.waitForSelector('html[data-ready=yes]', { timeout: 20000 });
 export const click = (page, where, words) => page.click(`${where} button:text-is("${words}")`);
-export const until = (page, what, argument) => page.waitForFunction(what, argument, { timeout: 240000 });
+// Asked ten times a second: asked before every picture, as is usual, the page draws all the time that it waits.
+export const until = (page, what, argument) => page.waitForFunction(what, argument, { timeout: 240000, polling: 100 });
 
 // A page of the server that `where` gives; what goes wrong in it is added to `trouble`.
 export async function open(browser, where, trouble, settings = {}) {

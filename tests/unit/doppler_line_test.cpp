@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 namespace {
@@ -56,6 +57,16 @@ Heard listen(const std::vector<double> &counts, unsigned bin) {
     return out;
 }
 
+// A ground's echo is a function of the place alone: drives of any speed over it share it.
+const std::vector<double> &along_track(const clutter::Ground &ground) {
+    static std::map<std::uint64_t, std::vector<double>> known;
+    const auto [at, is_new] = known.try_emplace(ground.seed);
+    if (is_new) {
+        at->second = clutter::echo_along_track(ground);
+    }
+    return at->second;
+}
+
 std::vector<double> echo(double speed_m_s, std::uint64_t seed, double seconds) {
     clutter::Ground ground;
     ground.seed = seed, ground.track_m = 12;
@@ -64,7 +75,7 @@ std::vector<double> echo(double speed_m_s, std::uint64_t seed, double seconds) {
     std::vector<double> out;
     const double length = ground.track_m - 0.1;
     for (const std::uint16_t value : clutter::drive(
-             clutter::echo_along_track(ground), seconds, [&](double t) { return std::fmod(speed_m_s * t, length); }, adc)) {
+             along_track(ground), seconds, [&](double t) { return std::fmod(speed_m_s * t, length); }, adc)) {
         out.push_back(value - 512.0);
     }
     return out;

@@ -229,12 +229,14 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
             EXPECT_EQ(state.rolls_ticks, 0); // the wheels' word was wrong
             EXPECT_EQ(state.agile_sum, was.rolls_ticks > 0 || (was.misfit < 1.5f && was.refused == 0) ? 0 : 1); // (26)
             EXPECT_EQ(state.against, was.against);
+            EXPECT_NEAR(state.value_cost, cost, 1e-3 * (1 + std::fabs(cost))); // (7) compares with the best, which this is now
             won++, kept += state.agile_sum > 0 ? 1 : 0;
         } else {
             EXPECT_EQ(state.other.ticks, 1);
             EXPECT_EQ(state.other.q20, was.integral_q20[(was.head + GROUND_SPEED_HISTORY - 1) % GROUND_SPEED_HISTORY]);
             EXPECT_EQ(state.rolls_ticks, was.rolls_ticks);
             EXPECT_EQ(state.agile_sum, 1);
+            EXPECT_EQ(state.value_cost, was.value_cost);
             const bool answers = odds > 18 && with < 0 && was.against < 0; // (27): the wheels' question
             EXPECT_EQ(state.against, answers ? -12 : was.against) << k;
             stayed++, answered += answers ? 1 : 0, unasked += odds > 18 && with < 0 && was.against > 0 ? 1 : 0;

@@ -52,9 +52,12 @@ TEST(GroundSpeedTick, at_reset_nothing_is_known_but_that_it_is_slow_and_rather_l
     EXPECT_EQ(state.p_bb, 1); // +-1 m/s^2: 6 deg
     EXPECT_EQ(state.speed_m_s, 0);
     EXPECT_EQ(state.misfit, 1);
-    EXPECT_EQ(state.scatter, 1); // (28): nothing is earned yet
+    EXPECT_EQ(state.scatter, 0.5f); // (28): what it is where R is right
     EXPECT_EQ(state.calm, 1);
     EXPECT_EQ(state.speed_noise_m2_s2, ours().speed_noise_m2_s2);
+    EXPECT_EQ(state.usual_noise_m2_s2, ours().speed_noise_m2_s2); // (30): the stated one, until looks have told
+    EXPECT_EQ(state.usual_slow_m2_s2, ours().speed_noise_m2_s2);
+    EXPECT_NEAR(state.unseen_m2_s2, wide(ours().speed_noise_m2_s2) * wide(ours().window->tau_ticks), 1e-9);
     EXPECT_EQ(state.felt_trust, 1);
     EXPECT_NEAR(state.per_felt_most_s2_m2, 1 / (16 * 12.5 * wide(ours().speed_noise_m2_s2)), 1);
 }
@@ -187,7 +190,7 @@ bool stands(const ground_speed_state_t &s, double felt_m_s) {
 
 TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
     Any any{{33}};
-    int stood = 0, moved = 0, pushed = 0, unfelt = 0;
+    int stood = 0, moved = 0, pushed = 0, unfelt = 0, calmer = 0, shaken = 0;
     const auto one_of = [&](std::initializer_list<int> list) { return *(list.begin() + any.next() % list.size()); };
     for (int k = 0; k < 4000; ++k) {
         ground_speed_state_t state = calm(any);
@@ -218,6 +221,8 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
         state.agile_left = 3;
         state.agile_sum = 1;
         state.alike_m_s = 0.3f;
+        state.apart_claim_m2_s2 = 0.1f;
+        state.apart_m2_s2 = narrow(any.log_between(1e-7, 1));
         state.gyro_doubt_m2_s2 = any.one_in(2) ? 0 : 0.002f;
         ground_speed_state_t now = state;
         const bool rests = std::fabs(wide(input.wheel_m_s)) < wide(ours().still_m_s) &&
@@ -233,23 +238,29 @@ TEST(GroundSpeedTick, stands_where_wheels_rest_and_nothing_tells_of_a_speed) {
         EXPECT_EQ(state.other_alive, !is);
         EXPECT_EQ(state.agile_left, is ? 0 : 3);
         EXPECT_EQ(state.agile_sum, is ? 0 : 1);
+        EXPECT_EQ(state.accepted, is); // rest is known: what the radar says next is no first value
         const double P = wide(now.p_vv), R = wide(ours().standing_noise_m2_s2), share = is ? R / (P + R) : 1;
         EXPECT_NEAR(state.speed_m_s, wide(now.speed_m_s) * share, eps); // (1 cm/s)^2 per tick
         EXPECT_NEAR(out.speed_m_s, wide(state.speed_m_s) - (is ? 0 : 0.01), eps);
         EXPECT_NEAR(state.p_vv, P * share, eps);
         if (is) {
-            EXPECT_NEAR(out.std_m_s, std::sqrt(P * share + wide(now.gyro_doubt_m2_s2)), 1e-4); // whatever spectra were unlike
+            const double shakes = 0.16 * wide(now.apart_m2_s2) + square(wide(now.rest_mean_m_s));                 // (29)
+            EXPECT_NEAR(out.std_m_s, std::sqrt(std::fmin(P * share, shakes) + wide(now.gyro_doubt_m2_s2)), 1e-5); // whatever else parted
+            (shakes < P * share ? calmer : shaken) += 1;
+        }
+        if (!is) {
+            EXPECT_EQ(out.std_m_s != now.std_m_s, now.standstill) << k; // (29) ends with the rest
         }
         (is ? stood : moved) += 1;
         if (now.still_ticks >= 25 && now.loud >= 3 && now.loud < 40 && now.standstill && now.unheard_ticks < 100)
             (is ? unfelt : pushed) += 1;
     }
-    EXPECT_GT(std::min({stood, moved, pushed, unfelt}), 50);
+    EXPECT_GT(std::min({stood, moved, pushed, unfelt, calmer, shaken}), 50);
 }
 
 TEST(GroundSpeedTick, loud_and_quiet_values_are_counted_and_a_dead_front_end_is_not_quiet) {
     Any any{{34}};
-    int loud = 0, quiet = 0, deaf = 0;
+    int loud = 0, quiet = 0, deaf = 0, leapt = 0;
     for (int k = 0; k < 600; ++k) {
         ground_speed_state_t state = calm(any);
         const bool dead = any.one_in(2);
@@ -263,17 +274,23 @@ TEST(GroundSpeedTick, loud_and_quiet_values_are_counted_and_a_dead_front_end_is_
         state.quiet = any.one_in(4) ? 1000 : 5;
         state.loud = any.one_in(4) ? 1000 : 5;
         state.heard = false;
+        state.standstill = any.one_in(2);
+        state.loud_m_s = narrow(wide(input.doppler_m_s) + any.either() * wide(ours().slow_m_s) / 2 * any.between(0, 2));
         const ground_speed_state_t was = state;
+        if (std::fabs(std::fabs(wide(input.doppler_m_s) - wide(was.loud_m_s)) - 0.06) < 1e-6) continue;
         ground_speed_step(&ours(), &state, &input);
         const bool is_loud = !input.doppler_quiet && wide(input.doppler_m_s) > wide(ours().slow_m_s);
         const bool is_deaf = dead && std::fabs(wide(input.wheel_m_s)) > 0.1; // wheels that turn make noise
         EXPECT_TRUE(state.heard);
         EXPECT_EQ(state.unheard_ticks, 0);
-        EXPECT_EQ(state.loud, is_loud ? std::min(1000, was.loud + 1) : 0);
+        const bool leaps = was.standstill && std::fabs(wide(input.doppler_m_s) - wide(was.loud_m_s)) > 0.06; // (32): half of slow
+        EXPECT_EQ(state.loud, !is_loud ? 0 : leaps ? 3 : std::min(1000, was.loud + 1)) << k;
+        EXPECT_EQ(state.loud_m_s, is_loud && was.standstill ? input.doppler_m_s : was.loud_m_s);
+        leapt += is_loud && leaps ? 1 : 0;
         EXPECT_EQ(state.quiet, input.doppler_quiet && !is_deaf ? std::min(1000, was.quiet + 1) : 0);
         loud += is_loud ? 1 : 0, quiet += state.quiet > 0 ? 1 : 0, deaf += is_deaf ? 1 : 0;
     }
-    EXPECT_GT(std::min({loud, quiet, deaf}), 50);
+    EXPECT_GT(std::min({loud, quiet, deaf, leapt}), 50);
 }
 
 // --- chores: each at its place in a turn of sixteen
@@ -380,15 +397,16 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
 TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
     Any any{{37}};
     const ground_speed_config_t &config = ours();
-    std::array<int, 6> seen = {};
+    std::array<int, 4> seen = {};
     for (int k = 0; k < 2000; ++k) {
         ground_speed_state_t state = calm(any);
         state.calm = narrow(any.one_in(3) ? 1 : any.between(0.25, 1));
         state.calm_at_m2_s2 = narrow(any.log_between(1e-4, 0.1));
         state.calm_less_m2_s2 = (1 - state.calm) * state.calm_at_m2_s2;
         state.chore = any.one_in(2) ? 4 : 12;
-        state.apart_m_s = narrow(any.one_in(3) ? 0 : any.between(-0.3, 0.3));
-        state.apart_m2_s2 = narrow(any.one_in(2) ? 0 : any.log_between(1e-4, 0.1));
+        state.apart_m_s = 0.01f;
+        state.apart_m2_s2 = narrow(any.one_in(2) ? 0 : any.log_between(1e-3, 0.1));
+        state.unseen_m2_s2 = narrow(any.log_between(1e-6, 1e-2));
         state.felt_trust = narrow(any.uniform());
         state.alike_m_s = narrow(any.one_in(2) ? 0 : any.between(0, 0.2));
         state.other_alive = any.one_in(2);
@@ -398,20 +416,46 @@ TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
         ground_speed_input_t input = same(state, any.between(-1, 1));
         input.accel_valid = !any.one_in(3);
         const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
-        const double q = wide(state.speed_noise_m2_s2), least2 = square(0.03); // (10): what slip makes
+        const double claimed = wide(state.apart_claim_m2_s2); // a test of its own
         const double taken = state.felt_m_s != 0 ? 0.95 * wide(state.felt_trust) : 0;
-        const double unseen = q * wide(config.window->tau_ticks) * (1 - taken);
-        const double told = square(wide(state.apart_m_s)) - least2 - 112 * q, shaken = wide(state.apart_m2_s2) - least2 - 112 * q / 9;
-        const double apart2 = std::clamp(std::fmax(told, shaken), 0.0, wide(config.speed_max_m_s));
-        const double own = wide(state.p_vv) + unseen, R = wide(state.calm_at_m2_s2); // (28)
-        const double variance = own - (1 - wide(state.calm)) * std::fmin(own, R) + apart2 + square(wide(state.alike_m_s)) +
+        const double own = wide(state.p_vv) + wide(state.unseen_m2_s2) * (1 - taken), R = wide(state.calm_at_m2_s2); // (28)
+        const double variance = own - (1 - wide(state.calm)) * std::fmin(own, R) + claimed + square(wide(state.alike_m_s)) +
                                 (state.other_alive ? wide(state.doubt_m2_s2) : 0) + wide(state.gyro_doubt_m2_s2);
         EXPECT_NEAR(out.std_m_s, std::sqrt(variance), 1e-5 + 1e-5 * std::sqrt(variance)) << k;
         EXPECT_NEAR(out.speed_m_s, wide(state.speed_m_s) - wide(state.felt_m_s) - (state.other_alive ? 0.03 : 0), eps);
-        seen[0] += taken > 0 ? 1 : 0, seen[1] += told > 0 && told > shaken ? 1 : 0, seen[2] += shaken > 0 && shaken > told ? 1 : 0;
-        seen[3] += apart2 <= 0 ? 1 : 0, seen[4] += state.calm < 1 && own > R ? 1 : 0, seen[5] += state.calm < 1 && own < R ? 1 : 0;
+        seen[0] += taken > 0 ? 1 : 0, seen[1] += state.calm < 1 && own > R ? 1 : 0, seen[2] += state.calm < 1 && own < R ? 1 : 0;
+        seen[3] += claimed > own ? 1 : 0;
     }
     EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 50);
+}
+
+// (10) and (31): what X adds, less where it is the wheels' own or follows a rim's leap.
+TEST(GroundSpeedTick, what_wheels_and_accelerometer_part_by_widens_the_claim_less_where_it_is_the_wheels_own) {
+    Any any{{53}};
+    int told_by = 0, shaken_by = 0, none = 0, leapt = 0, own = 0, noisy = 0, body = 0, contrary = 0;
+    for (int k = 0; k < 3000; ++k) {
+        ground_speed_state_t state = calm(any);
+        state.chore = any.one_in(2) ? 1 : 4;
+        state.rolls_wait = any.one_in(3) ? 50 : 0;
+        state.speed_noise_m2_s2 = narrow(any.log_between(4e-6, 1e-4));
+        state.apart_m_s = narrow(any.one_in(3) ? 0 : any.between(-0.3, 0.3));
+        state.apart_m2_s2 = narrow(any.one_in(2) ? 0 : any.log_between(1e-4, 0.1));
+        state.wheel_mean_m_s = narrow(wide(state.wheel_m_s) + any.between(-0.3, 0.3));
+        state.other_alive = true; // (13) is not asked
+        const ground_speed_input_t input = same(state, wide(state.bias_m_s2));
+        ground_speed_step(&ours(), &state, &input);
+        const double q = wide(state.speed_noise_m2_s2), least2 = square(0.03), x = std::fabs(wide(state.apart_m_s)); // what slip makes
+        const double told = x * x - least2 - 112 * q, shaken = wide(state.apart_m2_s2) - least2 - 112 * q / 9;
+        const double apart2 = std::clamp(std::fmax(told, shaken), 0.0, wide(ours().speed_max_m_s));
+        const double wheels = std::fabs(wide(state.wheel_m_s) - wide(state.wheel_mean_m_s));
+        if (std::fabs(x - 1.5 * wheels) < 1e-5 || std::fabs(wheels * wheels - 112 * q) < 1e-6) continue;
+        const bool leap = state.rolls_wait > 0, theirs = wheels * wheels > 112 * q && x < 1.5 * wheels;
+        const bool against = state.speed_m_s * state.wheel_m_s < 0; // the estimate or the wheels are wrong by more than that
+        EXPECT_NEAR(state.apart_claim_m2_s2, apart2 / ((leap || theirs) && !against ? 9 : 1), 1e-6 + eps * apart2) << k;
+        (apart2 <= 0 ? none : told > shaken ? told_by : shaken_by) += 1;
+        if (apart2 > 0) (against && (leap || theirs) ? contrary : leap ? leapt : theirs ? own : x < 1.5 * wheels ? noisy : body) += 1;
+    }
+    EXPECT_GT(std::min({told_by, shaken_by, none, leapt, own, noisy, body, contrary}), 50);
 }
 
 TEST(GroundSpeedTick, the_papers_standard_deviation_is_the_filters_alone) {

@@ -117,7 +117,7 @@ TEST(GroundSpeedTrack, noise_is_the_mean_square_of_bends_and_enters_by_an_eighth
         }
         return sum / bends / (2 * ticks);
     };
-    int stated = 0, most = 0, slow = 0, thrice = 0;
+    int stated = 0, most = 0, slow = 0, thrice = 0, calmer = 0, as_filter = 0, slower = 0, whiter = 0;
     for (int k = 0; k < 400; ++k) {
         ground_speed_state_t state = any.past(ours());
         if (any.one_in(8)) { // a blow
@@ -128,8 +128,25 @@ TEST(GroundSpeedTrack, noise_is_the_mean_square_of_bends_and_enters_by_an_eighth
         state.slow_noise_m2_s2 = narrow(any.log_between(1e-6, 1e-3));
         const double q1 = wide(state.accel_noise_m2_s2) * 0.875 + 0.125 * mean(state, 1, 32, 0.125);
         const double q4 = wide(state.slow_noise_m2_s2) * 0.875 + 0.125 * mean(state, 4, 6, 0.25);
+        state.usual_noise_m2_s2 = narrow(any.log_between(4e-8, 4e-4));
+        state.usual_slow_m2_s2 = narrow(any.log_between(4e-8, 4e-4));
+        const auto usual = [](float was, double found) { // (30): up by 2, down by 0.85, within 0.02 and 2 m/s^2 of noise
+            return std::clamp(wide(was) * (found > wide(was) ? 2 : 0.85), square(0.02 * 0.01), square(2 * 0.01));
+        };
+        const double found1 = mean(state, 1, 32, 0.125), found4 = mean(state, 4, 6, 0.25);
+        const bool close =
+            std::fabs(found1 / wide(state.usual_noise_m2_s2) - 1) < 0.02 || std::fabs(found4 / wide(state.usual_slow_m2_s2) - 1) < 0.02;
+        const double usual1 = usual(state.usual_noise_m2_s2, found1), usual4 = usual(state.usual_slow_m2_s2, found4);
         ground_speed_watch_slow_noise(&state);
         ground_speed_watch_noise(&ours(), &state);
+        if (!close) {
+            EXPECT_NEAR(state.usual_noise_m2_s2, usual1, eps * usual1);
+            EXPECT_NEAR(state.usual_slow_m2_s2, usual4, eps * usual4);
+            const double claimed = std::fmin(wide(state.speed_noise_m2_s2), std::fmax(usual1, usual4)) * wide(ours().window->tau_ticks);
+            EXPECT_NEAR(state.unseen_m2_s2, claimed, eps * claimed);
+            (claimed < 0.99 * wide(state.speed_noise_m2_s2) * wide(ours().window->tau_ticks) ? calmer : as_filter) += 1;
+            (usual4 > usual1 ? slower : whiter) += 1;
+        }
         // a bend is cut to 2^-16 m/s: of one of 2^-16 rms 8e-3, by twice that times 2^-16 at most
         const double cut = 0.125 * (2 * 0x1p-16 * std::sqrt(8 * std::fmax(q1, q4) * 8) + 0x1p-32);
         EXPECT_NEAR(state.accel_noise_m2_s2, q1, cut + eps * q1);
@@ -139,7 +156,7 @@ TEST(GroundSpeedTrack, noise_is_the_mean_square_of_bends_and_enters_by_an_eighth
         EXPECT_NEAR(state.speed_noise_m2_s2, std::clamp(noise, low, high), 3 * cut + eps * noise);
         (noise < low ? stated : noise > high ? most : q4 > 3 * q1 ? thrice : q4 > q1 ? slow : stated) += 1;
     }
-    EXPECT_GT(std::min({stated, most, slow, thrice}), 10);
+    EXPECT_GT(std::min({stated, most, slow, thrice, calmer, as_filter, slower, whiter}), 10);
 }
 
 // (3) from its definition: w_j less V at the window's end, which lies between two ticks.
@@ -802,7 +819,8 @@ TEST(GroundSpeedTrack, the_bias_that_runs_against_a_lean_is_learned_as_the_gyros
         const ground_speed_state_t was = state;
         ground_speed_watch_gyro(&config, &state);
         EXPECT_EQ(state.gyro_asked, was.slide.ticks);
-        if (was.lean_q8 == 0) {
+        if (was.lean_q8 == 0) { // nothing leans yet: a bias that it wakes up with is a slope, and no gyro's
+            EXPECT_EQ(state.bias_mean_m_s2, was.bias_m_s2);
             EXPECT_EQ(state.gyro_q8, was.gyro_q8);
             EXPECT_EQ(state.p_bb, was.p_bb);
             EXPECT_EQ(state.gyro_alone_ticks, was.gyro_alone_ticks);
