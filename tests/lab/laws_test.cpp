@@ -115,30 +115,6 @@ TEST(Shapes, what_its_own_fit_does_not_bear_is_not_told) {
                             [](const std::string &m) { return m.find("torque(slip) on wheels 2 and 3 seemed to explain") == 0; }));
 }
 
-// At centimetres a second how rolling resistance reverses tells more than how large it is: the generator's goes as tanh(v / 8 mm/s), the
-// lab's speed of reversal is fitted. At 5 mm/s for good the coefficient lay six stated deviations off, dry friction three.
-TEST(Creep, leaves_resistance_and_friction_within_what_is_stated) {
-    GeneratorConfig config = rover(Soil::sand, 850015);
-    config.drive = "slow";
-    config.duration_s = 150;
-    const Model model = parse_model(generator::data_sheet(config), "sheet");
-    Dataset data = make_dataset(model, generator::generate(config));
-    const Physics physics = make_physics(model);
-    Problem problem(data, physics, free_parameters(model, physics));
-    problem.settle();
-    const auto of = [&](const std::string &name) {
-        const auto found =
-            std::find_if(problem.parameters.begin(), problem.parameters.end(), [&](const FreeParameter &p) { return name_of(p) == name; });
-        EXPECT_NE(found, problem.parameters.end()) << name;
-        return found - problem.parameters.begin();
-    };
-    for (const char *name : {"soil.rolling_coefficient", "motor.coulomb_Nm"})
-        EXPECT_LT(std::fabs(problem.theta[of(name)]), 2.5 * problem.parameters[static_cast<std::size_t>(of(name))].prior) << name;
-    const auto reversal = of("soil.reversal_speed_m_s");
-    const double e = problem.parameters[static_cast<std::size_t>(reversal)].base + problem.theta[reversal];
-    EXPECT_NEAR(e, 0.010, 0.001); // where x/(x^4 + e^4)^(1/4) is nearest to tanh(x / 0.008): 0.2 % apart at 15 and 20 mm/s
-}
-
 TEST(Rounding, what_only_smooths_the_encoders_noise_is_not_named) {
     GeneratorConfig config = rover(Soil::concrete, 240004);
     config.drive = "stop_and_go";

@@ -21,8 +21,8 @@ namespace traction::lab {
 struct WheelPhysics : sim::WheelEffects {
     double x = 0, y = 0, heading = 0, radius = 0, load = 0; // load 0: from the geometry
     double KG = 0, ke = 0, Ra = 0, J = 0, b = 0, t0 = 0;
-    double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0, relaxation = 0,
-           reversal = 0.006; // grip: 1 where the soil holds sideways as it holds lengthways
+    double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0,
+           relaxation = 0; // grip: 1 where the soil holds sideways as it holds lengthways
     double current_offset0 = 0;
 };
 

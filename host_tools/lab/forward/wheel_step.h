@@ -78,7 +78,7 @@ class WheelStep {
         sim::WheelEffectsOf<Lane> effects;
         Lane per_sc = Lane(1.0), lag_1_m = Lane(0.0), slip_before = Lane(0.0), side_slip_before = Lane(0.0);
         Lane per_speed_m = Lane(0.0), adhesion = Lane(0.0), mu = Lane(0.0), load_0 = Lane(0.0), load_per_accel = Lane(0.0),
-             load_per_side = Lane(0.0), load_per_twist = Lane(0.0), reversal = Lane(1.0);
+             load_per_side = Lane(0.0), load_per_twist = Lane(0.0);
         Lane rim = Lane(0.0), load = Lane(0.0), Fm = Lane(0.0);
         Lane v, slip, side_slip, traction, rolling, side;
     };
