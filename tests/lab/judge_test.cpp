@@ -654,15 +654,15 @@ TEST(Tolerances, pay_as_the_error_that_is_left_lets_them) {
     EXPECT_TRUE(tolerances_pay(4.1, 0.1, 0, 1));
 }
 
-// The other way about: numbers that go farther from the sheet by more than that, for less than a tenth of the error.
+// The other way about: numbers that go farther from the sheet by more than that, for less than a tenth of the squares.
 TEST(Tolerances, are_strained_by_what_is_no_law_of_the_machine) {
-    EXPECT_TRUE(strains_sheet(-36.1, 3.2, 3, 9));
-    EXPECT_FALSE(strains_sheet(-35.9, 3.2, 3, 9)); // four of three noises
+    EXPECT_TRUE(strains_sheet(-36.1, 3.1, 3, 9));
+    EXPECT_FALSE(strains_sheet(-35.9, 3.1, 3, 9)); // four of three noises
     EXPECT_TRUE(strains_sheet(-9.1, 0.5, 0.49, 9));
     EXPECT_FALSE(strains_sheet(-8.9, 0.5, 0.49, 9)); // never less than stated
-    EXPECT_FALSE(strains_sheet(36.1, 3.2, 3, 9));
-    EXPECT_FALSE(strains_sheet(-1e6, 1, 0.89, 9)); // more than a tenth of the error: what explains as much may
-    EXPECT_TRUE(strains_sheet(-1e6, 1, 0.91, 9));
+    EXPECT_FALSE(strains_sheet(36.1, 3.1, 3, 9));
+    EXPECT_FALSE(strains_sheet(-1e6, 1, 0.948, 9)); // more than a tenth of the squares: what explains as much may
+    EXPECT_TRUE(strains_sheet(-1e6, 1, 0.949, 9));
     EXPECT_TRUE(strains_sheet(-4.1, 0.1, 0.1, 1));
     EXPECT_FALSE(strains_sheet(-3.9, 0.1, 0.1, 1));
 }

@@ -43,17 +43,13 @@ struct Shaped : hand_made::FourWheels {
             if (s.candidate.effect == effect) return &s;
         return nullptr;
     }
-    // Of the shape's coefficient j on these wheels (-1: all), by predictions on either side of nothing.
-    Eigen::VectorXd difference(const Candidate &c, std::size_t j, const std::vector<int> &wheels) const {
+    // Of the shape's coefficient j, by predictions on either side of nothing.
+    Eigen::VectorXd difference(const Candidate &c, std::size_t j) const {
         const double size = c.target == TermTarget::soil_strength || c.target == TermTarget::motor_constant ? 1e-3 : 1e-4;
         const auto at = [&](double x) {
             Physics p = problem->physics();
-            for (const int wheel : wheels) {
-                Candidate one = c;
-                one.wheel = wheel;
-                one.prepare(p);
-                p.terms.back().coefficients[j] = x;
-            }
+            c.prepare(p);
+            c.strengths[j].add(p, x);
             return Forward(data).predict(p);
         };
         return ((at(size) - at(-size)) / (2 * size)).cwiseProduct(problem->row_scale);
@@ -70,14 +66,15 @@ std::vector<int> wheels_of(const std::string &effect) {
     if (const std::size_t at = effect.find(" on wheel"); at != std::string::npos)
         for (const char c : effect.substr(at))
             if (c >= '0' && c <= '9') list.push_back(c - '0');
-    return list.empty() ? std::vector<int>{-1} : list;
+    return list;
 }
 
 void expect_columns(const Shaped &f, const ShapeScore &s) {
     const Eigen::MatrixXd C = s.columns.whole();
     ASSERT_EQ(static_cast<std::size_t>(C.cols()), s.candidate.strengths.size());
+    EXPECT_EQ(s.candidate.on, wheels_of(s.candidate.effect));
     for (Eigen::Index j = 0; j < C.cols(); ++j) {
-        const Eigen::VectorXd by = f.difference(s.candidate, static_cast<std::size_t>(j), wheels_of(s.candidate.effect));
+        const Eigen::VectorXd by = f.difference(s.candidate, static_cast<std::size_t>(j));
         // to first order of what bends: a hundredth of the column, and what a search of 1e-5 m/s leaves of a body's speed
         EXPECT_LT((C.col(j) - by).norm(), 0.01 * by.norm() + 1e-3) << s.candidate.effect << ' ' << j;
     }

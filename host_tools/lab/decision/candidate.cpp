@@ -231,10 +231,12 @@ void Candidate::prepare(Physics &physics) const {
         ExtraTerm term;
         term.name = effect;
         term.target = target;
-        term.wheel = wheel;
         term.term = order > 0 ? make_periodic(axis, order) : make_piecewise(axis, knots);
-        term.coefficients.assign(strengths.size(), 0);
-        physics.terms.push_back(std::move(term));
+        term.coefficients.assign(order > 0 ? strengths.size() : knots.size(), 0); // a bump has one strength, in the middle of three
+        for (const int i : on.empty() ? std::vector<int>{wheel} : on) {
+            term.wheel = i;
+            physics.terms.push_back(term);
+        }
         return;
     }
     const EffectHandle *handle = find_handle(effect);
@@ -337,7 +339,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
             free.key = "f" + std::to_string(j);
             free.touched = c.touched;
             Slot slot;
-            slot.term = -2; // the last term of the physics, resolved when the candidate is prepared
+            slot.term = Slot::last_term; // resolved when the candidate is prepared
             slot.coefficient = static_cast<int>(j);
             free.slots = {slot};
             free.minimum = -1e9;

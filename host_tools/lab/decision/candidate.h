@@ -28,7 +28,8 @@ struct Candidate {
     TermTarget target = TermTarget::wheel_torque;
     std::vector<double> knots;
     double order = 0;                   // periodic in the wheel angle
-    bool some_wheels = false;           // a shape of one wheel or one axle (its name says which)
+    bool some_wheels = false;           // a shape of one wheel or one axle
+    std::vector<int> on;                // these; empty: all
     bool varies_between_wheels = false; // X differs between the wheels more than within one: f(X) may stand for the wheels
 
     std::string label() const; // "slip_sinkage", "wiring_resistance on wheel 2"

@@ -8,6 +8,7 @@
 #include "manner.h"
 #include "record.h"
 #include "rounds.h"
+#include "shape_refit.h"
 #include "shape_rules.h"
 #include "shapes.h"
 #include "tolerance.h"
@@ -59,6 +60,12 @@ class Search {
             return left;
         });
         refine_shapes(problem);
+        // it has stood against names; told it is only where its own fit bears it
+        if (d_.unknown && !holds_refitted(*d_.unknown->score, problem)) {
+            d_.messages.push_back(d_.unknown->balance +
+                                  " seemed to explain a part, but fitted in full it does not predict what was left out: not told");
+            d_.unknown.reset();
+        }
         d_.limits = limits_of(problem);
         conclude(d_);
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))

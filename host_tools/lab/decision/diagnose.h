@@ -59,10 +59,13 @@ struct ConfoundedClass {
     std::string separate_by;
 };
 
+struct ShapeScore;
+
 struct UnknownShape {
     std::string variable, balance, unit_x, unit_y, expression, target;
     double gain = 0;
     std::vector<double> x, y, low, high;
+    std::shared_ptr<const ShapeScore> score; // as it was found, for its fit in full (shape_refit.h)
 };
 
 struct BalanceScore {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace traction::lab {
@@ -56,6 +57,16 @@ std::vector<std::vector<int>> wheel_groups(const Physics &physics, bool motors) 
 Candidate on_wheels(const Candidate &shape, const std::vector<int> &group) {
     Candidate c = shape;
     c.some_wheels = true;
+    c.on = group;
+    for (FreeParameter &p : c.strengths) {
+        std::vector<Slot> of_each;
+        for (std::size_t i = 0; i < group.size(); ++i)
+            for (Slot slot : p.slots) {
+                slot.term = Slot::last_term - static_cast<int>(i);
+                of_each.push_back(slot);
+            }
+        p.slots = of_each;
+    }
     c.effect += group.size() == 1 ? " on wheel " : " on wheels ";
     for (std::size_t i = 0; i < group.size(); ++i) c.effect += (i == 0 ? "" : " and ") + std::to_string(group[i]);
     return c;
@@ -68,6 +79,7 @@ bool uneven(const Candidate &c) {
 
 UnknownShape describe(const ShapeScore &s, double base_error) {
     UnknownShape u;
+    u.score = std::make_shared<const ShapeScore>(s);
     static const char *units[] = {"N m", "N m", "N", "N", "N", "V", "1", "1", "1", "1", "m/s^2", "1", "1", "1"};
     u.variable = std::string(axis_name(s.candidate.axis));
     u.target = std::string(target_name(s.candidate.target));

@@ -156,6 +156,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
             const auto at = c.knots.begin() + j;
             bump.knots.assign(at - 1, at + 2);
             bump.strengths = {c.strengths[static_cast<std::size_t>(j)]};
+            bump.strengths[0].slots[0].coefficient = 1;
             list.push_back(scored(bump, C.col(j), screen, keep));
         }
     }

@@ -137,7 +137,8 @@ bool EffectHandle::acts_at(const Physics &physics, int wheel, std::size_t i) con
 double &Slot::of(Physics &physics) const {
     if (in_wheel != nullptr) return physics.wheel[static_cast<std::size_t>(wheel)].*in_wheel;
     if (in_body != nullptr) return physics.body.*in_body;
-    const std::size_t place = term == -2 ? physics.terms.size() - 1 : static_cast<std::size_t>(term); // -2: the last term
+    const std::size_t place =
+        term <= last_term ? physics.terms.size() - static_cast<std::size_t>(last_term + 1 - term) : static_cast<std::size_t>(term);
     return physics.terms[place].coefficients[static_cast<std::size_t>(coefficient)];
 }
 

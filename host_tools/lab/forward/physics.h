@@ -79,7 +79,8 @@ struct Slot {
     double WheelPhysics::*in_wheel = nullptr;
     int wheel = -1;
     double BodyPhysics::*in_body = nullptr;
-    int term = -1, coefficient = 0; // term -2: the last one
+    static constexpr int last_term = -2; // and below it those before it
+    int term = -1, coefficient = 0;
     double &of(Physics &physics) const;
     double of(const Physics &physics) const { return of(const_cast<Physics &>(physics)); }
 };
