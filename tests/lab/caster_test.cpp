@@ -149,8 +149,7 @@ TEST(Caster, a_hidden_effect_is_named_as_it_is) {
     const Session session = opened(driven("slip_sinkage:coefficient=0.2", 120), two_and_caster());
     const Diagnosis d = diagnose(session.model, session.data, {});
     ASSERT_EQ(d.effects, std::vector<std::string>{"slip_sinkage"}) << d.text;
-    const double half = 0.5 * (d.accepted.front().high[0] - d.accepted.front().low[0]);
-    EXPECT_NEAR(d.accepted.front().value[0], 0.2, 1.5 * half); // half the 95 % interval is two deviations: three
+    EXPECT_NEAR(d.accepted.front().value[0], 0.2, 0.25 * 0.2); // the plant's reads up to 17 % high here: docs/lab_benchmark.md, Round trip
 }
 
 } // namespace

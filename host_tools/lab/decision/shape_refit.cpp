@@ -8,12 +8,12 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double least_share = 0.035; // of clean logs (four of the fleet, three strange) the falls were up to 0.033, of hidden laws that
-                                      // the catalogue lacks 0.049 and more, but for one at 0.030
-constexpr double least_balance_share = 0.15; // as the linear step is asked for (shape_rules.cpp)
+constexpr double least_of_squares = 0.035; // of clean logs (four of the fleet, three strange) the falls were up to 0.033, of hidden laws
+                                           // that the catalogue lacks 0.049 and more, but for one at 0.030
+constexpr double least_of_balance = 0.15;  // as the linear step is asked for (shape_rules.cpp)
 constexpr double sure_errors = 2;
 
-bool sure(const Fall &fall) {
+bool surely(const Fall &fall) {
     Eigen::VectorXd of = fall.of_block;
     std::sort(of.begin(), of.end());
     return fall.sum > sure_errors * fall.error && of.size() > 2 && of.head(of.size() - 2).sum() > 0;
@@ -67,8 +67,8 @@ ShapeFall fall_by(const ShapeScore &shape, const Problem &without, const HeldOut
 }
 
 bool is_worth_a_word(const ShapeFall &fall, double scatter_share) {
-    return (fall.share > least_share && sure(fall.whole)) ||
-           (fall.balance_share > least_balance_share + scatter_share && fall.whole.sure() && sure(fall.balance));
+    return (fall.share > least_of_squares && surely(fall.whole)) ||
+           (fall.balance_share > least_of_balance + scatter_share && fall.whole.sure() && surely(fall.balance));
 }
 
 bool holds_refitted(const ShapeScore &shape, const Problem &without) {

@@ -170,9 +170,9 @@ double Tally::share_error() const {
     return std::max(by_logs, std::sqrt(0.92 * 0.08 / count));
 }
 
-bool Tally::as_claimed() const {
+bool Tally::as_claimed(double least) const {
     constexpr double one_in_200 = 2.58;
-    return share() + one_in_200 * share_error() >= 0.92 && share() - one_in_200 * share_error() <= 0.98;
+    return share() + one_in_200 * share_error() >= least && share() - one_in_200 * share_error() <= 0.98;
 }
 
 std::map<std::string, Tally> tally(const std::vector<Estimate> &estimates) {

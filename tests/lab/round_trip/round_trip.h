@@ -42,7 +42,8 @@ struct Tally {
     double share_error() const;
     // Do these intervals hold the truth as often as 95 % intervals are to, 0.92 to 0.98, within the error of a sample of this size? False
     // where a lab with that coverage would give such a sample once in two hundred (2.58 standard errors, one side).
-    bool as_claimed() const;
+    // least: of what is published, where that is less (the plant).
+    bool as_claimed(double least = 0.92) const;
 };
 
 // By key, and "all effects", "all parameters".
