@@ -86,8 +86,8 @@ set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects
 
 # traction_test(NAME LABEL label [COST s] [TIMEOUT s] [NIGHTLY pattern...] SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry,
 # run under the emulator when cross-compiling. COST: about its seconds on the host, of those that take more than a few: ctest starts the
-# dearest first, so that none of them is left to run alone at the end. What the patterns name takes long beside what it adds: every night, with all the rest, as NAME_whole
-# (ctest --preset host -C nightly), so that the daily suite stays short (goal: ten minutes).
+# dearest first, so that none of them is left to run alone at the end. What the patterns name takes long beside what it adds: every night,
+# with all the rest, as NAME_whole (ctest --preset host -C nightly), so that the daily suite stays short (goal: ten minutes).
 function(traction_test name)
   cmake_parse_arguments(T "" "LABEL;TIMEOUT;COST" "SOURCES;LIBS;NIGHTLY" ${ARGN})
   if(TRACTION_SANITIZE AND NOT TRACTION_SANITIZE_EVERY AND NOT T_LABEL IN_LIST TRACTION_SANITIZED_LABELS AND NOT name IN_LIST TRACTION_SANITIZED_TESTS)

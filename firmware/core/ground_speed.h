@@ -98,8 +98,8 @@
 // What the accelerometer's noise has done since the window's middle is claimed as most looks find it, four of five (ln 2 over ln 2 - ln
 // 0.85): Qv is at least the stated noise and a mean, in which a start or a turn stays for seconds. The filter keeps Qv.
 // (31): X widens the claim by a ninth where it is the wheels' own, beyond noise and not beyond (21), or within a second of a rim's leap,
-// which X has left out while the body follows it. Not where the
-// estimate runs against the wheels: then one of both is wrong by more than X.
+// which X has left out while the body follows it. Not where the estimate runs against the wheels: then one of both is wrong by more than
+// X.
 //   |d - d'| > slow/2                                                                 (32)  d' the loud value before
 // What changes so fast from one value to the next while (19) has felt nothing is not the body: grass in the wind, a person's feet. The five
 // seconds of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.

@@ -121,8 +121,8 @@ std::vector<const Datum *> promising_data(const Model &stated, const Problem &fi
 
 // Data that the fit within the priors has itself moved grossly (the sheet's deviation was too wide to hold them), and without which it
 // describes the log notably worse, and blocks left out by their ranks: what uneven ground does to a soil's stiffness is less, and a few
-// turns in which wheels spin are not the log. A soil that is too soft also predicts better
-// because it does not follow the encoders' scatter ((1) of forward/rounding.h): what that may be is no evidence.
+// turns in which wheels spin are not the log. A soil that is too soft also predicts better because it does not follow the encoders'
+// scatter ((1) of forward/rounding.h): what that may be is no evidence.
 std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first, double &held_error) {
     Model before = stated, after = stated, held = stated;
     for (std::size_t i = 0; i < first.parameters.size(); ++i)
