@@ -441,7 +441,7 @@ TEST(Refit, finds_the_hidden_size_and_its_gain_is_the_fall_of_the_held_out_error
     for (const Candidate &c : catalogue_candidates(short_log().model, short_log().data, columns_of.forward().motion())) {
         if (c.wheel >= 0 || c.effect != "slip_sinkage") continue; // moves the body: fitted in full
         Trial t = screen_candidate(c, screen, columns);
-        refit(t, base, screen, short_log().model, short_log().data);
+        refit(t, base, screen);
         EXPECT_TRUE(t.refitted);
         EXPECT_EQ(t.value.size(), c.strengths.size());
         EXPECT_LE(t.error_reduction, screen.error()); // a fall of the error, never more than the error
@@ -547,7 +547,7 @@ TEST(Refit, ends_at_the_optimum_of_model_and_effect_together) {
         const Candidate c = t.candidate;
         t = screen_candidate(c, s.screen, columns);
         const Trial step = t;
-        refit(t, s.base, s.screen, short_log().model, short_log().data);
+        refit(t, s.base, s.screen);
         if (c.touched == stage_torque || c.touched == stage_sensors) { // linear: the step is the fit
             EXPECT_EQ(t.value, step.value) << effect;
             EXPECT_EQ(t.baseline, s.base.theta + step.assessment.change) << effect;
@@ -569,7 +569,7 @@ TEST(Refit, ends_at_the_optimum_of_model_and_effect_together) {
         EXPECT_NEAR(joint.theta[there.size() - 1], t.value[0], 0.1 * t.half_width[0] + 1e-9) << effect;
         Trial from_afar = step;
         from_afar.start = {0.1 * c.maximum[0]};
-        refit(from_afar, s.base, s.screen, short_log().model, short_log().data);
+        refit(from_afar, s.base, s.screen);
         EXPECT_NEAR(from_afar.value[0], t.value[0], 0.1 * t.half_width[0] + 1e-9) << effect;
     }
 }

@@ -121,7 +121,7 @@ TEST(Step, that_takes_a_number_off_its_limit_says_so) {
     EXPECT_TRUE(t.leaves_active_set);
     // though it acts on sensors alone, such a step is no fit: the refit ends at the joint optimum
     Trial fitted = t;
-    refit(fitted, *a.base, *a.screen, a.model, a.machine.data);
+    refit(fitted, *a.base, *a.screen);
     EXPECT_NEAR(fitted.value[0], a.joint()[3], 1e-5);
     EXPECT_LT((fitted.baseline - a.joint().head(3)).norm(), 1e-5);
 }
@@ -244,7 +244,7 @@ TEST(Refit, of_what_is_linear_ends_at_the_joint_regression) {
             if (std::fabs(start) < 1e8) t.start = {start}, t.start_change = Eigen::VectorXd::Zero(3);
             const double step_gain = t.gain, step_fall = t.error_reduction;
             if (touched != stage_sensors) t.error_reduction = t.gain = -1; // reckoned anew, but where the step is the fit
-            refit(t, *a.base, *a.screen, a.model, a.machine.data);
+            refit(t, *a.base, *a.screen);
             EXPECT_TRUE(t.refitted);
             ASSERT_EQ(t.value.size(), 1U);
             EXPECT_NEAR(t.value[0], a.joint()[3], 1e-5) << touched << ' ' << start;
@@ -261,7 +261,7 @@ TEST(Refit, tells_of_its_place_what_the_step_told_from_afar) {
     const Trial step = a.stepped();
     a.c.touched = stage_sensors | stage_torque;
     Trial t = a.stepped();
-    refit(t, *a.base, *a.screen, a.model, a.machine.data);
+    refit(t, *a.base, *a.screen);
     EXPECT_NEAR(t.error[0], step.error[0], 1e-5);
     EXPECT_NEAR(t.half_width[0], step.half_width[0], 1e-4);
     EXPECT_LT((t.block_gain - step.block_gain).norm(), 1e-4);
@@ -288,7 +288,7 @@ TEST(Refit, keeps_within_the_range_and_starts_within_it) {
         a.c.touched = touched;
         a.c.strengths[0].maximum = 0.5, a.c.maximum = {0.5};
         Trial t = a.stepped();
-        refit(t, *a.base, *a.screen, a.model, a.machine.data);
+        refit(t, *a.base, *a.screen);
         EXPECT_NEAR(t.value[0], 0.5, 1e-9);
         EXPECT_TRUE(beyond_range(t.candidate, t.value));
     }

@@ -163,11 +163,11 @@ class Search {
     bool refit_and_judge(Trial &t, Problem &problem, const Screen &screen) {
         Columns columns(problem, cache_);
         const Trial by_step = t;
-        refit(t, problem, screen, d_.model, data_);
+        refit(t, problem, screen);
         if (const auto found = earlier_.find(t.candidate.label()); found != earlier_.end() && lost(t, found->second)) {
             Trial again = by_step;
             again.start = found->second.value, again.start_change.resize(0);
-            refit(again, problem, screen, d_.model, data_);
+            refit(again, problem, screen);
             if (again.error_reduction > t.error_reduction) t = std::move(again);
         }
         if (t.assessment.projected.size() == 0)
@@ -282,7 +282,7 @@ class Search {
             Columns columns(problem, cache);
             Trial t = screen_candidate(one.candidate, screen, columns);
             t.start = one.value;
-            refit(t, problem, screen, without, data_);
+            refit(t, problem, screen);
             judge(t, screen.explainable(), options_);
             if (stays(t.verdict, solid, [&] { return predicts_better(problem, last); })) continue;
             d_.messages.push_back(one.candidate.label() + " was found first, and is not needed beside the others: dropped");

@@ -1,6 +1,6 @@
 #include "shape_refit.h"
 
-#include "host_tools/lab/fit/screen.h"
+#include "trial.h"
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double least_of_squares = 0.035; // of clean logs (four of the fleet, three strange) the falls were up to 0.033, of hidden laws
-                                           // that the catalogue lacks 0.049 and more, but for one at 0.030
+constexpr double least_of_squares = 0.035; // clean logs of the fleet had up to 0.033 (strange ones whose noise is stated twice up to
+                                           // 0.066), laws that the catalogue lacks 0.048 and more (docs/lab_benchmark.md)
 constexpr double least_of_balance = 0.15;  // as the linear step is asked for (shape_rules.cpp)
 constexpr double sure_errors = 2;
 
@@ -22,15 +22,8 @@ bool surely(const Fall &fall) {
 } // namespace
 
 Problem with_shape(const Problem &without, const ShapeScore &shape) {
-    const Eigen::Index n = without.theta.size(), k = shape.assessment.strength.size();
-    Physics physics = without.physics_at(Eigen::VectorXd::Zero(n));
-    shape.candidate.prepare(physics);
-    std::vector<FreeParameter> parameters = without.parameters;
-    parameters.insert(parameters.end(), shape.candidate.strengths.begin(), shape.candidate.strengths.end());
-    Problem with(without.data(), physics, parameters);
-    with.keep_scales(without);
-    with.start_near(without);
-    with.theta.head(n) = without.theta;
+    const Eigen::Index k = shape.assessment.strength.size();
+    Problem with = beside(without, shape.candidate);
     double least = with.cost();
     Eigen::VectorXd best = with.theta;
     for (const double part : {1.0, 0.5, 0.2, 0.05}) {

@@ -41,18 +41,6 @@ void take(Trial &t, const Assessment &a) {
 }
 
 // Baseline and candidate as one problem, on the baseline's scales.
-Problem joint_problem(const Trial &t, const Problem &base, const Model &model, const Dataset &data) {
-    Physics physics = make_physics(model);
-    t.candidate.prepare(physics);
-    std::vector<FreeParameter> parameters = base.parameters;
-    for (const FreeParameter &p : t.candidate.strengths) parameters.push_back(p);
-    Problem problem(data, physics, parameters);
-    problem.keep_scales(base);
-    problem.start_near(base);
-    problem.theta.head(base.theta.size()) = base.theta;
-    return problem;
-}
-
 double clamped(const Candidate &c, std::size_t j, double value) {
     const FreeParameter &p = c.strengths[j];
     if (c.maximum.empty()) return std::clamp(value, p.minimum, p.maximum);
@@ -72,6 +60,18 @@ void shorten(Problem &problem, Eigen::Index first) {
 }
 
 } // namespace
+
+Problem beside(const Problem &base, const Candidate &candidate) {
+    Physics physics = base.physics_at(Eigen::VectorXd::Zero(base.theta.size()));
+    candidate.prepare(physics);
+    std::vector<FreeParameter> parameters = base.parameters;
+    parameters.insert(parameters.end(), candidate.strengths.begin(), candidate.strengths.end());
+    Problem problem(base.data(), physics, parameters);
+    problem.keep_scales(base);
+    problem.start_near(base);
+    problem.theta.head(base.theta.size()) = base.theta;
+    return problem;
+}
 
 bool strongly_nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
 
@@ -168,14 +168,14 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
     t.nonlinear_reduction = t.error_reduction - by_step;
 }
 
-void refit(Trial &t, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data) {
+void refit(Trial &t, const Problem &base, const Screen &base_screen) {
     const bool linear = t.candidate.touched == stage_sensors || t.candidate.touched == stage_torque;
     if (linear && !t.leaves_active_set) { // the step is the fit
         t.refitted = true;
         t.baseline = base.theta + t.assessment.change;
         return;
     }
-    Problem problem = joint_problem(t, base, model, data);
+    Problem problem = beside(base, t.candidate);
     const Eigen::Index n = base.theta.size();
     const auto k = static_cast<Eigen::Index>(t.candidate.strengths.size());
     for (Eigen::Index j = 0; j < k; ++j) {

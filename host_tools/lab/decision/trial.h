@@ -43,8 +43,11 @@ Trial screen_candidate(const Candidate &candidate, const Screen &screen, Columns
 // step misses where the soil's curve bends, or where a missing effect has pushed the baseline far away.
 void scan(Trial &trial, Problem &base, const Screen &screen);
 
+// The baseline with the candidate in it, at nothing: its strengths are the last parameters, on the baseline's scales.
+Problem beside(const Problem &base, const Candidate &candidate);
+
 // Fits baseline plus candidate in full.
-void refit(Trial &trial, const Problem &base, const Screen &base_screen, const Model &model, const Dataset &data);
+void refit(Trial &trial, const Problem &base, const Screen &base_screen);
 
 // The fit of a model with a candidate, the soil's numbers where they stand in the fit without it, whose parameters are the first.
 Problem held_ground(const Problem &with, const Problem &before);
