@@ -50,6 +50,12 @@ void append_parameters(std::string &text, const Model &model) {
         append_overrides(text, i, model.wheel[i].soil, model.wheel.front().soil);
     }
     append_table(text, "sensors", model.sensors);
+    for (const RunSpec &run : model.runs)
+        for (const Parameters *table : {&run.soil, &run.sensors})
+            for (const auto &[key, p] : *table)
+                if (std::isfinite(p.low))
+                    append(text, "%-8s %-24s %10.4g  [%.4g, %.4g]%s%s in %s\n", table == &run.soil ? "soil" : "sensors", key.c_str(),
+                           p.value, p.low, p.high, p.unit == "1" ? "" : " ", p.unit == "1" ? "" : p.unit.c_str(), run.log.c_str());
     for (const EffectUse &use : model.effects) append_table(text, use.name.c_str(), use.parameters);
 }
 
@@ -72,6 +78,10 @@ nlohmann::json fitted_json(const Model &model) {
             for (const auto &[key, p] : *table)
                 if (std::isfinite(p.low) && p.value != shared->at(key).value) put(name + key + on, p);
     }
+    for (const RunSpec &run : model.runs)
+        for (const auto &[name, table] : {std::pair{"soil.", &run.soil}, std::pair{"sensors.", &run.sensors}})
+            for (const auto &[key, p] : *table)
+                if (std::isfinite(p.low)) put(name + key + " in " + run.log, p);
     return fitted;
 }
 

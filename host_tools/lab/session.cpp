@@ -4,6 +4,7 @@
 #include "sideways.h"
 
 #include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/inputs/begin_runs.h"
 #include "host_tools/lab/inputs/join_runs.h"
 #include "host_tools/lab/inputs/long_log.h"
 
@@ -44,6 +45,7 @@ Session open_session(const Request &request, Model model) {
         session.runs.push_back(checked_log(request, files[i], map_of(i), session.model, told, despite));
     const JoinedRuns joined = join_runs(session.runs);
     const log::Log &log = joined.log;
+    begin_runs(session.model, session.runs, joined.start_s);
     for (const auto &[key, value] : log.header) // a map that says so makes the model's currents magnitudes
         if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1")
             session.model.unsigned_current = true;

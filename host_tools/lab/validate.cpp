@@ -3,6 +3,7 @@
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/fit/problem.h"
 #include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/inputs/begin_runs.h"
 #include "host_tools/lab/inputs/join_runs.h"
 
 #include <cmath>
@@ -16,9 +17,11 @@ void fix(Parameters &table) {
     for (auto &[key, p] : table) p.fixed = key != "accel.bias_m_s2" && key != "gyro.bias_rad_s";
 }
 
-// Error of a model on a run, its values as they stand but for the run's own offsets.
-double error_on(const Model &model, const log::Log &run) {
+// Error of a model on a run, its values as they stand but for what is the run's own: `stated` of it, and found.
+double error_on(const Model &model, const Model &stated, const log::Log &run) {
     Model judged = model;
+    judged.runs = stated.runs;
+    begin_runs(judged, {run}, {first_time(run)});
     fix(judged.rover), fix(judged.sensors);
     for (WheelSpec &wheel : judged.wheel) fix(wheel.geometry), fix(wheel.motor), fix(wheel.soil);
     for (EffectUse &use : judged.effects) fix(use.parameters);
@@ -40,11 +43,14 @@ std::vector<Validation> validate(const Session &session, const Request &request,
         std::vector<log::Log> others;
         for (std::size_t j = 0; j < session.runs.size(); ++j)
             if (j != i) others.push_back(session.runs[j]);
-        const Dataset data = make_dataset(session.model, join_runs(others).log);
+        const JoinedRuns joined = join_runs(others);
         Model plain = session.model, full = result;
+        begin_runs(plain, others, joined.start_s), begin_runs(full, others, joined.start_s);
+        const Dataset data = make_dataset(plain, joined.log);
         fit_model(plain, data, "fitted"), fit_model(full, data, "result");
         const log::Log &run = session.runs[i];
-        out.push_back({base_name(run.source), error_on(session.model, run), error_on(plain, run), error_on(full, run), true});
+        out.push_back({base_name(run.source), error_on(session.model, session.model, run), error_on(plain, session.model, run),
+                       error_on(full, session.model, run), true});
     }
     if (request.validate.empty()) return out;
     Model plain = session.model, full = result;
@@ -52,7 +58,8 @@ std::vector<Validation> validate(const Session &session, const Request &request,
     for (const std::string &file : request.validate) {
         std::vector<std::string> told, despite;
         const log::Log run = checked_log(request, file, request.map_of_validation(), session.model, told, despite);
-        out.push_back({base_name(file), error_on(session.model, run), error_on(plain, run), error_on(full, run), false});
+        out.push_back({base_name(file), error_on(session.model, session.model, run), error_on(plain, session.model, run),
+                       error_on(full, session.model, run), false});
     }
     return out;
 }

@@ -72,7 +72,7 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
         std::string unit;
         for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
             const FreeParameter &p = problem.parameters[i];
-            if (p.owner != datum.table || p.key != datum.key) continue;
+            if (p.owner != datum.table || p.key != datum.key || p.run >= 0) continue;
             moved = p.base + problem.theta[static_cast<Eigen::Index>(i)], ratio = moved / p.base, unit = p.unit;
             break;
         }

@@ -138,8 +138,7 @@ void take_increments(Problem &problem, const Problem &from) {
     for (std::size_t i = 0; i < problem.parameters.size(); ++i)
         for (std::size_t j = 0; j < from.parameters.size(); ++j) {
             const FreeParameter &a = problem.parameters[i], &b = from.parameters[j];
-            if (a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.own == b.own && a.base == b.base)
-                problem.theta[static_cast<Eigen::Index>(i)] = from.theta[static_cast<Eigen::Index>(j)];
+            if (is_same(a, b) && a.base == b.base) problem.theta[static_cast<Eigen::Index>(i)] = from.theta[static_cast<Eigen::Index>(j)];
         }
 }
 

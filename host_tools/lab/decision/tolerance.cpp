@@ -116,7 +116,7 @@ std::size_t newly_at_limits(const Problem &before, const Problem &with) {
         if (!(p.prior > 0) || !with.at_bound(i) || std::fabs(with.theta[static_cast<Eigen::Index>(i)]) < contradicted * p.prior) continue;
         for (std::size_t j = 0; j < before.parameters.size(); ++j) {
             const FreeParameter &q = before.parameters[j];
-            if (p.owner == q.owner && p.key == q.key && p.wheel == q.wheel && p.own == q.own) count += before.at_bound(j) ? 0 : 1;
+            if (is_same(p, q)) count += before.at_bound(j) ? 0 : 1;
         }
     }
     return count;

@@ -59,7 +59,8 @@ Problem::Problem(const Dataset &data, const Physics &physics, std::vector<FreePa
         for (std::size_t r = 0; r < data.balance[b].measured.size(); ++r)
             measured_[static_cast<Eigen::Index>(forward_.first_row(b) + r)] = data.balance[b].measured[r];
     for (FreeParameter &p : parameters)
-        if (p.owner == "sensors" && p.key == "accel.bias_m_s2" && data.accel_bias_prior_m_s2 > 0) p.prior = data.accel_bias_prior_m_s2;
+        if (p.owner == "sensors" && p.key == "accel.bias_m_s2" && p.run < 0 && data.accel_bias_prior_m_s2 > 0)
+            p.prior = data.accel_bias_prior_m_s2;
     for (const Balance &balance : data.balance) sigma.push_back(balance.noise);
     row_scale = noise_rows().cwiseInverse();
 }
@@ -370,9 +371,8 @@ void Problem::keep_scales(const Problem &other) {
     row_scale = other.row_scale;
     sigma = other.sigma;
     for (FreeParameter &p : parameters) {
-        const auto its = std::find_if(other.parameters.begin(), other.parameters.end(), [&](const FreeParameter &q) {
-            return q.owner == p.owner && q.key == p.key && q.wheel == p.wheel && q.own == p.own;
-        });
+        const auto its =
+            std::find_if(other.parameters.begin(), other.parameters.end(), [&](const FreeParameter &q) { return is_same(p, q); });
         p.alike = its != other.parameters.end() ? its->alike : 1;
     }
 }

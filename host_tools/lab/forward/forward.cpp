@@ -316,8 +316,11 @@ void Forward::electric_steps(const Physics &physics, const Motion &motion, std::
     const double by_voltage = sim::law::voltage_gain(1, physics.body.voltage_gain);
     const bool unsigned_current = !smooth && physics.unsigned_current;
     double heat_K = 0;
+    std::size_t run = 0; // next of those that begin with a cold winding
     for (std::size_t k = 0, count = d.count; k < count; ++k) {
         const double w = gain * speed_rad_s[k], dw = gain * accel_rad_s2[k];
+        if (!cold)
+            for (; run < d.run_start_s.size() && d.run_start_s[run] <= d.time(k); ++run) heat_K = 0;
         double KG = sim::motor_constant(p.KG, p, heat_K), ke = sim::motor_constant(p.ke, p, heat_K);
         double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
         if (!cold && !lead_current_.empty()) u_lost += sim::law::shared_lead_V(p.shared_ohm, current_of_others(physics, wheel, k));
@@ -410,6 +413,10 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         }
         return f;
     };
+    const auto offset = [&](std::size_t k, double RunPhysics::*own, double shared) {
+        const RunPhysics *run = run_at(physics, d.time(k));
+        return run == nullptr ? shared : own_or(run->*own, shared);
+    };
     for (std::size_t i = 0; i < d.balance.size(); ++i) {
         const BalanceKind kind = d.balance[i].kind;
         double delay = 0;
@@ -422,7 +429,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
                 lagged += share * (0.5 * (a + before) - lagged);
                 before = a;
                 const double tilted = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
-                const double read = tilted * sim::law::accel_scale(1, b.accel_scale) + b.accel_bias0;
+                const double read = tilted * sim::law::accel_scale(1, b.accel_scale) + offset(k, &RunPhysics::accel_bias, b.accel_bias0);
                 x[k] = sim::law::accel_drift(sim::law::accel_bias(read, b.accel_bias_m_s2), b.accel_drift_m_s3, d.time(k)) +
                        factor(TermTarget::accel, k) - 1;
             }
@@ -441,7 +448,7 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
             for (std::size_t k = 0; k < d.count; ++k) x[k] = source[k] * scale * factor(TermTarget::camera, k);
         } else if (kind == BalanceKind::yaw_rate) {
             delay = sim::law::gyro_delay_s(0, b.gyro_delay_s);
-            for (std::size_t k = 0; k < d.count; ++k) x[k] = motion.yaw_rate_rad_s[k] + b.gyro_bias;
+            for (std::size_t k = 0; k < d.count; ++k) x[k] = motion.yaw_rate_rad_s[k] + offset(k, &RunPhysics::gyro_bias, b.gyro_bias);
         } else if (kind == BalanceKind::force) {
             const Motion::Wheel &w = motion.wheel[static_cast<std::size_t>(d.balance[i].wheel)];
             for (std::size_t k = 0; k < d.count; ++k) x[k] = w.traction_N[k] - w.rolling_N[k];

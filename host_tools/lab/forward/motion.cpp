@@ -71,8 +71,12 @@ class Solver {
   public:
     Solver(const Dataset &data, const Physics &physics, bool keeps)
         : data_(data), p_(physics), step_(data, physics), freedom_(detail::freedom_of(data, physics)), keeps_(keeps) {
-        for (const WheelPhysics &w : p_.wheel)
-            most_ += (w.adhesion + std::fabs(w.mu) * 10 + 1) + p_.body.gravity * p_.body.mass * (std::fabs(w.mu) + 2);
+        for (const WheelPhysics &w : p_.wheel) {
+            double adhesion = w.adhesion, mu = std::fabs(w.mu);
+            for (const RunPhysics &run : p_.runs)
+                adhesion = std::max(adhesion, own_or(run.adhesion, 0)), mu = std::max(mu, std::fabs(own_or(run.mu, 0)));
+            most_ += (adhesion + mu * 10 + 1) + p_.body.gravity * p_.body.mass * (mu + 2);
+        }
         most_ /= p_.body.mass;
     }
 

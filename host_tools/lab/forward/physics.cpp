@@ -55,6 +55,35 @@ constexpr Key keys[] = {
     {"sensors", "camera.delay_s", nullptr, &B::camera_delay0, stage_sensors},
 };
 
+// What a run may have of its own.
+struct RunKey {
+    const char *table;
+    const char *key;
+    double RunPhysics::*in_run;
+};
+constexpr RunKey run_keys[] = {
+    {"soil", "mu", &RunPhysics::mu},
+    {"soil", "adhesion_N", &RunPhysics::adhesion},
+    {"soil", "shear_slip", &RunPhysics::sc},
+    {"soil", "rolling_coefficient", &RunPhysics::crr},
+    {"soil", "lateral_coefficient", &RunPhysics::lateral},
+    {"sensors", "accel.bias_m_s2", &RunPhysics::accel_bias},
+    {"sensors", "gyro.bias_rad_s", &RunPhysics::gyro_bias},
+};
+
+const Parameters &own_table(const RunSpec &run, const RunKey &key) {
+    return std::string_view(key.table) == "soil" ? run.soil : run.sensors;
+}
+
+// The runs of the data set at hand, by their start: indices of Model::runs.
+std::vector<std::size_t> begun(const Model &model) {
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < model.runs.size(); ++i)
+        if (!std::isnan(model.runs[i].start_s)) list.push_back(i);
+    std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) { return model.runs[a].start_s < model.runs[b].start_s; });
+    return list;
+}
+
 const Parameters &table_of(const WheelSpec &wheel, std::string_view table) {
     return table == "wheel" ? wheel.geometry : table == "motor" ? wheel.motor : wheel.soil;
 }
@@ -126,7 +155,31 @@ void add_user_effect(Physics &physics, const Model &model, const EffectUse &use)
     physics.terms.push_back(std::move(term));
 }
 
+std::vector<RunPhysics> runs_of(const Model &model) {
+    std::vector<RunPhysics> list;
+    for (const std::size_t i : begun(model)) {
+        RunPhysics run;
+        run.start_s = model.runs[i].start_s;
+        for (const RunKey &key : run_keys)
+            if (const auto found = own_table(model.runs[i], key).find(key.key); found != own_table(model.runs[i], key).end())
+                run.*key.in_run = found->second.value;
+        list.push_back(run);
+    }
+    return list;
+}
+
 } // namespace
+
+bool RunPhysics::has_ground() const {
+    return !(std::isnan(mu) && std::isnan(adhesion) && std::isnan(sc) && std::isnan(crr) && std::isnan(lateral));
+}
+
+const RunPhysics *run_at(const Physics &physics, double t_s) {
+    const RunPhysics *found = physics.runs.empty() ? nullptr : &physics.runs.front();
+    for (const RunPhysics &run : physics.runs)
+        if (run.start_s <= t_s) found = &run;
+    return found;
+}
 
 bool EffectHandle::acts_at(const Physics &physics, int wheel, std::size_t i) const {
     if (!of_motor) return wheel < 0 || static_cast<std::size_t>(wheel) == i;
@@ -137,6 +190,7 @@ bool EffectHandle::acts_at(const Physics &physics, int wheel, std::size_t i) con
 double &Slot::of(Physics &physics) const {
     if (in_wheel != nullptr) return physics.wheel[static_cast<std::size_t>(wheel)].*in_wheel;
     if (in_body != nullptr) return physics.body.*in_body;
+    if (in_run != nullptr) return physics.runs[run].*in_run;
     const std::size_t place =
         term <= last_term ? physics.terms.size() - static_cast<std::size_t>(last_term + 1 - term) : static_cast<std::size_t>(term);
     return physics.terms[place].coefficients[static_cast<std::size_t>(coefficient)];
@@ -146,7 +200,13 @@ void FreeParameter::add(Physics &physics, double increment) const {
     for (const Slot &slot : slots) slot.of(physics) += increment;
 }
 
-std::string name_of(const FreeParameter &p) { return p.owner + "." + p.key + (p.wheel >= 0 ? " on wheel " + std::to_string(p.wheel) : ""); }
+std::string name_of(const FreeParameter &p) {
+    return p.owner + "." + p.key + (p.wheel >= 0 ? " on wheel " + std::to_string(p.wheel) : "") + (p.run >= 0 ? " in " + p.run_log : "");
+}
+
+bool is_same(const FreeParameter &a, const FreeParameter &b) {
+    return a.owner == b.owner && a.key == b.key && a.wheel == b.wheel && a.run_log == b.run_log && a.own == b.own;
+}
 
 const std::vector<EffectHandle> &effect_handles() {
     static const std::vector<EffectHandle> handles = make_handles();
@@ -191,6 +251,7 @@ Physics make_physics(const Model &model) {
     }
     physics.body.gravity = value_of(model.rover, "gravity_m_s2");
     physics.body.battery_V = value_of(model.rover, "battery_voltage_V");
+    physics.runs = runs_of(model);
     for (const EffectUse &use : model.effects) {
         if (!use.expression.empty()) {
             add_user_effect(physics, model, use);
@@ -279,6 +340,37 @@ void append_shared(std::vector<FreeParameter> &list, const Model &model, const K
     }
 }
 
+// Every run has its own: nothing is left that the machine's could move.
+bool is_every_runs_own(const Model &model, const Key &key) {
+    const std::vector<std::size_t> list = begun(model);
+    const auto own = std::find_if(std::begin(run_keys), std::end(run_keys), [&](const RunKey &k) {
+        return std::string_view(k.table) == key.table && std::string_view(k.key) == key.key;
+    });
+    return !list.empty() && own != std::end(run_keys) &&
+           std::all_of(list.begin(), list.end(), [&](std::size_t i) { return own_table(model.runs[i], *own).count(key.key) != 0; });
+}
+
+void append_runs(std::vector<FreeParameter> &list, const Model &model) {
+    const std::vector<std::size_t> runs = begun(model);
+    for (std::size_t place = 0; place < runs.size(); ++place)
+        for (const RunKey &key : run_keys) {
+            const Parameters &table = own_table(model.runs[runs[place]], key);
+            const auto found = table.find(key.key);
+            if (found == table.end() || found->second.fixed || !(found->second.prior > 0)) continue;
+            const Parameter &p = found->second;
+            FreeParameter free;
+            free.owner = key.table, free.key = key.key, free.unit = p.unit, free.run = static_cast<int>(runs[place]),
+            free.run_log = model.runs[runs[place]].log;
+            Slot slot;
+            slot.in_run = key.in_run, slot.run = place;
+            free.slots = {slot};
+            free.base = p.value, free.prior = p.prior, free.minimum = p.minimum, free.maximum = p.maximum;
+            free.step = difference_step(p.value, p.prior);
+            free.touched = std::string_view(key.table) == "soil" ? stage_motion : stage_sensors;
+            list.push_back(std::move(free));
+        }
+}
+
 bool is_shape(const EffectHandle &handle, const std::string &key) {
     return std::any_of(handle.shapes.begin(), handle.shapes.end(), [&](const auto &place) { return place.key == key; });
 }
@@ -335,6 +427,7 @@ void append_effects(std::vector<FreeParameter> &list, const Model &model, const 
 std::vector<FreeParameter> free_parameters(const Model &model, const Physics &physics) {
     std::vector<FreeParameter> list;
     for (const Key &key : keys) {
+        if (is_every_runs_own(model, key)) continue;
         if (key.in_wheel != nullptr) {
             append_shared(list, model, key);
             continue;
@@ -356,6 +449,7 @@ std::vector<FreeParameter> free_parameters(const Model &model, const Physics &ph
         free.touched = key.touched;
         list.push_back(std::move(free));
     }
+    append_runs(list, model);
     append_effects(list, model, physics);
     return list;
 }
@@ -368,6 +462,10 @@ void store(Model &model, const FreeParameter &parameter, double increment, doubl
             p.high = p.value + half_width;
         }
     };
+    if (parameter.run >= 0) {
+        RunSpec &run = model.runs[static_cast<std::size_t>(parameter.run)];
+        return put((parameter.owner == "soil" ? run.soil : run.sensors).at(parameter.key));
+    }
     for (EffectUse &use : model.effects)
         if (use.name == parameter.owner && use.wheel == parameter.wheel && use.parameters.count(parameter.key) != 0)
             return put(use.parameters.at(parameter.key));

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,6 +47,17 @@ inline double command_delay_s(const BodyPhysics &b) { return sim::law::actuation
 // By which the currents are later than the log has it.
 inline double current_delay_s(const BodyPhysics &b) { return sim::law::current_delay_s(b.current_delay, b.current_delay_s); }
 
+// What a run has of its own; NaN: as the machine has it.
+struct RunPhysics {
+    double start_s = 0; // it lasts to the start of the next
+    double accel_bias = as_the_machine, gyro_bias = as_the_machine;
+    double mu = as_the_machine, adhesion = as_the_machine, sc = as_the_machine, crr = as_the_machine, lateral = as_the_machine;
+    bool has_ground() const;
+    static constexpr double as_the_machine = std::numeric_limits<double>::quiet_NaN();
+};
+
+inline double own_or(double own, double shared) { return std::isnan(own) ? shared : own; }
+
 struct ExtraTerm {
     std::string name;
     TermTarget target = TermTarget::wheel_torque;
@@ -63,7 +75,11 @@ struct Physics {
     std::vector<std::size_t> motor; // per wheel: the wheel whose motor turns it; empty: each has its own
     BodyPhysics body;
     std::vector<ExtraTerm> terms;
+    std::vector<RunPhysics> runs; // by their start; empty: none has anything of its own
 };
+
+// The run that t_s lies in; nullptr where no run has anything of its own.
+const RunPhysics *run_at(const Physics &physics, double t_s);
 
 // Wheels of one motor share its speed; it carries their tractions together. What is on a motor stands at its own wheel.
 inline std::size_t motor_of(const Physics &p, std::size_t wheel) { return p.motor.empty() ? wheel : p.motor[wheel]; }
@@ -79,6 +95,8 @@ struct Slot {
     double WheelPhysics::*in_wheel = nullptr;
     int wheel = -1;
     double BodyPhysics::*in_body = nullptr;
+    double RunPhysics::*in_run = nullptr;
+    std::size_t run = 0;                 // of Physics::runs
     static constexpr int last_term = -2; // and below it those before it
     int term = -1, coefficient = 0;
     double &of(Physics &physics) const;
@@ -91,6 +109,8 @@ struct FreeParameter {
     std::string key;   // "resistance_ohm"
     std::string unit;
     int wheel = -1;
+    int run = -1; // of Model::runs; -1: the machine's
+    std::string run_log = {};
     std::vector<Slot> slots;
     double base = 0;                 // value in the model, before the increment (first slot)
     double prior = 0;                // standard deviation of the increment; 0: free
@@ -102,8 +122,11 @@ struct FreeParameter {
     void add(Physics &physics, double increment) const;
 };
 
-// "motor.resistance_ohm", "motor.resistance_ohm on wheel 2": an overridden one, or what that wheel's differs.
+// "motor.resistance_ohm", "motor.resistance_ohm on wheel 2": an overridden one, or what that wheel's differs; "soil.mu in gravel.csv".
 std::string name_of(const FreeParameter &parameter);
+
+// The same number of the same machine, in two fits.
+bool is_same(const FreeParameter &a, const FreeParameter &b);
 
 // An effect as the lab can try it: slots by parameter.
 struct EffectHandle {

@@ -51,14 +51,32 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         s.gain = count_gain(w);
         s.sigma = sim::law::relaxation_length_m(w.relaxation, b.relaxation_m);
         s.lag_1_m = s.sigma > 0 ? data_.step_s / s.sigma : 0;
-        s.plain_sc = std::max(1e-4, sim::law::shear_stiffness(w.sc, b.shear_change));
         s.free = data_.wheel[i].rolls_freely;
         play_ = play_ || w.play_rad > 0;
         lags_ = lags_ || s.sigma > 0;
     }
     for (const ExtraTerm &term : p_.terms) motion_terms_ = motion_terms_ || (target_stages(term.target) & stage_motion) != 0;
     feels_path_ = feels_path_ || motion_terms_; // a user's expression may name x
+    grounds_ = std::any_of(p_.runs.begin(), p_.runs.end(), [](const RunPhysics &run) { return run.has_ground(); });
+    stand_on(grounds_ ? &p_.runs.front() : nullptr);
     gather();
+}
+
+void WheelStep::stand_on(const RunPhysics *run) {
+    static constexpr RunPhysics nothing;
+    const RunPhysics &own = run != nullptr ? *run : nothing;
+    run_ = run;
+    for (std::size_t i = 0; i < n_; ++i) {
+        const WheelPhysics &w = p_.wheel[i];
+        State &s = state_[i];
+        s.mu = own_or(own.mu, w.mu), s.adhesion = own_or(own.adhesion, w.adhesion);
+        s.rolling_coefficient = own_or(own.crr, w.crr), s.lateral = own_or(own.lateral, w.lateral) + p_.body.scrub;
+        s.plain_sc = std::max(1e-4, sim::law::shear_stiffness(own_or(own.sc, w.sc), p_.body.shear_change));
+        Four &four = four_[i / 4];
+        const std::size_t at = i % 4;
+        four.per_sc.set(at, 1 / s.plain_sc), four.adhesion.set(at, s.adhesion), four.mu.set(at, s.mu);
+        four.resistance.set(at, s.rolling_coefficient), four.lateral.set(at, s.lateral);
+    }
 }
 
 bool WheelStep::widen(bool wide) {
@@ -73,11 +91,11 @@ void WheelStep::gather() {
         const State &s = state_[i];
         Four &four = four_[i / 4];
         const std::size_t at = i % 4;
-        four.c.set(at, s.c), four.s.set(at, s.s), four.x.set(at, s.x), four.y.set(at, s.y), four.per_sc.set(at, 1 / s.plain_sc);
-        four.grip.set(at, w.grip), four.resistance.set(at, w.crr), four.lateral.set(at, w.lateral + p_.body.scrub);
+        four.c.set(at, s.c), four.s.set(at, s.s), four.x.set(at, s.x), four.y.set(at, s.y);
+        four.grip.set(at, w.grip);
         for (std::size_t field = 0; field < sim::WheelEffects::all().size(); ++field)
             (four.effects.*sim::WheelEffectsOf<Lane>::all()[field]).set(at, w.*sim::WheelEffects::all()[field]);
-        four.per_speed_m.set(at, s.radius * s.gain), four.adhesion.set(at, w.adhesion), four.mu.set(at, w.mu);
+        four.per_speed_m.set(at, s.radius * s.gain);
         four.load_0.set(at, w.load > 0 ? w.load : s.load_0), four.load_per_accel.set(at, w.load > 0 ? 0 : s.load_per_accel);
         four.load_per_side.set(at, w.load > 0 ? 0 : s.load_per_side);
         four.load_per_twist.set(at, w.load > 0 ? 0 : s.load_per_twist);
@@ -94,6 +112,8 @@ void WheelStep::gather() {
 void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first,
                         std::size_t last) {
     t_ = data_.time(k);
+    if (grounds_)
+        if (const RunPhysics *run = run_at(p_, t_); run != run_) stand_on(run);
     path_ = path_m;
     away_ = away_m;
     accel_ = accel_before;
@@ -123,7 +143,7 @@ void WheelStep::prepare_wheel(std::size_t i, std::size_t k, double v_before) {
         s.travel = data_.wheel[i].travel_rad.empty() ? 0 : s.gain * data_.wheel[i].travel_rad[k];
     }
     s.load = data_.load_N.empty() || data_.load_N[i].empty() ? load(i) : data_.load_N[i][k];
-    s.Fm = std::max(0.0, (w.adhesion + w.mu * s.load) * (even_ ? 1 : strength(i, v_before)));
+    s.Fm = std::max(0.0, (s.adhesion + s.mu * s.load) * (even_ ? 1 : strength(i, v_before)));
     s.sc = s.plain_sc;
     if (p_.body.heavy_resistance != 0) s.resistance_here = sim::resistance_here(p_.body, path_ + w.x);
     Four &four = four_[i / 4];
@@ -213,14 +233,13 @@ Eigen::Vector3d WheelStep::forces(const Eigen::Vector3d &q, std::array<Eigen::Ve
 
 Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     const State &s = state_[i];
-    const WheelPhysics &w = p_.wheel[i];
     yaw_rate_ = q[2];
     const double vx = q[0] - s.y * q[2], vy = q[1] + s.x * q[2];
     const double along = vx * s.c + vy * s.s, across = -vx * s.s + vy * s.c;
     const double forward = pull(i, along, q[0], across);
     const double fx = forward * s.c - s.side * s.s, fy = forward * s.s + s.side * s.c;
     double moment = s.x * fy - s.y * fx;
-    const double most_scrub = sim::law::lateral_scrub_N(w.lateral + p_.body.scrub, s.load);
+    const double most_scrub = sim::law::lateral_scrub_N(s.lateral, s.load);
     if (p_.motion == BodyMotion::longitudinal) { // vy = 0: skid steer turns about its middle
         moment -= most_scrub * s.x * soft_sign(s.x * q[2], scrub_speed_m_s);
         return {fx, 0, moment};
@@ -265,7 +284,7 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     const auto [traction, side] = grip_of(p_.soil_law, Fm, sc, s.slip, s.side_slip, p_.wheel[i].grip, sideways_);
     s.traction = traction, s.side = side;
     if (p_.wheel[i].play_rad > 0) s.traction *= contact(i, v);
-    const double resist = s.load * resistance<double>(p_.wheel[i].crr + s.resistance_here, p_.wheel[i], b, s.slip, v) + extra_rolling;
+    const double resist = s.load * resistance<double>(s.rolling_coefficient + s.resistance_here, p_.wheel[i], b, s.slip, v) + extra_rolling;
     // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
     const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v), share = resist / length(speed, resist_speed_m_s);
     s.rolling = share * v;

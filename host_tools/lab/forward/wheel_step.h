@@ -50,6 +50,7 @@ class WheelStep {
         double x = 0, y = 0; // place from the centre of mass (longitudinal motion: from the middle)
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, lag_1_m = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0,
                load_per_side = 0, load_per_twist = 0;
+        double mu = 0, adhesion = 0, rolling_coefficient = 0, lateral = 0; // of the ground it stands on
         double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1, resistance_here = 0;
         double slip_before = 0, side_slip_before = 0, play_before = 0;
         double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
@@ -84,6 +85,7 @@ class WheelStep {
     };
     using Each = std::array<Eigen::Vector3d, most_wheels>;
     void gather();
+    void stand_on(const RunPhysics *run); // the ground of that run; nullptr: the machine's
     // Where nothing asks for each wheel by itself; of the widest vectors that the processor has.
     [[gnu::always_inline]] inline void contact_of(Four &four, const Lane &v, const Lane &side_v) const;
     [[gnu::always_inline]] inline Eigen::Vector3d plain_forces(const Eigen::Vector3d &q, Each *each);
@@ -108,10 +110,12 @@ class WheelStep {
     std::array<double, most_wheels> ahead_{}, behind_{};
     double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, side_accel_ = 0, twist_ = 0, yaw_ = 0, yaw_rate_ = 0;
     std::array<Four, most_wheels / 4> four_;
-    bool sideways_ = false; // the body moves sideways as the forces have it, on wheels that grip
-    bool wide_ = false;     // the processor has vectors as wide as four numbers
-    bool plain_ = false;    // the wheels' forces need no more than `four_`
-    bool even_ = false;     // the ground is as strong everywhere
+    bool sideways_ = false;           // the body moves sideways as the forces have it, on wheels that grip
+    bool wide_ = false;               // the processor has vectors as wide as four numbers
+    bool plain_ = false;              // the wheels' forces need no more than `four_`
+    bool even_ = false;               // the ground is as strong everywhere
+    const RunPhysics *run_ = nullptr; // whose ground it stands on
+    bool grounds_ = false;            // some run has a ground of its own
     bool motion_terms_ = false, play_ = false, lags_ = false, feels_path_ = false;
 };
 

@@ -37,14 +37,14 @@ void turn_path(const log::Log &whole, log::Log &run) {
         y->value[k] = s * interpolate(old_x.t_s, old_x.value, old_y.t_s[k]) + c * old_y.value[k];
 }
 
+} // namespace
+
 double first_time(const log::Log &log) {
     double first = std::numeric_limits<double>::infinity();
     for (const log::Signal &s : log.signals)
         if (!s.t_s.empty()) first = std::min(first, s.t_s.front());
     return std::isfinite(first) ? first : 0;
 }
-
-} // namespace
 
 JoinedRuns join_runs(const std::vector<log::Log> &runs) {
     JoinedRuns out;

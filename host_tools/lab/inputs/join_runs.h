@@ -17,6 +17,8 @@ struct JoinedRuns {
     std::vector<double> start_s; // of each run, in the joined log's time
 };
 
+double first_time(const log::Log &log); // of its samples [s]; 0 where there is none
+
 // Signals that only some runs have stay empty in the others. One run is returned as it is.
 JoinedRuns join_runs(const std::vector<log::Log> &runs);
 

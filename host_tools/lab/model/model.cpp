@@ -2,7 +2,9 @@
 
 #include "host_tools/log/log.h"
 #include "model_keys.h"
+#include "model_reader.h"
 #include "read_drives.h"
+#include "read_runs.h"
 #include "sim/physics/effects/catalogue.h"
 #include "terms.h"
 
@@ -30,136 +32,6 @@ std::string complete_message(const std::string &file, std::size_t line, const st
     return text + ": " + wrong + "; " + mend;
 }
 
-std::string number_text(double value) {
-    std::ostringstream stream;
-    stream << std::setprecision(10) << value;
-    return stream.str();
-}
-
-// Carries the file's name through the reading, so that every message can say where.
-struct Reader {
-    std::string file;
-
-    [[noreturn]] void fail(const toml::node &node, const std::string &key, const std::string &wrong, const std::string &mend) const {
-        throw ModelError(file, node.source().begin.line, key, wrong, mend);
-    }
-
-    double number(const toml::node &node, const std::string &key) const {
-        const auto value = node.value<double>();
-        if (!value || node.is_boolean()) fail(node, key, "is not a number", "give a number in SI units, or a table { value = ... }");
-        if (!std::isfinite(*value)) fail(node, key, "is " + number_text(*value), "give a finite number");
-        return *value;
-    }
-
-    void parameter(const toml::node &node, const std::string &key, Parameter &p) const {
-        p.given = true;
-        const toml::table *table = node.as_table();
-        if (table == nullptr) {
-            p.value = number(node, key);
-        } else {
-            bool has_value = false;
-            for (const auto &[name_key, item] : *table) {
-                const std::string name(name_key.str());
-                const std::string path = key + "." + name;
-                if (name == "value")
-                    p.value = number(item, path), has_value = true;
-                else if (name == "min")
-                    p.minimum = number(item, path);
-                else if (name == "max")
-                    p.maximum = number(item, path);
-                else if (name == "prior")
-                    p.prior = number(item, path);
-                else if (name == "each_wheel")
-                    p.each_wheel = number(item, path);
-                else if (name == "low")
-                    p.low = number(item, path);
-                else if (name == "high")
-                    p.high = number(item, path);
-                else if (name == "fixed")
-                    p.fixed = item.value_or(false);
-                else if (name == "source")
-                    p.source = item.value_or(std::string());
-                else if (name == "unit")
-                    check_unit(item, path, p);
-                else
-                    fail(item, path, "is not known",
-                         "a parameter may have value, unit, min, max, prior, each_wheel, fixed, source, low, high");
-            }
-            if (!has_value) fail(node, key, "has no value", "add value = NUMBER to the table");
-        }
-        if (p.prior < 0) fail(node, key, "has a negative prior", "prior is a standard deviation: give 0 or more");
-        if (!(p.each_wheel >= 0 && p.each_wheel < 1))
-            fail(node, key, "has each_wheel = " + number_text(p.each_wheel),
-                 "give the standard deviation of one wheel's value as a share of the value, such as 0.01");
-        if (p.minimum > p.maximum) fail(node, key, "has min > max", "exchange the two");
-        if (p.value < p.minimum || p.value > p.maximum)
-            fail(node, key, number_text(p.value) + " is outside " + number_text(p.minimum) + " to " + number_text(p.maximum),
-                 "check the unit (" + p.unit + "), or widen min and max");
-    }
-
-    void check_unit(const toml::node &item, const std::string &path, Parameter &p) const {
-        const std::string unit = item.value_or(std::string());
-        const auto plain = [](std::string text) {
-            for (char &c : text)
-                if (c == '*') c = ' ';
-            std::erase(text, ' ');
-            return text == "-" || text.empty() ? std::string("1") : text;
-        };
-        if (p.unit.empty())
-            p.unit = unit;
-        else if (plain(unit) != plain(p.unit))
-            fail(item, path, "is \"" + unit + "\"", "this key is in " + p.unit + ": convert the value");
-    }
-
-    // Fills `into` from the keys of the table that are in `known`; complains of others unless they are in `also`.
-    void table(const toml::table &source, const std::string &where, std::span<const ModelKey> known, Parameters &into,
-               const std::vector<std::string> &also, const std::string &prefix = "") const {
-        for (const auto &[name_key, node] : source) {
-            const std::string name(name_key.str());
-            if (std::find(also.begin(), also.end(), name) != also.end()) continue;
-            const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == prefix + name; });
-            if (found == known.end())
-                fail(node, where + "." + name, "is not a known key", "did you mean " + nearest(prefix + name, known) + "?");
-            Parameter p = into.count(prefix + name) != 0 ? into.at(prefix + name) : Parameter{};
-            p.unit = found->unit;
-            p.minimum = found->minimum;
-            p.maximum = found->maximum;
-            p.prior = -1;
-            const bool own_prior = node.is_table() && node.as_table()->contains("prior");
-            const bool own_each = node.is_table() && node.as_table()->contains("each_wheel");
-            if (own_each && (known.data() == rover_keys().data() || known.data() == sensor_keys().data()))
-                fail(node, where + "." + name, "has each_wheel, but there is one for all wheels", "leave each_wheel out here");
-            p.prior = 0;
-            p.each_wheel = found->each_wheel;
-            parameter(node, where + "." + name, p);
-            if (!own_prior) p.prior = std::max(found->relative_prior * std::fabs(p.value), found->absolute_prior);
-            if (!own_each && own_prior && p.prior == 0) p.each_wheel = 0;
-            if (p.fixed) p.prior = p.each_wheel = 0;
-            into[prefix + name] = p;
-        }
-    }
-
-    static std::string nearest(const std::string &name, std::span<const ModelKey> known) {
-        std::string best;
-        std::size_t best_distance = 1000;
-        for (const ModelKey &k : known) {
-            std::vector<std::size_t> row(k.key.size() + 1);
-            for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-            for (std::size_t i = 1; i <= name.size(); ++i) {
-                std::size_t diagonal = row[0];
-                row[0] = i;
-                for (std::size_t j = 1; j < row.size(); ++j) {
-                    const std::size_t up = row[j];
-                    row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (name[i - 1] == k.key[j - 1] ? 0u : 1u)});
-                    diagonal = up;
-                }
-            }
-            if (row.back() < best_distance) best_distance = row.back(), best = k.key;
-        }
-        return best;
-    }
-};
-
 void fill_defaults(std::span<const ModelKey> known, Parameters &into) {
     for (const ModelKey &k : known) {
         if (into.count(std::string(k.key)) != 0) continue;
@@ -180,7 +52,7 @@ const std::vector<std::string> motor_extra = {"motor_constant_Nm_A", "motor_back
 const std::vector<std::string> soil_extra = {
     "law", "strength_N", "cohesion_Pa", "friction_angle_rad", "shear_length_m", "contact_length_m"};
 
-void put(Parameters &into, const Reader &reader, const toml::table &source, const std::string &where, std::span<const ModelKey> known,
+void put(Parameters &into, const ModelReader &reader, const toml::table &source, const std::string &where, std::span<const ModelKey> known,
          const std::string &key, double value, const char *how) {
     const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == key; });
     Parameter p;
@@ -197,7 +69,7 @@ void put(Parameters &into, const Reader &reader, const toml::table &source, cons
     into[key] = p;
 }
 
-void read_motor(const Reader &reader, const toml::table &source, const std::string &where, Parameters &into) {
+void read_motor(const ModelReader &reader, const toml::table &source, const std::string &where, Parameters &into) {
     reader.table(source, where, motor_keys(), into, motor_extra);
     const auto get = [&](const char *key) -> double {
         const toml::node *node = source.get(key);
@@ -216,8 +88,8 @@ void read_motor(const Reader &reader, const toml::table &source, const std::stri
         put(into, reader, source, where, motor_keys(), "inertia_kg_m2", rotor * gear * gear, "rotor inertia times gear ratio squared");
 }
 
-void read_soil(const Reader &reader, const toml::table &source, const std::string &where, Parameters &into, Model &model, double load_N,
-               double width_m) {
+void read_soil(const ModelReader &reader, const toml::table &source, const std::string &where, Parameters &into, Model &model,
+               double load_N, double width_m) {
     reader.table(source, where, soil_keys(), into, soil_extra);
     const std::string law = source["law"].value_or(std::string(model.soil_law == SoilLaw::janosi ? "janosi" : "burckhardt"));
     if (law == "burckhardt")
@@ -250,7 +122,7 @@ void read_soil(const Reader &reader, const toml::table &source, const std::strin
     put(into, reader, source, where, soil_keys(), "shear_slip", K / l, "K / l, (20) Lhomme-Desages");
 }
 
-void read_rover(const Reader &reader, const toml::table &root, Model &model) {
+void read_rover(const ModelReader &reader, const toml::table &root, Model &model) {
     if (const toml::table *rover = root["rover"].as_table()) {
         reader.table(*rover, "rover", rover_keys(), model.rover, {"motion", "halves", "drives"});
         const std::string motion = (*rover)["motion"].value_or(std::string("longitudinal"));
@@ -269,7 +141,7 @@ void read_rover(const Reader &reader, const toml::table &root, Model &model) {
                     "give the mass, or rover.motion = \"imposed\" (bench) or \"none\" (wheels in the air)");
 }
 
-void read_wheels(const Reader &reader, const toml::table &root, Model &model) {
+void read_wheels(const ModelReader &reader, const toml::table &root, Model &model) {
     const toml::array *wheels = root["wheel"].as_array();
     if (wheels == nullptr || wheels->empty()) reader.fail(root, "wheel", "there is none", "add a [[wheel]] table per wheel");
     const double share_N = model.rover.at("mass_kg").value * model.rover.at("gravity_m_s2").value / static_cast<double>(wheels->size());
@@ -299,7 +171,7 @@ void read_wheels(const Reader &reader, const toml::table &root, Model &model) {
     }
 }
 
-void read_sensors(const Reader &reader, const toml::table &root, Model &model) {
+void read_sensors(const ModelReader &reader, const toml::table &root, Model &model) {
     if (const toml::table *sensors = root["sensors"].as_table()) {
         for (const auto &[name_key, node] : *sensors) {
             const std::string name(name_key.str());
@@ -312,7 +184,7 @@ void read_sensors(const Reader &reader, const toml::table &root, Model &model) {
     fill_defaults(sensor_keys(), model.sensors);
 }
 
-void read_effect_parameter(const Reader &reader, const toml::node &node, const std::string &where, const std::string &key,
+void read_effect_parameter(const ModelReader &reader, const toml::node &node, const std::string &where, const std::string &key,
                            const sim::Effect *effect, EffectUse &use) {
     Parameter p;
     if (effect != nullptr) {
@@ -336,7 +208,7 @@ void read_effect_parameter(const Reader &reader, const toml::node &node, const s
     use.parameters[key] = p;
 }
 
-void read_effects(const Reader &reader, const toml::table &root, Model &model) {
+void read_effects(const ModelReader &reader, const toml::table &root, Model &model) {
     const toml::array *effects = root["effect"].as_array();
     for (std::size_t i = 0; effects != nullptr && i < effects->size(); ++i) {
         const std::string where = "effect[" + std::to_string(i) + "]";
@@ -434,16 +306,16 @@ Model parse_model(const std::string &text, const std::string &file) {
     } catch (const toml::parse_error &error) {
         throw ModelError(file, error.source().begin.line, "", std::string(error.description()), "mend the TOML there");
     }
-    const Reader reader{file};
+    const ModelReader reader{file};
     Model model;
     model.file = file;
     model.name = root["name"].value_or(file);
     for (const auto &[key, node] : root) {
-        static const std::vector<std::string> known = {"format", "name",    "rover",  "wheels",  "wheel", "motor",
-                                                       "soil",   "sensors", "effect", "lineage", "note"};
+        static const std::vector<std::string> known = {"format", "name",    "rover",  "wheels", "wheel",   "motor",
+                                                       "soil",   "sensors", "effect", "run",    "lineage", "note"};
         if (std::find(known.begin(), known.end(), key.str()) == known.end())
             reader.fail(node, std::string(key.str()), "is not a known table",
-                        "use rover, wheels, wheel, motor, soil, sensors, effect, lineage");
+                        "use rover, wheels, wheel, motor, soil, sensors, effect, run, lineage");
     }
     if (const auto format = root["format"].value<std::string>(); format && *format != "traction.model/1")
         reader.fail(*root.get("format"), "format", "is \"" + *format + "\"", "this program reads \"traction.model/1\"");
@@ -452,6 +324,7 @@ Model parse_model(const std::string &text, const std::string &file) {
     read_drives(root, model);
     read_sensors(reader, root, model);
     read_effects(reader, root, model);
+    read_runs(reader, root, model);
     read_lineage(root, model);
     return model;
 }

@@ -66,6 +66,15 @@ struct EffectUse {
     std::string expression; // muparser, in the named signals of terms.h and the parameters above
 };
 
+// What belongs to one run and not to the machine: the offsets of its sensors, and its ground where the file states one. A key that is not
+// here is the machine's.
+struct RunSpec {
+    std::string log;                                           // file name without folder
+    Parameters soil;                                           // "mu", for all wheels
+    Parameters sensors;                                        // "accel.bias_m_s2", "gyro.bias_rad_s"
+    double start_s = std::numeric_limits<double>::quiet_NaN(); // in the data set at hand (inputs/begin_runs.h); NaN: it is not in there
+};
+
 // One step of the model's history.
 struct LineageEntry {
     std::string label;                                       // "baseline", "+ slip_sinkage"
@@ -88,6 +97,7 @@ struct Model {
     Parameters sensors; // "current.noise_A", "radar.window_s", ...
     bool unsigned_current = false;
     std::vector<EffectUse> effects;
+    std::vector<RunSpec> runs;
     std::vector<LineageEntry> lineage;
 
     const EffectUse *find_effect(const std::string &effect, int wheel_index) const; // nullptr when absent

@@ -73,6 +73,19 @@ std::string drives_text(const Model &model) {
     return out + "]";
 }
 
+void write_runs(std::string &out, const Model &model) {
+    for (const RunSpec &run : model.runs) {
+        if (run.soil.empty() && run.sensors.empty()) continue;
+        out += "\n[[run]]\nlog = " + quoted(run.log) + "\n";
+        if (!run.soil.empty()) out += "[run.soil]\n";
+        for (const auto &[key, p] : run.soil) out += key + " = " + parameter_text(p, true, key) + "\n";
+        for (const auto &[key, p] : run.sensors) {
+            const std::size_t dot = key.find('.');
+            out += "[run.sensors." + key.substr(0, dot) + "]\n" + key.substr(dot + 1) + " = " + parameter_text(p, true, key) + "\n";
+        }
+    }
+}
+
 void write_lineage(std::string &out, const Model &model) {
     for (const LineageEntry &entry : model.lineage) {
         out += "\n[[lineage]]\nlabel = " + quoted(entry.label) + "\nlog = " + quoted(entry.log) + "\n";
@@ -125,6 +138,7 @@ std::string model_text(const Model &model) {
         if (!use.expression.empty()) out += "acts_on = " + quoted(use.acts_on) + "\nexpression = " + quoted(use.expression) + "\n";
         for (const auto &[key, p] : use.parameters) out += key + " = " + parameter_text(p, false, key) + "\n";
     }
+    write_runs(out, model);
     write_lineage(out, model);
     return out;
 }

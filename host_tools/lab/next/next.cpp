@@ -121,9 +121,19 @@ bool answers(const Plan &plan, double before, double after) {
     return plan.undecided && after * after - before * before >= answered_at * answered_at;
 }
 
+// A drive that is planned is a run like the first: no other begins in it.
+Model in_one_run(Model model) {
+    double first = std::numeric_limits<double>::infinity();
+    for (const RunSpec &run : model.runs) first = std::min(first, std::isnan(run.start_s) ? first : run.start_s);
+    for (RunSpec &run : model.runs)
+        if (run.start_s > first) run.start_s = std::numeric_limits<double>::infinity();
+    return model;
+}
+
 // Fisher information of a drive of this scenario.
 Eigen::MatrixXd information_of(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
-    Dataset trial = make_dataset(plan.base, drive(scenario));
+    const Model base = in_one_run(plan.base);
+    Dataset trial = make_dataset(base, drive(scenario));
     if (plan.data != nullptr) { // sensors that this rover's log lacks will be lacking again, and be as noisy
         std::erase_if(trial.balance, [&](const Balance &b) {
             return std::none_of(plan.data->balance.begin(), plan.data->balance.end(), [&](const Balance &a) { return a.name == b.name; });
@@ -132,8 +142,8 @@ Eigen::MatrixXd information_of(const Plan &plan, const std::string &scenario, co
             for (const Balance &a : plan.data->balance)
                 if (a.name == b.name) b.noise = std::max(a.noise, 1e-12);
     }
-    const Physics physics = make_physics(plan.base);
-    Problem problem(trial, physics, free_parameters(plan.base, physics));
+    const Physics physics = make_physics(base);
+    Problem problem(trial, physics, free_parameters(base, physics));
     problem.linearise();
     std::map<std::string, double> scale = scale_over_noise(problem);
     for (auto &[name, value] : scale)
