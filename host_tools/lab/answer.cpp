@@ -1,5 +1,6 @@
 #include "answer.h"
 
+#include "between_runs.h"
 #include "validate.h"
 
 #include "host_tools/lab/result/addition.h"
@@ -12,7 +13,6 @@
 
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace traction::lab {
 
@@ -61,27 +61,8 @@ void append_parameters(std::string &text, const Model &model) {
 
 nlohmann::json fitted_json(const Model &model) {
     nlohmann::json fitted = nlohmann::json::object();
-    const auto put = [&](const std::string &name, const Parameter &p) {
+    for (const auto &[name, p, of_run] : fitted_values(model))
         fitted[name] = {{"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
-    };
-    const auto put_table = [&](const std::string &name, const Parameters &table) {
-        for (const auto &[key, p] : table)
-            if (std::isfinite(p.low)) put(name + "." + key, p);
-    };
-    put_table("rover", model.rover), put_table("wheel", model.wheel.front().geometry), put_table("motor", model.wheel.front().motor);
-    put_table("soil", model.wheel.front().soil), put_table("sensors", model.sensors);
-    for (std::size_t i = 1; i < model.wheel.size(); ++i) {
-        const std::string on = " on wheel " + std::to_string(i);
-        for (const auto &[name, table, shared] : {std::tuple{"wheel.", &model.wheel[i].geometry, &model.wheel.front().geometry},
-                                                  std::tuple{"motor.", &model.wheel[i].motor, &model.wheel.front().motor},
-                                                  std::tuple{"soil.", &model.wheel[i].soil, &model.wheel.front().soil}})
-            for (const auto &[key, p] : *table)
-                if (std::isfinite(p.low) && p.value != shared->at(key).value) put(name + key + on, p);
-    }
-    for (const RunSpec &run : model.runs)
-        for (const auto &[name, table] : {std::pair{"soil.", &run.soil}, std::pair{"sensors.", &run.sensors}})
-            for (const auto &[key, p] : *table)
-                if (std::isfinite(p.low)) put(name + key + " in " + run.log, p);
     return fitted;
 }
 
@@ -178,6 +159,9 @@ FitAnswer fit_answer(const Session &session, const Request &request, bool keep, 
     answer.json["limits"] = limits_json(limits);
     answer.json["identifiability"] = identifiability_json(told, peaks);
     answer.json["fitted"] = fitted_json(model);
+    const std::vector<BetweenRuns> apart = between_runs(session);
+    answer.text += between_runs_text(apart);
+    answer.json["between_runs"] = between_runs_json(apart);
     put_validation(answer, session, request, model);
     if (profile) {
         answer.profiles = profile_likelihood(session.model, session.data, *profile);

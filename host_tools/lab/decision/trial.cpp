@@ -75,6 +75,8 @@ Problem beside(const Problem &base, const Candidate &candidate) {
 
 bool strongly_nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }
 
+bool is_delay(const Candidate &c) { return c.strengths.size() == 1 && c.strengths[0].unit == "s"; }
+
 bool large_enough(const Candidate &c, const std::vector<double> &value) {
     double size = 0, least = 0;
     for (std::size_t j = 0; j < value.size(); ++j)
@@ -136,7 +138,7 @@ Trial screen_candidate(const Candidate &c, const Screen &screen, Columns &column
 
 void scan(Trial &t, Problem &base, const Screen &screen) {
     const Candidate &c = t.candidate;
-    if ((c.touched & stage_motion) == 0 || c.strengths.size() != 1 || c.maximum.empty()) return;
+    if (((c.touched & stage_motion) == 0 && !is_delay(c)) || c.strengths.size() != 1 || c.maximum.empty()) return;
     Physics at = base.physics();
     c.prepare(at);
     const double linear = t.value[0], largest = linear < 0 && c.minimum[0] < 0 ? c.minimum[0] : c.maximum[0];
@@ -169,7 +171,8 @@ void scan(Trial &t, Problem &base, const Screen &screen) {
 }
 
 void refit(Trial &t, const Problem &base, const Screen &base_screen) {
-    const bool linear = t.candidate.touched == stage_sensors || t.candidate.touched == stage_torque;
+    const bool scanned = is_delay(t.candidate) && !t.start.empty() && t.start[0] != clamped(t.candidate, 0, t.value[0]);
+    const bool linear = !scanned && (t.candidate.touched == stage_sensors || t.candidate.touched == stage_torque);
     if (linear && !t.leaves_active_set) { // the step is the fit
         t.refitted = true;
         t.baseline = base.theta + t.assessment.change;
@@ -185,7 +188,7 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen) {
         if (!t.candidate.of_interest.empty() && std::fabs(start) < 1e-3 * (p.maximum - p.minimum)) start = t.candidate.of_interest[i];
         problem.theta[n + j] = start;
     }
-    if ((t.candidate.touched & stage_motion) != 0 || t.leaves_active_set) {
+    if ((t.candidate.touched & stage_motion) != 0 || t.leaves_active_set || scanned) {
         if (linear)
             t.start_change = t.assessment.change;
         else if (t.start.empty())

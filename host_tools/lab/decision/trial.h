@@ -58,6 +58,9 @@ bool large_enough(const Candidate &candidate, const std::vector<double> &value);
 bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
 // Of an effect that was named: larger than its own uncertainty, and of interest.
 bool is_solid(const CandidateResult &result);
+// A signal that comes late: as long as its edges are, a step of its delay says nothing of the whole.
+bool is_delay(const Candidate &candidate);
+
 bool strongly_nonlinear(const std::string &effect); // its slope at zero says little of its size
 
 CandidateResult result_of(const Trial &trial, double base_error, const Screen &screen);

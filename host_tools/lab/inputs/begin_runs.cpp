@@ -53,7 +53,8 @@ void give_offset(const Model &model, const log::Log &log, const char *key, const
 void begin_runs(Model &model, const std::vector<log::Log> &runs, const std::vector<double> &start_s) {
     for (RunSpec &run : model.runs) run.start_s = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t i = 0; i < runs.size() && i < start_s.size(); ++i) {
-        const bool known = std::any_of(model.runs.begin(), model.runs.end(), [&](const RunSpec &run) { return is_named(runs[i].source, run.log); });
+        const bool known =
+            std::any_of(model.runs.begin(), model.runs.end(), [&](const RunSpec &run) { return is_named(runs[i].source, run.log); });
         if (runs.size() < 2 && !known) continue;
         RunSpec &run = run_of(model, runs[i], runs);
         if (!std::isnan(run.start_s)) continue; // the same file once more: as it was

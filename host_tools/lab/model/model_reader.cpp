@@ -10,24 +10,24 @@ namespace traction::lab {
 namespace {
 
 std::string nearest(const std::string &name, std::span<const ModelKey> known) {
-        std::string best;
-        std::size_t best_distance = 1000;
-        for (const ModelKey &k : known) {
-            std::vector<std::size_t> row(k.key.size() + 1);
-            for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-            for (std::size_t i = 1; i <= name.size(); ++i) {
-                std::size_t diagonal = row[0];
-                row[0] = i;
-                for (std::size_t j = 1; j < row.size(); ++j) {
-                    const std::size_t up = row[j];
-                    row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (name[i - 1] == k.key[j - 1] ? 0u : 1u)});
-                    diagonal = up;
-                }
+    std::string best;
+    std::size_t best_distance = 1000;
+    for (const ModelKey &k : known) {
+        std::vector<std::size_t> row(k.key.size() + 1);
+        for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+        for (std::size_t i = 1; i <= name.size(); ++i) {
+            std::size_t diagonal = row[0];
+            row[0] = i;
+            for (std::size_t j = 1; j < row.size(); ++j) {
+                const std::size_t up = row[j];
+                row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (name[i - 1] == k.key[j - 1] ? 0u : 1u)});
+                diagonal = up;
             }
-            if (row.back() < best_distance) best_distance = row.back(), best = k.key;
         }
-        return best;
+        if (row.back() < best_distance) best_distance = row.back(), best = k.key;
     }
+    return best;
+}
 
 } // namespace
 
@@ -38,101 +38,100 @@ std::string number_text(double value) {
 }
 
 void ModelReader::fail(const toml::node &node, const std::string &key, const std::string &wrong, const std::string &mend) const {
-        throw ModelError(file, node.source().begin.line, key, wrong, mend);
-    }
+    throw ModelError(file, node.source().begin.line, key, wrong, mend);
+}
 
 double ModelReader::number(const toml::node &node, const std::string &key) const {
-        const auto value = node.value<double>();
-        if (!value || node.is_boolean()) fail(node, key, "is not a number", "give a number in SI units, or a table { value = ... }");
-        if (!std::isfinite(*value)) fail(node, key, "is " + number_text(*value), "give a finite number");
-        return *value;
-    }
+    const auto value = node.value<double>();
+    if (!value || node.is_boolean()) fail(node, key, "is not a number", "give a number in SI units, or a table { value = ... }");
+    if (!std::isfinite(*value)) fail(node, key, "is " + number_text(*value), "give a finite number");
+    return *value;
+}
 
 void ModelReader::parameter(const toml::node &node, const std::string &key, Parameter &p) const {
-        p.given = true;
-        const toml::table *table = node.as_table();
-        if (table == nullptr) {
-            p.value = number(node, key);
-        } else {
-            bool has_value = false;
-            for (const auto &[name_key, item] : *table) {
-                const std::string name(name_key.str());
-                const std::string path = key + "." + name;
-                if (name == "value")
-                    p.value = number(item, path), has_value = true;
-                else if (name == "min")
-                    p.minimum = number(item, path);
-                else if (name == "max")
-                    p.maximum = number(item, path);
-                else if (name == "prior")
-                    p.prior = number(item, path);
-                else if (name == "each_wheel")
-                    p.each_wheel = number(item, path);
-                else if (name == "low")
-                    p.low = number(item, path);
-                else if (name == "high")
-                    p.high = number(item, path);
-                else if (name == "fixed")
-                    p.fixed = item.value_or(false);
-                else if (name == "source")
-                    p.source = item.value_or(std::string());
-                else if (name == "unit")
-                    check_unit(item, path, p);
-                else
-                    fail(item, path, "is not known",
-                         "a parameter may have value, unit, min, max, prior, each_wheel, fixed, source, low, high");
-            }
-            if (!has_value) fail(node, key, "has no value", "add value = NUMBER to the table");
+    p.given = true;
+    const toml::table *table = node.as_table();
+    if (table == nullptr) {
+        p.value = number(node, key);
+    } else {
+        bool has_value = false;
+        for (const auto &[name_key, item] : *table) {
+            const std::string name(name_key.str());
+            const std::string path = key + "." + name;
+            if (name == "value")
+                p.value = number(item, path), has_value = true;
+            else if (name == "min")
+                p.minimum = number(item, path);
+            else if (name == "max")
+                p.maximum = number(item, path);
+            else if (name == "prior")
+                p.prior = number(item, path);
+            else if (name == "each_wheel")
+                p.each_wheel = number(item, path);
+            else if (name == "low")
+                p.low = number(item, path);
+            else if (name == "high")
+                p.high = number(item, path);
+            else if (name == "fixed")
+                p.fixed = item.value_or(false);
+            else if (name == "source")
+                p.source = item.value_or(std::string());
+            else if (name == "unit")
+                check_unit(item, path, p);
+            else
+                fail(item, path, "is not known", "a parameter may have value, unit, min, max, prior, each_wheel, fixed, source, low, high");
         }
-        if (p.prior < 0) fail(node, key, "has a negative prior", "prior is a standard deviation: give 0 or more");
-        if (!(p.each_wheel >= 0 && p.each_wheel < 1))
-            fail(node, key, "has each_wheel = " + number_text(p.each_wheel),
-                 "give the standard deviation of one wheel's value as a share of the value, such as 0.01");
-        if (p.minimum > p.maximum) fail(node, key, "has min > max", "exchange the two");
-        if (p.value < p.minimum || p.value > p.maximum)
-            fail(node, key, number_text(p.value) + " is outside " + number_text(p.minimum) + " to " + number_text(p.maximum),
-                 "check the unit (" + p.unit + "), or widen min and max");
+        if (!has_value) fail(node, key, "has no value", "add value = NUMBER to the table");
     }
+    if (p.prior < 0) fail(node, key, "has a negative prior", "prior is a standard deviation: give 0 or more");
+    if (!(p.each_wheel >= 0 && p.each_wheel < 1))
+        fail(node, key, "has each_wheel = " + number_text(p.each_wheel),
+             "give the standard deviation of one wheel's value as a share of the value, such as 0.01");
+    if (p.minimum > p.maximum) fail(node, key, "has min > max", "exchange the two");
+    if (p.value < p.minimum || p.value > p.maximum)
+        fail(node, key, number_text(p.value) + " is outside " + number_text(p.minimum) + " to " + number_text(p.maximum),
+             "check the unit (" + p.unit + "), or widen min and max");
+}
 
 void ModelReader::check_unit(const toml::node &item, const std::string &path, Parameter &p) const {
-        const std::string unit = item.value_or(std::string());
-        const auto plain = [](std::string text) {
-            for (char &c : text)
-                if (c == '*') c = ' ';
-            std::erase(text, ' ');
-            return text == "-" || text.empty() ? std::string("1") : text;
-        };
-        if (p.unit.empty())
-            p.unit = unit;
-        else if (plain(unit) != plain(p.unit))
-            fail(item, path, "is \"" + unit + "\"", "this key is in " + p.unit + ": convert the value");
-    }
+    const std::string unit = item.value_or(std::string());
+    const auto plain = [](std::string text) {
+        for (char &c : text)
+            if (c == '*') c = ' ';
+        std::erase(text, ' ');
+        return text == "-" || text.empty() ? std::string("1") : text;
+    };
+    if (p.unit.empty())
+        p.unit = unit;
+    else if (plain(unit) != plain(p.unit))
+        fail(item, path, "is \"" + unit + "\"", "this key is in " + p.unit + ": convert the value");
+}
 
 void ModelReader::table(const toml::table &source, const std::string &where, std::span<const ModelKey> known, Parameters &into,
-               const std::vector<std::string> &also, const std::string &prefix) const {
-        for (const auto &[name_key, node] : source) {
-            const std::string name(name_key.str());
-            if (std::find(also.begin(), also.end(), name) != also.end()) continue;
-            const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == prefix + name; });
-            if (found == known.end())
-                fail(node, where + "." + name, "is not a known key", "did you mean " + nearest(prefix + name, known) + "?");
-            Parameter p = into.count(prefix + name) != 0 ? into.at(prefix + name) : Parameter{};
-            p.unit = found->unit;
-            p.minimum = found->minimum;
-            p.maximum = found->maximum;
-            p.prior = -1;
-            const bool own_prior = node.is_table() && node.as_table()->contains("prior");
-            const bool own_each = node.is_table() && node.as_table()->contains("each_wheel");
-            if (own_each && (known.data() == rover_keys().data() || known.data() == sensor_keys().data()))
-                fail(node, where + "." + name, "has each_wheel, but there is one for all wheels", "leave each_wheel out here");
-            p.prior = 0;
-            p.each_wheel = found->each_wheel;
-            parameter(node, where + "." + name, p);
-            if (!own_prior) p.prior = std::max(found->relative_prior * std::fabs(p.value), found->absolute_prior);
-            if (!own_each && own_prior && p.prior == 0) p.each_wheel = 0;
-            if (p.fixed) p.prior = p.each_wheel = 0;
-            into[prefix + name] = p;
-        }
+                        const std::vector<std::string> &also, const std::string &prefix) const {
+    for (const auto &[name_key, node] : source) {
+        const std::string name(name_key.str());
+        if (std::find(also.begin(), also.end(), name) != also.end()) continue;
+        const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == prefix + name; });
+        if (found == known.end())
+            fail(node, where + "." + name, "is not a known key", "did you mean " + nearest(prefix + name, known) + "?");
+        Parameter p = into.count(prefix + name) != 0 ? into.at(prefix + name) : Parameter{};
+        p.unit = found->unit;
+        p.minimum = found->minimum;
+        p.maximum = found->maximum;
+        p.prior = -1;
+        const bool own_prior = node.is_table() && node.as_table()->contains("prior");
+        const bool own_each = node.is_table() && node.as_table()->contains("each_wheel");
+        if (own_each && (known.data() == rover_keys().data() || known.data() == sensor_keys().data()))
+            fail(node, where + "." + name, "has each_wheel, but there is one for all wheels", "leave each_wheel out here");
+        p.prior = 0;
+        p.each_wheel = found->each_wheel;
+        parameter(node, where + "." + name, p);
+        if (!own_prior) p.prior = std::max(found->relative_prior * std::fabs(p.value), found->absolute_prior);
+        if (!own_each && own_prior && p.prior == 0) p.each_wheel = 0;
+        if (p.fixed) p.prior = p.each_wheel = 0;
+        into[prefix + name] = p;
     }
+}
 
 } // namespace traction::lab
