@@ -1,5 +1,6 @@
 #include "answer.h"
 
+#include "host_tools/lab/creeps.h"
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/sideways.h"
@@ -51,6 +52,10 @@ json ask_lab(const std::string &log_file, const std::string &model_file, const s
     lab::Dataset data = lab::make_dataset(model, log);
     if (lab::drifts_sideways(model, data)) { // as open_session does
         model.motion = lab::BodyMotion::planar;
+        data = lab::make_dataset(model, log);
+    }
+    if (lab::creeps(model, data)) {
+        lab::ask_for_reversal(model);
         data = lab::make_dataset(model, log);
     }
     const lab::Diagnosis found = lab::diagnose(model, data, lab::DiagnoseOptions{});

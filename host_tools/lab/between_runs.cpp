@@ -16,8 +16,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double chance = 0.05;  // of one that differs, for all parameters together
-constexpr double many = 1000;    // degrees of freedom of what is known: a chi-squared
+constexpr double chance = 0.05; // of one that differs, for all parameters together
+constexpr double many = 1000;   // degrees of freedom of what is known: a chi-squared
 constexpr double normal_95 = 1.96;
 
 void judge(BetweenRuns &one) {
@@ -42,8 +42,9 @@ std::vector<FittedValue> fitted_values(const Model &model) {
     put_table("soil", first.soil), put_table("sensors", model.sensors);
     for (std::size_t i = 1; i < model.wheel.size(); ++i) {
         const WheelSpec &wheel = model.wheel[i];
-        for (const auto &[owner, table, shared] : {std::tuple{"wheel.", &wheel.geometry, &first.geometry},
-                                                   std::tuple{"motor.", &wheel.motor, &first.motor}, std::tuple{"soil.", &wheel.soil, &first.soil}})
+        for (const auto &[owner, table, shared] :
+             {std::tuple{"wheel.", &wheel.geometry, &first.geometry}, std::tuple{"motor.", &wheel.motor, &first.motor},
+              std::tuple{"soil.", &wheel.soil, &first.soil}})
             for (const auto &[key, p] : *table)
                 if (std::isfinite(p.low) && p.value != shared->at(key).value)
                     list.push_back({owner + key + " on wheel " + std::to_string(i), p});

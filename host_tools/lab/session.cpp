@@ -1,5 +1,6 @@
 #include "session.h"
 
+#include "creeps.h"
 #include "gate.h"
 #include "sideways.h"
 
@@ -57,6 +58,11 @@ Session open_session(const Request &request, Model model) {
         session.model.motion = BodyMotion::planar;
         session.data = data();
         told.push_back(followed_sideways);
+    }
+    if (creeps(session.model, session.data)) {
+        ask_for_reversal(session.model);
+        session.data = data();
+        told.push_back(reversal_is_asked);
     }
     if (session.runs.size() > 1) {
         session.data.run_start_s = joined.start_s;

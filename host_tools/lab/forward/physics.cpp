@@ -39,6 +39,7 @@ constexpr Key keys[] = {
     {"soil", "lateral_coefficient", &W::lateral, nullptr, stage_motion},
     {"soil", "lateral_grip", &W::grip, nullptr, stage_motion},
     {"soil", "relaxation_length_m", &W::relaxation, nullptr, stage_motion},
+    {"soil", "reversal_speed_m_s", &W::reversal, nullptr, stage_motion},
     {"rover", "mass_kg", nullptr, &B::mass, stage_motion},
     {"rover", "yaw_inertia_kg_m2", nullptr, &B::yaw_inertia, stage_motion},
     {"rover", "centre_height_m", nullptr, &B::centre_height, stage_motion},

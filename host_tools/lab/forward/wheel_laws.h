@@ -51,6 +51,12 @@ struct Library {
 // x / sqrt(x^2 + e^2): sign without the jump.
 template <typename T> inline T soft_sign(const T &x, double e) { return x / law::root(T(x * x + e * e)); }
 
+// x / (x^4 + e^4)^(1/4): the same, within 2 % of its ends from 2 e on.
+template <typename T> inline T reversing(const T &x, const T &e4) {
+    const T x2 = x * x;
+    return x / law::root(T(law::root(T(x2 * x2 + e4))));
+}
+
 // (1), rim = R w.
 template <typename T> inline T plain_slip(const T &rim, const T &v) {
     return law::within(T((rim - v) / law::larger(law::larger(law::magnitude(rim), law::magnitude(v)), rest_speed_m_s)), -1, 1);

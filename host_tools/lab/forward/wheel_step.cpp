@@ -15,6 +15,7 @@ constexpr double drift_speed_m_s =
 constexpr double least_combined_m_s = 0.02; // combined slip is taken against at least this speed: assumed
 
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
+double fourth(double x) { return x * x * x * x; }
 
 // Slips, and resistance over load, of a wheel or of four side by side. lag_1_m: the step over the relaxation length, where it lags.
 template <typename T> T slip_now(bool lags, const T &before, const T &lag_1_m, const T &rim, const T &v) {
@@ -54,6 +55,7 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         s.free = data_.wheel[i].rolls_freely;
         play_ = play_ || w.play_rad > 0;
         lags_ = lags_ || s.sigma > 0;
+        reverses_ = reverses_ || w.reversal > 0;
     }
     for (const ExtraTerm &term : p_.terms) motion_terms_ = motion_terms_ || (target_stages(term.target) & stage_motion) != 0;
     feels_path_ = feels_path_ || motion_terms_; // a user's expression may name x
@@ -99,7 +101,7 @@ void WheelStep::gather() {
         four.load_0.set(at, w.load > 0 ? w.load : s.load_0), four.load_per_accel.set(at, w.load > 0 ? 0 : s.load_per_accel);
         four.load_per_side.set(at, w.load > 0 ? 0 : s.load_per_side);
         four.load_per_twist.set(at, w.load > 0 ? 0 : s.load_per_twist);
-        four.lag_1_m.set(at, s.lag_1_m);
+        four.lag_1_m.set(at, s.lag_1_m), four.reversal.set(at, fourth(w.reversal));
         all_grip = all_grip && p_.grips_sideways[i];
         none_free = none_free && !s.free;
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
@@ -183,7 +185,7 @@ void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.slip, f.side_slip, f.grip, sideways_);
     f.traction = traction, f.side = side;
     const Lane resist = f.load * resistance(Lane(f.resistance + f.resistance_here), f.effects, b, f.slip, v);
-    f.rolling = resist * soft_sign(v, resist_speed_m_s);
+    f.rolling = resist * (reverses_ ? reversing(v, f.reversal) : soft_sign(v, resist_speed_m_s));
 }
 
 Eigen::Vector3d WheelStep::plain_forces(const Eigen::Vector3d &q, Each *each) {
@@ -286,7 +288,9 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     if (p_.wheel[i].play_rad > 0) s.traction *= contact(i, v);
     const double resist = s.load * resistance<double>(s.rolling_coefficient + s.resistance_here, p_.wheel[i], b, s.slip, v) + extra_rolling;
     // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
-    const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v), share = resist / length(speed, resist_speed_m_s);
+    const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v);
+    const double share =
+        resist / (reverses_ ? std::sqrt(std::sqrt(fourth(speed) + fourth(p_.wheel[i].reversal))) : length(speed, resist_speed_m_s));
     s.rolling = share * v;
     if (!p_.grips_sideways[i]) s.side = -share * side_v;
     return s.traction - s.rolling + extra;
@@ -326,7 +330,8 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
 
 double WheelStep::body_force(double v) const {
     const BodyPhysics &b = p_.body;
-    double force = sim::law::tether_drag_N(b.tether_N_m, away_) + sim::dragged_N(b, v, soft_sign(v, resist_speed_m_s));
+    const double way = reverses_ ? reversing(v, fourth(p_.wheel[0].reversal)) : soft_sign(v, resist_speed_m_s);
+    double force = sim::law::tether_drag_N(b.tether_N_m, away_) + sim::dragged_N(b, v, way);
     if (motion_terms_) {
         Signals signals;
         signals.t = t_, signals.v = v, signals.V = v, signals.x = signals.X = path_, signals.a = accel_, signals.r = yaw_rate_;

@@ -79,7 +79,7 @@ class WheelStep {
         sim::WheelEffectsOf<Lane> effects;
         Lane per_sc = Lane(1.0), lag_1_m = Lane(0.0), slip_before = Lane(0.0), side_slip_before = Lane(0.0);
         Lane per_speed_m = Lane(0.0), adhesion = Lane(0.0), mu = Lane(0.0), load_0 = Lane(0.0), load_per_accel = Lane(0.0),
-             load_per_side = Lane(0.0), load_per_twist = Lane(0.0);
+             load_per_side = Lane(0.0), load_per_twist = Lane(0.0), reversal = Lane(1.0);
         Lane rim = Lane(0.0), load = Lane(0.0), Fm = Lane(0.0);
         Lane v, slip, side_slip, traction, rolling, side;
     };
@@ -114,6 +114,7 @@ class WheelStep {
     bool wide_ = false;               // the processor has vectors as wide as four numbers
     bool plain_ = false;              // the wheels' forces need no more than `four_`
     bool even_ = false;               // the ground is as strong everywhere
+    bool reverses_ = false;           // resistance reverses over a speed of its own
     const RunPhysics *run_ = nullptr; // whose ground it stands on
     bool grounds_ = false;            // some run has a ground of its own
     bool motion_terms_ = false, play_ = false, lags_ = false, feels_path_ = false;

@@ -110,8 +110,10 @@ double InputBuilder::top_speed_rad_s() const {
 bool InputBuilder::grid_and_wheels() {
     double radius = 0;
     for (const WheelSpec &wheel : model.wheel) radius = std::max(radius, parameter(wheel.geometry, "radius_m"));
+    const bool reverses_slowly = parameter(model.wheel.front().soil, "reversal_speed_m_s") > 0;
     if (const double top = top_speed_rad_s(); top > 0)
-        data.standstill_rad_s = std::clamp(radius > 0 ? stands_m_s / radius : 0, standstill_share[0] * top, standstill_share[1] * top);
+        data.standstill_rad_s = std::clamp(radius > 0 ? stands_m_s / radius : 0, standstill_share[0] * top,
+                                           (reverses_slowly ? standstill_share_slow : standstill_share[1]) * top);
     const auto wheels = [this](double step_s) {
         data.wheel.assign(model.wheel.size(), {});
         if (!set_grid(step_s)) return false;

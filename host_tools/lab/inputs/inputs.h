@@ -12,6 +12,7 @@ namespace traction::lab {
 // and rolling resistance reverse is known of no machine; but at least below the first and at most below the second share of the log's own
 // top speed, so that an axis of natural units and a rover that crawls are read too.
 inline constexpr double stands_m_s = 0.01, standstill_share[] = {0.0125, 0.03};
+inline constexpr double standstill_share_slow = 0.1; // the second, where the model knows a speed of reversal (creeps.h)
 
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given

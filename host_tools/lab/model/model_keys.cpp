@@ -36,6 +36,7 @@ constexpr ModelKey soil[] = {
     {"lateral_coefficient", "1", 0, 0, 3, 0.3, 0},
     {"lateral_grip", "1", 0.5, 0, 1.5, 0, 0.5},
     {"relaxation_length_m", "m", 0, 0, 2, 0, 0},
+    {"reversal_speed_m_s", "m/s", 0, 0, 0.05, 0, 0},
 };
 constexpr ModelKey sensors[] = {
     {"encoder.counts_per_turn", "1", 6000, 1, 1e9, 0, 0},
