@@ -243,8 +243,9 @@ std::vector<double> with_dead_time(const std::vector<double> &current, double ti
 }
 
 // Correlation of voltage and current, the speed's part taken out of both, over half a second and the best of 0 to 0.25 s of delay, and of
-// a bridge without and with a dead time. 1 where either is mostly noise.
+// a bridge without and with a dead time. 1 where either is mostly noise, or the drive is steady.
 double current_beside_voltage(const Wheel &wheel) {
+    if (is_steady(wheel)) return 1;
     double best = 0;
     const std::vector<double> speed = smooth(wheel.speed, 5);
     for (const double times : {0.0, 2.0, 6.0}) {

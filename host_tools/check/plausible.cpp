@@ -108,7 +108,7 @@ void stray_current(const Grid &grid, const Machine &machine, Findings &findings)
                       "check that it is this wheel's speed, of this run and this time; or the model's back-EMF", law.a);
             continue;
         }
-        if (!law.good || !(law.b + 4 * law.error_b < machine.resistance_ohm / widest_winding)) continue;
+        if (!law.good || is_steady(wheel) || !(law.b + 4 * law.error_b < machine.resistance_ohm / widest_winding)) continue;
         add_error(findings, "unrelated", name,
                   say("'%s' does not go with the voltage of its motor: a winding of %.3g ohm is left of %.3g", name.c_str(), law.b,
                       machine.resistance_ohm),

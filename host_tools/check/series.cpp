@@ -312,6 +312,17 @@ double left_of(const Grid &grid, const Machine &machine, std::size_t i) {
     return machine.wheel_y_m[by_number(machine) ? static_cast<std::size_t>(grid.wheel[i].index) : i];
 }
 
+bool is_steady(const Wheel &wheel) {
+    constexpr double within = 0.1; // of the median: assumed
+    std::vector<double> moving;
+    for (const double w : wheel.speed)
+        if (std::isfinite(w) && std::fabs(w) > 0) moving.push_back(std::fabs(w));
+    const double top = quantile(moving, 0.9);
+    std::erase_if(moving, [&](double w) { return w < 0.2 * top; }); // standstill and its noise
+    const double middle = quantile(moving, 0.5);
+    return moving.size() > 2 && quantile(moving, 0.975) < (1 + within) * middle && quantile(moving, 0.025) > (1 - within) * middle;
+}
+
 Grid make_grid(const log::Log &log, const Machine &machine) {
     Grid grid;
     double first = 0, last = 0;

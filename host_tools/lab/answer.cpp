@@ -75,6 +75,16 @@ void append_whiteness(std::string &text, const Comparison &comparison) {
     }
 }
 
+// A ground that changes with the time of a joined log may be two grounds.
+void tell_of_grounds(Diagnosis &diagnosis, const Session &session) {
+    if (session.runs.size() < 2 || !diagnosis.unknown || diagnosis.unknown->variable != axis_name(Axis::time)) return;
+    const std::string &target = diagnosis.unknown->target;
+    if (target != target_name(TermTarget::soil_strength) && target != target_name(TermTarget::rolling)) return;
+    diagnosis.messages.push_back(
+        "the ground seems to change with time, over several runs: if they were driven on different grounds, state each "
+        "run's in the model file ([[run]], docs/model_format.md); traction fit tells which numbers differ");
+}
+
 } // namespace
 
 Answer compare_answer(const Session &session, bool fitted, bool details) {
@@ -91,12 +101,13 @@ Answer compare_answer(const Session &session, bool fitted, bool details) {
 Answer diagnose_answer(const Session &session, const Request &request, const AnswerOptions &options, bool apply) {
     DiagnoseOptions how;
     how.progress = options.progress;
-    const Diagnosis diagnosis = diagnose(session.model, session.data, how);
+    Diagnosis diagnosis = diagnose(session.model, session.data, how);
     Answer answer;
     Comparison comparison = compare(session.model, session.data, false, diagnosis.stated_fit.get());
     if (!diagnosis.accepted.empty()) show_after(comparison, diagnosis.model, session.data, diagnosis.model_fit.get());
     std::optional<NextExperiment> next; // what was not excited alone: `traction next --all`
     if (!diagnosis.classes.empty() && options.drive) next = next_experiment(diagnosis, session.model, session.data, false, options.drive);
+    tell_of_grounds(diagnosis, session);
     const Story story = tell(comparison, diagnosis, next ? &*next : nullptr);
     answer.kind = diagnosis.kind;
     answer.text = story_text(story) + "\n" + diagnosis_text(diagnosis, options.details);

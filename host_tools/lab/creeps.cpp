@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char *key = "reversal_speed_m_s";
 constexpr double speed_m_s = 0.006, deviation_m_s = 0.004, least_m_s = 5e-4; // assumed
-constexpr double slow_m_s = 0.05, share = 0.1;                                 // of the rims that move, at least; eight times the speed above (assumed)
+constexpr double slow_m_s = 0.05, share = 0.1; // of the rims that move, at least; eight times the speed above (assumed)
 
 } // namespace
 

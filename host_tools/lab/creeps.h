@@ -1,8 +1,9 @@
 // creeps.h - whether a drive is so slow that the speed over which rolling resistance reverses tells more than how large it is.
 //
-// At centimetres a second a resistance that reverses over millimetres a second is never whole: x / (x^4 + e^4)^(1/4) of it acts at x, within
-// 2 % of the whole from 2 e on. How friction at rest turns is known of no machine (assumed e = 6 +- 4 mm/s), so that a slow drive is asked.
-// A drive of one velocity has no rows that tell it, and a quick one has few: asked where a tenth of the rims that move go below 5 cm/s.
+// At centimetres a second a resistance that reverses over millimetres a second is never whole: x / (x^4 + e^4)^(1/4) of it acts at x,
+// within 2 % of the whole from 2 e on. How friction at rest turns is known of no machine (assumed e = 6 +- 4 mm/s), so that a slow drive is
+// asked. A drive of one velocity has no rows that tell it, and a quick one has few: asked where a tenth of the rims that move go below 5
+// cm/s.
 #pragma once
 
 #include "host_tools/lab/inputs/dataset.h"

@@ -219,6 +219,18 @@ TEST(Runs, two_runs_are_one_data_set_and_judge_each_other) {
     }
 }
 
+// At one speed a motor's voltage and current vary by noise, ground and a supply that sags unseen, each its own way: none of that is a
+// fault.
+TEST(Gate, a_sound_log_of_one_speed_is_not_refused) {
+    for (const std::uint64_t seed : {905004, 905015}) {
+        const generator::GeneratorConfig config = generator::draw_strange_case(seed, "clean").config;
+        ASSERT_EQ(config.drive, "cruise");
+        const lab::Model model = lab::parse_model(generator::data_sheet(config), "sheet");
+        const check::Report report = check::check(generator::generate(config), {}, lab::machine_of(model));
+        for (const check::Finding &f : report.findings) EXPECT_NE(f.severity, check::Severity::error) << seed << ": " << f.text;
+    }
+}
+
 // What the simulated ground's patches leave (4.7 times the noise) draws the camera's scale six stated deviations away: no cause for a name.
 TEST(Gate, a_sound_log_of_the_simulator_gets_no_name_by_stated_deviations_alone) {
     const Base &b = sound("plant");
