@@ -93,10 +93,11 @@ class AngleTable {
   public:
     AngleTable(const doppler_template_t &beam, double exponent, const std::vector<double> &speed_m_s) {
         const int repeats = std::max(1, modelled_windows / static_cast<int>(speed_m_s.size()));
-        for (double angle = lowest_deg; angle <= highest_deg; angle += step_deg) {
-            const double scale = modelled_scale(beam, {.angle_deg = angle, .ground_exponent = exponent}, speed_m_s, repeats);
+        std::vector<RadarGuess> guesses;
+        for (double angle = lowest_deg; angle <= highest_deg; angle += step_deg)
+            guesses.push_back({.angle_deg = angle, .ground_exponent = exponent});
+        for (const double scale : modelled_scales(beam, guesses, speed_m_s, repeats))
             scale_.push_back(scale_.empty() ? scale : std::max(scale, scale_.back() + 1e-6)); // rising, whatever the draws say
-        }
     }
     double angle_deg(double scale) const {
         const auto above = std::upper_bound(scale_.begin(), scale_.end(), scale);

@@ -66,14 +66,27 @@ std::vector<double> amplitudes(const std::vector<double> &histogram, double v, i
 
 using Powers = std::array<double, DOPPLER_BINS_MAX>;
 
-Powers draw(const std::vector<double> &amplitude, int bins, std::mt19937_64 &random) {
+// What chance adds to a window: each cell's normal numbers, and the white noise of each bin.
+struct Chance {
+    std::vector<std::array<double, 2>> cell, noise;
+};
+
+Chance draw(std::size_t cells_at_v, int bins, std::mt19937_64 &random) {
     std::normal_distribution<double> normal(0, std::sqrt(0.5));
-    std::vector<std::array<double, 2>> z(amplitude.size()), noise(static_cast<std::size_t>(bins) + 2);
-    for (std::size_t m = 0; m < z.size(); m++) // every cell draws, so that the sequence does not depend on the guess
-        for (double &part : z[m]) part = amplitude[m] * normal(random);
+    Chance out{.cell = std::vector<std::array<double, 2>>(cells_at_v),
+               .noise = std::vector<std::array<double, 2>>(static_cast<std::size_t>(bins) + 2)};
+    for (auto &z : out.cell)
+        for (double &part : z) part = normal(random);
     const double white = std::sqrt(calm_share / (0.375 * bins)); // 3/8: the window's mean square
-    for (auto &n : noise)
+    for (auto &n : out.noise)
         for (double &part : n) part = white * normal(random);
+    return out;
+}
+
+Powers window(const std::vector<double> &amplitude, const Chance &chance, int bins) {
+    const auto &[cell, noise] = chance;
+    std::vector<std::array<double, 2>> z(amplitude.size());
+    for (std::size_t m = 0; m < z.size(); m++) z[m] = {amplitude[m] * cell[m][0], amplitude[m] * cell[m][1]};
     Powers power{};
     for (int k = 1; k <= bins; k++) {
         const auto at = static_cast<std::size_t>(k);
@@ -107,18 +120,24 @@ double heard_m_s(const doppler_template_t &beam, const Powers &power) {
 
 } // namespace
 
-double modelled_scale(const doppler_template_t &beam, const RadarGuess &guess, const std::vector<double> &speed_m_s, int repeats) {
-    const std::vector<double> histogram = beam_histogram(guess);
+std::vector<double> modelled_scales(const doppler_template_t &beam, const std::vector<RadarGuess> &guesses,
+                                    const std::vector<double> &speed_m_s, int repeats) {
+    std::vector<std::vector<double>> histogram;
+    for (const RadarGuess &guess : guesses) histogram.push_back(beam_histogram(guess));
     std::mt19937_64 random(20261121);
-    double reference = 0, heard = 0;
+    double reference = 0;
+    std::vector<double> heard(guesses.size(), 0.0);
     for (const double v : speed_m_s) {
-        const std::vector<double> amplitude = amplitudes(histogram, v, beam.bins);
+        std::vector<std::vector<double>> amplitude;
+        for (const std::vector<double> &power : histogram) amplitude.push_back(amplitudes(power, v, beam.bins));
         for (int r = 0; r < repeats; r++) {
             reference += v;
-            heard += heard_m_s(beam, draw(amplitude, beam.bins, random));
+            const Chance chance = draw(amplitude.front().size(), beam.bins, random); // cells depend on the speed alone
+            for (std::size_t g = 0; g < guesses.size(); g++) heard[g] += heard_m_s(beam, window(amplitude[g], chance, beam.bins));
         }
     }
-    return reference / heard;
+    for (double &h : heard) h = reference / h;
+    return heard;
 }
 
 } // namespace traction

@@ -19,7 +19,9 @@ struct RadarGuess {
     double ground_exponent = 1; // sigma0 ~ sin^n
 };
 
-// (2) for windows at these speeds, each drawn `repeats` times; the same random numbers for every guess, so differences are smooth.
-double modelled_scale(const doppler_template_t &beam, const RadarGuess &guess, const std::vector<double> &speed_m_s, int repeats);
+// (2) of each guess for windows at these speeds, each drawn `repeats` times; the same random numbers for every guess, so differences are
+// smooth.
+std::vector<double> modelled_scales(const doppler_template_t &beam, const std::vector<RadarGuess> &guesses,
+                                    const std::vector<double> &speed_m_s, int repeats);
 
 } // namespace traction

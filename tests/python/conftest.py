@@ -36,9 +36,9 @@ def cli(tmp_path: Path) -> Cli:
 
 @pytest.fixture(scope="session")
 def sand_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A minute on sand with an effect that rover_sand does not know."""
+    """Forty seconds on sand with an effect that rover_sand does not know."""
     folder = tmp_path_factory.mktemp("sand")
-    Cli(folder)("simulate", "demo_sand", "--effect", "slip_sinkage:coefficient=0.2", "--seed", 7, "--out", "sand.csv")
+    Cli(folder)("simulate", "demo_sand", "--effect", "slip_sinkage:coefficient=0.2", "--seed", 7, "--for", 40, "--out", "sand.csv")
     return folder / "sand.csv"
 
 

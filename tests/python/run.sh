@@ -13,10 +13,10 @@ case $what in
         python3 -c 'import sys, sysconfig, os; sys.exit(not (sys.version_info >= (3, 11) and os.path.exists(os.path.join(sysconfig.get_paths()["include"], "Python.h"))))' ||
             skip "needs Python 3.11 or later with its headers (apt: python3-dev)"
         [ -x "$python" ] || python3 -m venv "$venv" || skip "python3 -m venv does not work here (apt: python3-venv)"
-        # again only where the list of packages is another one
+        # again only where the list of packages is another one; not compiled to bytecode: few of their modules are ever imported
         if ! cmp -s "$root/python/requirements-test.txt" "$venv/installed.txt"; then
             words=$venv/pip.log
-            if ! "$python" -m pip install -q --disable-pip-version-check --timeout 20 --retries 1 -r "$root/python/requirements-test.txt" >"$words" 2>&1; then
+            if ! "$python" -m pip install -q --no-compile --disable-pip-version-check --timeout 20 --retries 1 -r "$root/python/requirements-test.txt" >"$words" 2>&1; then
                 "$python" -m pip download -q --no-deps --timeout 20 --retries 1 -d "$venv/reach" nanobind==3.1.0 >/dev/null 2>&1 ||
                     skip "no package index can be reached ($(tail -n 1 "$words"))"
                 cat "$words"

@@ -20,21 +20,26 @@ compiled=$(for file in $files; do if grep -q "/$file\"" "$build/compile_commands
 database=$(mktemp -d)
 trap 'rm -rf "$database"' EXIT
 sed 's/ -Winvalid-pch -include [^ ]*cmake_pch\.hxx//; s/ -fno-tree-sink//' "$build/compile_commands.json" >"$database/compile_commands.json"
-# A folder's C++ files are read ten at a time as one, so that their headers are read once: a unit that includes them, compiled as its first
-# is (but one file's names may be those of another: shadowing is the compiler's to tell).
+# C++ files are read many at a time as one, so that their headers are read and looked through once: a unit that includes them (but one
+# file's names may be those of another: shadowing is the compiler's to tell). Fifty of hal and sim, compiled as its first is, with the
+# folders and macros of all; elsewhere ten of a folder, compiled as its first is.
 folders=$(echo firmware hal sim host_tools "$@" | tr " " "|")
 commands=$database/compile_commands.json built=$(cd "$build" && pwd)
-printf '%s\n' "$compiled" | grep '\.c$' >"$database/units" || true
+printf '%s\n' "$compiled" | grep '\.c$' >"$database/others" || true
 printf '%s\n' "$compiled" | grep '\.cpp$' | sort | awk -v made="$database" -v root="$PWD" '
-    { folder = $0; sub(/\/[^\/]*$/, "", folder) }
-    folder != last || held == 10 { last = folder; held = 0; unit = made "/unit_" ++units ".cpp"; print unit, $0 }
-    { held++; printf "#include \"%s/%s\" // NOLINT(bugprone-suspicious-include)\n", root, $0 > unit }' >"$database/first"
-while read -r unit first; do
-    echo "$unit" >>"$database/units"
-    command=$(grep -m 1 "\"command\".* -c [^ ]*/$first\"" "$commands" | sed "s| -c [^ ]*/$first\"| -c $unit\"|")
+    { group = $0; most = 10; sub(/\/[^\/]*$/, "", group) }
+    group ~ /^(hal|sim)\// { group = "hal and sim"; most = 50 }
+    group != last || held == most { last = group; held = 0; unit = made "/unit_" ++units ".cpp"; print unit }
+    { printf "#include \"%s/%s\" // NOLINT(bugprone-suspicious-include)\n", root, $0 > unit }
+    held++ == 0 || most == 50 { print $0 > unit ".files" }' >"$database/units"
+while read -r unit; do
+    while read -r file; do grep -m 1 "\"command\".* -c [^ ]*/$file\"" "$commands"; done <"$unit.files" >"$unit.commands"
+    options=$(grep -oE -- ' (-D|-I|-isystem )[^ ]+' "$unit.commands" | sort -u | tr -d '\n')
+    command=$(head -n 1 "$unit.commands" | sed "s| -c [^ ]*\"|$options -c $unit\"|")
     sed -i "1s|^\[|[{\"directory\": \"$built\", $command \"file\": \"$unit\"},|" "$commands"
-done <"$database/first"
-if said=$(xargs -P 2 -n 3 "$tidy" -p "$database" --config-file=.clang-tidy --header-filter="/($folders)/" --quiet --extra-arg=-Wno-unknown-warning-option --extra-arg=-Qunused-arguments --extra-arg=-Wno-shadow <"$database/units" 2>&1); then
+done <"$database/units"
+cat "$database/others" >>"$database/units"
+if said=$(xargs -P 2 -n 20 "$tidy" -p "$database" --config-file=.clang-tidy --header-filter="/($folders)/" --quiet --extra-arg=-Wno-unknown-warning-option --extra-arg=-Qunused-arguments --extra-arg=-Wno-shadow <"$database/units" 2>&1); then
     echo "tidy: nothing found in $(printf '%s\n' "$compiled" | wc -l) files of $*"
 else
     printf '%s\n' "$said" | grep -vE '^[0-9]+ warnings? (generated|treated)|^Suppressed' || true

@@ -221,12 +221,12 @@ class Runs:
             ["completion", "bash"], ["man", "check"], ["man", "--folder", "."],
         ):  # fmt: skip
             self.run(verb, *words)
-        self.run("game", "--new", "3")
+        self.run("game", "--new", "4")  # as for the demo
         self.run("game", "--guess", "grade", codes=(0, 1))
         self.run("game", "--open")
 
     def whole(self) -> None:
-        self.run("demo", "--seed", "3", "--out", "demo")
+        self.run("demo", "--seed", "4", "--out", "demo")  # seed 4: named, and of the cheapest to diagnose
         self.judge("", "the demo's seal", json.loads((self.work / "demo/sealed.json").read_text()))
         self.run("reproduce", "--seeds", "2", codes=(0, 1))
         for program, words in (("lab_bench", "lab --logs 2 --duration 20"), ("speed_bench", "speed --seeds 1"), ("sim_bench", "sim --rounds 1")):

@@ -3,13 +3,14 @@
 // back; a sealed game; three widths, light and dark, by keyboard alone, with axe-core.
 import assert from 'node:assert/strict';
 import { appendFileSync, copyFileSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
-import { begin, click, launch, nothingIsAmiss, open as openPage, ready, serve, tryAll, until } from './page.mjs';
+import { anew, begin, click, launch, nothingIsAmiss, open as openPage, pictures, ready, serve, tryAll, until } from './page.mjs';
 
 const [executablePath, traction, folder, shots] = process.argv.slice(2);
 const browser = await begin(executablePath, folder, shots, ['--disable-gpu']);
 let server = await serve(traction, folder);
 const trouble = [];
 const open = (settings) => openPage(browser, () => server.address, trouble, settings);
+const picture = pictures(shots);
 const title = (page, begin) => until(page, (words) => document.querySelector('#result h1')?.textContent.startsWith(words), begin);
 const newest = (page) => page.$eval('#history tbody tr', (e) => e.textContent);
 const chosen = (page, list) => page.$eval(`#${list} input:checked`, (e) => e.value);
@@ -35,7 +36,7 @@ claim('a drive at the pace of the clock grows before the eyes of both, and is st
   await until(page, (n) => +document.querySelector('#live').dataset.rows > n + 8, rows);
   assert.equal((await page.$$('#live canvas')).length, 3); // speed, slip, current
   assert.match(await page.textContent('#driving'), /Driving: [\d.]+ s driven/);
-  await page.screenshot({ path: `${shots}/driving.png` });
+  await picture(page, 'driving');
   await click(other, '#simulated', 'Stop');
   await until(page, () => /The drive ended after/.test(document.querySelector('#driving').textContent));
   assert.match(await newest(page), /simulated drive.*cancelled/);
@@ -65,10 +66,10 @@ claim('check, compare, diagnose, add: the error falls, in both browsers', async 
   await title(other, 'diagnose');
   assert.match(await page.textContent('#verdict'), /slip_sinkage explains it/);
   assert.match(await page.textContent('#hint'), /The diagnosis names slip_sinkage/);
-  await page.screenshot({ path: `${shots}/diagnosed.png`, fullPage: true });
+  await picture(page, 'diagnosed', { fullPage: true });
   await page.$$eval('details.tool', (all) => all.forEach((e) => { e.open = false; })); // the picture of docs/serve.md
   const where = await page.$eval('#folder', (e) => { const text = e.textContent; e.textContent = 'drives'; return text; });
-  await page.screenshot({ path: `${shots}/serve.png`, fullPage: true, clip: { x: 90, y: 0, width: 1220, height: 1560 } });
+  await picture(page, 'serve', { fullPage: true, clip: { x: 90, y: 0, width: 1220, height: 1560 } });
   await page.$eval('#folder', (e, text) => { e.textContent = text; }, where);
   await page.$eval('#simulated', (e) => { e.open = true; });
   await click(page, '#hint', 'Add slip_sinkage');
@@ -80,7 +81,7 @@ claim('check, compare, diagnose, add: the error falls, in both browsers', async 
   assert.ok(await page.isHidden('#hint')); // it is in the model now
   assert.doesNotMatch(await page.textContent('#ladder'), /as given/); // `add` compares the model that it made
   assert.equal(await page.textContent('#history tbody'), await other.textContent('#history tbody'));
-  await page.screenshot({ path: `${shots}/added.png`, fullPage: true });
+  await picture(page, 'added', { fullPage: true });
 });
 
 claim('the effect that is about to be added is drawn: where it acts, and the curve that it adds', async () => {
@@ -125,7 +126,7 @@ for (const [what, more, view] of [['in three dimensions, by the processor', ['--
       await scrub(10);
       await click(p, '#result', 'Play');
       await until(p, () => +document.querySelector('.stage').dataset.time > 10.5 && +document.querySelector('.stage').dataset.frames > 5);
-      await p.screenshot({ path: `${shots}/look_${view}.png`, fullPage: true });
+      await picture(p, `look_${view}`, { fullPage: true });
       await click(p, '#bench', 'Check');
       await title(p, 'check');
       assert.equal(await p.$('#result .stage'), null);
@@ -178,7 +179,7 @@ claim('the server goes: both are told so; it comes back: both go on by themselve
   assert.equal(await server.end('SIGINT'), 0);
   for (const p of [page, other]) await until(p, () => /has not answered since/.test(document.querySelector('#link').textContent));
   assert.ok(await page.isDisabled('#bench button:text-is("Diagnose")'));
-  await page.screenshot({ path: `${shots}/gone.png` });
+  await picture(page, 'gone');
   const runs = await page.textContent('#history tbody');
   server = await serve(traction, folder, { port: server.port });
   for (const p of [page, other]) await until(p, () => document.querySelector('#link').textContent === 'Connected');
@@ -206,7 +207,7 @@ claim('a sealed game: look, try, keep, open', async () => {
   await click(page, '#game', 'Open the seal');
   await page.waitForSelector('#opened', { timeout: 240000 });
   assert.ok((await page.textContent('#opened')).includes(hidden.name));
-  await page.locator('#game').screenshot({ path: `${shots}/game.png` });
+  await picture(page.locator('#game'), 'game');
 });
 
 claim('a drive that hides an effect: the seal is opened on the page', async () => {
@@ -236,13 +237,14 @@ claim('keyboard alone: a log is chosen by arrows and checked', async () => {
   await until(page, () => document.querySelector('#running').hidden);
 });
 
+let looked = null; // with bypassCSP, for axe alone
 for (const [width, colorScheme] of [[420, 'light'], [1400, 'light'], [1920, 'dark']])
   claim(`${width} px, ${colorScheme}: axe finds nothing, nothing is cut`, async () => {
-    const { page: p, close } = await open({ viewport: { width, height: 900 }, colorScheme, bypassCSP: true }); // for axe alone
+    const { page: p } = looked ??= await open({ bypassCSP: true });
+    await anew(p, width, colorScheme);
     await p.waitForSelector('#result[data-run]');
     await nothingIsAmiss(p);
-    await p.screenshot({ path: `${shots}/live_${width}_${colorScheme}.png`, fullPage: true });
-    await close();
+    await picture(p, `live_${width}_${colorScheme}`, { fullPage: true });
   });
 
 claim('nothing went wrong in any page, and none asked anything of anybody else', async () => assert.deepEqual(trouble, []));

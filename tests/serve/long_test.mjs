@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { begin, click, open as openPage, serve, tryAll, until } from './page.mjs';
+import { begin, click, open as openPage, pictures, serve, tryAll, until } from './page.mjs';
 
 const [executablePath, traction, folder, shots] = process.argv.slice(2);
 const browser = await begin(executablePath, folder, shots, ['--disable-gpu', '--enable-precise-memory-info']);
@@ -33,7 +33,7 @@ async function load(key, what) {
   await p.waitForSelector(what, { timeout: 60000 });
   await p.evaluate(() => new Promise((drawn) => { requestAnimationFrame(() => requestAnimationFrame(drawn)); }));
   took[key] = { s: await worked_s(), MB: (await p.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6 };
-  if (key.startsWith('long')) await p.screenshot({ path: `${shots}/${key}.png` });
+  if (key.startsWith('long')) await pictures(shots)(p, key);
   await close();
 }
 

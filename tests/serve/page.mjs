@@ -30,6 +30,9 @@ export async function begin(executablePath, folder, shots, more = []) {
 export const launch = (executablePath, more) => chromium.launch({ executablePath, args: ['--headless', '--no-sandbox', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', ...more] });
 
+// Pictures are for people: they are taken where TRACTION_PICTURES is set.
+export const pictures = (shots) => (what, name, settings = {}) => process.env.TRACTION_PICTURES && what.screenshot({ path: `${shots}/${name}.png`, ...settings });
+
 export const ready = (page) => page.waitForSelector('html[data-ready=yes]', { timeout: 20000 });
 export const click = (page, where, words) => page.click(`${where} button:text-is("${words}")`);
 // Asked ten times a second: asked before every picture, as is usual, the page draws all the time that it waits.
@@ -51,6 +54,14 @@ export async function open(browser, where, trouble, settings = {}) {
   return { page, worked_s, close: () => context.close() };
 }
 
+// The page of a tab of its own, which is slow to come by, anew in a window of another size.
+export async function anew(page, width, colorScheme) {
+  await page.setViewportSize({ width, height: 900 });
+  await page.emulateMedia({ colorScheme });
+  await page.reload();
+  await ready(page);
+}
+
 // Opens every fold; axe finds nothing and nothing is cut. The page must be one with bypassCSP.
 export async function nothingIsAmiss(page) {
   await page.$$eval('details', (all) => all.forEach((e) => { e.open = true; }));
@@ -69,7 +80,7 @@ const within = (work) => {
 };
 
 // Tries [name, check] in their order; how many do not hold.
-export async function tryAll(claims, page, picture) {
+export async function tryAll(claims, page, failure) {
   let failed = 0;
   for (const [name, check] of claims) {
     try {
@@ -78,7 +89,7 @@ export async function tryAll(claims, page, picture) {
     } catch (error) {
       failed += 1;
       console.log(`FAILED  ${name}\n${error.stack}`);
-      await page.screenshot({ path: `${picture}_${failed}.png`, fullPage: true }).catch(() => {});
+      await page.screenshot({ path: `${failure}_${failed}.png`, fullPage: true }).catch(() => {});
     }
   }
   console.log(`${claims.length - failed} of ${claims.length} claims hold`);

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
 import { createSocket } from 'node:dgram';
 import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { begin, click, nothingIsAmiss, open as openPage, serve, tryAll, until } from './page.mjs';
+import { anew, begin, click, nothingIsAmiss, open as openPage, pictures, serve, tryAll, until } from './page.mjs';
 
 const [executablePath, traction, tractiond, folder, shots] = process.argv.slice(2);
 const browser = await begin(executablePath, folder, shots, ['--disable-gpu']);
@@ -28,6 +28,7 @@ const server = await serve(traction, folder, { more: ['--host', `127.0.0.1:${por
 const trouble = [], claims = [];
 const claim = (name, check) => claims.push([name, check]);
 const open = (settings) => openPage(browser, () => server.address, trouble, settings);
+const picture = pictures(shots);
 const { page } = await open();
 const words = (id) => page.textContent(`#rover-${id}`);
 const status = (text) => until(page, (t) => document.querySelector('#watching').textContent.includes(t), text);
@@ -51,7 +52,7 @@ claim('the rover comes: speed, slip, currents and battery grow before the eyes, 
   assert.match(await words('battery'), /^[678]\.\d+ V$/);
   assert.equal(await words('faults'), 'none');
   assert.match(await words('link'), /^last heard 0(\.\d)? s ago$/);
-  await page.screenshot({ path: `${shots}/rover.png`, fullPage: true });
+  await picture(page, 'rover', { fullPage: true });
 });
 
 claim('the rover falls silent: told with an age that grows; it comes back by itself', async () => {
@@ -64,12 +65,12 @@ claim('the rover falls silent: told with an age that grows; it comes back by its
   const second = await age();
   assert.ok(second > first + 1 && second < first + 4, `${first} s, two seconds later ${second} s`);
   assert.match(await words('speed'), /m\/s/); // what was heard last stays
-  await page.screenshot({ path: `${shots}/rover_silent.png` });
+  await picture(page, 'rover_silent');
   driving = rover();
   await status('The rover is heard');
   const rows = await page.$eval('#telemetry', (e) => +e.dataset.rows);
   await until(page, (n) => +document.querySelector('#telemetry').dataset.rows > n + 60, rows);
-  await page.locator('#rover').screenshot({ path: `${shots}/rover_page.png` }); // of docs/serve.md
+  await picture(page.locator('#rover'), 'rover_page'); // of docs/serve.md
 });
 
 claim('its on-board log is fetched while it is watched, chosen, and fit to be checked', async () => {
@@ -95,13 +96,14 @@ claim('no page can make the rover move, and another sees the same', async () => 
   await close();
 });
 
+let looked = null; // with bypassCSP, for axe alone
 for (const [width, colorScheme] of [[420, 'dark'], [1400, 'light']])
   claim(`${width} px, ${colorScheme}: axe finds nothing, nothing is cut`, async () => {
-    const { page: p, close } = await open({ viewport: { width, height: 900 }, colorScheme, bypassCSP: true }); // for axe alone
+    const { page: p } = looked ??= await open({ bypassCSP: true });
+    await anew(p, width, colorScheme);
     await until(p, () => +document.querySelector('#telemetry').dataset.rows > 15);
     await nothingIsAmiss(p);
-    await p.screenshot({ path: `${shots}/rover_${width}_${colorScheme}.png`, fullPage: true });
-    await close();
+    await picture(p, `rover_${width}_${colorScheme}`, { fullPage: true });
   });
 
 claim('Stop: what was received is a log of the folder; Watch begins another', async () => {

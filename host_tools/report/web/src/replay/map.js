@@ -80,7 +80,8 @@ export function mapView(drive, host) {
   }
 
   function draw(t) {
-    const ratio = Math.min(2, devicePixelRatio), width = host.clientWidth, height = host.clientHeight;
+    const ratio = Math.min(2, devicePixelRatio), width = host.clientWidth, height = host.clientHeight, pose = drive.pose(t);
+    if (width === 0 || height === 0) return { x: pose.x, y: pose.y, yaw: pose.yaw }; // a page that is being laid out: no scale, nothing to draw
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
       canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio);
     }
@@ -89,7 +90,7 @@ export function mapView(drive, host) {
     ctx.clearRect(0, 0, width, height);
     ctx.font = '12px sans-serif';
     ctx.lineJoin = 'round';
-    const pose = drive.pose(t), room = 0.9 * long + 0.15 * (x1 - x0), whole = Math.min(width / (x1 - x0 + 2 * room), height / (y1 - y0 + 2 * room));
+    const room = 0.9 * long + 0.15 * (x1 - x0), whole = Math.min(width / (x1 - x0 + 2 * room), height / (y1 - y0 + 2 * room));
     const follow = state.view !== 'whole', perMetre = (follow ? Math.max(whole, Math.min(width, height) / (7 * long)) : whole) * state.zoom;
     const [mx, my] = follow ? [pose.x, pose.y] : [(x0 + x1) / 2, (y0 + y1) / 2];
     place = ([x, y]) => [width / 2 + (x - mx) * perMetre, height / 2 - (y - my) * perMetre];
