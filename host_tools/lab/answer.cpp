@@ -18,10 +18,21 @@ namespace traction::lab {
 
 namespace {
 
-void put_validation(Answer &answer, const Session &session, const Request &request, const Model &result) {
-    const std::vector<Validation> validation = validate(session, request, result);
+const std::string of_no_run =
+    "no run that was left out is predicted better by what was named: it may stand for what the runs do not share, "
+    "such as their grounds ([[run]] in the model file); traction fit tells which numbers differ between them";
+
+std::vector<Validation> put_validation(Answer &answer, const Session &session, const Request &request, const Model &result) {
+    std::vector<Validation> validation = validate(session, request, result);
     answer.text += validation_text(validation);
     answer.json["validation"] = validation_json(validation);
+    return validation;
+}
+
+bool predicts_no_run(const std::vector<Validation> &validation) {
+    std::size_t left_out = 0, better = 0;
+    for (const Validation &v : validation) left_out += v.left_out ? 1 : 0, better += v.left_out && v.result < v.fitted ? 1 : 0;
+    return left_out > 0 && better == 0;
 }
 
 void append_table(std::string &text, const char *title, const Parameters &table) {
@@ -121,7 +132,13 @@ Answer diagnose_answer(const Session &session, const Request &request, const Ans
         if (!next->scenario_toml.empty()) answer.text += "(traction next --model MODEL --log LOG --out next.toml writes the scenario)\n";
         answer.json["next"] = next_json(*next);
     }
-    if (diagnosis.kind != "wrong_model") put_validation(answer, session, request, diagnosis.model);
+    if (diagnosis.kind != "wrong_model") {
+        const std::vector<Validation> validation = put_validation(answer, session, request, diagnosis.model);
+        if (!diagnosis.accepted.empty() && predicts_no_run(validation)) {
+            answer.text += messages_text({of_no_run});
+            answer.json["messages"].push_back(of_no_run);
+        }
+    }
     answer.negative = diagnosis.kind == "nothing";
     if (!apply || diagnosis.accepted.empty()) return answer;
     answer.model = diagnosis.model;

@@ -87,15 +87,18 @@ std::string between_runs_text(const std::vector<BetweenRuns> &list) {
     std::string text;
     std::vector<double> times;
     std::size_t apart = 0;
+    bool ground = false;
     for (const BetweenRuns &one : list) times.push_back(one.times), apart += one.differs ? 1 : 0;
     append(text, "between runs: each fitted by itself, their numbers scatter %.2g times what their\nintervals allow (median of %zu)%s\n",
            median(times), list.size(), apart == 0 ? "; none differs beyond chance" : "; beyond chance differ");
     for (const BetweenRuns &one : list) {
         if (!one.differs) continue;
+        ground = ground || one.parameter.rfind("soil.", 0) == 0;
         append(text, "  %-34s %4.1f times:", one.parameter.c_str(), one.times);
         for (std::size_t i = 0; i < one.value.size(); ++i) append(text, "%s %.4g", i == 0 ? "" : ",", one.value[i]);
         append(text, "%s%s\n", one.unit == "1" ? "" : " ", one.unit == "1" ? "" : one.unit.c_str());
     }
+    if (ground) text += "a soil's number that differs: state each run's ground ([[run]] in the model file)\n";
     return text;
 }
 

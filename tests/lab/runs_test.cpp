@@ -1,5 +1,6 @@
 // What belongs to a run and not to the machine: offsets of its sensors, and its ground where the model's file states one.
 #include "host_tools/lab/answer.h"
+#include "host_tools/lab/between_runs.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/session.h"
@@ -144,6 +145,18 @@ TEST(Runs, a_ground_that_the_file_states_is_that_runs) {
     EXPECT_EQ(answer.kind, "nothing") << answer.text;
 }
 
+TEST(Runs, a_name_that_predicts_no_run_that_was_left_out_is_said_to) {
+    const Logs logs{{{"sand.csv", drive(Soil::sand, 42, 0)}, {"gravel.csv", drive(Soil::gravel, 42, 1)}}};
+    const std::vector<std::string> both = {"sand.csv", "gravel.csv"};
+    const Session one = logs.open(parse_model(sheet(Soil::sand, 42), "sheet"), both);
+    const Answer as_one = diagnose_answer(one, logs.request(both), {}, false);
+    ASSERT_EQ(as_one.kind, "named"); // a soft place where the second run begins: of this joined log it is true
+    bool told = false;
+    for (const auto &message : as_one.json.at("messages"))
+        told = told || message.get<std::string>().find("no run that was left out is predicted better") == 0;
+    EXPECT_TRUE(told) << as_one.text;
+}
+
 // Left out in turn, or judged on alone: by its own ground, as stated and found there.
 TEST(Runs, a_run_that_is_judged_stands_on_its_own_ground) {
     const Logs logs{{{"sand.csv", drive(Soil::sand, 42, 0)}, {"gravel.csv", drive(Soil::gravel, 42, 1)}}};
@@ -161,6 +174,28 @@ TEST(Runs, a_run_that_is_judged_stands_on_its_own_ground) {
     const std::vector<Validation> judged = validate(first, later, first.model);
     ASSERT_EQ(judged.size(), 1U);
     EXPECT_LT(judged[0].fitted, 1.5 * apart[1].fitted);
+}
+
+// (1) of between_runs.h, by hand, and a stiffness that two grounds give: it differs, what the machine has does not.
+TEST(Runs, fits_of_each_alone_tell_what_is_no_constant_of_the_machine) {
+    const Logs logs{{{"sand.csv", drive(Soil::sand, 42, 0)}, {"gravel.csv", drive(Soil::gravel, 42, 1)}}};
+    const Session session = logs.open(parse_model(sheet(Soil::sand, 42), "sheet"), {"sand.csv", "gravel.csv"});
+    const std::vector<BetweenRuns> list = between_runs(session);
+    ASSERT_GT(list.size(), 20U);
+    bool stiffness = false;
+    for (const BetweenRuns &one : list) {
+        ASSERT_EQ(one.value.size(), 2U) << one.parameter;
+        const double variance = (std::pow(one.half_width[0], 2) + std::pow(one.half_width[1], 2)) / std::pow(1.96, 2);
+        EXPECT_NEAR(one.times, std::fabs(one.value[0] - one.value[1]) / std::sqrt(variance), 1e-9 * one.times) << one.parameter; // of two
+        EXPECT_EQ(one.parameter.find(" in "), std::string::npos) << one.parameter; // a run's own is no question
+        EXPECT_TRUE(one.differs == false || one.parameter.rfind("soil.", 0) == 0) << one.parameter << " " << one.times;
+        stiffness = stiffness || (one.parameter == "soil.shear_slip" && one.differs);
+    }
+    EXPECT_TRUE(stiffness);
+    const std::string text = between_runs_text(list);
+    EXPECT_NE(text.find("beyond chance differ\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("  soil.shear_slip"), std::string::npos) << text;
+    EXPECT_TRUE(between_runs(logs.open(session.model, {"sand.csv"})).empty());
 }
 
 TEST(Runs, logs_of_one_name_are_told_apart_by_their_folders) {
