@@ -58,12 +58,13 @@ std::vector<FittedValue> fitted_values(const Model &model) {
 
 std::vector<BetweenRuns> between_runs(const Session &session) {
     std::vector<BetweenRuns> list;
+    if (session.runs.size() < 2) return list;
     std::size_t runs = 0;
     for (const log::Log &run : session.runs) {
         Model model = session.model;
         begin_runs(model, {run}, {first_time(run)});
         const Dataset data = make_dataset(model, run);
-        if (session.runs.size() < 2 || data.balance.empty() || data.count < 3) continue;
+        if (data.balance.empty() || data.count < 3) continue;
         fit_model(model, data, "alone");
         ++runs;
         for (const FittedValue &fitted : fitted_values(model)) {
