@@ -312,15 +312,15 @@ void Forward::electric_steps(const Physics &physics, const Motion &motion, std::
     double *const __restrict winding_A = current.data(), *const __restrict shaft_Nm = out.shaft.data(),
                              *const __restrict reading_A = out.reading.data(), *const __restrict per_V_A = out.per_V.data(),
                              *const __restrict lost_A = out.lost.data();
-    const double gain = count_gain(p), radius = rolling_radius(p), soft_rad_s = friction_share * d.standstill_rad_s, start_s = d.start_s;
+    const double gain = count_gain(p), radius = rolling_radius(p), soft_rad_s = friction_share * d.standstill_rad_s;
     const double by_voltage = sim::law::voltage_gain(1, physics.body.voltage_gain);
     const bool unsigned_current = !smooth && physics.unsigned_current;
-    double heat_K = 0;
-    std::size_t run = 0; // next of those that begin with a cold winding
+    double heat_K = 0, start_s = d.start_s;
+    std::size_t run = 0; // the next that begins, its windings cold and its gears as at first
     for (std::size_t k = 0, count = d.count; k < count; ++k) {
         const double w = gain * speed_rad_s[k], dw = gain * accel_rad_s2[k];
-        if (!cold)
-            for (; run < d.run_start_s.size() && d.run_start_s[run] <= d.time(k); ++run) heat_K = 0;
+        if (!smooth)
+            for (; run < d.run_start_s.size() && d.run_start_s[run] <= d.time(k); ++run) heat_K = 0, start_s = d.run_start_s[run];
         double KG = sim::motor_constant(p.KG, p, heat_K), ke = sim::motor_constant(p.ke, p, heat_K);
         double Ra = sim::law::hot_resistance_ohm(p.Ra, heat_K), u_lost = 0;
         if (!cold && !lead_current_.empty()) u_lost += sim::law::shared_lead_V(p.shared_ohm, current_of_others(physics, wheel, k));
