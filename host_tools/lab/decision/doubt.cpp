@@ -137,7 +137,7 @@ std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first, do
         if (!(value > 0) || !(std::fabs(fitted - value) > beyond_a_sheet * prior)) continue;
         const auto n = static_cast<double>(was.size());
         Suspect s{datum.name, value / n, fitted / n, was.front()->unit, overall_error(first), datum.gross, datum.more_is_an_effect};
-        if (!is_gross(s)) continue;
+        if (!is_gross(s) || std::fabs(s.fitted - s.stated) < datum.little) continue;
         out.push_back(std::move(s));
         for (Parameter *stays : values_of(held, datum)) stays->fixed = true;
     }

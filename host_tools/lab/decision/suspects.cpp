@@ -34,7 +34,7 @@ constexpr Datum data_of_a_model[] = {
     {"motor", "coulomb_Nm", "the dry friction of the drives", 1.4, true},
     {"motor", "viscous_Nms", "the viscous friction of the drives", 1.4, true},
     {"soil", "mu", "the ground's grip"},
-    {"soil", "rolling_coefficient", "the rolling resistance", 1.4, true},
+    {"soil", "rolling_coefficient", "the rolling resistance", 1.4, true, 0.02}, // a slope of one degree does as much
     {"soil", "shear_slip", "the soil law's stiffness"},
 };
 

@@ -17,6 +17,7 @@ struct Datum {
     const char *table, *key, *name;
     double gross = 1.4; // times, or one over: a data sheet, a scale is not wrong by that much, and no effect of the catalogue is as large
     bool more_is_an_effect = false; // of the catalogue: whether it is the cause has been decided there, only less is a matter of the model
+    double little = 0;              // a difference, in its unit, that is none, whatever its ratio: where the fit has moved it by itself
 };
 std::vector<const Datum *> all_data();
 
