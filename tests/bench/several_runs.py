@@ -39,7 +39,7 @@ def answer(asked, seed, folder):
     told = subprocess.run(command, capture_output=True, text=True)
     for one in logs:
         one.unlink()
-    if told.returncode not in (0, 1):
+    if not told.stdout.strip():  # the check refused a log, or the program failed
         return {"verdict": {"kind": "refused"}, "accepted": [], "text": told.stderr.strip()[:200]}
     return json.loads(told.stdout)
 
@@ -58,7 +58,7 @@ def main():
     asked.generate = build / "tests/lab/generator/lab_generate"
     asked.program = asked.program or build / "host_tools/cli/traction"
     seeds = range(asked.seeds[0], asked.seeds[1] + 1)
-    counts = {"nothing": 0, "named": 0, "right": 0, "refused": 0}
+    counts = {"nothing": 0, "named": 0, "right": 0, "wrong_model": 0, "refused": 0}
     with tempfile.TemporaryDirectory() as place:
         folder = pathlib.Path(place)
         found = {seed: answer(asked, seed, folder) for seed in seeds}
@@ -69,11 +69,12 @@ def main():
             told = members(found[seed])
             counts["nothing"] += kind == "nothing"
             counts["refused"] += kind == "refused"
+            counts["wrong_model"] += kind == "wrong_model"
             counts["named"] += bool(told)
             counts["right"] += bool(told) and any(name in told for name in hidden)
             print(seed, seal["soil"], seal["drive"], "hidden:", ", ".join(hidden) or "nothing", "| told:", kind, ", ".join(sorted(told)))
     print(f"{len(seeds)} machines, {asked.runs} runs each: {counts['nothing']} told nothing, {counts['named']} told a name, "
-          f"{counts['right']} of these the hidden one (or its class), {counts['refused']} refused")
+          f"{counts['right']} of these the hidden one (or its class), {counts['wrong_model']} a wrong model, {counts['refused']} refused")
 
 
 if __name__ == "__main__":
