@@ -16,8 +16,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double chance = 0.05; // of one that differs, for all parameters together
-constexpr double many = 1000;   // degrees of freedom of what is known: a chi-squared
+constexpr double by_chance = 0.05; // of one that differs, for all parameters together
+constexpr double many = 1000;      // degrees of freedom of what is known: a chi-squared
 constexpr double normal_95 = 1.96;
 
 void judge(BetweenRuns &one) {
@@ -78,7 +78,7 @@ std::vector<BetweenRuns> between_runs(const Session &session) {
     std::erase_if(list, [&](const BetweenRuns &one) { return one.value.size() < std::max<std::size_t>(2, runs); });
     for (BetweenRuns &one : list) {
         judge(one);
-        one.differs = f_tail(one.times * one.times, static_cast<double>(runs - 1), many) * static_cast<double>(list.size()) < chance;
+        one.differs = f_tail(one.times * one.times, static_cast<double>(runs - 1), many) * static_cast<double>(list.size()) < by_chance;
     }
     return list;
 }

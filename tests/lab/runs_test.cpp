@@ -7,6 +7,7 @@
 #include "host_tools/lab/validate.h"
 #include "tests/lab/generator/generator.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <algorithm>
