@@ -314,13 +314,14 @@ double left_of(const Grid &grid, const Machine &machine, std::size_t i) {
 
 bool is_steady(const Wheel &wheel) {
     constexpr double within = 0.1; // of the median: assumed
-    std::vector<double> moving;
+    std::vector<double> size, moving;
     for (const double w : wheel.speed)
-        if (std::isfinite(w) && std::fabs(w) > 0) moving.push_back(std::fabs(w));
-    const double top = quantile(moving, 0.9);
-    std::erase_if(moving, [&](double w) { return w < 0.2 * top; }); // standstill and its noise
-    const double middle = quantile(moving, 0.5);
-    return moving.size() > 2 && quantile(moving, 0.975) < (1 + within) * middle && quantile(moving, 0.025) > (1 - within) * middle;
+        if (std::isfinite(w)) size.push_back(std::fabs(w));
+    const double still = 0.2 * quantile(size, 0.9); // standstill and its noise
+    for (const double w : wheel.speed)
+        if (std::fabs(w) > still) moving.push_back(w);
+    const double middle = quantile(moving, 0.5), room = within * std::fabs(middle);
+    return moving.size() > 2 && quantile(moving, 0.975) < middle + room && quantile(moving, 0.025) > middle - room;
 }
 
 Grid make_grid(const log::Log &log, const Machine &machine) {

@@ -54,8 +54,9 @@ struct Grid {
     std::vector<char> active;              // 1 where a wheel turns or is driven
     double time(std::size_t k) const { return start_s + static_cast<double>(k) * step_s; }
 };
-// One speed from beginning to end, but for standstill: nineteen of twenty moving cells within a tenth of their median. What moves its
-// motor's voltage and current then is noise, the supply and the ground, each its own way, so that neither can be told not to belong.
+// One velocity from beginning to end, but for standstill (to and fro is none): nineteen of twenty moving cells within a tenth of their
+// median. What moves its motor's voltage and current then is noise, the supply and the ground, each its own way, so that neither can be
+// told not to belong.
 bool is_steady(const Wheel &wheel);
 
 Grid make_grid(const log::Log &log, const Machine &machine);

@@ -29,12 +29,6 @@ std::vector<Validation> put_validation(Answer &answer, const Session &session, c
     return validation;
 }
 
-bool predicts_no_run(const std::vector<Validation> &validation) {
-    std::size_t left_out = 0, better = 0;
-    for (const Validation &v : validation) left_out += v.left_out ? 1 : 0, better += v.left_out && v.result < v.fitted ? 1 : 0;
-    return left_out > 0 && better == 0;
-}
-
 void append_table(std::string &text, const char *title, const Parameters &table) {
     for (const auto &[key, p] : table)
         if (std::isfinite(p.low))

@@ -43,7 +43,8 @@ Session open_session(const Request &request, Model model) {
                          "give one map for all logs, or one for each in the order of the logs");
     const auto map_of = [&](std::size_t i) { return maps.empty() ? std::string() : maps[maps.size() == 1 ? 0 : i]; };
     for (std::size_t i = 0; i < files.size(); ++i)
-        session.runs.push_back(checked_log(request, files[i], map_of(i), session.model, told, despite));
+        session.runs.push_back(checked_log(request, files[i], map_of(i), session.model, told, despite)),
+            session.runs.back().source = files[i];
     const JoinedRuns joined = join_runs(session.runs);
     const log::Log &log = joined.log;
     begin_runs(session.model, session.runs, joined.start_s);

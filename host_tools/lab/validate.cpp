@@ -64,6 +64,12 @@ std::vector<Validation> validate(const Session &session, const Request &request,
     return out;
 }
 
+bool predicts_no_run(const std::vector<Validation> &list) {
+    std::size_t left_out = 0, better = 0;
+    for (const Validation &v : list) left_out += v.left_out ? 1 : 0, better += v.left_out && v.result < v.fitted ? 1 : 0;
+    return left_out > 0 && better == 0;
+}
+
 std::string validation_text(const std::vector<Validation> &list) {
     if (list.empty()) return "";
     char buffer[300];

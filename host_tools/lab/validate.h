@@ -1,6 +1,7 @@
 // validate.h - a model judged on runs that it was not fitted to: logs given with --validate, or each run of several left out in turn.
 //
-// What belongs to a run is its own there too: the offsets of accelerometer and gyro may move within their priors. Nothing else does.
+// What belongs to a run is its own there too: the offsets of accelerometer and gyro, and the ground that the model's file states for it,
+// may move within their priors. Nothing else does.
 #pragma once
 
 #include "session.h"
@@ -20,6 +21,9 @@ struct Validation {
 
 // `result`: the model that a verb arrived at (its effects; for a left-out run its values are fitted again to the others).
 std::vector<Validation> validate(const Session &session, const Request &request, const Model &result);
+
+// There are runs that were left out, and none of them is predicted better by the result than by the model without effects.
+bool predicts_no_run(const std::vector<Validation> &list);
 
 std::string validation_text(const std::vector<Validation> &list); // empty for none
 nlohmann::json validation_json(const std::vector<Validation> &list);

@@ -2,6 +2,7 @@
 // that are late within what such sensors are give none.
 #include "host_tools/lab/creeps.h"
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/decision/trial.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/rounding.h"
 #include "host_tools/lab/model/model.h"
@@ -114,6 +115,44 @@ TEST(Shapes, what_its_own_fit_does_not_bear_is_not_told) {
     EXPECT_EQ(a.d.kind, "nothing") << a.d.text;
     EXPECT_TRUE(std::any_of(a.d.messages.begin(), a.d.messages.end(),
                             [](const std::string &m) { return m.find("torque(slip) on wheels 2 and 3 seemed to explain") == 0; }));
+}
+
+// Currents that come 0.11 s late in stop and go: their edges are shorter than that, so the step at none sees next to nothing of it, and a
+// scan of sizes does.
+TEST(Delay, is_seen_at_its_size_though_a_small_one_says_nothing) {
+    GeneratorConfig config = rover(Soil::sand, 942002, "current_delay:delay_s=0.11");
+    config.drive = "stop_and_go";
+    config.duration_s = 60;
+    const Model model = parse_model(generator::data_sheet(config), "sheet");
+    const Dataset data = make_dataset(model, generator::generate(config));
+    const Physics physics = make_physics(model);
+    Problem base(data, physics, free_parameters(model, physics));
+    base.settle();
+    const Screen screen(base);
+    Columns::Cache cache;
+    Columns columns(base, cache);
+    const std::vector<Candidate> all = catalogue_candidates(model, data, base.forward().motion());
+    const auto late = std::find_if(all.begin(), all.end(), [](const Candidate &c) { return c.effect == "current_delay" && c.wheel < 0; });
+    ASSERT_NE(late, all.end());
+    Trial t = screen_candidate(*late, screen, columns);
+    EXPECT_LT(t.error_reduction, 0.2 * screen.error()); // by the step
+    scan(t, base, screen);
+    EXPECT_GT(t.error_reduction, 0.5 * screen.error());
+    EXPECT_GT(t.nonlinear_reduction, 0.3 * screen.error());
+    refit(t, base, screen);
+    EXPECT_NEAR(t.value[0], 0.11, 0.005);
+}
+
+// Wheels whose ground states none beside one that does have the assumed one.
+TEST(Creep, may_be_stated_of_one_wheel) {
+    GeneratorConfig config = rover(Soil::sand, 850015);
+    config.duration_s = 10;
+    Model one = parse_model(generator::data_sheet(config), "sheet"), all = one;
+    one.wheel[2].soil.at("reversal_speed_m_s").value = 0.005;
+    for (WheelSpec &wheel : all.wheel) wheel.soil.at("reversal_speed_m_s").value = 0.005;
+    const Dataset data = make_dataset(one, generator::generate(config));
+    const Eigen::VectorXd by_one = Forward(data).predict(make_physics(one)), by_all = Forward(data).predict(make_physics(all));
+    EXPECT_LT((by_one - by_all).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
 // At centimetres a second how rolling resistance reverses tells more than how large it is: the generator's goes as tanh(v / 8 mm/s), the

@@ -146,12 +146,22 @@ TEST(Runs, a_ground_that_the_file_states_is_that_runs) {
     EXPECT_EQ(answer.kind, "nothing") << answer.text;
 }
 
+TEST(Runs, none_is_predicted_better_where_each_that_was_left_out_is_not) {
+    const Validation better{"a.csv", 9, 3, 2, true}, worse{"b.csv", 9, 3, 3.1, true}, as_well{"c.csv", 9, 3, 3, true},
+        unseen{"d.csv", 9, 3, 2, false};
+    EXPECT_TRUE(predicts_no_run({worse, as_well}));
+    EXPECT_TRUE(predicts_no_run({worse, unseen})); // given by --validate: not what the question is of
+    EXPECT_FALSE(predicts_no_run({worse, better}));
+    EXPECT_FALSE(predicts_no_run({unseen}));
+    EXPECT_FALSE(predicts_no_run({}));
+}
+
 TEST(Runs, a_name_that_predicts_no_run_that_was_left_out_is_said_to) {
     const Logs logs{{{"sand.csv", drive(Soil::sand, 42, 0)}, {"gravel.csv", drive(Soil::gravel, 42, 1)}}};
     const std::vector<std::string> both = {"sand.csv", "gravel.csv"};
     const Session one = logs.open(parse_model(sheet(Soil::sand, 42), "sheet"), both);
     const Answer as_one = diagnose_answer(one, logs.request(both), {}, false);
-    ASSERT_EQ(as_one.kind, "named"); // a soft place where the second run begins: of this joined log it is true
+    ASSERT_FALSE(as_one.json.at("accepted").empty()); // a soft place where the second run begins: of this joined log it is true
     bool told = false;
     for (const auto &message : as_one.json.at("messages"))
         told = told || message.get<std::string>().find("no run that was left out is predicted better") == 0;
@@ -210,6 +220,22 @@ TEST(Runs, logs_of_one_name_are_told_apart_by_their_folders) {
     ASSERT_EQ(again.model.runs.size(), 2U);
     EXPECT_TRUE(std::isnan(again.model.runs[0].start_s));
     EXPECT_FALSE(std::isnan(again.model.runs[1].start_s));
+}
+
+TEST(Runs, a_name_that_two_logs_have_is_refused_and_one_file_given_twice_is_one_run) {
+    const log::Log log = drive(Soil::concrete, 31, 0);
+    const Logs logs{{{"/data/monday/log.csv", log}, {"/data/friday/log.csv", log}}};
+    const Model named = parse_model(sheet(Soil::concrete, 31) + "\n[[run]]\nlog = \"log.csv\"\n[run.soil]\nmu = 0.7\n", "sheet.toml");
+    try {
+        logs.open(named, {"/data/monday/log.csv", "/data/friday/log.csv"});
+        ADD_FAILURE() << "one ground for two logs";
+    } catch (const ModelError &error) {
+        EXPECT_EQ(error.key, "run.log") << error.what();
+        EXPECT_NE(error.mend.find("path"), std::string::npos) << error.what();
+    }
+    const Session twice = logs.open(parse_model(sheet(Soil::concrete, 31), "sheet"), {"/data/monday/log.csv", "/data/monday/log.csv"});
+    ASSERT_EQ(twice.model.runs.size(), 1U);
+    EXPECT_NO_THROW(parse_model(model_text(twice.model), "written"));
 }
 
 // Windings cool between runs, and what fades begins anew: the same drive again is predicted as at first. `from_s`: of the run, on.

@@ -39,8 +39,8 @@ struct Trial {
 // The linear step.
 Trial screen_candidate(const Candidate &candidate, const Screen &screen, Columns &columns);
 
-// The true error at a few sizes of a candidate that moves the body, the baseline's parameters following linearly: what the linear
-// step misses where the soil's curve bends, or where a missing effect has pushed the baseline far away.
+// The true error at a few sizes of a candidate that moves the body, or of a delay, the baseline's parameters following linearly: what the
+// linear step misses where the soil's curve bends, or where a missing effect has pushed the baseline far away.
 void scan(Trial &trial, Problem &base, const Screen &screen);
 
 // The baseline with the candidate in it, at nothing: its strengths are the last parameters, on the baseline's scales.

@@ -8,14 +8,18 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double resist_speed_m_s = 5e-3; // rolling resistance reverses over this speed: assumed, below any sensor's resolution
-constexpr double scrub_speed_m_s = 5e-3;  // and sideways scrub over this one, where the wheels' sideways speed is that of turning alone;
+constexpr double resist_speed_m_s = 5e-3;   // rolling resistance reverses over this speed: assumed, below any sensor's resolution
+constexpr double least_reversal_m_s = 1e-4; // below it the step is a jump to the integration
+constexpr double scrub_speed_m_s = 5e-3;    // and sideways scrub over this one, where the wheels' sideways speed is that of turning alone;
 constexpr double drift_speed_m_s =
     15e-3; // over this one where the body drifts as well: every small swerve would meet all of it otherwise; assumed
 constexpr double least_combined_m_s = 0.02; // combined slip is taken against at least this speed: assumed
 
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
 double fourth(double x) { return x * x * x * x; }
+
+// Fourth power of the speed over which a wheel's resistance reverses; of a wheel that knows none beside some that do, the assumed.
+double reversal_4(const WheelPhysics &w) { return fourth(w.reversal > 0 ? std::max(w.reversal, least_reversal_m_s) : resist_speed_m_s); }
 
 // Slips, and resistance over load, of a wheel or of four side by side. lag_1_m: the step over the relaxation length, where it lags.
 template <typename T> T slip_now(bool lags, const T &before, const T &lag_1_m, const T &rim, const T &v) {
@@ -101,7 +105,7 @@ void WheelStep::gather() {
         four.load_0.set(at, w.load > 0 ? w.load : s.load_0), four.load_per_accel.set(at, w.load > 0 ? 0 : s.load_per_accel);
         four.load_per_side.set(at, w.load > 0 ? 0 : s.load_per_side);
         four.load_per_twist.set(at, w.load > 0 ? 0 : s.load_per_twist);
-        four.lag_1_m.set(at, s.lag_1_m), four.reversal.set(at, fourth(w.reversal));
+        four.lag_1_m.set(at, s.lag_1_m), four.reversal.set(at, reversal_4(w));
         all_grip = all_grip && p_.grips_sideways[i];
         none_free = none_free && !s.free;
         all_lag = all_lag && s.sigma > 0, none_lags = none_lags && !(s.sigma > 0);
@@ -290,7 +294,7 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     // rollers roll sideways too: the resistance opposes the whole velocity of the wheel's centre
     const double speed = p_.grips_sideways[i] ? std::fabs(v) : length(v, side_v);
     const double share =
-        resist / (reverses_ ? std::sqrt(std::sqrt(fourth(speed) + fourth(p_.wheel[i].reversal))) : length(speed, resist_speed_m_s));
+        resist / (reverses_ ? std::sqrt(std::sqrt(fourth(speed) + reversal_4(p_.wheel[i]))) : length(speed, resist_speed_m_s));
     s.rolling = share * v;
     if (!p_.grips_sideways[i]) s.side = -share * side_v;
     return s.traction - s.rolling + extra;
@@ -330,7 +334,7 @@ void WheelStep::terms(std::size_t i, double v, double body_v, double &Fm, double
 
 double WheelStep::body_force(double v) const {
     const BodyPhysics &b = p_.body;
-    const double way = reverses_ ? reversing(v, fourth(p_.wheel[0].reversal)) : soft_sign(v, resist_speed_m_s);
+    const double way = reverses_ ? reversing(v, reversal_4(p_.wheel[0])) : soft_sign(v, resist_speed_m_s);
     double force = sim::law::tether_drag_N(b.tether_N_m, away_) + sim::dragged_N(b, v, way);
     if (motion_terms_) {
         Signals signals;

@@ -21,15 +21,22 @@ std::string own_name(const std::string &source, const std::vector<log::Log> &run
     while (slash != std::string::npos && slash > 0) {
         slash = source.rfind('/', slash - 1);
         const std::string name = slash == std::string::npos ? source : source.substr(slash + 1);
-        const auto named = std::count_if(runs.begin(), runs.end(), [&](const log::Log &run) { return is_named(run.source, name); });
-        if (named <= 1) return name;
+        if (std::none_of(runs.begin(), runs.end(), [&](const log::Log &run) { return run.source != source && is_named(run.source, name); }))
+            return name;
     }
     return source;
 }
 
+// The model's entry of a log; a new one where it has none. Throws ModelError where the entry's name is that of another log too.
 RunSpec &run_of(Model &model, const log::Log &log, const std::vector<log::Log> &runs) {
-    for (RunSpec &run : model.runs)
-        if (is_named(log.source, run.log)) return run;
+    for (RunSpec &run : model.runs) {
+        if (!is_named(log.source, run.log)) continue;
+        if (std::any_of(runs.begin(), runs.end(),
+                        [&](const log::Log &other) { return other.source != log.source && is_named(other.source, run.log); }))
+            throw ModelError(model.file, 0, "run.log", "\"" + run.log + "\" is the name of two of the logs",
+                             "write as much of the path there as tells them apart, such as \"" + own_name(log.source, runs) + "\"");
+        return run;
+    }
     RunSpec run;
     run.log = own_name(log.source, runs);
     model.runs.push_back(std::move(run));

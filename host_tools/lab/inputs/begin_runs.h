@@ -12,7 +12,8 @@
 namespace traction::lab {
 
 // `start_s`: of each run, in the data set's time (join_runs.h). Runs of the model that no log here is of are left as they are, out of it. A
-// run's file is told from another's by as much of its path as that needs.
+// run's file is told from another's by as much of its path as that needs; a file that is given twice is one run. Throws ModelError where a
+// name in the model's file is that of two logs.
 void begin_runs(Model &model, const std::vector<log::Log> &runs, const std::vector<double> &start_s);
 
 } // namespace traction::lab
