@@ -41,7 +41,7 @@ const shown = (page) => page.$eval('.toolbar output', (e) => e.textContent);
 const sectionIds = (page) => page.$$eval('main > section', (all) => all.map((e) => e.id));
 const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-for (const name of ['every_effect', 'check', 'compare', 'diagnose', 'demo', 'gaps', 'compared', 'figures', 'empty', 'odd', 'large', 'real_compare', 'real_check', 'real_speed', 'real_history'])
+for (const name of ['every_effect', 'check', 'compare', 'diagnose', 'demo', 'gaps', 'runs', 'compared', 'figures', 'empty', 'odd', 'large', 'real_compare', 'real_check', 'real_speed', 'real_history'])
   claim(`${name}: opens from disk without an error and without a request`, async () => {
     const { page, trouble } = await open(name);
     assert.deepEqual(trouble, []);
@@ -89,7 +89,7 @@ claim('every effect of the catalogue has its drawing where it is named, with wor
 });
 
 for (const [width, colorScheme] of [[420, 'light'], [1920, 'dark']])
-  for (const name of ['demo', 'check', 'figures', 'real_compare', 'compared', 'every_effect'])
+  for (const name of ['demo', 'check', 'figures', 'runs', 'real_compare', 'compared', 'every_effect'])
     claim(`${name} at ${width} px, ${colorScheme}: axe finds nothing, nothing is cut`, async () => {
       const { page, trouble } = await open(name, { viewport: { width, height: 900 }, colorScheme });
       await page.$$eval('details', (all) => all.forEach((e) => { e.open = true; }));
@@ -200,6 +200,14 @@ claim('real_speed: a table without a word in it is not there', async () => {
 claim('compare: parts that the result lacks are absent', async () => {
   const { page } = await open('compare');
   assert.deepEqual(await sectionIds(page), ['verdict', 'ladder', 'regimes', 'balances', 'details']);
+});
+
+claim('several runs: what differs between them stands beside how they are predicted, and what agrees does not', async () => {
+  const { page } = await open('runs');
+  const said = await page.textContent('#validation');
+  assert.match(said, /of 2 numbers of the machine 1 differs between the runs/);
+  assert.match(said, /soil\.shear_slip.*0\.292.*0\.0918.*5\.5/s);
+  assert.ok(!said.includes('motor.resistance_ohm'), said);
 });
 
 claim('a worst window, a drag and the keys zoom both plots alike, and the whole log comes back', async () => {

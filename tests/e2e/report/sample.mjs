@@ -109,6 +109,10 @@ cut.nrmse_after = 1.1;
 cut.gaps = [{ t0_s: 40, t1_s: 55, rows: 30 }, { t0_s: 70, t1_s: 80, rows: 20 }, { t0_s: 80.5, t1_s: 90, rows: 19 }, { t0_s: 110, t1_s: 120, rows: 20 }];
 const gaps = { ...compare, title: 'A log with gaps', balances: [cut] };
 
+const runs = { ...compare, verb: 'fit', title: 'Two runs, one machine', balances: [cut],
+  validation: [{ log: 'sand.csv', stated: 7.5, fitted: 26.5, result: 26.4, left_out: true }, { log: 'gravel.csv', stated: 26.6, fitted: 25.3, result: 25.3, left_out: true }],
+  between_runs: [{ parameter: 'soil.shear_slip', unit: '1', value: [0.292, 0.0918], half_width: [0.0705, 0.0076], times: 5.5, differs: true },
+    { parameter: 'motor.resistance_ohm', unit: 'ohm', value: [3.1, 3.2], half_width: [0.1, 0.1], times: 1.4, differs: false }] };
 const demo = { ...diagnose, title: 'demo', demo: { seed: 1, hidden: { name: 'slip_sinkage' }, hidden_text: 'slip_sinkage: coefficient = 0.15', named: ['slip_sinkage'], right: true, judgement: 'the lab was right' } };
 const method = { schema: 'traction.figures/1', title: 'A verdict on a method', figures: [{ id: 'table-3', title: 'Table III', paper: '5.1 N', paper_here: '4.13 N', ours: '5.07 N', verdict: 'not reproduced', svg: '@SVG@' },
   { id: 'fig-10', title: 'Fig. 10', paper: 'mean right', paper_here: '0.18 m/s', ours: '0.175 m/s', verdict: 'reproduced', svg: '@SVG@' }] };
@@ -127,5 +131,5 @@ const check = { schema: 'traction.check/1', log: 'sand_identification.csv', map:
 const [out, catalogue] = process.argv.slice(2); // catalogue: what `traction effects --json` wrote
 const every_effect = { ...diagnose, title: 'Every effect', accepted: [], candidates: JSON.parse(readFileSync(catalogue, 'utf8')).effects.map((e, i) => ({ ...candidate(i + 1, e.name, 0, 'no_help', {}), title: e.title })) };
 mkdirSync(out, { recursive: true });
-for (const [name, result] of Object.entries({ every_effect, check, compare, diagnose, odd, large, figures, gaps, demo, compared, method, empty: { schema: 'traction.lab/1' } }))
+for (const [name, result] of Object.entries({ every_effect, check, compare, diagnose, odd, large, figures, gaps, runs, demo, compared, method, empty: { schema: 'traction.lab/1' } }))
   writeFileSync(`${out}/${name}.json`, JSON.stringify(result));

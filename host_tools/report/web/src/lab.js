@@ -14,11 +14,20 @@ function messages(result) {
   return said.length ? more('messages', 'What the lab says about the data', h('ul', {}, said.map((m) => h('li', {}, m)))) : null;
 }
 
+// Of several runs, each fitted by itself: what differs beyond chance is no constant of the machine.
+function betweenRuns(result) {
+  const all = list(result.between_runs), apart = all.filter((b) => b.differs);
+  if (!all.length) return null;
+  return [h('p', {}, `Each run was also fitted by itself: of ${all.length} numbers of the machine ${apart.length || 'none'} differ${apart.length === 1 ? 's' : ''} between the runs by more than chance and their intervals allow.`),
+    apart.length ? table('Numbers that differ between the runs', [{ head: 'parameter' }, { head: 'by each run [95 %]' }, { head: 'times what the intervals allow', number: true }],
+      apart.map((b) => [b.parameter, b.value.map((v, i) => h('div', {}, sized({ value: v, unit: b.unit, low: v - b.half_width[i], high: v + b.half_width[i] }))), even(b.times, 1)])) : null];
+}
+
 function validation(result) {
-  const all = list(result.validation);
-  return all.length ? section('validation', 'Other runs', 'On runs that nothing was fitted to',
-    table('Error as a multiple of the sensor noise', [{ head: 'run' }, { head: 'model as given', number: true }, { head: 'fitted, no effects', number: true }, { head: 'result', number: true }],
-      all.map((v) => [v.log, even(v.stated, 2), even(v.fitted, 2), even(v.result, 2)]))) : null;
+  const all = list(result.validation), apart = betweenRuns(result);
+  return all.length || apart ? section('validation', 'Other runs', 'On runs that nothing was fitted to',
+    all.length ? table('Error as a multiple of the sensor noise', [{ head: 'run' }, { head: 'model as given', number: true }, { head: 'fitted, no effects', number: true }, { head: 'result', number: true }],
+      all.map((v) => [v.log, even(v.stated, 2), even(v.fitted, 2), even(v.result, 2)])) : null, apart) : null;
 }
 
 function steps(result) {
