@@ -98,17 +98,22 @@ class MachineScale {
     std::map<std::string, double> by_unit_;
 };
 
+// The most turns that a wheel makes.
+double turns_of(const Dataset &data) {
+    double turns = 0;
+    for (const WheelInput &w : data.wheel) {
+        const auto [low, high] = std::minmax_element(w.angle_rad.begin(), w.angle_rad.end());
+        if (low != high) turns = std::max(turns, (*high - *low) / (2 * std::numbers::pi));
+    }
+    return turns;
+}
+
 // A ripple needs turns to show, a delay changes that come late.
 bool can_show(const std::string &effect, const std::vector<std::pair<std::string, double>> &shape, const Dataset &data) {
     if (data.count < 3) return true; // no log: a drive is planned
     if (effect == "torque_ripple") {
-        double turns = 0;
-        for (const WheelInput &w : data.wheel) {
-            const auto [low, high] = std::minmax_element(w.angle_rad.begin(), w.angle_rad.end());
-            turns = std::max(turns, (*high - *low) / (2 * std::numbers::pi));
-        }
         const double order = shape.empty() ? 1 : std::fabs(shape[0].second);
-        return turns > std::max(1.0, 3 / order);
+        return turns_of(data) > std::max(1.0, 3 / order);
     }
     if (!effect.ends_with("_delay") && effect != "accel_lag") return true;
     std::size_t most = 0;
@@ -197,6 +202,8 @@ constexpr ShapeKind shape_kinds[] = {
     {TermTarget::wheel_torque, Axis::current, "torque(motor current)"},
     {TermTarget::wheel_friction, Axis::abs_wheel_speed, "friction(wheel speed)"},
     {TermTarget::voltage, Axis::voltage, "voltage(motor voltage)"},
+    {TermTarget::wheel_friction, Axis::turn, "friction(wheel angle)"},
+    {TermTarget::wheel_torque, Axis::turn, "torque(wheel angle)"},
 };
 
 // Waves of the ground's strength along the path, at each wheel's place or the body's: half a cycle over the path apart.
@@ -301,6 +308,7 @@ std::vector<Candidate> shape_candidates(const Dataset &data, const Motion &motio
                                         const std::vector<std::vector<double>> &current_A) {
     std::vector<Candidate> list;
     for (const ShapeKind &kind : shape_kinds) {
+        if (kind.axis == Axis::turn && !(turns_of(data) > 3)) continue;
         Candidate c;
         c.effect = kind.name;
         c.free_shape = true;
@@ -381,7 +389,7 @@ EffectUse effect_of(const Candidate &candidate, const std::vector<double> &stren
 
 std::string shape_expression(const Candidate &c, const std::vector<double> &y) {
     static const char *names[] = {"t",      "w", "v", "s", "Fn", "theta", "x",  "a",      "I", "v/sqrt(v*v+1e-4)",
-                                  "abs(v)", "r", "X", "d", "Io", "Ia",    "Is", "abs(w)", "u"};
+                                  "abs(v)", "r", "X", "d", "Io", "Ia",    "Is", "abs(w)", "u", "atan2(sin(theta),cos(theta))"};
     const std::string x = names[static_cast<int>(c.axis)];
     char buffer[160];
     if (c.order > 0) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace traction::lab {
@@ -44,6 +45,8 @@ const std::vector<double> *axis_series(Axis axis, const Dataset &data, const Mot
         return &data.wheel[wheel].travel_rad;
     case Axis::place:
         return &motion.path_m;
+    case Axis::turn:
+        return &data.wheel[wheel].angle_rad;
     case Axis::time:
     case Axis::angle:
     case Axis::other_current:
@@ -135,6 +138,10 @@ std::vector<double> knots_on(Axis axis, const std::vector<double> &values, bool 
         return knots;
     }
     if (axis == Axis::direction) return {-0.9, 0, 0.9};
+    if (axis == Axis::turn) { // a tooth is some 40 degrees of a turn
+        for (int i = -6; i <= 6; ++i) knots.push_back(std::numbers::pi / 6 * i);
+        return knots;
+    }
     if (of_others(axis) && !(high - low > 1e-6)) return {};
     if (of_others(axis))
         return low < 0 && high > 0 ? std::vector<double>{low, 0, high} : std::vector<double>{low, 0.5 * (low + high), high};

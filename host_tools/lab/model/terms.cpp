@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace traction::lab {
@@ -32,9 +33,10 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> ax
                                                                                             "current of the motors of its axle (model)",
                                                                                             "current of the motors of its side (model)",
                                                                                             "absolute wheel speed",
-                                                                                            "motor voltage (duty times battery)"};
+                                                                                            "motor voltage (duty times battery)",
+                                                                                            "wheel angle within a turn"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Axis::count)> axis_units = {
-    "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s", "rad/s", "m", "rad", "A", "A", "A", "rad/s", "V"};
+    "s", "rad/s", "m/s", "1", "N", "rad", "m", "m/s^2", "A", "1", "m/s", "rad/s", "m", "rad", "A", "A", "A", "rad/s", "V", "rad"};
 
 class Piecewise : public Term {
   public:
@@ -239,6 +241,8 @@ double axis_value(Axis axis, const Signals &s) {
         return std::fabs(s.w);
     case Axis::voltage:
         return s.u;
+    case Axis::turn:
+        return std::remainder(s.theta, 2 * std::numbers::pi);
     case Axis::count:
         break;
     }

@@ -86,6 +86,7 @@ enum class Axis {
     side_current,
     abs_wheel_speed,
     voltage,
+    turn, // wheel angle within its turn, -pi to pi, from where the log begins
     count
 };
 std::string_view axis_name(Axis axis);
