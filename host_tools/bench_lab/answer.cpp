@@ -76,6 +76,7 @@ json ask_lab(const std::string &log_file, const std::string &model_file, const s
                              {"balance", found.unknown->balance},
                              {"gain", finite(found.unknown->gain)},
                              {"expression", found.unknown->expression}};
+    if (found.unknown && !found.unknown->instead_of.empty()) answer["unknown"]["instead_of"] = found.unknown->instead_of;
     for (const auto &[effect, why] : found.not_excited) answer["not_excited"].push_back({{"effect", effect}, {"why", why}});
     return answer;
 }

@@ -108,14 +108,14 @@ double turns_of(const Dataset &data) {
     return turns;
 }
 
-// A ripple needs turns to show, a delay changes that come late.
+// A ripple needs turns to show, what lags changes that come late.
 bool can_show(const std::string &effect, const std::vector<std::pair<std::string, double>> &shape, const Dataset &data) {
     if (data.count < 3) return true; // no log: a drive is planned
     if (effect == "torque_ripple") {
         const double order = shape.empty() ? 1 : std::fabs(shape[0].second);
         return turns_of(data) > std::max(1.0, 3 / order);
     }
-    if (!effect.ends_with("_delay") && effect != "accel_lag") return true;
+    if (!effect.ends_with("_delay") && effect != "accel_lag" && effect != "relaxation_length") return true;
     std::size_t most = 0;
     for (const WheelInput &w : data.wheel) { // changes of the wheel's speed by a tenth of its largest within a fifth of a second
         double largest = 0;

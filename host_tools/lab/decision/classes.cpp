@@ -1,5 +1,7 @@
 #include "classes.h"
 
+#include "sim/physics/effects/catalogue.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,6 +47,22 @@ void remove_class(Diagnosis &d, const std::string &label) {
             else if (*r.class_index > gone)
                 --*r.class_index;
         }
+}
+
+void join_class(Diagnosis &d, std::size_t i, const std::string &member) {
+    CandidateResult &a = d.accepted[i];
+    const std::string label = a.candidate.label();
+    auto found = std::find_if(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) { return c.members.front() == label; });
+    if (found == d.classes.end()) {
+        ConfoundedClass c;
+        c.members.push_back(label);
+        if (const sim::Effect *effect = sim::find_effect(a.candidate.effect)) c.separate_by = effect->reveals;
+        found = d.classes.insert(found, std::move(c));
+    }
+    found->members.push_back(member);
+    a.verdict = "class", a.class_index = static_cast<int>(found - d.classes.begin());
+    for (CandidateResult &r : d.ranking)
+        if (r.candidate.label() == label) r.verdict = a.verdict, r.class_index = a.class_index;
 }
 
 void separate_accepted(Diagnosis &d) {

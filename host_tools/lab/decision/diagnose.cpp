@@ -7,6 +7,7 @@
 #include "host_tools/lab/fit/screen.h"
 #include "manner.h"
 #include "record.h"
+#include "rival.h"
 #include "rounds.h"
 #include "shape_refit.h"
 #include "shape_rules.h"
@@ -59,13 +60,14 @@ class Search {
             settle_last(left);
             return left;
         });
-        refine_shapes(problem);
         // it has stood against names; told it is only where its own fit bears it
         if (d_.unknown && !holds_refitted(*d_.unknown->score, problem)) {
             d_.messages.push_back(d_.unknown->balance +
                                   " seemed to explain a part, but fitted in full it does not predict what was left out: not told");
             d_.unknown.reset();
         }
+        if (options_.shapes && !d_.unknown) face_rivals(first, problem);
+        refine_shapes(problem);
         d_.limits = limits_of(problem);
         conclude(d_);
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
@@ -353,6 +355,23 @@ class Search {
             }
             again = again && !d_.accepted.empty();
             if (d_.accepted.empty() && !named.empty()) d_.unknown = *alone;
+        }
+    }
+
+    // Each name against the shapes that would stand in its place, fitted in full: one that does better takes it, one that does as well is
+    // told beside it.
+    void face_rivals(const Problem &first, Problem &last) {
+        for (std::size_t i = d_.accepted.size(); i-- > 0 && !d_.unknown;) {
+            const CandidateResult one = d_.accepted[i];
+            const bool alone = d_.accepted.size() == 1;
+            const std::optional<Rival> rival = rival_of(one.candidate, one.sheet_alone.has_value(), last,
+                                                        alone ? first : fitted(model_without(d_.model, one.candidate), &last), options_);
+            if (!rival) continue;
+            d_.unknown = describe(rival->shape, rival->error);
+            if (rival->better)
+                reject_as_nearest(i, last);
+            else
+                d_.unknown->instead_of = one.candidate.label(), join_class(d_, i, d_.unknown->balance);
         }
     }
 

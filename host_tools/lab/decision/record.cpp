@@ -111,7 +111,7 @@ void conclude(Diagnosis &d) {
     if (d.accepted.empty())
         d.kind = d.unknown ? "unknown" : "nothing";
     else
-        d.kind = d.unknown ? "partial" : !d.classes.empty() ? "class" : "named";
+        d.kind = d.unknown && d.unknown->instead_of.empty() ? "partial" : !d.classes.empty() ? "class" : "named";
     d.text = verdict_text(d);
 }
 

@@ -35,7 +35,7 @@ std::string verdict_text(const Diagnosis &d) {
             text += (i == 0 ? " " : i + 1 == c.members.size() ? " from " : ", ") + c.members[i];
         text += '.';
     }
-    if (d.unknown) {
+    if (d.unknown && d.unknown->instead_of.empty()) {
         if (!text.empty())
             text += " That explains it only partly:";
         else

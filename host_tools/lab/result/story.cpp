@@ -82,7 +82,7 @@ std::string missing(const Diagnosis &d) {
     std::string text;
     for (const CandidateResult &a : d.accepted) text += (text.empty() ? "" : " And ") + titled(a.candidate) + ": " + size_of(a) + ".";
     text += class_words(d);
-    if (d.unknown)
+    if (d.unknown && d.unknown->instead_of.empty())
         text += (text.empty() ? "" : " ") + std::string("Something that is in no catalogue: ") + d.unknown->balance +
                 ", which depends on " + d.unknown->variable + ".";
     if (!d.nearest.empty()) text += " Nearest in the catalogue, not the cause: " + joined(d.nearest, ", ") + ".";
@@ -159,7 +159,8 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
         story.headline += ". " + d.text;
     else if (!d.accepted.empty())
         story.headline += ". " + joined(names_of(d), " and ") + (d.accepted.size() > 1 ? " explain " : " explains ") +
-                          (d.unknown || explained(d) < most_of_it ? "a part of it. " : "it. ") + story.left;
+                          ((d.unknown && d.unknown->instead_of.empty()) || explained(d) < most_of_it ? "a part of it. " : "it. ") +
+                          story.left;
     else if (d.unknown)
         story.headline += ". No effect of the catalogue explains it: it depends on " + d.unknown->variable + ".";
     else

@@ -112,7 +112,11 @@ std::string diagnosis_text(const Diagnosis &d, bool details) {
         text += wrapped("cannot be told apart in this log:" + members, 2);
         text += wrapped("  to separate them: " + c.separate_by, 2);
     }
-    if (d.unknown)
+    if (d.unknown && !d.unknown->instead_of.empty())
+        text += wrapped("or, in no catalogue, instead of " + d.unknown->instead_of + ": " + d.unknown->target + " depends on " +
+                            d.unknown->variable + ": " + d.unknown->expression,
+                        2);
+    else if (d.unknown)
         text += wrapped("unexplained: " + d.unknown->target + " depends on " + d.unknown->variable + ": " + d.unknown->expression, 2);
     if (!d.not_excited.empty()) {
         std::string list;

@@ -1,0 +1,147 @@
+#include "rival.h"
+
+#include "shape_refit.h"
+#include "evidence.h"
+#include "shape_scores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr int most_refits = 4;
+constexpr double half_of_it = 0.5;     // of the name's fall, that a shape explains by its linear step at least
+constexpr double notably_more = 1.1;   // as the name, that a shape must explain to take its place
+constexpr double sure_errors = 2;      // standard errors over blocks
+constexpr double same_cosine = 0.98;   // assumed
+constexpr double least_beside = 0.1;   // of the name's fall, that it must still explain beside the shape to be needed there: assumed
+
+const std::vector<Axis> &own_axes(const std::string &effect) {
+    static const std::vector<Axis> none, speeds = {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::direction},
+                                         along = {Axis::path, Axis::place}, of_slip = {Axis::slip},
+                                         of_current = {Axis::current, Axis::load, Axis::slip};
+    static const std::map<std::string_view, std::vector<Axis>> table = {
+        {"coulomb_friction", {Axis::direction, Axis::wheel_speed, Axis::abs_wheel_speed}},
+        {"viscous_friction", speeds},
+        {"stribeck_friction", speeds},
+        {"churning_friction", speeds},
+        {"reverse_friction", speeds},
+        {"gear_speed_loss", {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::current, Axis::load, Axis::slip}},
+        {"mesh_loss", of_current},
+        {"torque_constant", of_current},
+        {"current_gain", of_current},
+        {"wear_in", {Axis::time}},
+        {"winding_heating", {Axis::time, Axis::current}},
+        {"accel_drift", {Axis::time}},
+        {"torque_ripple", {Axis::angle, Axis::turn}},
+        {"backlash", {Axis::reversal, Axis::angle}},
+        {"wiring_resistance", {Axis::current}},
+        {"bridge_dead_time", {Axis::current, Axis::voltage}},
+        {"shared_lead", {Axis::other_current, Axis::axle_current, Axis::side_current, Axis::current}},
+        {"slip_sinkage", of_slip},
+        {"shear_peak", of_slip},
+        {"shear_stiffness", of_slip},
+        {"relaxation_length", of_slip},
+        {"sliding_speed_loss", {Axis::slip, Axis::speed, Axis::abs_speed, Axis::wheel_speed, Axis::abs_wheel_speed}},
+        {"speed_resistance", speeds},
+        {"squared_resistance", speeds},
+        {"fluid_drag", speeds},
+        {"radar_scale", speeds},
+        {"encoder_missed", {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::slip}},
+        {"wheel_radius", {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::slip}},
+        {"soil_patch", along},
+        {"soil_gradient", along},
+        {"resistance_patch", along},
+        {"multi_pass", along},
+        {"tether_drag", along},
+        {"lateral_scrub", {Axis::yaw_rate}},
+        {"load_transfer", {Axis::accel, Axis::load}},
+        {"accel_scale", {Axis::accel}},
+        {"accel_tilt", {Axis::accel}},
+        {"radar_pitch", {Axis::accel}},
+    };
+    const auto found = table.find(effect);
+    return found == table.end() ? none : found->second;
+}
+
+// Squares of blocks left out, with what is gained by smoothing the encoders' scatter put back.
+HeldOut sharp(const Problem &with, const Problem &less, unsigned touched, const Scatter &scatter) {
+    HeldOut held = held_out(with);
+    if ((touched & stage_motion) == 0) return held;
+    held.residual = (held.residual.cwiseAbs2() + scatter.smoothed_by(less.data(), with.physics())).cwiseMax(0.0).cwiseSqrt();
+    return held;
+}
+
+bool surely(const Fall &fall) { return fall.sum > sure_errors * fall.error; }
+
+// Over slip and in waves along the path the ground of any log gives a shape something to explain (shape_rules.h).
+bool absorbs_all(const Candidate &c) { return c.axis == Axis::slip || (c.order > 0 && c.target == TermTarget::soil_strength); }
+
+// What both change in the log, beside all that the model may retune: the same, so one is how the other looks.
+bool alike(const Eigen::VectorXd &law, const Eigen::VectorXd &shape) {
+    const double norm = law.norm() * shape.norm();
+    return norm > 0 && std::fabs(law.dot(shape)) > same_cosine * norm;
+}
+
+} // namespace
+
+bool is_own_axis(const std::string &effect, Axis axis) {
+    const std::vector<Axis> &own = own_axes(effect);
+    return std::find(own.begin(), own.end(), axis) != own.end();
+}
+
+std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Problem &last, Problem less, const DiagnoseOptions &options) {
+    const Scatter scatter(less);
+    const Eigen::VectorXd weight = less.row_scale.cwiseAbs2(), noise = noise_weight(less);
+    const HeldOut left = held_out(less);
+    Problem with = last;
+    with.keep_scales(less);
+    with.jacobian.resize(0, 0);
+    with.gauss_newton(2);
+    const HeldOut by_name = sharp(with, less, named.touched, scatter);
+    const Fall own = fall_between(left, by_name, weight);
+    if (!by_sheet && !own.sure()) return std::nullopt; // precise rows speak for it, which these squares hardly see
+    const double relief = by_sheet ? spared_by(less, with) : 0;
+    Eigen::MatrixXd of_name;
+    const Problem without = without_effect(with, named, of_name);
+    const Screen screen(less);
+    const Eigen::VectorXd law = screen.projected(with.residual - without.residual);
+    std::optional<Rival> best;
+    double most = 0;
+    int refits = 0;
+    std::set<std::tuple<TermTarget, Axis, bool>> seen;
+    for (ShapeScore &s : all_shapes(less, screen, true)) {
+        const Candidate &c = s.candidate;
+        if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > half_of_it * own.sum)) continue;
+        if (absorbs_all(c) || is_own_axis(named.effect, c.axis)) continue;
+        if (refits >= most_refits) break;
+        if (!seen.insert({c.target, c.axis, is_straight(c)}).second) continue;
+        ++refits;
+        const Problem shaped = with_shape(less, s);
+        const HeldOut by_shape = sharp(shaped, less, c.touched, scatter);
+        const Fall fall = fall_between(left, by_shape, weight), lead = fall_between(by_name, by_shape, weight),
+                   noise_lead = fall_between(by_name, by_shape, noise);
+        const bool better = surely(lead) && fall.sum > notably_more * own.sum;
+        const bool as_well = surely(fall) && lead.sum > -lead.error && -noise_lead.sum < sure_errors * noise_lead.error;
+        const bool relieves = !by_sheet || spared_by(less, shaped) >= relief;
+        if (!(better || as_well) || !relieves) continue;
+        if (!better && alike(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
+        const Problem both = with_shape(with, s);
+        const Fall beside = fall_between(by_shape, sharp(both, less, named.touched | c.touched, scatter), weight);
+        const bool needed = (surely(beside) && beside.sum > (better ? half_of_it : least_beside) * own.sum) ||
+                            (by_sheet && spared_by(shaped, both) > options.least_prior_reduction);
+        if (needed || (best && (best->better > better || !(fall.sum > most)))) continue;
+        best = Rival{std::move(s), better, screen.heldout_error()};
+        most = fall.sum;
+    }
+    return best;
+}
+
+} // namespace traction::lab

@@ -1,0 +1,28 @@
+// rival.h - a name against the structure-free shapes that would stand in its place, each fitted in full: does one do better, or as well?
+//
+// find_unknown() (shapes.h) compares by linear steps, which say too little of what bends: a grip that fades by a third in time was told as
+// a soil that changes along the way, and a resistance to turning as wheels that dig in.
+#pragma once
+
+#include "candidate.h"
+#include "shape_rules.h"
+
+#include <optional>
+
+namespace traction::lab {
+
+struct Rival {
+    ShapeScore shape;
+    bool better = false; // surely; else it does as well
+    double error = 0;    // held-out squares without either, of which the shape explains its part
+};
+
+// True where the law is a function of what the shape is drawn over: then the shape is how the law looks, and no other cause.
+bool is_own_axis(const std::string &effect, Axis axis);
+
+// `last`: the fitted model with the name in it; `less`: the fitted model without it, which stands in for no other name. Of the shapes
+// over what the law does not depend on, those that explain most by a linear step are fitted; one that is not needed beside the name, nor
+// the name beside it, is a rival.
+std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Problem &last, Problem less, const DiagnoseOptions &options);
+
+} // namespace traction::lab
