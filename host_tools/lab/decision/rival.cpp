@@ -1,7 +1,7 @@
 #include "rival.h"
 
-#include "shape_refit.h"
 #include "evidence.h"
+#include "shape_refit.h"
 #include "shape_scores.h"
 
 #include <algorithm>
@@ -17,11 +17,11 @@ namespace traction::lab {
 namespace {
 
 constexpr int most_refits = 4;
-constexpr double half_of_it = 0.5;     // of the name's fall, that a shape explains by its linear step at least
-constexpr double notably_more = 1.1;   // as the name, that a shape must explain to take its place
-constexpr double sure_errors = 2;      // standard errors over blocks
-constexpr double same_cosine = 0.98;   // assumed
-constexpr double least_beside = 0.1;   // of the name's fall, that it must still explain beside the shape to be needed there: assumed
+constexpr double half_of_it = 0.5;   // of the name's fall, that a shape explains by its linear step at least
+constexpr double notably_more = 1.1; // as the name, that a shape must explain to take its place
+constexpr double sure_errors = 2;    // standard errors over blocks
+constexpr double same_cosine = 0.98; // assumed
+constexpr double least_beside = 0.1; // of the name's fall, that it must still explain beside the shape to be needed there: assumed
 
 const std::vector<Axis> &own_axes(const std::string &effect) {
     static const std::vector<Axis> none, speeds = {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::direction},
@@ -33,7 +33,8 @@ const std::vector<Axis> &own_axes(const std::string &effect) {
         {"stribeck_friction", speeds},
         {"churning_friction", speeds},
         {"reverse_friction", speeds},
-        {"gear_speed_loss", {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::current, Axis::load, Axis::slip}},
+        {"gear_speed_loss",
+         {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::current, Axis::load, Axis::slip}},
         {"mesh_loss", of_current},
         {"torque_constant", of_current},
         {"current_gain", of_current},
@@ -69,6 +70,19 @@ const std::vector<Axis> &own_axes(const std::string &effect) {
     };
     const auto found = table.find(effect);
     return found == table.end() ? none : found->second;
+}
+
+// The shape's target is what the law changes by a constant: along any axis, a shape may be no more than that constant.
+bool is_constant_of(const std::string &effect, TermTarget target) {
+    static const std::map<std::string_view, TermTarget> table = {
+        {"rolling_resistance", TermTarget::rolling}, {"coulomb_friction", TermTarget::wheel_friction},
+        {"radar_scale", TermTarget::radar},          {"torque_constant", TermTarget::motor_constant},
+        {"current_gain", TermTarget::current},       {"wiring_resistance", TermTarget::resistance},
+        {"camera_scale", TermTarget::camera},        {"accel_bias", TermTarget::accel},
+        {"shear_stiffness", TermTarget::shear_slip},
+    };
+    const auto found = table.find(effect);
+    return found != table.end() && found->second == target;
 }
 
 // Squares of blocks left out, with what is gained by smoothing the encoders' scatter put back.
@@ -132,6 +146,7 @@ std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Probl
         const bool as_well = surely(fall) && lead.sum > -lead.error && -noise_lead.sum < sure_errors * noise_lead.error;
         const bool relieves = !by_sheet || spared_by(less, shaped) >= relief;
         if (!(better || as_well) || !relieves) continue;
+        if (!better && is_constant_of(named.effect, c.target)) continue;
         if (!better && alike(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
         const Problem both = with_shape(with, s);
         const Fall beside = fall_between(by_shape, sharp(both, less, named.touched | c.touched, scatter), weight);
