@@ -17,7 +17,7 @@ Evidence evidence_of(const Candidate &candidate, const Problem &before, const He
                      const HeldOut &left_with) {
     Evidence out = falls_of(before, left_before, left_with);
     if ((candidate.touched & stage_motion) == 0) return out;
-    const Scatter scatter(before);
+    const Scatter scatter(before, &with);
     const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();
     const double least = of_scatter / 3 * scatter.share * before.residual.cwiseAbs2().dot(weight);
     const auto take_off = [&](const Problem &fit) {

@@ -80,12 +80,13 @@ class Solver {
         most_ /= p_.body.mass;
     }
 
-    void prepare(std::size_t k, const Vector3d &right, double share, double v_before, double accel_before, double path, double away) {
+    void prepare(std::size_t k, const Vector3d &right, double share, double v_before, double accel_before, double path, double away,
+                 double pull) {
         step_.prepare(k, v_before, accel_before, path, away);
         right_ = right;
         implicit_step_ = share * data_.step_s;
         grade_ = step_.grade_accel();
-        gyro_ = data_.yaw_rate_rad_s.empty() ? 0 : data_.yaw_rate_rad_s[k];
+        pull_ = pull;
         centre_ = v_before;
     }
 
@@ -209,7 +210,7 @@ class Solver {
             const double along = step_.body_force(speed);
             force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
         }
-        return detail::rate_of(force, q, grade_, gyro_, p_, freedom_);
+        return detail::rate_of(force, q, grade_, pull_, p_, freedom_);
     }
 
     static bool converged(const Vector3d &f) { return std::fabs(f[0]) < 1e-9 && std::fabs(f[1]) < 1e-9 && std::fabs(f[2]) < 1e-8; }
@@ -265,7 +266,7 @@ class Solver {
     std::array<Vector3d, most_wheels> force_{};
     std::array<WheelStep::State, most_wheels> found_; // at the step's end, while its derivatives are taken
     Eigen::Vector2d grade_ = Eigen::Vector2d::Zero();
-    double implicit_step_ = 0, gyro_ = 0, most_ = 0, centre_ = 0;
+    double implicit_step_ = 0, pull_ = 0, most_ = 0, centre_ = 0;
 };
 
 // whole: not the tractions alone, which are all that a plain prediction reads.
@@ -300,7 +301,8 @@ void integrate_free(const Dataset &data, const Physics &p, Motion &m, const Moti
         Vector3d right = k < 2 ? q : Vector3d((4 * q - before) / 3);
         if (!freedom.yaw) right[2] = given;
         const double v_before = q[0], accel_before = accel, path_before = path, away_before = away;
-        solver.prepare(k, right, k < 2 ? 1.0 : 2.0 / 3, v_before, accel_before, path_before, away_before);
+        solver.prepare(k, right, k < 2 ? 1.0 : 2.0 / 3, v_before, accel_before, path_before, away_before,
+                       detail::pull_of(data, m.yaw_rate_rad_s, k, freedom));
         const Vector3d guessed = guess != nullptr ? Vector3d(guess->v_m_s[k], guess->vy_m_s[k], guess->yaw_rate_rad_s[k]) : q;
         Vector3d found =
             guess != nullptr ? Vector3d(guessed + 2 * shift - shift_before) : Vector3d(q + data.step_s * Vector3d(accel, 0, 0));

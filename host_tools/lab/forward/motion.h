@@ -2,9 +2,9 @@
 //
 //   q_k = 4/3 q_{k-1} - 1/3 q_{k-2} + 2/3 h rate(q_k)     second-order backward differences (Gear 1971), L-stable: the soil is stiff  (1)
 //   rate = (Fx/M + r vy, Fy/M - r vx, Mz/Izz)             Euler's equations in the body's frame; vy = 0 for longitudinal motion     (2)
-// With a gyro: Mz/Izz + observer_1_s * (gyro - yaw rate). Where all wheels slide nothing else holds the heading, and uneven
-// ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull has no effect.
-// Neighbours of a known motion by one linear recursion, tangent.cpp:
+// With a gyro: Mz/Izz + observer_1_s * (gyro - yaw rate), both of Dataset::yaw_late steps ago. Where all wheels slide nothing else holds
+// the heading, and uneven ground would carry the model's yaw rate away; where they grip the soil is a hundred times stiffer, and the pull
+// has no effect. Neighbours of a known motion by one linear recursion, tangent.cpp:
 //   dq_k = (I - 2/3 h A_k)^-1 (4/3 dq_{k-1} - 1/3 dq_{k-2} + 2/3 h (d rate + rate_a da_{k-1} + rate_x dx_{k-1} + rate_s ds_{k-1}))      (3)
 // where A = d rate/dq, d rate is what the moved parameters change at the known motion, a acceleration, x path, s lagging slips (along and
 // across).
@@ -89,11 +89,18 @@ Freedom freedom_of(const Dataset &data, const Physics &physics);
 
 inline constexpr double observer_1_s = 3; // forgets in 0.3 s: assumed
 
-// (2) from the sum of forces; grade: gravity along the slope, forward and left; gyro: the measured yaw rate, for the observer.
-inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, const Eigen::Vector2d &grade, double gyro,
+// By which the gyro draws the yaw rate at step k [rad/s^2]; `yaw_rate_rad_s`: this motion's, as far as it is known.
+inline double pull_of(const Dataset &data, const std::vector<double> &yaw_rate_rad_s, std::size_t k, Freedom freedom) {
+    if (!freedom.observed || k < data.yaw_late || data.yaw_rate_rad_s.empty()) return 0;
+    const std::size_t at = k - data.yaw_late;
+    return observer_1_s * (data.yaw_rate_rad_s[at] - yaw_rate_rad_s[at]);
+}
+
+// (2) from the sum of forces; grade: gravity along the slope, forward and left; pull: pull_of().
+inline Eigen::Vector3d rate_of(const Eigen::Vector3d &force, const Eigen::Vector3d &q, const Eigen::Vector2d &grade, double pull,
                                const Physics &p, Freedom freedom) {
     Eigen::Vector3d rate(force[0] / p.body.mass + grade[0], 0, freedom.yaw ? force[2] / p.body.yaw_inertia : 0);
-    if (freedom.observed) rate[2] += observer_1_s * (gyro - q[2]);
+    if (freedom.observed) rate[2] += pull;
     if (freedom.vy) rate[0] += q[2] * q[1], rate[1] = force[1] / p.body.mass + grade[1] - q[2] * q[0];
     return rate;
 }

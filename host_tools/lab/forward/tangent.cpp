@@ -20,10 +20,9 @@ using Eigen::Vector3d;
 class Moved {
   public:
     Moved(const Dataset &data, const Physics &moved, const Motion &known, std::size_t first, std::size_t last)
-        : step_(data, moved), p_(moved), gyro_(data.yaw_rate_rad_s), known_(known), freedom_(detail::freedom_of(data, moved)),
-          first_(first), last_(last) {}
+        : step_(data, moved), p_(moved), known_(known), freedom_(detail::freedom_of(data, moved)), first_(first), last_(last) {}
 
-    Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path) {
+    Vector3d rate_change(std::size_t k, const Vector3d &q, double v_before, double accel_before, double path, double pull) {
         step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) // who does not lag has no use for it
@@ -39,7 +38,7 @@ class Moved {
             force[0] += along;
         else if (speed > 1e-6)
             force[0] += along * q[0] / speed, force[1] += along * q[1] / speed;
-        return detail::rate_of(force, q, step_.grade_accel(), gyro_.empty() ? 0 : gyro_[k], p_, freedom_) - known_.rate[k];
+        return detail::rate_of(force, q, step_.grade_accel(), pull, p_, freedom_) - known_.rate[k];
     }
     double traction_change(std::size_t i, std::size_t k) const {
         return i >= first_ && i < last_ ? step_.state(i).traction - known_.wheel[i].traction_N[k] : 0;
@@ -56,7 +55,6 @@ class Moved {
   private:
     WheelStep step_;
     const Physics &p_;
-    const std::vector<double> &gyro_;
     const Motion &known_;
     detail::Freedom freedom_;
     std::size_t first_, last_;
@@ -96,7 +94,8 @@ class Follower {
         const Vector3d at(known_.v_m_s[k], known_.vy_m_s[k], known_.yaw_rate_rad_s[k]);
         const std::size_t j = k == 0 ? 0 : k - 1, wheels = moved_.wheel.size();
         const Vector3d moved_rate =
-            change_.rate_change(k, at, k == 0 ? at[0] : known_.v_m_s[j], k == 0 ? 0 : known_.rate[j][0], k == 0 ? 0 : known_.path_m[j]);
+            change_.rate_change(k, at, k == 0 ? at[0] : known_.v_m_s[j], k == 0 ? 0 : known_.rate[j][0], k == 0 ? 0 : known_.path_m[j],
+                                detail::pull_of(data_, m_.yaw_rate_rad_s, k, freedom_));
         const StepTangent &t = known_.tangent[k];
         const double implicit_step = (k < 2 ? 1.0 : 2.0 / 3) * data_.step_s;
         Vector3d right = k < 2 ? q_ : Vector3d((4 * q_ - before_) / 3);

@@ -87,6 +87,12 @@ template <std::size_t groups> class Shapes {
                 if (lags_[i]) force[c] += known_.wheel[i].force_by_slip[k][at] * slip_[i] + known_.wheel[i].force_by_side[k][at] * side_[i];
             }
         }
+        if (freedom_.observed && k >= data_.yaw_late) { // the gyro, on the change
+            Lanes pull(0.0);
+            for (std::size_t j = 0, past = k - data_.yaw_late; j < lanes; ++j)
+                pull.set(j, detail::observer_1_s * (known_.yaw_rate_rad_s[past] - motions[j].yaw_rate_rad_s[past]));
+            force[2] += pull / per_N_[2];
+        }
         for (std::size_t c = 0; c < 3; ++c) {
             const auto at = static_cast<Eigen::Index>(c);
             right[c] = k < 2 ? q_[c] : (4 * q_[c] - before_[c]) / 3;

@@ -10,8 +10,6 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double bin_s = 0.05; // rows of fast signals: keeps all below 10 Hz, assumed enough for a rover's physics
-
 struct Builder : InputBuilder {
     Builder(const Model &of, const log::Log &from, double noise, double widen_) : InputBuilder{of, from, noise, widen_, {}} {}
 

@@ -70,6 +70,7 @@ struct Dataset {
     std::vector<double> supply_t_s, supply_V; // battery, or one constant
     bool yaw_free = false;                    // the yaw rate follows from the model's forces, drawn to the measured one where there is one
     bool gyro = false;                        // the yaw rate is a gyro's
+    std::size_t yaw_late = 1;                 // steps by which what draws the model's yaw rate is late: else a row would meet its own noise
     std::vector<char> gap;                    // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
     std::vector<std::string> messages; // what is missing and what that removes

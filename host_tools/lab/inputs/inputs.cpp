@@ -378,8 +378,9 @@ void InputBuilder::yaw() {
     const log::Signal *gyro = signal("imu.gyro_z_rad_s"), *camera = signal("camera.yaw_rad");
     data.gyro = gyro != nullptr;
     if (gyro != nullptr) {
-        data.yaw_rate_rad_s =
-            smooth_at(gyro->t_s, gyro->value, data.start_s, data.step_s, data.count, std::max(0.03, 1.5 * sample_period(*gyro)), 1).value;
+        const double half = std::max(0.03, 1.5 * sample_period(*gyro));
+        data.yaw_rate_rad_s = smooth_at(gyro->t_s, gyro->value, data.start_s, data.step_s, data.count, half, 1).value;
+        data.yaw_late = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil((half + bin_s) / data.step_s)));
     } else if (camera != nullptr) {
         data.yaw_rate_rad_s = smooth_at(camera->t_s, unwrapped(camera->value), data.start_s, data.step_s, data.count,
                                         std::max(0.35, 2.5 * sample_period(*camera)), 2)

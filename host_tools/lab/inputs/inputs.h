@@ -14,6 +14,8 @@ namespace traction::lab {
 inline constexpr double stands_m_s = 0.01, standstill_share[] = {0.0125, 0.03};
 inline constexpr double standstill_share_slow = 0.1; // the second, where the model knows a speed of reversal (creeps.h)
 
+inline constexpr double bin_s = 0.05; // rows of fast signals: keeps all below 10 Hz, assumed enough for a rover's physics
+
 double sample_period(const log::Signal &signal);                   // [s], median
 double parameter(const Parameters &table, const std::string &key); // 0 where it is not given
 
