@@ -363,9 +363,10 @@ class Search {
     void face_rivals(const Problem &first, Problem &last) {
         for (std::size_t i = d_.accepted.size(); i-- > 0 && !d_.unknown;) {
             const CandidateResult one = d_.accepted[i];
+            if (one.sheet_alone) continue; // the rows have no say in it
             const bool alone = d_.accepted.size() == 1;
-            const std::optional<Rival> rival = rival_of(one.candidate, one.sheet_alone.has_value(), last,
-                                                        alone ? first : fitted(model_without(d_.model, one.candidate), &last), options_);
+            const std::optional<Rival> rival =
+                rival_of(one.candidate, last, alone ? first : fitted(model_without(d_.model, one.candidate), &last), options_);
             if (!rival) continue;
             d_.unknown = describe(rival->shape, rival->error);
             if (rival->better)

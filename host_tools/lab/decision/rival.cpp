@@ -1,6 +1,5 @@
 #include "rival.h"
 
-#include "evidence.h"
 #include "shape_refit.h"
 #include "shape_scores.h"
 
@@ -111,7 +110,7 @@ bool is_own_axis(const std::string &effect, Axis axis) {
     return std::find(own.begin(), own.end(), axis) != own.end();
 }
 
-std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Problem &last, Problem less, const DiagnoseOptions &options) {
+std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Problem less, const DiagnoseOptions &options) {
     const Scatter scatter(less);
     const Eigen::VectorXd weight = less.row_scale.cwiseAbs2(), noise = noise_weight(less);
     const HeldOut left = held_out(less);
@@ -121,12 +120,11 @@ std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Probl
     with.gauss_newton(2);
     const HeldOut by_name = sharp(with, less, named.touched, scatter);
     const Fall own = fall_between(left, by_name, weight);
-    if (!by_sheet && !own.sure()) return std::nullopt; // precise rows speak for it, which these squares hardly see
-    const double relief = by_sheet ? spared_by(less, with) : 0;
+    if (!own.sure()) return std::nullopt; // precise rows speak for it, which these squares hardly see
     Eigen::MatrixXd of_name;
     const Problem without = without_effect(with, named, of_name);
     const Screen screen(less);
-    const Eigen::VectorXd law = screen.projected(with.residual - without.residual);
+    const Eigen::VectorXd law = screen.projected((with.residual - without.residual).cwiseProduct(less.row_scale));
     std::optional<Rival> best;
     double most = 0;
     int refits = 0;
@@ -144,14 +142,12 @@ std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Probl
                    noise_lead = fall_between(by_name, by_shape, noise);
         const bool better = surely(lead) && fall.sum > notably_more * own.sum;
         const bool as_well = surely(fall) && lead.sum > -lead.error && -noise_lead.sum < sure_errors * noise_lead.error;
-        const bool relieves = !by_sheet || spared_by(less, shaped) >= relief;
-        if (!(better || as_well) || !relieves) continue;
+        if (!better && !as_well) continue;
         if (!better && is_constant_of(named.effect, c.target)) continue;
         if (!better && alike(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
         const Problem both = with_shape(with, s);
         const Fall beside = fall_between(by_shape, sharp(both, less, named.touched | c.touched, scatter), weight);
-        const bool needed = (surely(beside) && beside.sum > (better ? half_of_it : least_beside) * own.sum) ||
-                            (by_sheet && spared_by(shaped, both) > options.least_prior_reduction);
+        const bool needed = surely(beside) && beside.sum > (better ? half_of_it : least_beside) * own.sum;
         if (needed || (best && (best->better > better || !(fall.sum > most)))) continue;
         best = Rival{std::move(s), better, screen.heldout_error()};
         most = fall.sum;

@@ -23,6 +23,6 @@ bool is_own_axis(const std::string &effect, Axis axis);
 // `last`: the fitted model with the name in it; `less`: the fitted model without it, which stands in for no other name. Of the shapes
 // over what the law does not depend on, those that explain most by a linear step are fitted; one that is not needed beside the name, nor
 // the name beside it, is a rival.
-std::optional<Rival> rival_of(const Candidate &named, bool by_sheet, const Problem &last, Problem less, const DiagnoseOptions &options);
+std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Problem less, const DiagnoseOptions &options);
 
 } // namespace traction::lab
