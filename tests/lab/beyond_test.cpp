@@ -71,6 +71,44 @@ TEST(Shapes, a_lead_shared_by_an_axle_is_no_wiring_of_one_motor) {
     EXPECT_GE(d.accepted.front().high[0], 1);
 }
 
+// Of the pulse once a turn, a ripple of one period a turn is a quarter.
+TEST(Shapes, a_bad_tooth_is_no_ripple) {
+    const Diagnosis d = ask(Soil::sand, "bad_tooth:torque_Nm=0.08,wheel=1", 36);
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    ASSERT_TRUE(d.unknown) << d.text;
+    EXPECT_EQ(d.unknown->balance, "friction(wheel angle) on wheel 1");
+    EXPECT_GT(d.unknown->gain, 0.05);
+}
+
+Diagnosis ask_fleet(std::uint64_t seed, const char *category) {
+    const generator::BlindCase one = generator::draw_fleet_case(seed, category);
+    const Model model = parse_model(generator::data_sheet(one.config), "sheet");
+    return diagnose(model, make_dataset(model, generator::generate(one.config)), {});
+}
+
+// A grip that fades by a third in the run; along the way it fades too, but not as evenly.
+TEST(Shapes, a_grip_that_fades_in_time_is_no_gradient_along_the_way) {
+    const Diagnosis d = ask_fleet(923011, "outside");
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    ASSERT_TRUE(d.unknown) << d.text;
+    EXPECT_EQ(d.unknown->variable, "time");
+    EXPECT_EQ(d.unknown->target, "soil_strength");
+    EXPECT_TRUE(is_nearest(d, "soil_gradient"));
+}
+
+// A resistance to turning that the catalogue lacks: the log tells it from wheels that dig in no better than the other way about.
+TEST(Shapes, a_shape_that_does_as_well_as_a_name_is_told_beside_it) {
+    const Diagnosis d = ask_fleet(923002, "outside");
+    EXPECT_EQ(d.kind, "class") << d.text;
+    EXPECT_EQ(d.effects, std::vector<std::string>{"slip_sinkage"});
+    ASSERT_TRUE(d.unknown) << d.text;
+    EXPECT_EQ(d.unknown->instead_of, "slip_sinkage");
+    EXPECT_EQ(d.unknown->variable, "yaw rate");
+    ASSERT_EQ(d.classes.size(), 1U);
+    EXPECT_EQ(d.classes[0].members, (std::vector<std::string>{"slip_sinkage", d.unknown->balance}));
+    EXPECT_EQ(d.text.find("only partly"), std::string::npos);
+}
+
 TEST(Shapes, a_dead_band_of_the_bridge_shows_over_the_motors_voltage) {
     const Diagnosis d = ask(Soil::sand, "duty_dead_band:duty=0.08", 33);
     EXPECT_EQ(d.kind, "unknown") << d.text;

@@ -205,7 +205,7 @@ TEST(Variants, are_put_where_the_effect_stands_and_nowhere_else) {
     EXPECT_NE(prepared(patch).body.heavy_start_m, 2);
 }
 
-TEST(Shown, can_be_a_ripple_in_turns_and_a_delay_in_changes) {
+TEST(Shown, can_be_a_ripple_in_turns_and_what_lags_in_changes) {
     Machine m;
     EXPECT_TRUE(m.has("torque_ripple") && m.has("accel_delay") && m.has("accel_lag")); // a drive that is planned
     m.data.count = 1000, m.data.step_s = 0.01;
@@ -226,6 +226,7 @@ TEST(Shown, can_be_a_ripple_in_turns_and_a_delay_in_changes) {
             for (int i = 0; i < count; ++i)
                 for (int k = 0; k < 20; ++k) w.speed_rad_s[static_cast<std::size_t>(100 + 40 * i + k)] = 10 - by;
         }
+        EXPECT_EQ(m.has("relaxation_length"), m.has("accel_lag"));
         return std::make_tuple(m.has("accel_delay"), m.has("accel_lag"), m.has("radar_delay"), m.has("accel_bias"));
     };
     EXPECT_EQ(changes(2, 2), std::make_tuple(true, true, true, true)); // there and back, twice
@@ -504,14 +505,23 @@ TEST(Expression, names_the_signal_of_its_axis) {
     Candidate c;
     c.knots = {1, 2};
     c.strengths.resize(2);
-    std::map<Axis, std::string> names = {{Axis::time, "t"},           {Axis::wheel_speed, "w"},
-                                         {Axis::speed, "v"},          {Axis::slip, "s"},
-                                         {Axis::load, "Fn"},          {Axis::path, "x"},
-                                         {Axis::accel, "a"},          {Axis::current, "I"},
-                                         {Axis::yaw_rate, "r"},       {Axis::abs_speed, "abs(v)"},
-                                         {Axis::other_current, "Io"}, {Axis::axle_current, "Ia"},
-                                         {Axis::side_current, "Is"},  {Axis::abs_wheel_speed, "abs(w)"},
-                                         {Axis::voltage, "u"},        {Axis::reversal, "d"}};
+    std::map<Axis, std::string> names = {{Axis::time, "t"},
+                                         {Axis::wheel_speed, "w"},
+                                         {Axis::speed, "v"},
+                                         {Axis::slip, "s"},
+                                         {Axis::load, "Fn"},
+                                         {Axis::path, "x"},
+                                         {Axis::accel, "a"},
+                                         {Axis::current, "I"},
+                                         {Axis::yaw_rate, "r"},
+                                         {Axis::abs_speed, "abs(v)"},
+                                         {Axis::other_current, "Io"},
+                                         {Axis::axle_current, "Ia"},
+                                         {Axis::side_current, "Is"},
+                                         {Axis::abs_wheel_speed, "abs(w)"},
+                                         {Axis::voltage, "u"},
+                                         {Axis::reversal, "d"},
+                                         {Axis::turn, "atan2(sin(theta),cos(theta))"}};
     for (const auto &[axis, name] : names) {
         c.axis = axis;
         EXPECT_EQ(shape_expression(c, {0.5, 2}), "0.5 + (1.5)*min(1, max(0, (" + name + " - (1))/1))");

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 namespace traction::lab {
@@ -72,6 +73,21 @@ TEST(Knots, of_a_bridge_crowd_about_zero_volts) {
     expect_knots(knots_on(Axis::voltage, even_values(-5, 5), false),
                  {-end, -0.25 * end, -0.12 * end, -0.04 * end, 0.04 * end, 0.12 * end, 0.25 * end, end}, 0.02);
     EXPECT_TRUE(knots_on(Axis::voltage, even_values(0, 0.09), false).empty());
+}
+
+TEST(Knots, of_a_turn_are_a_twelfth_of_it_apart_and_its_angle_begins_anew_at_half_a_turn) {
+    const std::vector<double> knots = knots_on(Axis::turn, even_values(0, 40), false);
+    ASSERT_EQ(knots.size(), 13U);
+    for (std::size_t i = 0; i < 13; ++i) EXPECT_NEAR(knots[i], std::numbers::pi / 6 * (static_cast<double>(i) - 6), 1e-12);
+    const auto within = [](double theta) {
+        Signals s;
+        s.theta = theta;
+        return axis_value(Axis::turn, s);
+    };
+    const double turn = 2 * std::numbers::pi;
+    for (const double theta : {0.0, 1.0, -3.1, 3.1})
+        for (const double turns : {0.0, 1.0, -7.0, 40.0}) EXPECT_NEAR(within(theta + turns * turn), theta, 1e-12) << theta << turns;
+    EXPECT_NEAR(within(3.2), 3.2 - turn, 1e-12);
 }
 
 TEST(Knots, of_reversal_direction_and_other_motors) {

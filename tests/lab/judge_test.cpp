@@ -309,6 +309,21 @@ TEST(Class, keeps_the_members_that_were_not_accepted_beside_it) {
     EXPECT_EQ(*d.accepted[0].class_index, 0);
 }
 
+TEST(Class, is_joined_by_what_is_in_no_catalogue_or_made_of_it) {
+    Diagnosis d = with_class({"a", "b"}, {"a", "x"});
+    join_class(d, 0, "soil strength(time)");
+    ASSERT_EQ(d.classes.size(), 1U);
+    EXPECT_EQ(d.classes[0].members, (std::vector<std::string>{"a", "b", "soil strength(time)"}));
+    join_class(d, 1, "friction(time)");
+    ASSERT_EQ(d.classes.size(), 2U);
+    EXPECT_EQ(d.classes[1].members, (std::vector<std::string>{"x", "friction(time)"}));
+    for (const std::vector<CandidateResult> *list : {&d.accepted, &d.ranking}) {
+        EXPECT_EQ((*list)[1].verdict, "class");
+        EXPECT_EQ((*list)[1].class_index, 1);
+        EXPECT_EQ((*list)[0].class_index, 0);
+    }
+}
+
 TEST(Class, that_goes_leaves_the_numbers_of_the_others_right) {
     Diagnosis d = with_class({"a", "b"}, {"a"});
     d.classes.push_back({{"x", "y"}, ""});

@@ -22,10 +22,10 @@ constexpr double sure_errors = 2;    // standard errors over blocks
 constexpr double same_cosine = 0.98; // assumed
 constexpr double least_beside = 0.1; // of the name's fall, that it must still explain beside the shape to be needed there: assumed
 
-const std::vector<Axis> &own_axes(const std::string &effect) {
-    static const std::vector<Axis> none, speeds = {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::direction},
-                                         along = {Axis::path, Axis::place}, of_slip = {Axis::slip},
-                                         of_current = {Axis::current, Axis::load, Axis::slip};
+const std::map<std::string_view, std::vector<Axis>> &own_axes() {
+    static const std::vector<Axis> speeds = {Axis::wheel_speed, Axis::abs_wheel_speed, Axis::speed, Axis::abs_speed, Axis::direction},
+                                   along = {Axis::path, Axis::place}, of_slip = {Axis::slip},
+                                   of_current = {Axis::current, Axis::load, Axis::slip};
     static const std::map<std::string_view, std::vector<Axis>> table = {
         {"coulomb_friction", {Axis::direction, Axis::wheel_speed, Axis::abs_wheel_speed}},
         {"viscous_friction", speeds},
@@ -67,21 +67,7 @@ const std::vector<Axis> &own_axes(const std::string &effect) {
         {"accel_tilt", {Axis::accel}},
         {"radar_pitch", {Axis::accel}},
     };
-    const auto found = table.find(effect);
-    return found == table.end() ? none : found->second;
-}
-
-// The shape's target is what the law changes by a constant: along any axis, a shape may be no more than that constant.
-bool is_constant_of(const std::string &effect, TermTarget target) {
-    static const std::map<std::string_view, TermTarget> table = {
-        {"rolling_resistance", TermTarget::rolling}, {"coulomb_friction", TermTarget::wheel_friction},
-        {"radar_scale", TermTarget::radar},          {"torque_constant", TermTarget::motor_constant},
-        {"current_gain", TermTarget::current},       {"wiring_resistance", TermTarget::resistance},
-        {"camera_scale", TermTarget::camera},        {"accel_bias", TermTarget::accel},
-        {"shear_stiffness", TermTarget::shear_slip},
-    };
-    const auto found = table.find(effect);
-    return found != table.end() && found->second == target;
+    return table;
 }
 
 // Squares of blocks left out, with what is gained by smoothing the encoders' scatter put back.
@@ -106,8 +92,26 @@ bool alike(const Eigen::VectorXd &law, const Eigen::VectorXd &shape) {
 } // namespace
 
 bool is_own_axis(const std::string &effect, Axis axis) {
-    const std::vector<Axis> &own = own_axes(effect);
-    return std::find(own.begin(), own.end(), axis) != own.end();
+    const auto found = own_axes().find(effect);
+    return found != own_axes().end() && std::find(found->second.begin(), found->second.end(), axis) != found->second.end();
+}
+
+bool is_constant_of(const std::string &effect, TermTarget target) {
+    static const std::map<std::string_view, TermTarget> table = {
+        {"rolling_resistance", TermTarget::rolling}, {"coulomb_friction", TermTarget::wheel_friction},
+        {"radar_scale", TermTarget::radar},          {"torque_constant", TermTarget::motor_constant},
+        {"current_gain", TermTarget::current},       {"wiring_resistance", TermTarget::resistance},
+        {"camera_scale", TermTarget::camera},        {"accel_bias", TermTarget::accel},
+        {"shear_stiffness", TermTarget::shear_slip},
+    };
+    const auto found = table.find(effect);
+    return found != table.end() && found->second == target;
+}
+
+std::vector<std::string> laws_with_axes() {
+    std::vector<std::string> list;
+    for (const auto &[effect, axes] : own_axes()) list.emplace_back(effect);
+    return list;
 }
 
 std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Problem less, const DiagnoseOptions &options) {

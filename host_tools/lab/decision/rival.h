@@ -8,6 +8,8 @@
 #include "shape_rules.h"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace traction::lab {
 
@@ -19,6 +21,10 @@ struct Rival {
 
 // True where the law is a function of what the shape is drawn over: then the shape is how the law looks, and no other cause.
 bool is_own_axis(const std::string &effect, Axis axis);
+std::vector<std::string> laws_with_axes(); // the others depend on none
+
+// The shape's target is what the law changes by a constant: along any axis, a shape may be no more than that constant.
+bool is_constant_of(const std::string &effect, TermTarget target);
 
 // `last`: the fitted model with the name in it; `less`: the fitted model without it, which stands in for no other name. Of the shapes
 // over what the law does not depend on, those that explain most by a linear step are fitted; one that is not needed beside the name, nor
