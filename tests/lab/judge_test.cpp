@@ -324,6 +324,12 @@ TEST(Class, is_joined_by_what_is_in_no_catalogue_or_made_of_it) {
     }
 }
 
+TEST(Class, has_the_effects_of_its_members_whatever_their_wheel) {
+    Diagnosis d = with_class({"a", "b on wheel 2", "tolerance of x"}, {"a", "c"});
+    EXPECT_EQ(members_of(d, d.accepted[0]), (std::vector<std::string>{"a", "b", "tolerance of x"}));
+    EXPECT_TRUE(members_of(d, d.accepted[1]).empty());
+}
+
 TEST(Class, that_goes_leaves_the_numbers_of_the_others_right) {
     Diagnosis d = with_class({"a", "b"}, {"a"});
     d.classes.push_back({{"x", "y"}, ""});

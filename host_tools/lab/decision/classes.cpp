@@ -49,6 +49,14 @@ void remove_class(Diagnosis &d, const std::string &label) {
         }
 }
 
+std::vector<std::string> members_of(const Diagnosis &d, const CandidateResult &accepted) {
+    std::vector<std::string> list;
+    for (const ConfoundedClass &c : d.classes)
+        if (c.members.front() == accepted.candidate.label())
+            for (const std::string &member : c.members) list.push_back(member.substr(0, member.find(" on wheel")));
+    return list;
+}
+
 void join_class(Diagnosis &d, std::size_t i, const std::string &member) {
     CandidateResult &a = d.accepted[i];
     const std::string label = a.candidate.label();

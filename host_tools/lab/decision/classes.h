@@ -21,6 +21,9 @@ void remove_class(Diagnosis &d, const std::string &label);
 // What was accepted beside a name is no alternative to it.
 void separate_accepted(Diagnosis &d);
 
+// Effects of the class that the accepted one stands for, wheels left out; empty: it stands alone.
+std::vector<std::string> members_of(const Diagnosis &d, const CandidateResult &accepted);
+
 // Something that is in no catalogue explains as much as what was accepted as i: one class, an existing one of that name if there is one.
 void join_class(Diagnosis &d, std::size_t i, const std::string &member);
 

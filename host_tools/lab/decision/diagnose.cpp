@@ -365,8 +365,8 @@ class Search {
             const CandidateResult one = d_.accepted[i];
             if (one.sheet_alone) continue; // the rows have no say in it
             const bool alone = d_.accepted.size() == 1;
-            const std::optional<Rival> rival =
-                rival_of(one.candidate, last, alone ? first : fitted(model_without(d_.model, one.candidate), &last), options_);
+            const std::optional<Rival> rival = rival_of(one.candidate, members_of(d_, one), last,
+                                                        alone ? first : fitted(model_without(d_.model, one.candidate), &last), options_);
             if (!rival) continue;
             d_.unknown = describe(rival->shape, rival->error);
             if (rival->better)

@@ -114,7 +114,8 @@ std::vector<std::string> laws_with_axes() {
     return list;
 }
 
-std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Problem less, const DiagnoseOptions &options) {
+std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::string> &alternatives, const Problem &last, Problem less,
+                              const DiagnoseOptions &options) {
     const Scatter scatter(less);
     const Eigen::VectorXd weight = less.row_scale.cwiseAbs2(), noise = noise_weight(less);
     const HeldOut left = held_out(less);
@@ -136,7 +137,8 @@ std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Probl
     for (ShapeScore &s : all_shapes(less, screen, true)) {
         const Candidate &c = s.candidate;
         if (!(s.p_value < options.shape_p_limit) || !(s.assessment.gain > half_of_it * own.sum)) continue;
-        if (absorbs_all(c) || is_own_axis(named.effect, c.axis)) continue;
+        const auto is_look_of = [&](const std::string &effect) { return is_own_axis(effect, c.axis) || is_constant_of(effect, c.target); };
+        if (absorbs_all(c) || is_look_of(named.effect) || std::any_of(alternatives.begin(), alternatives.end(), is_look_of)) continue;
         if (refits >= most_refits) break;
         if (!seen.insert({c.target, c.axis, is_straight(c)}).second) continue;
         ++refits;
@@ -147,7 +149,6 @@ std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Probl
         const bool better = surely(lead) && fall.sum > notably_more * own.sum;
         const bool as_well = surely(fall) && lead.sum > -lead.error && -noise_lead.sum < sure_errors * noise_lead.error;
         if (!better && !as_well) continue;
-        if (!better && is_constant_of(named.effect, c.target)) continue;
         if (!better && alike(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
         const Problem both = with_shape(with, s);
         const Fall beside = fall_between(by_shape, sharp(both, less, named.touched | c.touched, scatter), weight);

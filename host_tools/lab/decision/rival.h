@@ -28,7 +28,8 @@ bool is_constant_of(const std::string &effect, TermTarget target);
 
 // `last`: the fitted model with the name in it; `less`: the fitted model without it, which stands in for no other name. Of the shapes
 // over what the law does not depend on, those that explain most by a linear step are fitted; one that is not needed beside the name, nor
-// the name beside it, is a rival.
-std::optional<Rival> rival_of(const Candidate &named, const Problem &last, Problem less, const DiagnoseOptions &options);
+// the name beside it, is a rival. `alternatives`: effects that the log cannot tell from the name; what they look like is none.
+std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::string> &alternatives, const Problem &last, Problem less,
+                              const DiagnoseOptions &options);
 
 } // namespace traction::lab

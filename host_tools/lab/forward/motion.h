@@ -87,7 +87,7 @@ struct Freedom {
 };
 Freedom freedom_of(const Dataset &data, const Physics &physics);
 
-inline constexpr double observer_1_s = 6; // forgets in 0.17 s, twice what it is late by: assumed
+inline constexpr double observer_1_s = 4; // forgets in 0.25 s, three times what it is late by: assumed
 
 // By which the gyro draws the yaw rate at step k [rad/s^2]; `yaw_rate_rad_s`: this motion's, as far as it is known.
 inline double pull_of(const Dataset &data, const std::vector<double> &yaw_rate_rad_s, std::size_t k, Freedom freedom) {
