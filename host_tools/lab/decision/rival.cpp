@@ -18,7 +18,7 @@ namespace {
 constexpr int most_refits = 4;
 constexpr double half_of_it = 0.5;   // of the name's fall, that a shape explains by its linear step at least
 constexpr double notably_more = 1.1; // as the name, that a shape must explain to take its place
-constexpr double sure_errors = 2;    // standard errors over blocks
+constexpr double errors_ahead = 2;   // standard errors over blocks
 constexpr double same_cosine = 0.98; // assumed
 constexpr double least_beside = 0.1; // of the name's fall, that it must still explain beside the shape to be needed there: assumed
 
@@ -78,13 +78,13 @@ HeldOut sharp(const Problem &with, const Problem &less, unsigned touched, const 
     return held;
 }
 
-bool surely(const Fall &fall) { return fall.sum > sure_errors * fall.error; }
+bool is_sure_fall(const Fall &fall) { return fall.sum > errors_ahead * fall.error; }
 
 // Over slip and in waves along the path the ground of any log gives a shape something to explain (shape_rules.h).
 bool absorbs_all(const Candidate &c) { return c.axis == Axis::slip || (c.order > 0 && c.target == TermTarget::soil_strength); }
 
 // What both change in the log, beside all that the model may retune: the same, so one is how the other looks.
-bool alike(const Eigen::VectorXd &law, const Eigen::VectorXd &shape) {
+bool is_same_change(const Eigen::VectorXd &law, const Eigen::VectorXd &shape) {
     const double norm = law.norm() * shape.norm();
     return norm > 0 && std::fabs(law.dot(shape)) > same_cosine * norm;
 }
@@ -146,13 +146,13 @@ std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::str
         const HeldOut by_shape = sharp(shaped, less, c.touched, scatter);
         const Fall fall = fall_between(left, by_shape, weight), lead = fall_between(by_name, by_shape, weight),
                    noise_lead = fall_between(by_name, by_shape, noise);
-        const bool better = surely(lead) && fall.sum > notably_more * own.sum;
-        const bool as_well = surely(fall) && lead.sum > -lead.error && -noise_lead.sum < sure_errors * noise_lead.error;
+        const bool better = is_sure_fall(lead) && fall.sum > notably_more * own.sum;
+        const bool as_well = is_sure_fall(fall) && lead.sum > -lead.error && -noise_lead.sum < errors_ahead * noise_lead.error;
         if (!better && !as_well) continue;
-        if (!better && alike(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
+        if (!better && is_same_change(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
         const Problem both = with_shape(with, s);
         const Fall beside = fall_between(by_shape, sharp(both, less, named.touched | c.touched, scatter), weight);
-        const bool needed = surely(beside) && beside.sum > (better ? half_of_it : least_beside) * own.sum;
+        const bool needed = is_sure_fall(beside) && beside.sum > (better ? half_of_it : least_beside) * own.sum;
         if (needed || (best && (best->better > better || !(fall.sum > most)))) continue;
         best = Rival{std::move(s), better, screen.heldout_error()};
         most = fall.sum;
