@@ -23,7 +23,7 @@ struct Reading {
     bool first_named_right = false;
     bool wheel_right = false;
     int truths_named = 0;
-    bool flagged_unknown = false; // "depends on X", alone or beside named effects
+    bool flagged_unknown = false; // "depends on X", alone, beside named effects or instead of one
     bool variable_right = false;
     bool has_lag = false;        // backlash or relaxation length hidden
     double error_over_floor = 0; // error of the lab's last model / error of the fit that holds every true effect; 0 unknown

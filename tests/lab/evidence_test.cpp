@@ -97,6 +97,32 @@ struct Sloped {
     }
 };
 
+// Sensors better than stated: by their noise nothing would be left that the encoders' scatter may be.
+TEST(Scatter, may_be_what_another_fit_takes_off_the_rows_where_they_leave_less_than_the_noise_that_is_stated) {
+    Sloped s(0.1);
+    for (Balance &b : s.rover.data.balance) b.noise *= 100;
+    const Scatter alone(*s.before), beside(*s.before, &*s.with);
+    EXPECT_EQ(alone.part.maxCoeff(), 0);
+    const Eigen::VectorXd weight = s.before->row_scale.cwiseAbs2(), left = s.before->residual.cwiseAbs2(),
+                          less = s.with->residual.cwiseAbs2();
+    Eigen::Index first = 0, some = 0;
+    for (const Balance &b : s.rover.data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        const auto sum = [&](const Eigen::VectorXd &rows) { return rows.segment(first, n).dot(weight.segment(first, n)); };
+        if (sum(beside.squares) > 0) {
+            const double part = std::clamp((sum(left) - sum(less)) / sum(beside.squares), 0.0, 1.0);
+            for (Eigen::Index r = 0; r < n; ++r) EXPECT_NEAR(beside.part[first + r], part, 1e-9) << b.name;
+            some += part > 0.01;
+        }
+        first += n;
+    }
+    EXPECT_GT(some, 0);
+    const Eigen::VectorXd fall = squares_fall(s.left_before, s.left_with), smoothed = beside.smoothed_by(s.rover.data, s.with->physics());
+    ASSERT_GT(std::fabs(smoothed.dot(weight)), 1e-3);
+    const Evidence e = s.evidence(); // the slope's, which that fit is of
+    EXPECT_NEAR(e.scaled.sum, (fall - smoothed).dot(weight), 1e-9 * e.scaled.sum);
+}
+
 TEST(Evidence, of_what_moves_the_body_is_less_by_what_it_smooths) {
     Sloped s(0.1);
     ASSERT_FALSE(s.grade.effect.empty());
