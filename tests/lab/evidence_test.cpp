@@ -7,6 +7,7 @@
 #include "tests/lab/four_wheels.h"
 #include "tests/lab/linear_machine.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>
