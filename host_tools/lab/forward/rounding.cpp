@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 namespace traction::lab {
 
@@ -32,9 +33,16 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
             t.push_back(data.start_s - in.half_s + static_cast<double>(j) * in.sample_s);
             error.push_back(std::sqrt(12.0) * in.scatter_rad * uniform(draw, i, j));
         }
-        const Smooth noise = smooth_at(t, error, data.start_s, data.step_s, data.count, in.half_s, 2);
+        const auto slope_at = [&](double width) { return smooth_at(t, error, data.start_s, data.step_s, data.count, width, 2).slope; };
+        std::vector<double> slope = slope_at(in.half_s);
+        for (const double width : std::set<double>(in.width_s.begin(), in.width_s.end())) {
+            if (width == in.half_s) continue;
+            const std::vector<double> narrower = slope_at(width);
+            for (std::size_t k = 0; k < data.count; ++k)
+                if (in.width_s[k] == width) slope[k] = narrower[k];
+        }
         for (std::size_t k = 0; k < data.count; ++k)
-            if (std::fabs(in.speed_rad_s[k]) > data.standstill_rad_s) in.speed_rad_s[k] += noise.slope[k];
+            if (std::fabs(in.speed_rad_s[k]) > data.standstill_rad_s) in.speed_rad_s[k] += slope[k];
     }
     for (WheelInput &in : data.wheel) // one encoder a motor
         if (in.turns_with >= 0) in.speed_rad_s = data.wheel[static_cast<std::size_t>(in.turns_with)].speed_rad_s;

@@ -50,6 +50,7 @@ struct WheelInput {
                             // never turns
     double scatter_rad = 0, sample_s = 0, half_s = 0;     // of its encoder's samples (rounding, a clock that jitters), their period, its
                                                           // parabolas' half width; 0: none known
+    std::vector<double> width_s;                          // the half width in use on the grid (follow_motion.h); empty: half_s
     std::vector<double> voltage_V;                        // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
     std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged

@@ -1,5 +1,6 @@
 #include "inputs.h"
 
+#include "follow_motion.h"
 #include "smooth.h"
 
 #include <algorithm>
@@ -191,6 +192,7 @@ void InputBuilder::wheel_motion(std::size_t i) {
         return;
     }
     double half = data.independent_rows ? 0.1 * data.step_s : std::max(0.055, 2.6 * sample_period(*s));
+    const double narrowest = half;
     data.smoothing_half_s = half;
     if (scale != 0) {
         std::vector<double> angle(s->value);
@@ -205,19 +207,21 @@ void InputBuilder::wheel_motion(std::size_t i) {
             say(text);
         }
         if (widen > 1) data.smoothing_half_s = half;
-        Smooth smooth = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 2);
-        input.angle_rad = std::move(smooth.value);
-        input.speed_rad_s = std::move(smooth.slope);
-        mark_gaps(smooth.distance_s, *s);
-        slopes_of(input);
-        WheelInput sharp;
-        sharp.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, half, 3).slope;
-        slopes_of(sharp);
         const double count_rad = rounding_of(angle);
         input.scatter_rad = scatter_of(angle, count_rad), input.sample_s = sample_period(*s), input.half_s = half;
+        const auto smoothed = [&](double width) {
+            MotionAtWidth at;
+            Smooth parabolas = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, width, 2);
+            if (width == half) mark_gaps(parabolas.distance_s, *s);
+            at.parabolas.angle_rad = std::move(parabolas.value), at.parabolas.speed_rad_s = std::move(parabolas.slope);
+            at.cubics.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, width, 3).slope;
+            slopes_of(at.parabolas), slopes_of(at.cubics);
+            return at;
+        };
+        const MotionAtWidth at = follow_motion(input, narrowest, smoothed);
         const double noise = rounding_noise(count_rad, input.sample_s, half);
         rounding_rad_s2 = std::max(rounding_rad_s2, noise);
-        follow_jumps(input, sharp, noise);
+        follow_jumps(input, at.cubics, noise);
     } else if (data.independent_rows) {
         for (std::size_t k = 0; k < data.count; ++k) input.speed_rad_s.push_back(interpolate(s->t_s, s->value, data.time(k)));
         input.angle_rad.assign(data.count, 0);
@@ -262,13 +266,18 @@ bool InputBuilder::is_measured(std::size_t i) const {
     return motion_signal(i, scale) != nullptr;
 }
 
-// One count of an encoder, as an angle.
+// One count of an encoder, as an angle: the least second difference. Of angles that are written with a few decimals there are smaller
+// ones, many of them, and then none up to the count.
 double InputBuilder::rounding_of(const std::vector<double> &angle) {
-    double count = 0;
+    constexpr double gap = 10;
+    constexpr std::size_t many = 20;
+    std::vector<double> step;
     for (std::size_t i = 2; i < angle.size(); ++i)
-        if (const double step = std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]); step > 1e-9 && (count <= 0 || step < count))
-            count = step;
-    return count;
+        if (const double s = std::fabs(angle[i] - 2 * angle[i - 1] + angle[i - 2]); s > 1e-9) step.push_back(s);
+    std::sort(step.begin(), step.end());
+    for (std::size_t i = many; i < step.size(); ++i)
+        if (step[i] > gap * step[i - 1]) return step[i];
+    return step.empty() ? 0 : step.front();
 }
 
 // Standard deviation of the samples of a wheel that turns: rounding at least, more where their times scatter.
@@ -304,7 +313,7 @@ void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, doub
     input.plain_speed_rad_s = input.speed_rad_s;
     input.plain_accel_rad_s2 = std::exchange(input.accel_rad_s2, sharp.accel_rad_s2);
     for (std::size_t k = 0; k < data.count; ++k) {
-        if (!(size[k] > limit)) continue;
+        if (!(size[k] > limit * (input.width_s.empty() ? 1 : std::pow(input.half_s / input.width_s[k], 1.5)))) continue;
         for (std::size_t j = k - std::min(k, half_steps); j <= std::min(data.count - 1, k + half_steps); ++j) {
             input.speed_rad_s[j] = sharp.speed_rad_s[j];
         }

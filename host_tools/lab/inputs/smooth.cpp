@@ -72,8 +72,7 @@ double half_width_for(const std::vector<double> &t_s, const std::vector<double> 
     double speed = 0;
     const double scatter = angle_scatter(t_s, angle_rad, period_s, still_rad_s, speed);
     if (!(scatter > 0)) return half_s;
-    // tricube weights: a scatter sigma leaves 1.85 sigma sqrt(period) / half^1.5 in the slope
-    return std::clamp(std::pow(1.85 * scatter * std::sqrt(period_s) / (slope_noise * speed), 2.0 / 3), half_s,
+    return std::clamp(std::pow(scatter_in_slope * scatter * std::sqrt(period_s) / (slope_noise * speed), 2.0 / 3), half_s,
                       std::max(half_s, widest_half_s));
 }
 

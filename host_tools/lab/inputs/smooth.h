@@ -30,6 +30,9 @@ double median(std::vector<double> values); // 0 when empty
 
 inline constexpr double widest_half_s = 0.5; // starts and stops of a second still show
 
+// White scatter sigma of samples, a period apart, leaves scatter_in_slope sigma sqrt(period) / half width^1.5 in a parabola's slope.
+inline constexpr double scatter_in_slope = 1.85;
+
 // Half width of local parabolas over the angles of a turning wheel whose samples scatter (a slow counter, a clock that jitters): at
 // least `half`, and so wide, up to 0.5 s, that the slope's noise is `slope_noise` of the speed. `still_rad_s`: speed below which a wheel
 // stands.

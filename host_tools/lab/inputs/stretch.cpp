@@ -35,8 +35,8 @@ Dataset stretch(const Dataset &data, double from_s, double to_s) {
     const std::size_t count = end >= first ? end - first + 1 : 0;
     Dataset out = data;
     for (WheelInput &w : out.wheel)
-        for (auto *series :
-             {&w.angle_rad, &w.speed_rad_s, &w.accel_rad_s2, &w.travel_rad, &w.plain_speed_rad_s, &w.plain_accel_rad_s2, &w.voltage_V})
+        for (auto *series : {&w.angle_rad, &w.speed_rad_s, &w.accel_rad_s2, &w.travel_rad, &w.plain_speed_rad_s, &w.plain_accel_rad_s2,
+                             &w.width_s, &w.voltage_V})
             keep(*series, data.count, first, count);
     for (auto *series : {&out.yaw_rate_rad_s, &out.yaw_rad, &out.body_speed_m_s}) keep(*series, data.count, first, count);
     for (std::vector<double> &load : out.load_N) keep(load, data.count, first, count);

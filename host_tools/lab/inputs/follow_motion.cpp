@@ -1,0 +1,60 @@
+#include "follow_motion.h"
+
+#include "smooth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace traction::lab {
+
+namespace {
+
+constexpr double agree = 3;      // (1): of rounding's scatter neighbours are not white, so not less
+constexpr double wider_by = 1.5; // a width over the next narrower one
+constexpr double alike = 1.2;    // widest over narrowest, below which one width does
+
+void take(MotionAtWidth &to, const MotionAtWidth &from, std::size_t k) {
+    to.parabolas.angle_rad[k] = from.parabolas.angle_rad[k];
+    to.parabolas.speed_rad_s[k] = from.parabolas.speed_rad_s[k], to.parabolas.accel_rad_s2[k] = from.parabolas.accel_rad_s2[k];
+    to.cubics.speed_rad_s[k] = from.cubics.speed_rad_s[k], to.cubics.accel_rad_s2[k] = from.cubics.accel_rad_s2[k];
+}
+
+} // namespace
+
+double speed_scatter_rad_s(const WheelInput &input, double half_s) {
+    return scatter_in_slope * input.scatter_rad * std::sqrt(input.sample_s) / std::pow(half_s, 1.5);
+}
+
+MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::function<MotionAtWidth(double)> &smoothed) {
+    std::vector<double> widths;
+    if (input.half_s > alike * narrowest_s && input.scatter_rad > 0)
+        for (double h = narrowest_s; h * std::sqrt(wider_by) < input.half_s; h *= wider_by) widths.push_back(h);
+    widths.push_back(input.half_s);
+    MotionAtWidth out;
+    std::vector<double> low, high;
+    for (const double h : widths) {
+        MotionAtWidth at = smoothed(h);
+        const double within = agree * speed_scatter_rad_s(input, h);
+        if (low.empty()) {
+            const std::size_t count = at.parabolas.speed_rad_s.size();
+            low.assign(count, -std::numeric_limits<double>::infinity()), high.assign(count, std::numeric_limits<double>::infinity());
+            input.width_s.assign(count, h);
+            out = at;
+        }
+        for (std::size_t k = 0; k < low.size(); ++k) {
+            if (low[k] > high[k]) continue; // a narrower one has disagreed
+            low[k] = std::max(low[k], at.parabolas.speed_rad_s[k] - within), high[k] = std::min(high[k], at.parabolas.speed_rad_s[k] + within);
+            if (low[k] > high[k]) continue;
+            take(out, at, k), input.width_s[k] = h;
+        }
+    }
+    if (widths.size() == 1) input.width_s.clear();
+    input.angle_rad = std::move(out.parabolas.angle_rad);
+    input.speed_rad_s = std::move(out.parabolas.speed_rad_s), input.accel_rad_s2 = std::move(out.parabolas.accel_rad_s2);
+    return out;
+}
+
+} // namespace traction::lab

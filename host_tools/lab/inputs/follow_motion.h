@@ -1,0 +1,26 @@
+// follow_motion.h - a wheel's motion from its angles, smoothed widely where it runs evenly and narrowly where it starts and stops.
+//
+// One width for a whole log either keeps the encoder's scatter, which stiff ground turns into pull, or blurs every start. At each time the
+// widest half width is taken whose speed agrees with that of every narrower one within their noise (intersection of confidence intervals;
+// Goldenshluger and Nemirovski 1997, Katkovnik 1999):
+//   |w(h) - w(g)| <= 3 (s(h) + s(g))   for all g < h,   s(h) = 1.85 scatter sqrt(period) / h^1.5 (smooth.h)                         (1)
+#pragma once
+
+#include "dataset.h"
+
+#include <functional>
+
+namespace traction::lab {
+
+struct MotionAtWidth {
+    WheelInput parabolas, cubics; // angle, speed and acceleration on the grid; of the cubics no angle
+};
+
+// s(h) of (1) [rad/s].
+double speed_scatter_rad_s(const WheelInput &input, double half_s);
+
+// Fills the input's angle, speed, acceleration and width_s, and returns the cubics of the same widths. `smoothed` is asked for half widths
+// from `narrowest_s` to input.half_s, a factor of 1.5 apart; where the two are alike, or no scatter is known, for input.half_s alone.
+MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::function<MotionAtWidth(double)> &smoothed);
+
+} // namespace traction::lab
