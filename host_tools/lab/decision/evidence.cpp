@@ -1,7 +1,6 @@
 #include "evidence.h"
 
 #include "host_tools/lab/fit/scatter.h"
-#include "lag.h"
 #include "rounds.h"
 
 namespace traction::lab {
@@ -32,7 +31,7 @@ Evidence evidence_of(const Candidate &candidate, const Problem &before, const He
         out = falls_of(before, left_before, held_out(on_ground));
         take_off(on_ground);
     }
-    out.smooths = !(out.scaled.sum > least) || only_averages(before, with, out.scaled.sum);
+    out.smooths = !(out.scaled.sum > least);
     return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace traction::lab {
 
@@ -16,8 +17,8 @@ namespace {
 
 constexpr double most_error = 0.5;            // of a row's noise, that scatter and smoothing together may be: it then weighs an eighth
 constexpr double least_slope_noise = 5e-4;    // of the speed: the smoothing's half width is at its limit of 0.5 s by then
-constexpr double wider_by = 1.6, widest = 10; // times the half width, a step and in all: 0.5 s, its limit, from 0.05 s
-constexpr double most_attenuation = 0.03;     // of a slope, by errors in its regressor
+constexpr double wider_by = 1.6, widest = 20; // times the half width, a step and in all: 1 s, its limit, from 0.05 s
+constexpr double most_attenuation = 0.003;    // of a slope, by errors in its regressor
 constexpr double of_a_row_left_out = 8;       // its error, in noises (smoothing_bias.h)
 
 static_assert(stands_m_s == rest_speed_m_s);
@@ -75,8 +76,9 @@ Smoothed smoothed(const Model &model, const log::Log &log, double slope_noise, d
 // A wheel's speed is smoothed as widely as the machine asks for, by the model's own numbers: where heavy wheels on stiff ground turn what
 // the encoder leaves of 1 % into more than the current's noise, every fit follows that scatter, and softens the ground (errors in the
 // regressors attenuate its slope; Fuller 1987, section 1.1); a wider window loses what is quick. The width with the least of both. A
-// width by the samples' own covariance (half_width_for) sees no rounding where starts and stops hide it: there all widths are tried, but
-// only where the scatter beside what the ground's pull varies by would cost a slope 3 %. Where wheels slide much, nothing is lost by it.
+// width by the samples' own covariance (half_width_for) sees no rounding where starts and stops hide it: there all widths are tried, up
+// to the first that is worse than the one before, but only where the scatter beside what the ground's pull varies by would cost a slope 0.3
+// %: where wheels slide much, nothing is lost by it.
 Dataset best_smoothed(const Model &model, const log::Log &log) {
     Smoothed best = smoothed(model, log, 0.01);
     for (double slope_noise = 0.005; best.error > most_error && slope_noise > least_slope_noise; slope_noise /= 2)
@@ -84,10 +86,12 @@ Dataset best_smoothed(const Model &model, const log::Log &log) {
     if (!(best.error > most_error)) return best.data;
     const double pull = pull_A(model, best.data), ratio = pull > 0 ? best.scatter / pull : 0;
     if (!(ratio * ratio > most_attenuation)) return best.data;
+    double last = std::numeric_limits<double>::infinity();
     for (double widen = wider_by; best.error > most_error && widen < widest; widen *= wider_by) {
         Smoothed wider = smoothed(model, log, 0.01, widen);
-        if (!(wider.error < best.error)) break;
-        best = std::move(wider);
+        if (!(wider.error < last)) break;
+        last = wider.error;
+        if (wider.error < best.error) best = std::move(wider);
     }
     return best.data;
 }

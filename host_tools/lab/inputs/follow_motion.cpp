@@ -12,7 +12,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double agree = 3;      // (1): of rounding's scatter neighbours are not white, so not less
+constexpr double agree = 3;      // (1): assumed
 constexpr double wider_by = 1.5; // a width over the next narrower one
 constexpr double alike = 1.2;    // widest over narrowest, below which one width does
 
@@ -25,7 +25,7 @@ void take(MotionAtWidth &to, const MotionAtWidth &from, std::size_t k) {
 } // namespace
 
 double speed_scatter_rad_s(const WheelInput &input, double half_s) {
-    return scatter_in_slope * input.scatter_rad * std::sqrt(input.sample_s) / std::pow(half_s, 1.5);
+    return input.scatter_rad / half_s * std::max(1.0, scatter_in_slope * std::sqrt(input.sample_s / half_s));
 }
 
 MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::function<MotionAtWidth(double)> &smoothed) {
@@ -46,7 +46,8 @@ MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::fu
         }
         for (std::size_t k = 0; k < low.size(); ++k) {
             if (low[k] > high[k]) continue; // a narrower one has disagreed
-            low[k] = std::max(low[k], at.parabolas.speed_rad_s[k] - within), high[k] = std::min(high[k], at.parabolas.speed_rad_s[k] + within);
+            low[k] = std::max(low[k], at.parabolas.speed_rad_s[k] - within),
+            high[k] = std::min(high[k], at.parabolas.speed_rad_s[k] + within);
             if (low[k] > high[k]) continue;
             take(out, at, k), input.width_s[k] = h;
         }

@@ -3,7 +3,9 @@
 // One width for a whole log either keeps the encoder's scatter, which stiff ground turns into pull, or blurs every start. At each time the
 // widest half width is taken whose speed agrees with that of every narrower one within their noise (intersection of confidence intervals;
 // Goldenshluger and Nemirovski 1997, Katkovnik 1999):
-//   |w(h) - w(g)| <= 3 (s(h) + s(g))   for all g < h,   s(h) = 1.85 scatter sqrt(period) / h^1.5 (smooth.h)                         (1)
+//   |w(h) - w(g)| <= 3 (s(h) + s(g))   for all g < h,   s(h) = scatter / h * max(1, 1.85 sqrt(period / h))                           (1)
+// of white scatter (smooth.h), but not below scatter / h: a wheel that turns nearly a whole number of counts a sample is read a count wrong
+// every so many seconds, and evenly between.
 #pragma once
 
 #include "dataset.h"

@@ -28,7 +28,7 @@ double slope_response(double half_width_s, double omega_rad_s);
 
 double median(std::vector<double> values); // 0 when empty
 
-inline constexpr double widest_half_s = 0.5; // starts and stops of a second still show
+inline constexpr double widest_half_s = 1; // where it runs evenly (follow_motion.h)
 
 // White scatter sigma of samples, a period apart, leaves scatter_in_slope sigma sqrt(period) / half width^1.5 in a parabola's slope.
 inline constexpr double scatter_in_slope = 1.85;
