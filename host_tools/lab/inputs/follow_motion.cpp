@@ -12,11 +12,11 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double agree = 3;      // (1): assumed
-constexpr double wider_by = 1.5; // a width over the next narrower one
-constexpr double alike = 1.2;    // widest over narrowest, below which one width does
+constexpr double agree = 3;            // (1): assumed
+constexpr double next_width = 1.5;     // a width over the next narrower one
+constexpr double one_width_does = 1.2; // widest over narrowest, below which one width does
 
-void take(MotionAtWidth &to, const MotionAtWidth &from, std::size_t k) {
+void take_row(MotionAtWidth &to, const MotionAtWidth &from, std::size_t k) {
     to.parabolas.angle_rad[k] = from.parabolas.angle_rad[k];
     to.parabolas.speed_rad_s[k] = from.parabolas.speed_rad_s[k], to.parabolas.accel_rad_s2[k] = from.parabolas.accel_rad_s2[k];
     to.cubics.speed_rad_s[k] = from.cubics.speed_rad_s[k], to.cubics.accel_rad_s2[k] = from.cubics.accel_rad_s2[k];
@@ -30,8 +30,8 @@ double speed_scatter_rad_s(const WheelInput &input, double half_s) {
 
 MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::function<MotionAtWidth(double)> &smoothed) {
     std::vector<double> widths;
-    if (input.half_s > alike * narrowest_s && input.scatter_rad > 0)
-        for (double h = narrowest_s; h * std::sqrt(wider_by) < input.half_s; h *= wider_by) widths.push_back(h);
+    if (input.half_s > one_width_does * narrowest_s && input.scatter_rad > 0)
+        for (double h = narrowest_s; h * std::sqrt(next_width) < input.half_s; h *= next_width) widths.push_back(h);
     widths.push_back(input.half_s);
     MotionAtWidth out;
     std::vector<double> low, high;
@@ -49,7 +49,7 @@ MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::fu
             low[k] = std::max(low[k], at.parabolas.speed_rad_s[k] - within),
             high[k] = std::min(high[k], at.parabolas.speed_rad_s[k] + within);
             if (low[k] > high[k]) continue;
-            take(out, at, k), input.width_s[k] = h;
+            take_row(out, at, k), input.width_s[k] = h;
         }
     }
     if (widths.size() == 1) input.width_s.clear();
