@@ -1,6 +1,7 @@
 #include "evidence.h"
 
 #include "host_tools/lab/fit/scatter.h"
+#include "lag.h"
 #include "rounds.h"
 
 namespace traction::lab {
@@ -31,7 +32,7 @@ Evidence evidence_of(const Candidate &candidate, const Problem &before, const He
         out = falls_of(before, left_before, held_out(on_ground));
         take_off(on_ground);
     }
-    out.smooths = !(out.scaled.sum > least);
+    out.smooths = !(out.scaled.sum > least) || only_averages(before, left_before, with, left_with);
     return out;
 }
 

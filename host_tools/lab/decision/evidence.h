@@ -3,7 +3,8 @@
 //   fall = sum of (held-out residual without)^2 - (with)^2 - what the name gains by smoothing the encoders' scatter, row by row     (1)
 //
 // in units of noise and on the scales of the model without it. Beyond smoothing a name must gain a twentieth of what scatter may be of the
-// squares; where a softer ground beside it is all that smooths, (1) is asked with the ground as it was.
+// squares; where a softer ground beside it is all that smooths, (1) is asked with the ground as it was. A law that lags must gain where
+// speeds change (lag.h).
 #pragma once
 
 #include "host_tools/lab/fit/heldout.h"

@@ -18,15 +18,13 @@ namespace {
 constexpr double most_error = 0.5;            // of a row's noise, that scatter and smoothing together may be: it then weighs an eighth
 constexpr double least_slope_noise = 5e-4;    // of the speed: the smoothing's half width is at its limit of 0.5 s by then
 constexpr double wider_by = 1.6, widest = 20; // times the half width, a step and in all: 1 s, its limit, from 0.05 s
-constexpr double most_attenuation = 0.003;    // of a slope, by errors in its regressor
 constexpr double of_a_row_left_out = 8;       // its error, in noises (smoothing_bias.h)
 
 static_assert(stands_m_s == rest_speed_m_s);
 
 struct Smoothed {
     Dataset data;
-    double error = 0;   // of the torque balances' predictions by the smoothed wheels: scatter and bias, root mean square, in noises
-    double scatter = 0; // [A] of it by the wheels' scatter alone
+    double error = 0; // of the torque balances' predictions by the smoothed wheels: scatter and bias, root mean square, in noises
 };
 
 std::size_t torque_rows(const Dataset &data) {
@@ -36,22 +34,6 @@ std::size_t torque_rows(const Dataset &data) {
     return rows;
 }
 
-// The current by which the wheels pull, root mean square about its mean: what tells of the ground's stiffness [A].
-double pull_A(const Model &model, const Dataset &data) {
-    const Physics physics = make_physics(model);
-    Motion motion;
-    integrate(data, physics, motion, nullptr, false);
-    double sum = 0, n = 0;
-    for (std::size_t i = 0; i < motion.wheel.size(); ++i) {
-        const std::vector<double> &pull = motion.wheel[i].traction_N;
-        double mean = 0;
-        for (const double F : pull) mean += F / static_cast<double>(pull.size());
-        const double per_N = physics.wheel[i].KG > 0 ? physics.wheel[i].radius / physics.wheel[i].KG : 0;
-        for (const double F : pull) sum += std::pow(per_N * (F - mean), 2), ++n;
-    }
-    return n > 0 ? std::sqrt(sum / n) : 0;
-}
-
 Smoothed smoothed(const Model &model, const log::Log &log, double slope_noise, double widen = 1) {
     Smoothed out{measured_data(model, log, slope_noise, widen)};
     const std::size_t rows = torque_rows(out.data);
@@ -59,16 +41,14 @@ Smoothed smoothed(const Model &model, const log::Log &log, double slope_noise, d
     const Eigen::VectorXd squares = rounding_squares(out.data, make_physics(model), 1);
     const std::size_t left_out = rows - torque_rows(out.data);
     double sum = of_a_row_left_out * of_a_row_left_out * static_cast<double>(left_out);
-    double scatter = 0;
     Eigen::Index row = 0;
     for (const Balance &b : out.data.balance)
         for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
             if (b.kind != BalanceKind::current_torque) continue;
             const double lost = b.smoothing_bias.empty() ? 0 : b.smoothing_bias[r],
                          error = (squares[row] + lost * lost) / (b.noise * b.noise);
-            if (std::isfinite(error)) sum += error, scatter += squares[row];
+            if (std::isfinite(error)) sum += error;
         }
-    out.scatter = rows > 0 ? std::sqrt(scatter / static_cast<double>(rows)) : 0;
     out.error = rows > 0 ? std::sqrt(sum / static_cast<double>(rows)) : 0;
     return out;
 }
@@ -77,15 +57,11 @@ Smoothed smoothed(const Model &model, const log::Log &log, double slope_noise, d
 // the encoder leaves of 1 % into more than the current's noise, every fit follows that scatter, and softens the ground (errors in the
 // regressors attenuate its slope; Fuller 1987, section 1.1); a wider window loses what is quick. The width with the least of both. A
 // width by the samples' own covariance (half_width_for) sees no rounding where starts and stops hide it: there all widths are tried, up
-// to the first that is worse than the one before, but only where the scatter beside what the ground's pull varies by would cost a slope 0.3
-// %: where wheels slide much, nothing is lost by it.
+// to the first that is worse than the one before.
 Dataset best_smoothed(const Model &model, const log::Log &log) {
     Smoothed best = smoothed(model, log, 0.01);
     for (double slope_noise = 0.005; best.error > most_error && slope_noise > least_slope_noise; slope_noise /= 2)
         if (Smoothed wider = smoothed(model, log, slope_noise); wider.error < best.error) best = std::move(wider);
-    if (!(best.error > most_error)) return best.data;
-    const double pull = pull_A(model, best.data), ratio = pull > 0 ? best.scatter / pull : 0;
-    if (!(ratio * ratio > most_attenuation)) return best.data;
     double last = std::numeric_limits<double>::infinity();
     for (double widen = wider_by; best.error > most_error && widen < widest; widen *= wider_by) {
         Smoothed wider = smoothed(model, log, 0.01, widen);
