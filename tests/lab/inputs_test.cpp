@@ -298,7 +298,25 @@ TEST(Inputs, wheels_are_smoothed_as_widely_as_the_machine_asks_for) {
         return all[all.size() / 2];
     };
     EXPECT_LT(scatter(wide), 0.8 * scatter(narrow));
+    Dataset narrowed = wide; // where it starts it has the scatter of the width that it is read with
+    for (WheelInput &w : narrowed.wheel) w.width_s.assign(narrowed.count, narrow.wheel[0].half_s);
+    EXPECT_NEAR(scatter(narrowed), scatter(narrow), 0.3 * scatter(narrow));
     EXPECT_NEAR(half_of(make_dataset(soft, on_sand)), half_of(measured_data(soft, on_sand)), 1e-9);
+}
+
+// A log of angles is rounded to the encoder's counts, whatever decimals it is written with; without them the count was the last decimal's.
+TEST(Inputs, a_count_is_found_in_angles_that_are_written_with_a_few_decimals) {
+    generator::GeneratorConfig config = rover_of(generator::Size::small, generator::Soil::concrete);
+    config.chain.angle_only = true;
+    config.drive = "slow"; // half of its samples run evenly: they say nothing of scatter
+    const Model model = parse_model(generator::data_sheet(config), "sheet");
+    log::Log log = generator::generate(config);
+    const double scatter = make_dataset(model, log).wheel[0].scatter_rad, count = 2 * std::numbers::pi / 6000;
+    EXPECT_NEAR(scatter, count / std::sqrt(12.0), 0.01 * count);
+    for (log::Signal &s : log.signals)
+        if (s.name.ends_with(".angle_rad"))
+            for (double &a : s.value) a = 1e-8 * std::round(1e8 * a);
+    EXPECT_NEAR(make_dataset(model, log).wheel[0].scatter_rad, scatter, 0.01 * scatter);
 }
 
 // A centimetre a second, 0.175 rad/s of this wheel, within 1.25 and 3 % of the top speed of the log.

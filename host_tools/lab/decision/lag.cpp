@@ -13,8 +13,8 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double at_changes = 2;  // (1): of five rovers whose slip does not lag at most 1.7, of eight whose does at least 2.1
-constexpr double a_change = 0.1;  // of the largest speed
+constexpr double at_changes = 2;   // (1): of five rovers whose slip does not lag at most 1.7, of eight whose does at least 2.1
+constexpr double a_change = 0.1;   // of the largest speed
 constexpr double enough_rows = 50; // of either kind
 
 double rim_speed_m_s(const Dataset &data, const Physics &physics) {

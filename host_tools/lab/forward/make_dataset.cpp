@@ -16,7 +16,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double most_error = 0.5;            // of a row's noise, that scatter and smoothing together may be: it then weighs an eighth
-constexpr double least_slope_noise = 5e-4;    // of the speed: the smoothing's half width is at its limit of 0.5 s by then
+constexpr double least_slope_noise = 5e-4;    // of the speed: the smoothing's half width is at its limit by then
 constexpr double wider_by = 1.6, widest = 20; // times the half width, a step and in all: 1 s, its limit, from 0.05 s
 constexpr double of_a_row_left_out = 8;       // its error, in noises (smoothing_bias.h)
 

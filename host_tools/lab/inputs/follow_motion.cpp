@@ -45,10 +45,9 @@ MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::fu
             out = at;
         }
         for (std::size_t k = 0; k < low.size(); ++k) {
-            if (low[k] > high[k]) continue; // a narrower one has disagreed
             low[k] = std::max(low[k], at.parabolas.speed_rad_s[k] - within),
             high[k] = std::min(high[k], at.parabolas.speed_rad_s[k] + within);
-            if (low[k] > high[k]) continue;
+            if (low[k] > high[k]) continue; // for good: neither comes back
             take_row(out, at, k), input.width_s[k] = h;
         }
     }

@@ -34,8 +34,8 @@ inline constexpr double widest_half_s = 1; // where it runs evenly (follow_motio
 inline constexpr double scatter_in_slope = 1.85;
 
 // Half width of local parabolas over the angles of a turning wheel whose samples scatter (a slow counter, a clock that jitters): at
-// least `half`, and so wide, up to 0.5 s, that the slope's noise is `slope_noise` of the speed. `still_rad_s`: speed below which a wheel
-// stands.
+// least `half`, and so wide, up to widest_half_s, that the slope's noise is `slope_noise` of the speed. `still_rad_s`: speed below which a
+// wheel stands.
 double half_width_for(const std::vector<double> &t_s, const std::vector<double> &angle_rad, double period_s, double half_s,
                       double still_rad_s, double slope_noise);
 
