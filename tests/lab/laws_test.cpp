@@ -117,6 +117,14 @@ TEST(Smoothing, blurs_no_start_that_a_lag_would_mend) {
     EXPECT_LT(a.d.ladder.front().heldout, 1.25);
 }
 
+// A ripple of eight periods a turn swings the wheel on concrete; smoothed over +-0.9 s nothing of it was left to find.
+TEST(Smoothing, hides_no_ripple) {
+    generator::BlindCase hidden = generator::draw_case(904009, 120, "one");
+    hidden.config.apart = true;
+    ASSERT_EQ(hidden.config.hidden.front().name, "torque_ripple");
+    EXPECT_EQ(ask(hidden.config).d.effects, std::vector<std::string>{"torque_ripple on wheel 1"});
+}
+
 // At wheel speeds of nearly a whole number of counts a sample a relaxation length averages what is false in them: 1.39 to 1.02 times the
 // noise on concrete, by a drive of 7 cm/s. None is there; and a real one was silent, of a rover in curves on concrete.
 TEST(Smoothing, tells_a_lag_from_an_average) {

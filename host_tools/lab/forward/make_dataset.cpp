@@ -7,6 +7,7 @@
 
 #include "host_tools/lab/inputs/inputs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -53,11 +54,15 @@ Smoothed smoothed(const Model &model, const log::Log &log, double slope_noise, d
     return out;
 }
 
+bool swings(const Dataset &data) {
+    return std::any_of(data.wheel.begin(), data.wheel.end(), [](const WheelInput &w) { return w.swings; });
+}
+
 // A wheel's speed is smoothed as widely as the machine asks for, by the model's own numbers: where heavy wheels on stiff ground turn what
 // the encoder leaves of 1 % into more than the current's noise, every fit follows that scatter, and softens the ground (errors in the
 // regressors attenuate its slope; Fuller 1987, section 1.1); a wider window loses what is quick. The width with the least of both. A
 // width by the samples' own covariance (half_width_for) sees no rounding where starts and stops hide it: there all widths are tried, up
-// to the first that is worse than the one before.
+// to the first that is worse than the one before, or hides how a wheel swings with its own angle (a ripple would be lost with it).
 Dataset best_smoothed(const Model &model, const log::Log &log) {
     Smoothed best = smoothed(model, log, 0.01);
     for (double slope_noise = 0.005; best.error > most_error && slope_noise > least_slope_noise; slope_noise /= 2)
@@ -65,7 +70,7 @@ Dataset best_smoothed(const Model &model, const log::Log &log) {
     double last = std::numeric_limits<double>::infinity();
     for (double widen = wider_by; best.error > most_error && widen < widest; widen *= wider_by) {
         Smoothed wider = smoothed(model, log, 0.01, widen);
-        if (!(wider.error < last)) break;
+        if (!(wider.error < last) || swings(wider.data)) break;
         last = wider.error;
         if (wider.error < best.error) best = std::move(wider);
     }

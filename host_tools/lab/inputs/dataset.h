@@ -54,6 +54,7 @@ struct WheelInput {
     std::vector<double> voltage_V;                        // at the motor; empty when unknown
     std::vector<double> voltage_t_s, voltage_integral_Vs; // its integral at the log's own times: a row's mean is exact
     std::vector<double> duty;                             // held from those times on; empty where the voltage itself is logged
+    bool swings = false;                                  // with its own angle, quicker than its half width shows (follow_motion.h)
     bool rolls_freely = false; // without a motor, its speed not in the log: it turns as fast as it moves over the ground
     int turns_with = -1;       // the wheel whose motor turns this one: its motion is that wheel's; -1: its own
 };

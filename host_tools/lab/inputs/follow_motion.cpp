@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -12,7 +13,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double agree = 3;            // (1): assumed
+constexpr double agree = 3;         // (1): assumed
+constexpr double swing_width = 2.5; // of the narrowest: what a turning wheel's swing is sought beside
+constexpr int highest_order = 16;
+constexpr double surely_a_line = 25;   // of the power of a line that is none, whose mean is 1: one in 1e11
 constexpr double next_width = 1.5;     // a width over the next narrower one
 constexpr double one_width_does = 1.2; // widest over narrowest, below which one width does
 
@@ -28,11 +32,36 @@ double speed_scatter_rad_s(const WheelInput &input, double half_s) {
     return input.scatter_rad / half_s * std::max(1.0, scatter_in_slope * std::sqrt(input.sample_s / half_s));
 }
 
-MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::function<MotionAtWidth(double)> &smoothed) {
+bool swings_as_it_turns(const std::vector<double> &narrow, const std::vector<double> &wide, const std::vector<double> &angle_rad,
+                        double independent) {
+    std::vector<double> swing, size;
+    for (std::size_t k = 0; k < narrow.size(); ++k) {
+        swing.push_back(narrow[k] - wide[k]);
+        if (swing[k] != 0) size.push_back(std::fabs(swing[k]));
+    }
+    const double clip = 3 * 1.4826 * median(std::move(size)); // starts, which the wide ones blur, count as three deviations
+    double power = 0;
+    for (double &d : swing) d = std::clamp(d, -clip, clip), power += d * d;
+    if (!(power > 0)) return false;
+    for (int order = 1; order <= highest_order; ++order) {
+        std::complex<double> line = 0;
+        for (std::size_t k = 0; k < swing.size(); ++k) line += swing[k] * std::polar(1.0, -order * angle_rad[k]);
+        if (std::norm(line) > surely_a_line * power * static_cast<double>(swing.size()) / independent) return true;
+    }
+    return false;
+}
+
+MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, double step_s, const std::function<MotionAtWidth(double)> &smoothed) {
     std::vector<double> widths;
     if (input.half_s > one_width_does * narrowest_s && input.scatter_rad > 0)
         for (double h = narrowest_s; h * std::sqrt(next_width) < input.half_s; h *= next_width) widths.push_back(h);
     widths.push_back(input.half_s);
+    if (widths.size() > 1) {
+        const WheelInput narrow = smoothed(narrowest_s).parabolas,
+                         wide = smoothed(std::min(input.half_s, swing_width * narrowest_s)).parabolas;
+        input.swings = swings_as_it_turns(narrow.speed_rad_s, wide.speed_rad_s, wide.angle_rad,
+                                          static_cast<double>(narrow.speed_rad_s.size()) * step_s / narrowest_s);
+    }
     MotionAtWidth out;
     std::vector<double> low, high;
     for (const double h : widths) {

@@ -21,8 +21,13 @@ struct MotionAtWidth {
 // s(h) of (1) [rad/s].
 double speed_scatter_rad_s(const WheelInput &input, double half_s);
 
+// Whether the speeds of two widths differ by what goes with the wheel's own angle, 1 to 16 times a turn (a ripple of the torque, teeth):
+// their difference has a line there of 25 times the power that its scatter leaves, `independent` values of it.
+bool swings_as_it_turns(const std::vector<double> &narrow, const std::vector<double> &wide, const std::vector<double> &angle_rad,
+                        double independent);
+
 // Fills the input's angle, speed, acceleration and width_s, and returns the cubics of the same widths. `smoothed` is asked for half widths
 // from `narrowest_s` to input.half_s, a factor of 1.5 apart; where the two are alike, or no scatter is known, for input.half_s alone.
-MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, const std::function<MotionAtWidth(double)> &smoothed);
+MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, double step_s, const std::function<MotionAtWidth(double)> &smoothed);
 
 } // namespace traction::lab
