@@ -56,7 +56,6 @@ class Search {
             Model without = model_without(d_.model, d_.accepted[i].candidate);
             Problem left = fitted(without, &problem);
             remove(i, std::move(without), left);
-            d_.model_fit.reset();
             settle_last(left);
             return left;
         });
@@ -67,6 +66,7 @@ class Search {
             d_.unknown.reset();
         }
         if (options_.shapes && !d_.unknown) face_rivals(first, problem);
+        if (!d_.model_fit) settle_last(problem);
         refine_shapes(problem);
         d_.limits = limits_of(problem);
         conclude(d_);
@@ -298,6 +298,7 @@ class Search {
         take_back(d_, i);
         if (d_.ladder.size() > 1) stands_at(problem);
         d_.model = std::move(without);
+        d_.model_fit.reset(); // it was of the model with it
         refresh(problem, Screen(problem));
     }
 
