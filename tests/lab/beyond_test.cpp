@@ -94,6 +94,10 @@ TEST(Shapes, a_grip_that_fades_in_time_is_no_gradient_along_the_way) {
     EXPECT_EQ(d.unknown->variable, "time");
     EXPECT_EQ(d.unknown->target, "soil_strength");
     EXPECT_TRUE(is_nearest(d, "soil_gradient"));
+    // the fit that --apply writes into this model is this model's, without the name that was taken back
+    if (d.model_fit) {
+        EXPECT_EQ(d.model_fit->parameters.size(), free_parameters(d.model, make_physics(d.model)).size());
+    }
 }
 
 // A resistance to turning that the catalogue lacks: the log tells it from wheels that dig in no better than the other way about.

@@ -4,6 +4,7 @@
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/rounding.h"
 #include "host_tools/lab/inputs/dataset.h"
+#include "host_tools/lab/inputs/inputs.h"
 #include "host_tools/lab/inputs/long_log.h"
 #include "host_tools/lab/inputs/smooth.h"
 #include "host_tools/lab/inputs/stretch.h"
@@ -122,8 +123,12 @@ TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
 
 TEST(Inputs, a_stretch_of_a_log_keeps_its_times_and_predicts_what_the_whole_does_there) {
     const Model model = bench();
-    const Dataset whole = make_dataset(model, motor(accel_rad_s2)), part = stretch(whole, 2.005, 4.5);
+    Dataset whole = make_dataset(model, motor(accel_rad_s2));
+    for (std::size_t k = 0; k < whole.count; ++k) whole.wheel[0].width_s.push_back(whole.time(k)); // (any series of the grid)
+    const Dataset part = stretch(whole, 2.005, 4.5);
     ASSERT_GE(part.start_s, 2.005);
+    ASSERT_EQ(part.wheel[0].width_s.size(), part.count);
+    EXPECT_NEAR(part.wheel[0].width_s[0], part.start_s, 1e-9);
     EXPECT_LE(part.time(part.count - 1), 4.5 + 1e-9);
     EXPECT_NEAR(2.495 / whole.step_s, static_cast<double>(part.count), 2); // both ends on the grid
     const Physics physics = make_physics(model);
@@ -302,6 +307,28 @@ TEST(Inputs, wheels_are_smoothed_as_widely_as_the_machine_asks_for) {
     for (WheelInput &w : narrowed.wheel) w.width_s.assign(narrowed.count, narrow.wheel[0].half_s);
     EXPECT_NEAR(scatter(narrowed), scatter(narrow), 0.3 * scatter(narrow));
     EXPECT_NEAR(half_of(make_dataset(soft, on_sand)), half_of(measured_data(soft, on_sand)), 1e-9);
+}
+
+// Cubics and parabolas differ by noise that goes with the width to -1.5: at half the width 2.8 times as much is none yet, and 1.3 times the
+// limit at the whole width is a jump.
+TEST(Inputs, a_wheel_that_is_read_more_narrowly_jumps_by_more) {
+    const Model model = bench();
+    const log::Log none;
+    InputBuilder builder{model, none, 0.01, 1, {}};
+    builder.data.count = 1000, builder.data.step_s = 0.02, builder.data.smoothing_half_s = 0.08;
+    const double calm = 0.01, limit = 5 * calm / 0.2533; // five deviations, from the calmest fifth
+    WheelInput input, sharp;
+    input.half_s = 0.4;
+    input.speed_rad_s.assign(1000, 2), sharp.speed_rad_s.assign(1000, 3);
+    input.accel_rad_s2.assign(1000, 0), sharp.accel_rad_s2.assign(1000, calm);
+    for (const std::size_t k : {400U, 600U}) sharp.accel_rad_s2[k] = 1.3 * limit;
+    sharp.accel_rad_s2[800] = 3 * limit;
+    input.width_s.assign(1000, input.half_s);
+    input.width_s[600] = input.width_s[800] = 0.5 * input.half_s;
+    builder.follow_jumps(input, sharp, 0);
+    EXPECT_EQ(input.speed_rad_s[400], 3);
+    EXPECT_EQ(input.speed_rad_s[600], 2);
+    EXPECT_EQ(input.speed_rad_s[800], 3);
 }
 
 // A log of angles is rounded to the encoder's counts, whatever decimals it is written with; without them the count was the last decimal's.

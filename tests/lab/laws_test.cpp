@@ -95,7 +95,8 @@ TEST(Sensors, an_accelerometer_filtered_and_late_as_such_parts_are_gets_no_name)
 }
 
 // On concrete a count is a force of a newton; a relaxation length smooths it, and was named in stop and go (error 2.1 -> 1.1 x noise).
-// Nothing is hidden. By two laws the error of blocks left out falls surely, with numbers that lie farther from the sheet than it gains.
+// Nothing is hidden. By mesh_loss and by multi_pass the error of blocks left out falls, surely, and the numbers lie farther from the sheet:
+// neither is told.
 TEST(Sheet, is_strained_for_no_name_that_explains_little) {
     const generator::BlindCase clean = generator::draw_fleet_case(962019, "clean");
     ASSERT_TRUE(clean.config.hidden.empty());
@@ -103,7 +104,8 @@ TEST(Sheet, is_strained_for_no_name_that_explains_little) {
     EXPECT_EQ(a.d.effects, std::vector<std::string>()) << a.d.text;
     const auto strained =
         std::find_if(a.d.ranking.begin(), a.d.ranking.end(), [](const CandidateResult &r) { return r.verdict == "strains_sheet"; });
-    EXPECT_NE(strained, a.d.ranking.end());
+    ASSERT_NE(strained, a.d.ranking.end());
+    EXPECT_TRUE(strained->candidate.effect == "mesh_loss" || strained->candidate.effect == "multi_pass") << strained->candidate.effect;
 }
 
 // Smoothed over +-0.36 s throughout, its starts were blurred, and a relaxation length mended that (1.31 to 1.20 times the noise, p 3e-36),
@@ -125,8 +127,8 @@ TEST(Smoothing, hides_no_ripple) {
     EXPECT_EQ(ask(hidden.config).d.effects, std::vector<std::string>{"torque_ripple on wheel 1"});
 }
 
-// At wheel speeds of nearly a whole number of counts a sample a relaxation length averages what is false in them: 1.39 to 1.02 times the
-// noise on concrete, by a drive of 7 cm/s. None is there; and a real one was silent, of a rover in curves on concrete.
+// At wheel speeds of nearly a whole number of counts a sample a relaxation length averages what is false in them (1.07 to 1.01 times the
+// noise, a slow drive on concrete). None is there; and a real one was silent, of a rover in curves on concrete.
 TEST(Smoothing, tells_a_lag_from_an_average) {
     const generator::BlindCase clean = generator::draw_fleet_case(962023, "clean");
     ASSERT_TRUE(clean.config.hidden.empty());

@@ -284,5 +284,15 @@ TEST(Scenario, of_a_model_carries_its_numbers_and_effects) {
     for (const Manoeuvre &m : manoeuvres()) EXPECT_NO_THROW(sim::parse_scenario(scenario_of(model, {&m}, notes), m.title)) << m.title;
 }
 
+// Beside its own tolerance a wheel's friction may be fitted a little below nothing; a rover is given none then.
+TEST(Scenario, of_a_friction_below_nothing_has_none) {
+    Model model = sand();
+    for (WheelSpec &w : model.wheel) w.motor.at("viscous_Nms").value = -1.7e-4;
+    std::vector<std::string> notes;
+    const sim::Scenario scenario = sim::parse_scenario(scenario_of(model, {&manoeuvres().front()}, notes), "x");
+    EXPECT_EQ(scenario.plant.rover.drive.viscous_Nms, 0);
+    EXPECT_GT(scenario.plant.rover.drive.coulomb_Nm, 0);
+}
+
 } // namespace
 } // namespace traction::lab

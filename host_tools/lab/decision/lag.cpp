@@ -13,7 +13,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double at_changes = 2;   // (1): of five rovers whose slip does not lag at most 1.7, of eight whose does at least 2.1
+constexpr double at_changes = 2;   // (1): of four logs whose slip does not lag at most 1.7, of eight whose does at least 2.1
 constexpr double a_change = 0.1;   // of the largest speed
 constexpr double enough_rows = 50; // of either kind
 

@@ -56,16 +56,16 @@ MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, double step_s
     if (input.half_s > one_width_does * narrowest_s && input.scatter_rad > 0)
         for (double h = narrowest_s; h * std::sqrt(next_width) < input.half_s; h *= next_width) widths.push_back(h);
     widths.push_back(input.half_s);
+    MotionAtWidth at = smoothed(widths.front());
     if (widths.size() > 1) {
-        const WheelInput narrow = smoothed(narrowest_s).parabolas,
-                         wide = smoothed(std::min(input.half_s, swing_width * narrowest_s)).parabolas;
+        const WheelInput &narrow = at.parabolas, wide = smoothed(std::min(input.half_s, swing_width * narrowest_s)).parabolas;
         input.swings = swings_as_it_turns(narrow.speed_rad_s, wide.speed_rad_s, wide.angle_rad,
                                           static_cast<double>(narrow.speed_rad_s.size()) * step_s / narrowest_s);
     }
     MotionAtWidth out;
     std::vector<double> low, high;
     for (const double h : widths) {
-        MotionAtWidth at = smoothed(h);
+        if (h != widths.front()) at = smoothed(h);
         const double within = agree * speed_scatter_rad_s(input, h);
         if (low.empty()) {
             const std::size_t count = at.parabolas.speed_rad_s.size();

@@ -22,12 +22,14 @@ struct MotionAtWidth {
 double speed_scatter_rad_s(const WheelInput &input, double half_s);
 
 // Whether the speeds of two widths differ by what goes with the wheel's own angle, 1 to 16 times a turn (a ripple of the torque, teeth):
-// their difference has a line there of 25 times the power that its scatter leaves, `independent` values of it.
+// their difference has a line there of 25 times the power that its scatter leaves, of so many `independent` values. All [rad/s] and [rad],
+// of one length.
 bool swings_as_it_turns(const std::vector<double> &narrow, const std::vector<double> &wide, const std::vector<double> &angle_rad,
                         double independent);
 
-// Fills the input's angle, speed, acceleration and width_s, and returns the cubics of the same widths. `smoothed` is asked for half widths
-// from `narrowest_s` to input.half_s, a factor of 1.5 apart; where the two are alike, or no scatter is known, for input.half_s alone.
+// Fills the input's angle, speed, acceleration, width_s and swings, from its scatter_rad, sample_s and half_s, the widest [s], and returns
+// the cubics of the same widths. `smoothed` gives the motion on a grid of step_s [s] by a half width [s]: it is asked for those from
+// `narrowest_s` to half_s, a factor of 1.5 apart; where the two are alike, or no scatter is known, for half_s alone (and width_s is empty).
 MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, double step_s, const std::function<MotionAtWidth(double)> &smoothed);
 
 } // namespace traction::lab

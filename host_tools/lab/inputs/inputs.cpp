@@ -212,12 +212,12 @@ void InputBuilder::wheel_motion(std::size_t i) {
         const auto smoothed = [&](double width) {
             MotionAtWidth at;
             Smooth parabolas = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, width, 2);
+            if (width == half) mark_gaps(parabolas.distance_s, *s); // once: of any width they are the same
             at.parabolas.angle_rad = std::move(parabolas.value), at.parabolas.speed_rad_s = std::move(parabolas.slope);
             at.cubics.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, width, 3).slope;
             slopes_of(at.parabolas), slopes_of(at.cubics);
             return at;
         };
-        mark_gaps(smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, narrowest, 1).distance_s, *s);
         const MotionAtWidth at = follow_motion(input, narrowest, data.step_s, smoothed);
         const double noise = rounding_noise(count_rad, input.sample_s, half);
         rounding_rad_s2 = std::max(rounding_rad_s2, noise);

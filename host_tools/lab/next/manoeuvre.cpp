@@ -242,7 +242,7 @@ std::string scenario_of(const Model &model, const std::string &title, const std:
     const double relaxation = mean(&WheelSpec::soil, "relaxation_length_m");
     put("relaxation_length_m", relaxation, relaxation >= 0.0005);
     for (const char *key : {"torque_constant_Nm_A", "resistance_ohm", "inertia_kg_m2", "viscous_Nms", "coulomb_Nm"})
-        put(key, mean(&WheelSpec::motor, key), true);
+        put(key, std::max(0.0, mean(&WheelSpec::motor, key)), true); // a fit may leave a wheel's friction a little below nothing
     if (model.couples()) {
         const std::vector<std::size_t> motors = motors_of_sides(model);
         text += "layout = { drives = [" + std::to_string(motors[0]) + ", " + std::to_string(motors[1]) + "] }\n";
