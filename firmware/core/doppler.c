@@ -234,10 +234,12 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         }
     }
     state->weigh_lines = !known && any_line(state);
-    // Of a narrow beam an echo at constant speed is as narrow as a line; at the band's edge the line may be one that lies beyond.
-    if (!beam->from_peak && loudest >= TONE_FROM && loudest < end - TONE_ASIDE) {
+    // Of a narrow beam an echo at constant speed is as narrow as a line; at the band's edge the line may be one that lies beyond. A place
+    // that was the loudest is no longer looked at: what is heard there is the skirt of an echo that is slower now.
+    if (!beam->from_peak) {
+        const bool inside = loudest >= TONE_FROM && loudest < end - TONE_ASIDE;
         const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
-        doppler_line_suggest(&state->tone, long_enough ? (uint32_t)loudest : 0u);
+        doppler_line_suggest(&state->tone, inside && long_enough ? (uint32_t)loudest : 0u);
     }
 }
 
