@@ -93,10 +93,13 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
 }
 
 // Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
-static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
+static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s, bool wheels_part)
 {
     const bool creeps = wheels_creep(config, state, wheel_m_s);
     state->asked_m_s = wheel_m_s;
+    if (state->standstill && wheels_part) { // (33)
+        ground_speed_follow_wheels(config, state, true);
+    }
     const float spread =
         creeps ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s) : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
@@ -180,7 +183,8 @@ static void do_chore(const ground_speed_config_t *config, ground_speed_state_t *
     } else if (state->chore % CHORES == 1u) {
         ground_speed_watch_gyro(config, state);
     } else if (state->chore % CHORES == 3u) {
-        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s));
+        ask_wheels(config, state, fixed_clamp(fixed_finite(input->wheel_m_s), -config->speed_max_m_s, config->speed_max_m_s),
+                   input->wheels_part);
     } else if (state->chore % CHORES == 4u && state->unheard_ticks >= SILENT_TICKS) {
         state->loud = 0;
     } else if (state->chore % CHORES == 2u) {
