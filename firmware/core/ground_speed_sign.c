@@ -199,8 +199,10 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const float apart = state->speed_m_s - state->other.at.speed_m_s;
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
     const bool refuted = !(state->odds < config->sign_sure);
+    const bool same = sure && !won && (sign < 0.0f) == (state->value_sign < 0.0f);
+    const bool moot = same && with < 0 && state->rolls_ticks == 0; // (34)
     state->against = refuted && !won && with < 0 && state->against < 0 ? -ANSWERED_VALUES : state->against; // (27)
-    state->other_alive = !one && !refuted;
+    state->other_alive = !one && !refuted && !moot;
     if (won) {
         if (state->refused == 0 && fixed_greater(scatters, state->misfit)) {
             ground_speed_forget_agile(state); // (26)
