@@ -49,6 +49,46 @@ TEST(OutdoorsUnseen, noise_that_lasts_longer_than_a_tick_widens_the_claim) {
     EXPECT_GE(sum / n, 0.7);
 }
 
+// doppler_line.h: a line is looked for where the spectrum is loudest. Where it had been loudest before the rover slowed down, the skirt of
+// the slower echo was taken for one, and taken off: 15 cm/s, NEES 12.
+TEST(OutdoorsUnseen, the_skirt_of_an_echo_that_has_become_slower_is_no_line) {
+    Case now;
+    now.speed = [](double t) { return std::fmax(0.3, 1 - t); }, now.settle_s = 1;
+    const outdoors::Score score = of_seed(now, 1708);
+    EXPECT_LE(score.rmse, 0.04);
+    EXPECT_LE(score.nees, 2);
+    EXPECT_LE(score.wrong_sign_s, 0.5);
+}
+
+// (33): what it turns through on a slope is gravity's share, while a hum keeps the radar from being quiet. 40 cm/s, wrong sign for 5.1 s.
+TEST(OutdoorsUnseen, a_rover_that_turns_on_the_spot_learns_the_slope_it_faces_then) {
+    const double slope = 5 * outdoors::pi / 180;
+    Case now;
+    now.scatterers = true;
+    now.speed = [](double t) { return t < 4 ? 0.3 * std::fmin(1, std::fmax(0, 2 * (t - 1))) : std::fmax(0, 0.3 - 0.6 * (t - 4)); };
+    now.speed = [before = now.speed](double t) { return t < 9.9 ? before(t) : std::fmin(0.3, std::fmax(0, 0.6 * (t - 10))); };
+    now.turn = [](double t) { return t > 5 && t < 9.2 ? 0.3 * std::fmin(1, std::fmin(5 * (t - 5), 5 * (9.2 - t))) : 0; };
+    now.slope = [slope](double t) { return t < 5 ? -slope : t > 9.2 ? slope : slope * -std::cos((t - 5) * outdoors::pi / 4.2); };
+    for (const std::uint64_t seed : {1902u, 1908u}) {
+        const outdoors::Score score = of_seed(now, seed);
+        EXPECT_LE(score.rmse, 0.04) << seed;
+        EXPECT_LE(score.nees, 2) << seed;
+        EXPECT_LE(score.wrong_sign_s, 0.5) << seed;
+    }
+}
+
+// (34): a hum that is being learnt leaves both tracks with the sign that the wheels deny. They could not ask, and it stayed: for 10.9 s,
+// with a fault.
+TEST(OutdoorsUnseen, two_tracks_with_the_sign_that_the_wheels_deny_let_them_ask) {
+    Case now;
+    now.scatterers = true;
+    now.speed = [](double) { return 0.5; }, now.tone_Hz = 50, now.tone_count = 75 * 1.41 * 0.3;
+    const outdoors::Score score = of_seed(now, 2208);
+    EXPECT_EQ(score.faults, 0u);
+    EXPECT_LE(score.wrong_sign_s, 4); // a line is learnt within four seconds
+    EXPECT_LE(score.rmse, 0.04);
+}
+
 // What the second generator claims of itself: mean square 1 along the track, and what is interpolated is what is computed.
 TEST(OutdoorsUnseen, the_second_generators_echo_has_unit_power_and_one_value_at_one_place) {
     outdoors::Scatterers ground(301), other(301);
