@@ -9,11 +9,13 @@
 // scatterer takes through the beam, a window or less: its blocks are as good as independent, and the largest of the 32 values of (3) is
 // beyond s with a probability of 32 (1 - s)^(N - 1) (Fisher): for s = 0.4 and the 20 independent blocks of an echo of 5 Hz 0.2 %, and what
 // is then taken off is a slice of N blocks' width, 0.25 Hz of the reference radar. So a line is found even inside the echo, where neither
-// level nor constancy tells it. k, the bin that is looked at, is the loudest one of the mean spectrum; the line may be 2 bins beside it.
-// It ends when (3) falls below a quarter, or when a second of blocks no longer goes with S. Radars whose 32 blocks last less than 3 s, or
-// whose echo is narrow, have none of this. The estimator is told of a line as strong as the echo: what it had told is forgotten.
-// Cost: some 50 instructions a sample and some thousand in each of the ten ticks that think, all of them between the filter's ticks and the
-// next transform. The last samples of a window are not rid of the line when it is transformed; its Hann weight is below 0.01 there.
+// level nor constancy tells it. k, the bin that is looked at, is the loudest one of the mean spectrum now, or none (0) while that lies
+// where no line is looked for: of a bin that was the loudest before the rover slowed down the blocks hold the skirt of its echo. The line
+// may be 2 bins beside it. It ends when (3) falls below a quarter, or when a second of blocks no longer goes with S. Radars whose 32 blocks
+// last less than 3 s, or whose echo is narrow, have none of this. The estimator is told of a line as strong as the echo: what it had told
+// is forgotten. Cost: some 50 instructions a sample and some thousand in each of the ten ticks that think, all of them between the filter's
+// ticks and the next transform. The last samples of a window are not rid of the line when it is transformed; its Hann weight is below 0.01
+// there.
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_LINE_H
 #define TRACTION_FIRMWARE_CORE_DOPPLER_LINE_H
 

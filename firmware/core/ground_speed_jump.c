@@ -51,6 +51,17 @@ static void take_agile(const ground_speed_config_t *config, ground_speed_state_t
     ground_speed_keep_best(state, &track);
 }
 
+// (35)
+static void keep_before(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *before)
+{
+    const float most = -ground_speed_square(config->slow_m_s); // both beyond it, or one by more
+    if (fixed_greater(most, before->speed_m_s * state->speed_m_s)) {
+        ground_speed_split(state, &state->other, before);
+        state->odds = state->agile_sum;
+        state->other_alive = state->odds < config->sign_sure;
+    }
+}
+
 void ground_speed_forget_agile(ground_speed_state_t *state)
 {
     state->agile_sum = 0.0f;
@@ -89,9 +100,12 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
     const bool apart =
         known && ground_speed_body_departs(state) && ground_speed_told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
     if (state->agile_sum > (apart ? config->agile_sure : config->agile_limit)) {
+        const ground_speed_track_t before = ground_speed_best_of(state);
         take_agile(config, state, at);
         state->other_alive = fabsf(odds) < config->sign_sure;
-        if (state->other_alive) {
+        if (!state->other_alive) {
+            keep_before(config, state, &before);
+        } else {
             const ground_speed_track_t best = ground_speed_best_of(state);
             ground_speed_correct(config, &mirrored, -sign * value.speed_m_s - mirrored.speed_m_s, 0.0f, value.noise_m2_s2);
             take_agile(config, state, &mirrored);

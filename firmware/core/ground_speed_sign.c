@@ -200,7 +200,7 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
     const bool refuted = !(state->odds < config->sign_sure);
     const bool same = sure && !won && (sign < 0.0f) == (state->value_sign < 0.0f);
-    const bool moot = same && with < 0 && state->rolls_ticks == 0; // (34)
+    const bool moot = same && with < 0 && state->rolls_ticks == 0;                                          // (34)
     state->against = refuted && !won && with < 0 && state->against < 0 ? -ANSWERED_VALUES : state->against; // (27)
     state->other_alive = !one && !refuted && !moot;
     if (won) {

@@ -89,6 +89,21 @@ TEST(OutdoorsUnseen, two_tracks_with_the_sign_that_the_wheels_deny_let_them_ask)
     EXPECT_LE(score.rmse, 0.04);
 }
 
+// (35): the track with the right sign was forgotten where one with a bias that jumps took its place. 75 cm/s, NEES 2000, wrong to the end.
+TEST(OutdoorsUnseen, a_sign_that_a_jump_of_the_bias_takes_away_may_come_back) {
+    Case now;
+    now.speed = [](double t) { return t < 5 ? 0.3 : t < 6 ? 0.3 - 0.7 * (t - 5) : -0.4; }, now.wheel = [](double) { return 0.33; };
+    const outdoors::Run run = outdoors::drive(now, 2307, rover_config_default());
+    double wrong_s = 0, ago_s = 0; // the spell; and how long the right sign has been told since
+    for (const outdoors::Step &step : run.steps) {
+        if (step.t < 6 || step.t > 9) continue; // later the wheels ask, and the claim is as wide as the answer
+        wrong_s += step.estimate > 0 ? outdoors::tick_s : 0;
+        ago_s = step.estimate > 0 ? 0 : ago_s + outdoors::tick_s;
+    }
+    EXPECT_LE(wrong_s, 0.5);
+    EXPECT_GT(ago_s, 2);
+}
+
 // What the second generator claims of itself: mean square 1 along the track, and what is interpolated is what is computed.
 TEST(OutdoorsUnseen, the_second_generators_echo_has_unit_power_and_one_value_at_one_place) {
     outdoors::Scatterers ground(301), other(301);
