@@ -104,10 +104,10 @@
 // What changes so fast from one value to the next while (19) has felt nothing is not the body: grass in the wind, a person's feet. The five
 // seconds of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.
 // (33): where it stands and its wheels part it turns on the spot, on a slope through gravity's share. It rests, so X is the bias's error
-// and is followed as in (23), whatever the radar says of it: a hum that it hears meanwhile is loud. (34): a second track whose sign is
-// surely the best's, against the wheels', is no other sign: it is dropped, and the wheels may ask. (35): where (7) wins with the other
-// sign, what was best before it stays as that sign, at the odds of L: a bias that jumped to and fro tells the same as a body that turned
-// round, until the values tell.
+// and is followed as in (23), whatever the radar says of it: a hum that it hears meanwhile is loud.
+// (34): a second track whose sign is surely the best's, against the wheels', is no other sign: it is dropped, and the wheels may ask.
+// (35): where (7) wins with the other sign, what was best before it stays as that sign, at the odds of L, if it was sure of its slope (0.1
+// m/s^2): a bias that jumped to and fro tells the same as a body that turned round, until the values tell.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 

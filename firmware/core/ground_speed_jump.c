@@ -51,11 +51,13 @@ static void take_agile(const ground_speed_config_t *config, ground_speed_state_t
     ground_speed_keep_best(state, &track);
 }
 
+static const float slope_sure_m2_s4 = 0.01f; // (0.1 m/s^2)^2, assumed
+
 // (35)
 static void keep_before(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *before)
 {
     const float most = -ground_speed_square(config->slow_m_s); // both beyond it, or one by more
-    if (fixed_greater(most, before->speed_m_s * state->speed_m_s)) {
+    if (fixed_greater(slope_sure_m2_s4, before->p_bb) && fixed_greater(most, before->speed_m_s * state->speed_m_s)) {
         ground_speed_split(state, &state->other, before);
         state->odds = state->agile_sum;
         state->other_alive = state->odds < config->sign_sure;
