@@ -92,6 +92,11 @@ void add_turns(Rows &all) {
         add(all, "turns on the spot", rim, now);
         now.slope = [](double t) { return t < 5 ? -5 * deg : t > 9.2 ? 5 * deg : 5 * deg * -std::cos((t - 5) * pi / 4.2); };
         add(all, "the same on 5 deg, facing about", rim, now);
+        now.speed = [](double t) {
+            const double before = 0.3 * ramp(t, 1, 1.5, 0, 1) * ramp(t, 4, 4.5, 1, 0);
+            return t < 6 ? before : t < 9.5 ? -0.3 * ramp(t, 6, 6.6, 0, 1) * ramp(t, 8.5, 9.1, 1, 0) : ramp(t, 10, 10.5, 0, 0.3);
+        };
+        add(all, "the same, and slides down meanwhile", rim, now);
     }
 }
 
