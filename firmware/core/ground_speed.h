@@ -108,6 +108,9 @@
 // (34): a second track whose sign is surely the best's, against the wheels', is no other sign: it is dropped, and the wheels may ask.
 // (35): where (7) wins with the other sign, what was best before it stays as that sign, at the odds of L, if it was sure of its slope (0.1
 // m/s^2): a bias that jumped to and fro tells the same as a body that turned round, until the values tell.
+// (36): where (7) wins with the best's own sign while the other lives, the other stays: a bias that jumps is the best's excuse, and costs
+// it 12 of the odds. (37): a value that leaves the mean of (18) and is still as close to the rim as (18) asks has not parted from it: what
+// sets off with its wheels is read too fast at first, and too slow while it speeds up.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 

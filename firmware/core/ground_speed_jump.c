@@ -53,14 +53,19 @@ static void take_agile(const ground_speed_config_t *config, ground_speed_state_t
 
 static const float slope_sure_m2_s4 = 0.01f; // (0.1 m/s^2)^2, assumed
 
-// (35)
-static void keep_before(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *before)
+static const float jump_costs = 12.0f; // 2 ln of the odds against a bias that jumps, assumed: as much as one value may tell of a sign
+
+// (35), (36)
+static void keep_before(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_track_t *before, bool asked)
 {
     const float most = -ground_speed_square(config->slow_m_s); // both beyond it, or one by more
     if (fixed_greater(slope_sure_m2_s4, before->p_bb) && fixed_greater(most, before->speed_m_s * state->speed_m_s)) {
         ground_speed_split(state, &state->other, before);
         state->odds = state->agile_sum;
         state->other_alive = state->odds < config->sign_sure;
+    } else if (asked && fixed_greater(most, state->other.at.speed_m_s * state->speed_m_s)) {
+        state->odds = fixed_clamp(state->odds - jump_costs, 0.0f, config->sign_sure);
+        state->other_alive = true;
     }
 }
 
@@ -103,10 +108,11 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
         known && ground_speed_body_departs(state) && ground_speed_told_by_wheels(config, state, config->apart_told_m_s) > 0.0f;
     if (state->agile_sum > (apart ? config->agile_sure : config->agile_limit)) {
         const ground_speed_track_t before = ground_speed_best_of(state);
+        const bool asked = state->other_alive;
         take_agile(config, state, at);
         state->other_alive = fabsf(odds) < config->sign_sure;
         if (!state->other_alive) {
-            keep_before(config, state, &before);
+            keep_before(config, state, &before, asked);
         } else {
             const ground_speed_track_t best = ground_speed_best_of(state);
             ground_speed_correct(config, &mirrored, -sign * value.speed_m_s - mirrored.speed_m_s, 0.0f, value.noise_m2_s2);

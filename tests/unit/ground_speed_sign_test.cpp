@@ -265,7 +265,7 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
 
 TEST(GroundSpeedSign, wheels_roll_that_stay_with_the_radar_and_have_not_parted_from_it_for_three_seconds) {
     Any any{{26}};
-    int rolled = 0, parted = 0;
+    int rolled = 0, parted = 0, stayed = 0;
     for (int k = 0; k < 1500; ++k) {
         ground_speed_state_t state = any.past(ours());
         any.value(ours(), state);
@@ -279,12 +279,13 @@ TEST(GroundSpeedSign, wheels_roll_that_stay_with_the_radar_and_have_not_parted_f
         const auto close = [&](float x) { return wide(x) > -0.02 - 0.12 * rim && wide(x) < 0.01 + 0.06 * rim; };
         if (std::fabs(left2 / may - 1) < 1e-3) continue;
         ground_speed_watch_held(&ours(), &state);
-        EXPECT_EQ(state.parted_values, left2 > may ? 24 : std::max(0, was.parted_values - 1)); // 24 values: three seconds
+        const bool parts = left2 > may && !close(was.value_beside_m_s);                       // (37)
+        EXPECT_EQ(state.parted_values, parts ? 24 : std::max(0, was.parted_values - 1)) << k; // 24 values: three seconds
         EXPECT_EQ(state.rolls, state.parted_values == 0 && close(was.value_beside_m_s) && close(was.beside_mean_m_s)) << k;
         rolled += state.rolls ? 1 : 0;
-        parted += left2 > may ? 1 : 0;
+        parted += parts ? 1 : 0, stayed += left2 > may && !parts ? 1 : 0;
     }
-    EXPECT_GT(std::min(rolled, parted), 20);
+    EXPECT_GT(std::min({rolled, parted, stayed}), 20) << rolled << ' ' << parted << ' ' << stayed;
 }
 
 // A drive forwards (or backwards) whose radar hears no turn; `but` spoils one value.
@@ -561,8 +562,8 @@ ground_speed_track_t shifted(const ground_speed_track_t &t, double tau, double c
 TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells) {
     const ground_speed_config_t &config = ours();
     Any any{{29}};
-    int began = 0, taken = 0, split = 0, sooner = 0, waited = 0, kept = 0;
-    for (int k = 0; k < 4000; ++k) {
+    int began = 0, taken = 0, split = 0, sooner = 0, waited = 0, kept = 0, stayed = 0;
+    for (int k = 0; k < 8000; ++k) {
         ground_speed_state_t state = any.past(config);
         any.value(config, state);
         if (any.one_in(2)) state.value_m_s = narrow(std::fabs(wide(state.value_wheel_m_s)) * any.between(0.8, 1.1));
@@ -578,6 +579,7 @@ TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells)
         state.agile_sum = narrow(any.one_in(3) ? 0 : any.between(0, 20));
         state.refused = 2;
         state.one_sided = 1;
+        if (any.one_in(3)) state.other_alive = true, state.other.at = any.track(1, 1), state.odds = narrow(any.between(0, 18));
         const double moved = any.between(-0.2, 0.2), tau = wide(state.value_tau_s) + 0.02;
         const int32_t middle = ground_speed_middle_q20(&state, 2);
         const double to_now = passed(state, 0, 2) + wide(state.value_change_m_s); // V from the window's middle to now
@@ -632,7 +634,7 @@ TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells)
             EXPECT_EQ(state.refused, 2);
             EXPECT_EQ(state.one_sided, 1);
             expect_same(ground_speed_best_of(&state), best, 0);
-            EXPECT_FALSE(state.other_alive);
+            EXPECT_EQ(state.other_alive, was.other_alive);
             waited++;
             continue;
         }
@@ -648,8 +650,16 @@ TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells)
         if (std::fabs(odds) > 18) { // (35): what was best before, sure of its slope, stays as the other sign
             const double across = wide(best.speed_m_s) * wide(now.speed_m_s) + square(wide(config.slow_m_s));
             if (near(sum, 18, 2e-2) || near(across, 0, 1e-4) || near(wide(best.p_bb), 0.01, 1e-5)) continue;
-            const bool stays = best.p_bb < 0.01f && across < 0 && sum < 18;
-            EXPECT_EQ(state.other_alive, stays) << k;
+            const bool turned = best.p_bb < 0.01f && across < 0, stays = turned && sum < 18;
+            const double other_across = wide(was.other.at.speed_m_s) * wide(now.speed_m_s) + square(wide(config.slow_m_s));
+            if (was.other_alive && near(other_across, 0, 1e-4)) continue;
+            const bool other_stays = !turned && was.other_alive && other_across < 0; // (36)
+            EXPECT_EQ(state.other_alive, stays || other_stays) << k;
+            if (other_stays) {
+                expect_same(state.other.at, was.other.at, 0);
+                EXPECT_NEAR(state.odds, std::fmax(0, wide(was.odds) - 12), 1e-5) << k;
+                stayed++;
+            }
             if (!stays) continue;
             expect_same(state.other.at, best, 0);
             EXPECT_NEAR(state.odds, sum, 1e-2);
@@ -668,8 +678,8 @@ TEST(GroundSpeedSign, the_track_whose_bias_may_jump_is_taken_when_its_sum_tells)
         EXPECT_EQ(state.other.q20, state.integral_q20[state.head]);
         split++;
     }
-    EXPECT_GT(std::min({began, taken, split, sooner, waited, kept}), 20)
-        << began << ' ' << taken << ' ' << split << ' ' << sooner << ' ' << waited << ' ' << kept;
+    EXPECT_GT(std::min({began, taken, split, sooner, waited, kept, stayed}), 20)
+        << began << ' ' << taken << ' ' << split << ' ' << sooner << ' ' << waited << ' ' << kept << ' ' << stayed;
 }
 
 } // namespace
