@@ -210,12 +210,14 @@ static double found(const table_t *table, const double *power)
         coarse = table->start[peak];
         J[coarse] = cost(table, power, total, coarse);
     }
+    const int low = coarse - COARSE < 0 ? 0 : coarse - COARSE;
+    const int high = coarse + COARSE < SPEEDS ? coarse + COARSE : SPEEDS - 1;
     int best = coarse;
-    for (int i = coarse - COARSE < 0 ? 0 : coarse - COARSE; i <= coarse + COARSE && i < SPEEDS; i++) {
+    for (int i = low; i <= high; i++) {
         J[i] = cost(table, power, total, i);
         best = J[i] < J[best] ? i : best;
     }
-    if (best == 0 || best == SPEEDS - 1) {
+    if (best == low || best == high) { // nothing is known of what lies beyond
         return best;
     }
     const double left = J[best - 1] - J[best], right = J[best + 1] - J[best];
