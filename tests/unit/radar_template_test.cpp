@@ -5,39 +5,37 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <random>
 
 namespace {
 
 // What lies where the next function's arrays will: numbers that nobody may read.
-double leave_on_the_stack(double value)
-{
+double leave_on_the_stack(double value) {
     volatile double array[6000];
     for (volatile double &x : array) x = value;
     return array[17];
 }
 
-radar_geometry_t drawn(std::mt19937_64 &random)
-{
+radar_geometry_t drawn(std::mt19937_64 &random) {
     const auto between = [&random](double low, double high) {
         return low + (high - low) * static_cast<double>(random() >> 11) / 9007199254740992.0;
     };
     static constexpr double rates_Hz[] = {512, 1000, 2000, 4000};
     const double carrier_Hz = std::exp(between(std::log(9e9), std::log(80e9)));
     radar_geometry_t out =
-        radar_geometry_like_reference(carrier_Hz, between(6, 60), between(6, 60), rates_Hz[static_cast<std::size_t>(random() % 4)]);
+        radar_geometry_like_reference(carrier_Hz, between(6, 14), between(6, 14), rates_Hz[static_cast<std::size_t>(random() % 4)]);
     out.depression_deg = between(15, 60);
     out.target = random() % 8 == 0 ? RADAR_TARGET_POINT : RADAR_TARGET_GROUND;
     return out;
 }
 
 // A search whose best place was the last that it had looked at went on to one that it had not: speeds of nought, or of another run's stack.
-TEST(RadarTemplate, every_speed_is_told_whatever_the_stack_held)
-{
+TEST(RadarTemplate, every_speed_is_told_whatever_the_stack_held) {
     std::mt19937_64 random(20261127);
     int made = 0;
-    for (int i = 0; i < 14; i++) {
+    for (int i = 0; i < 4; i++) {
         const radar_geometry_t radar = drawn(random);
         if (radar_geometry_check(&radar).field != nullptr) continue;
         doppler_template_t one, other;
@@ -47,15 +45,13 @@ TEST(RadarTemplate, every_speed_is_told_whatever_the_stack_held)
         radar_template_make(&radar, &other);
         EXPECT_EQ(std::memcmp(one.speed_m_s, other.speed_m_s, sizeof one.speed_m_s), 0) << i;
         EXPECT_EQ(one.spread, other.spread) << i;
-        for (int k = 1; k < one.speeds; k++) { // (5) shifts the grid, which rises by a step of 2 to 5 %, or evenly, by a few per cent
-            EXPECT_TRUE(std::isfinite(one.speed_m_s[k]));
-            EXPECT_GT(one.speed_m_s[k], one.speed_m_s[k - 1]) << i << ' ' << k;
-            if (one.line) continue;
-            EXPECT_NEAR(std::log(one.speed_m_s[k] / one.speed_m_s[k - 1]), one.log_step, 0.5 * static_cast<double>(one.log_step)) << i << ' ' << k;
+        for (int k = 0; k < one.speeds; k++) { // a board refuses others (firmware/app/template_text.h)
+            EXPECT_TRUE(std::isfinite(one.speed_m_s[k])) << i << ' ' << k;
+            EXPECT_GT(one.speed_m_s[k], k == 0 ? 0.0f : one.speed_m_s[k - 1]) << i << ' ' << k;
         }
         made++;
     }
-    EXPECT_GE(made, 12);
+    EXPECT_EQ(made, 4);
 }
 
 } // namespace
