@@ -53,10 +53,10 @@ static void watch_rolling(ground_speed_state_t *state)
 {
     const float rim = fabsf(state->wheel_mean_m_s);
     const float left = state->value_beside_m_s - state->beside_mean_m_s;
-    const bool close = is_close(state->value_beside_m_s, rim);
-    const bool parts = !close && fixed_greater(ground_speed_square(left), parts_sigmas2 * state->value_noise_m2_s2 + parts_m2_s2); // (37)
+    const bool beside = is_close(state->value_beside_m_s, rim);
+    const bool parts = !beside && fixed_greater(ground_speed_square(left), parts_sigmas2 * state->value_noise_m2_s2 + parts_m2_s2); // (37)
     state->parted_values = parts ? PARTED_VALUES : state->parted_values > 0 ? state->parted_values - 1 : 0;
-    state->rolls = state->parted_values == 0 && close && is_close(state->beside_mean_m_s, rim);
+    state->rolls = state->parted_values == 0 && beside && is_close(state->beside_mean_m_s, rim);
 }
 
 static const float scatter_share = 0.015f; // [1] of a value that enters the mean of (28): eight seconds
