@@ -54,7 +54,7 @@ function(traction_library name)
 endfunction()
 
 # traction_headers(NAME headers...): what nearly every file of that target includes is read once. A file still names what it uses:
-# the dev preset compiles without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+# the dev preset compiles without (CMAKE_DISABLE_PRECOMPILE_HEADERS), but for the tests.
 function(traction_headers name)
   target_precompile_headers(${name} PRIVATE ${ARGN})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -78,12 +78,10 @@ function(traction_waits name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of each other library those that go through its
-# code within seconds. Of the lab that is what a model predicts: to compile its fit and its decision so takes longer than all the rest.
-# What is left runs in the host build, and under sanitizers in the preset sanitize.
+# What the sanitized build (preset dev) runs: every test of firmware, HAL and log, and of the simulator those that go through its code
+# within seconds. To compile the lab so takes longer than all of that: it runs in the host build, and under sanitizers in the preset sanitize.
 set(TRACTION_SANITIZED_LABELS unit hal replay)
-set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test
-    lab_model_test lab_smooth_test lab_wheel_step_test lab_drives_test svg_test)
+set(TRACTION_SANITIZED_TESTS effects_test math_test soil_law_test sensor_effects_test plant_soft_test scenario_test fault_test)
 
 # traction_test(NAME LABEL label [COST s] [TIMEOUT s] [NIGHTLY pattern...] SOURCES ... LIBS ...): one GoogleTest executable, one ctest entry,
 # run under the emulator when cross-compiling. COST: about its seconds on the host, of those that take more than a few: ctest starts the
@@ -104,6 +102,7 @@ function(traction_test name)
   target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-undef -Wno-switch-enum>
     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-array-bounds -Wno-stringop-overflow>)
   traction_waits(${name}) # for what it tests, which is compiled for speed
+  set_target_properties(${name} PROPERTIES DISABLE_PRECOMPILE_HEADERS OFF) # a file of a product names what it uses, a test need not
   if("traction_lab" IN_LIST T_LIBS)
     traction_same_headers(${name} lab_test_headers)
   elseif(NOT T_OWN_HEADERS AND NOT CMAKE_CROSSCOMPILING AND NOT T_SOURCES MATCHES "\\.c(;|$)") # of C there is none
