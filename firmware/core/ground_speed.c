@@ -73,10 +73,11 @@ static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most = 5.
 static const float creep_alike = 4.0f;    // [1]
 static const float creep_sigmas2 = 6.25f; // of (25)
 
-// (20): a wheel's word counts.
+// (20): a wheel's word counts, if there are wheels.
 static bool wheels_creep(const ground_speed_config_t *config, const ground_speed_state_t *state, float wheel_m_s)
 {
-    if (!fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) || state->unheard_ticks >= SILENT_TICKS || state->rolls_ticks > 0) {
+    if (!fixed_greater(config->still_m_s, 0.0f) || !fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) ||
+        state->unheard_ticks >= SILENT_TICKS || state->rolls_ticks > 0) {
         return false;
     }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);

@@ -13,7 +13,8 @@ namespace traction::speed {
 namespace {
 
 constexpr double tick_s = 0.01;
-constexpr double unused = 1e6; // of a limit that nothing reaches
+constexpr int trend_ticks = 30; // without an accelerometer a change of speed is told by values; no longer than this is it believed without
+constexpr double unused = 1e6;  // of a limit that nothing reaches
 
 std::string short_text(double value) {
     char text[32];
@@ -54,8 +55,9 @@ control_config_t config_of(const doppler_template_t *beam, const Settings &setti
         filter.bias_max_m_s2 = static_cast<float>(std::fmax(3, 4 * agility));
     }
     if (!wheels) {
-        filter.still_m_s = 0; // no wheel is at rest
-        filter.sign_sure = 0; // no witness: the likelier sign is taken, which an accelerometer carries through zero
+        filter.still_m_s = 0;                     // no wheel is at rest, and none creeps
+        filter.felt_share = 0;                    // nor tells what of the acceleration is noise
+        filter.wheel_odds = 2 * filter.sign_sure; // begins forward; from then on the accelerometer carries the sign through zero
         if (!accel) filter.sign_sure = static_cast<float>(unused), filter.wheel_odds = static_cast<float>(10 * unused); // forward
         filter.wheel_noise_m_s = static_cast<float>(unused / 1000);
         filter.apart_share = filter.force_most = filter.force_pull = 0;
@@ -178,23 +180,26 @@ Result measure(const Counts &counts, const Helpers &helpers, const Settings &set
     ground_speed_state_t state;
     ground_speed_reset(&config.ground_speed, &state);
     doppler_output_t before{};
+    int silent_ticks = 0;
     const double span_s = static_cast<double>(counts.number.back()) / counts.rate_Hz;
     for (int k = 1; k * tick_s <= span_s + 1e-9; k++) {
         const double at_s = k * tick_s, t_s = counts.start_s + at_s;
         double accel_m_s2 = 0, rim_m_s = 0;
         const bool accel_known = accel.at(t_s, accel_m_s2);
-        if (!rim.at(t_s, rim_m_s)) rim_m_s = out.used_wheels ? 0 : 1e-3; // a hint of forward, where nobody knows
+        if (!rim.at(t_s, rim_m_s))
+            rim_m_s = out.used_wheels || (out.used_accel && state.accepted) ? 0 : 1e-3; // forward, where nobody knows
         const std::size_t taken = listener.next();
         const doppler_output_t now = listener.tick(at_s);
         doppler_output_t heard = before; // one tick later, as on the rover: no tick pays for a search and a correction
         heard.late_samples += listener.taken_since(taken);
         const bool used = heard.fresh && !heard.beyond && !heard.spoilt;
+        silent_ticks = used ? 0 : silent_ticks + 1;
         ground_speed_input_t input{};
         input.accel_x_m_s2 = static_cast<float>(accel_m_s2);
         input.doppler_m_s = heard.speed_m_s;
         input.doppler_late_s = heard.fresh ? static_cast<float>(heard.late_samples) * config.doppler.per_sample_s : 0.0F;
         input.wheel_m_s = static_cast<float>(rim_m_s);
-        input.accel_valid = accel_known || !out.used_accel;
+        input.accel_valid = out.used_accel ? accel_known : silent_ticks < trend_ticks;
         input.doppler_fresh = used;
         input.doppler_quiet = heard.quiet;
         input.doppler_dead = heard.dead;
