@@ -60,6 +60,25 @@ TEST(Model, every_mistake_is_told_with_file_line_key_value_and_mend) {
     EXPECT_NE(message_of("[rover\n").find("m.toml:1"), std::string::npos);
 }
 
+TEST(Model, what_is_of_another_kind_is_told_and_not_left_out) {
+    const std::string wheel = "[[wheel]]\nradius_m = 0.1\n", rover = "[rover]\nmotion = \"imposed\"\n";
+    const auto is = [](const std::string &text, const std::string &key, const std::string &wrong) {
+        EXPECT_NE(message_of(text).find(key + ": " + wrong), std::string::npos) << text << message_of(text);
+    };
+    const std::string no_flag = "is neither true nor false; write true or false, without quotes",
+                      no_text = "is not a text; write it in quotes";
+    is(rover + wheel + "driven = \"no\"\n", "m.toml:5: wheel[0].driven", no_flag);
+    is(rover + wheel + "grips_sideways = 0\n", "wheel[0].grips_sideways", no_flag);
+    is(rover + "halves = \"yes\"\n" + wheel, "m.toml:3: rover.halves", no_flag);
+    is(rover + wheel + "[sensors.current]\nunsigned = \"yes\"\n", "sensors.current.unsigned", no_flag);
+    is(rover + wheel + "[motor]\nresistance_ohm = { value = 3, fixed = \"true\" }\n", "motor.resistance_ohm.fixed", no_flag);
+    is("[rover]\nmotion = 1\n" + wheel, "rover.motion", no_text);
+    is(rover + wheel + "[soil]\nlaw = 3\n", "soil.law", no_text);
+    is("format = 1\n" + rover + wheel, "format", no_text);
+    is(rover + wheel + "[motor]\nresistance_ohm = { value = 3, unit = 1 }\n", "motor.resistance_ohm.unit", no_text);
+    is(rover + wheel + "[[effect]]\nname = \"slip_sinkage\"\nwheel = \"0\"\n", "effect[0].wheel", "is not a whole number");
+}
+
 TEST(Model, what_is_written_reads_back_to_the_same_numbers) {
     const Model model =
         parse_model(bench + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = { value = 0.15, low = 0.1, high = 0.2 }\n", "b");
@@ -87,6 +106,20 @@ TEST(Slip, is_bounded_odd_and_zero_at_rest) {
     EXPECT_EQ(slip_of(0, 0), 0);
     EXPECT_NEAR(slip_of(0.2, 0.15), 0.25, 1e-15);  // 1 - v/(R w)
     EXPECT_NEAR(slip_of(0.15, 0.2), -0.25, 1e-15); // R w/v - 1
+}
+
+// Tyres that are wound up at a stop turn the body until nothing pulls: two seconds later a slip of 5 mm is gone. On the way it is kept.
+TEST(Slip, that_lags_is_worn_off_at_rest_and_kept_on_the_way) {
+    const double step_s = 0.01, h_1_m = step_s / 0.005;
+    double along = 0.1, across = 0.1;
+    for (int k = 0; k < 200; ++k) along = lagging_slip(along, h_1_m, 0.0, 0.0), across = side_slip(across, h_1_m, 0.0, 0.0, 0.0);
+    EXPECT_LT(along, 0.1 * std::exp(-5.0));
+    EXPECT_LT(across, 0.1 * std::exp(-5.0));
+    for (const double speed : {0.05, 0.1, 0.5}) {
+        double slip = 0;
+        for (int k = 0; k < 2000; ++k) slip = lagging_slip(slip, h_1_m, speed, 0.9 * speed);
+        EXPECT_NEAR(slip, 0.1, 0.001) << speed; // 1 - v/(R w), within a hundredth
+    }
 }
 
 TEST(Smooth, a_parabola_passes_unchanged_with_its_slope) {

@@ -93,6 +93,14 @@ struct Builder : InputBuilder {
         return true;
     }
 
+    // A body that moves by its wheels' forces, on wheels that have none.
+    void grip() {
+        if (model.motion != BodyMotion::longitudinal && model.motion != BodyMotion::planar) return;
+        for (std::size_t i = 0; i < model.wheel.size(); ++i)
+            if (!(parameter(model.wheel[i].soil, "mu") > 0) && !(parameter(model.wheel[i].soil, "adhesion_N") > 0))
+                say("the model has no soil.mu above 0 for wheel " + std::to_string(i) + ": it has no grip");
+    }
+
     void currents(std::size_t i) {
         const log::Signal *current = wheel_signal(i, "current_A");
         if (model.wheel[i].drive >= 0) {
@@ -141,11 +149,11 @@ struct Builder : InputBuilder {
             }
             add(std::move(torque));
         } else {
-            say("the model has no motor.torque_constant_Nm_A: torque balances are left out");
+            say("the model has no motor.torque_constant_Nm_A above 0: torque balances are left out");
         }
         if (data.wheel[i].voltage_V.empty()) return;
         if (!(parameter(model.wheel[i].motor, "resistance_ohm") > 0)) {
-            say("the model has no motor.resistance_ohm: voltage balances are left out");
+            say("the model has no motor.resistance_ohm above 0: voltage balances are left out");
             return;
         }
         all.kind = BalanceKind::current_voltage;
@@ -277,6 +285,7 @@ struct Builder : InputBuilder {
     }
 
     void balances() {
+        grip();
         for (std::size_t i = 0; i < model.wheel.size(); ++i) {
             if (model.wheel[i].driven && !is_measured(i)) continue; // what it would read is not known
             currents(i);

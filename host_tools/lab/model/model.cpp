@@ -91,7 +91,7 @@ void read_motor(const ModelReader &reader, const toml::table &source, const std:
 void read_soil(const ModelReader &reader, const toml::table &source, const std::string &where, Parameters &into, Model &model,
                double load_N, double width_m) {
     reader.table(source, where, soil_keys(), into, soil_extra);
-    const std::string law = source["law"].value_or(std::string(model.soil_law == SoilLaw::janosi ? "janosi" : "burckhardt"));
+    const std::string law = reader.text(source, where, "law", model.soil_law == SoilLaw::janosi ? "janosi" : "burckhardt");
     if (law == "burckhardt")
         model.soil_law = SoilLaw::burckhardt;
     else if (law == "janosi" || law == "bekker")
@@ -125,14 +125,14 @@ void read_soil(const ModelReader &reader, const toml::table &source, const std::
 void read_rover(const ModelReader &reader, const toml::table &root, Model &model) {
     if (const toml::table *rover = root["rover"].as_table()) {
         reader.table(*rover, "rover", rover_keys(), model.rover, {"motion", "halves", "drives"});
-        const std::string motion = (*rover)["motion"].value_or(std::string("longitudinal"));
+        const std::string motion = reader.text(*rover, "rover", "motion", "longitudinal");
         static const char *names[] = {"longitudinal", "planar", "imposed", "none"}; // as BodyMotion has them
         const auto found = std::find(std::begin(names), std::end(names), motion);
         if (found == std::end(names))
             reader.fail(*rover->get("motion"), "rover.motion", "is \"" + motion + "\"",
                         "use \"longitudinal\", \"planar\", \"imposed\" or \"none\"");
         model.motion = static_cast<BodyMotion>(found - names);
-        model.halves = (*rover)["halves"].value_or(false);
+        model.halves = reader.flag(*rover, "rover", "halves", false);
     }
     fill_defaults(rover_keys(), model.rover);
     const bool moves = model.motion == BodyMotion::longitudinal || model.motion == BodyMotion::planar;
@@ -150,9 +150,9 @@ void read_wheels(const ModelReader &reader, const toml::table &root, Model &mode
         const toml::table *table = (*wheels)[i].as_table();
         if (table == nullptr) reader.fail((*wheels)[i], where, "is not a table", "write [[wheel]] and its keys below");
         WheelSpec spec;
-        spec.name = (*table)["name"].value_or("wheel " + std::to_string(i));
-        spec.driven = (*table)["driven"].value_or(true);
-        spec.grips_sideways = (*table)["grips_sideways"].value_or(true);
+        spec.name = reader.text(*table, where, "name", "wheel " + std::to_string(i));
+        spec.driven = reader.flag(*table, where, "driven", true);
+        spec.grips_sideways = reader.flag(*table, where, "grips_sideways", true);
         if (const toml::table *shared = root["wheels"].as_table()) reader.table(*shared, "wheels", wheel_keys(), spec.geometry, {});
         reader.table(*table, where, wheel_keys(), spec.geometry, {"name", "driven", "grips_sideways", "motor", "soil"});
         fill_defaults(wheel_keys(), spec.geometry);
@@ -178,7 +178,7 @@ void read_sensors(const ModelReader &reader, const toml::table &root, Model &mod
             const toml::table *table = node.as_table();
             if (table == nullptr) reader.fail(node, "sensors." + name, "is not a table", "write [sensors." + name + "]");
             reader.table(*table, "sensors." + name, sensor_keys(), model.sensors, {"unsigned"}, name + ".");
-            if (name == "current") model.unsigned_current = (*table)["unsigned"].value_or(false);
+            if (name == "current") model.unsigned_current = reader.flag(*table, "sensors." + name, "unsigned", false);
         }
     }
     fill_defaults(sensor_keys(), model.sensors);
@@ -215,14 +215,17 @@ void read_effects(const ModelReader &reader, const toml::table &root, Model &mod
         const toml::table *table = (*effects)[i].as_table();
         if (table == nullptr) reader.fail((*effects)[i], where, "is not a table", "write [[effect]] and its keys below");
         EffectUse use;
-        use.name = (*table)["name"].value_or(std::string());
+        use.name = reader.text(*table, where, "name", "");
         if (use.name.empty()) reader.fail(*table, where + ".name", "is missing", "name an effect of `traction effects`, or your own");
-        use.wheel = (*table)["wheel"].value_or(-1);
+        if (const toml::node *wheel = table->get("wheel")) {
+            if (!wheel->is_integer()) reader.fail(*wheel, where + ".wheel", "is not a whole number", "give the wheel's number, from 0");
+            use.wheel = wheel->value_or(-1);
+        }
         if (use.wheel < -1 || use.wheel >= static_cast<int>(model.wheel.size()))
             reader.fail(*table, where + ".wheel", "is " + std::to_string(use.wheel),
                         "wheels are 0 to " + std::to_string(model.wheel.size() - 1));
-        use.acts_on = (*table)["acts_on"].value_or(std::string());
-        use.expression = (*table)["expression"].value_or(std::string());
+        use.acts_on = reader.text(*table, where, "acts_on", "");
+        use.expression = reader.text(*table, where, "expression", "");
         check_effect_wheel(*table, where, model, use);
         const sim::Effect *effect = use.expression.empty() ? sim::find_effect(use.name) : nullptr;
         if (effect == nullptr && use.expression.empty())
@@ -250,7 +253,7 @@ void read_effects(const ModelReader &reader, const toml::table &root, Model &mod
                 make_expression(use.expression, names);
             } catch (const std::runtime_error &error) {
                 reader.fail(*table, where + ".expression", error.what(),
-                            "use t w v s Fn theta x a I u Ft V r, the effect's own parameters, and muparser's functions");
+                            "use t w v s Fn theta x X a d I Io Ia Is u Ft V r, the effect's own parameters, and muparser's functions");
             }
         }
         model.effects.push_back(std::move(use));
@@ -309,7 +312,7 @@ Model parse_model(const std::string &text, const std::string &file) {
     const ModelReader reader{file};
     Model model;
     model.file = file;
-    model.name = root["name"].value_or(file);
+    model.name = reader.text(root, "", "name", file);
     for (const auto &[key, node] : root) {
         static const std::vector<std::string> known = {"format", "name",    "rover",  "wheels", "wheel",   "motor",
                                                        "soil",   "sensors", "effect", "run",    "lineage", "note"};
@@ -317,8 +320,8 @@ Model parse_model(const std::string &text, const std::string &file) {
             reader.fail(node, std::string(key.str()), "is not a known table",
                         "use rover, wheels, wheel, motor, soil, sensors, effect, run, lineage");
     }
-    if (const auto format = root["format"].value<std::string>(); format && *format != "traction.model/1")
-        reader.fail(*root.get("format"), "format", "is \"" + *format + "\"", "this program reads \"traction.model/1\"");
+    if (const std::string format = reader.text(root, "", "format", "traction.model/1"); format != "traction.model/1")
+        reader.fail(*root.get("format"), "format", "is \"" + format + "\"", "this program reads \"traction.model/1\"");
     read_rover(reader, root, model);
     read_wheels(reader, root, model);
     read_drives(root, model);

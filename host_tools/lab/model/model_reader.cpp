@@ -48,6 +48,26 @@ double ModelReader::number(const toml::node &node, const std::string &key) const
     return *value;
 }
 
+std::string ModelReader::text_of(const toml::node &node, const std::string &path) const {
+    if (!node.is_string()) fail(node, path, "is not a text", "write it in quotes");
+    return node.value_or(std::string());
+}
+
+bool ModelReader::flag_of(const toml::node &node, const std::string &path) const {
+    if (!node.is_boolean()) fail(node, path, "is neither true nor false", "write true or false, without quotes");
+    return node.value_or(false);
+}
+
+std::string ModelReader::text(const toml::table &source, const std::string &where, const char *key, const std::string &fallback) const {
+    const toml::node *node = source.get(key);
+    return node == nullptr ? fallback : text_of(*node, where.empty() ? key : where + "." + key);
+}
+
+bool ModelReader::flag(const toml::table &source, const std::string &where, const char *key, bool fallback) const {
+    const toml::node *node = source.get(key);
+    return node == nullptr ? fallback : flag_of(*node, where + "." + key);
+}
+
 void ModelReader::parameter(const toml::node &node, const std::string &key, Parameter &p) const {
     p.given = true;
     const toml::table *table = node.as_table();
@@ -73,9 +93,9 @@ void ModelReader::parameter(const toml::node &node, const std::string &key, Para
             else if (name == "high")
                 p.high = number(item, path);
             else if (name == "fixed")
-                p.fixed = item.value_or(false);
+                p.fixed = flag_of(item, path);
             else if (name == "source")
-                p.source = item.value_or(std::string());
+                p.source = text_of(item, path);
             else if (name == "unit")
                 check_unit(item, path, p);
             else
@@ -94,7 +114,7 @@ void ModelReader::parameter(const toml::node &node, const std::string &key, Para
 }
 
 void ModelReader::check_unit(const toml::node &item, const std::string &path, Parameter &p) const {
-    const std::string unit = item.value_or(std::string());
+    const std::string unit = text_of(item, path);
     const auto plain = [](std::string text) {
         for (char &c : text)
             if (c == '*') c = ' ';

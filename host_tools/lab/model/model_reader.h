@@ -20,6 +20,9 @@ struct ModelReader {
 
     [[noreturn]] void fail(const toml::node &node, const std::string &key, const std::string &wrong, const std::string &mend) const;
     double number(const toml::node &node, const std::string &key) const;
+    // What is written there and nothing else: `fallback` where the key is absent, never where it holds something of another kind.
+    std::string text(const toml::table &source, const std::string &where, const char *key, const std::string &fallback) const;
+    bool flag(const toml::table &source, const std::string &where, const char *key, bool fallback) const;
 
     // A number, or a table { value, unit, min, max, prior, each_wheel, fixed, source, low, high }.
     void parameter(const toml::node &node, const std::string &key, Parameter &p) const;
@@ -29,6 +32,8 @@ struct ModelReader {
                const std::vector<std::string> &also, const std::string &prefix = "") const;
 
   private:
+    std::string text_of(const toml::node &node, const std::string &path) const;
+    bool flag_of(const toml::node &node, const std::string &path) const;
     void check_unit(const toml::node &item, const std::string &path, Parameter &p) const;
 };
 

@@ -24,7 +24,7 @@ void keep_to(const ModelReader &reader, const toml::table &table, const std::str
 
 RunSpec read_run(const ModelReader &reader, const toml::table &table, const std::string &where) {
     RunSpec run;
-    run.log = table["log"].value_or(std::string());
+    run.log = reader.text(table, where, "log", "");
     if (run.log.empty()) reader.fail(table, where + ".log", "is missing", "name the run's log file, without folder");
     for (const auto &[name_key, node] : table) {
         const std::string name(name_key.str());
