@@ -527,6 +527,23 @@ TEST(Limits, are_told_of_what_stands_at_its_range_or_at_six_deviations_but_not_o
     EXPECT_EQ(limit_text(most[0]), "drag.y stands at its limit, 9 N: widen it or doubt the model");
 }
 
+TEST(MovedFar, is_told_of_what_the_fit_took_beyond_three_stated_deviations) {
+    FreeParameter stated = parameter("motor", "x", 1, 0.1, 0, 9), unstated = parameter("drag", "y", 0.5, 0, 0, 9),
+                  own = parameter("motor", "x", 0, 0.15);
+    own.own = true, own.wheel = 0, own.unit = "1";
+    FreeParameter other = own;
+    other.wheel = 1;
+    EXPECT_TRUE(moved_far(at({stated, unstated}, {0.29, 5})).empty());
+    const std::vector<std::string> told = moved_far(at({stated, unstated}, {-0.31, 5}));
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0], "the fit takes motor.x from 1 to 0.69 N, 3.1 of its stated deviations: the model file is wrong there, or something "
+                       "that acts alike is missing");
+    EXPECT_TRUE(moved_far(at({stated}, {0.6})).empty()); // that is told as a limit
+    // the mean of two wheels: 0.1 and 0.15/sqrt(2) of deviation make 0.146; 0.3 and 0.2 of 1 are 3.4 of it, 0.3 and 0.1 are 2.7
+    EXPECT_EQ(moved_far(at({stated, own, other}, {0.3, 0.2, 0.2})).size(), 1U);
+    EXPECT_TRUE(moved_far(at({stated, own, other}, {0.3, 0.1, 0.1})).empty());
+}
+
 TEST(Dead, is_what_moves_the_log_by_less_than_a_tenth_of_a_deviation) {
     const LinearMachine m(24);
     Problem p(m.data, m.physics, {a0(0.2), g0()});

@@ -120,6 +120,27 @@ TEST(Judge, lets_the_ranks_speak_only_where_rows_fell) {
     EXPECT_EQ(verdict_of(t), "passes");
 }
 
+// Sizes of interest are guesses about machines: what takes half of all that is no noise is of interest whatever its size.
+TEST(Judge, asks_no_size_of_what_takes_most_of_the_error) {
+    const DiagnoseOptions options;
+    Trial t = good("a");
+    t.value = {0.02}, t.half_width = {0.001};
+    t.gain = 99;
+    judge(t, 200, options);
+    EXPECT_EQ(t.verdict, "too_small");
+    t.gain = 101;
+    judge(t, 200, options);
+    EXPECT_EQ(t.verdict, "passes");
+    t.gain = 101, t.value = {-0.02}; // a sign that cannot be is none all the same
+    judge(t, 200, options);
+    EXPECT_EQ(t.verdict, "wrong_sign");
+    CandidateResult named;
+    named.candidate = t.candidate, named.value = {0.02}, named.low = {0.019}, named.high = {0.021};
+    EXPECT_FALSE(is_solid(named));
+    named.matters = true;
+    EXPECT_TRUE(is_solid(named));
+}
+
 TEST(Judge, refuses_a_wrong_sign_a_size_of_no_interest_and_one_at_its_bound) {
     Trial t = good("a");
     t.value = {-0.5};
@@ -712,7 +733,7 @@ TEST(Words, say_what_was_found_and_what_was_not) {
     d.nearest = {"p", "q"};
     EXPECT_NE(verdict_text(d).find("only partly: what is left depends on time: friction of the wheels."), std::string::npos)
         << verdict_text(d);
-    EXPECT_NE(verdict_text(d).find("not the cause: p, q."), std::string::npos) << verdict_text(d);
+    EXPECT_NE(verdict_text(d).find("and not named: p, q."), std::string::npos) << verdict_text(d);
     d.accepted.clear(), d.classes.clear();
     EXPECT_EQ(verdict_text(d).find("Unknown: no effect of the catalogue"), 0U) << verdict_text(d);
 }

@@ -336,7 +336,7 @@ TEST(Words, of_names_tell_all_of_them_and_by_how_much_the_error_falls) {
     d.nearest = {"p"};
     EXPECT_EQ(verdict_text(d),
               "Unknown: no effect of the catalogue explains it: what is left depends on time: friction(time). Nearest in the "
-              "catalogue, not the cause: p.");
+              "catalogue, and not named: p.");
 }
 
 TEST(Words, of_a_wrong_model_take_every_name_back) {

@@ -315,7 +315,7 @@ TEST(Judge, takes_a_negative_size_of_what_may_have_either_sign_alone) {
     t.gain = 1000, t.p_value = t.own_p_value = 0;
     const auto verdict = [&](std::vector<double> value) {
         t.value = std::move(value);
-        judge(t, 1000, {});
+        judge(t, 2500, {});
         return t.verdict;
     };
     EXPECT_EQ(verdict({-0.5, 0.5}), "passes");

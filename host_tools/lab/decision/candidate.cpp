@@ -25,24 +25,6 @@ std::vector<int> wheel_choices(const sim::Effect &effect, const Model &model) {
     return wheels;
 }
 
-// Combinations of the shape parameters' variants.
-std::vector<std::vector<std::pair<std::string, double>>> shape_choices(const sim::Effect &effect) {
-    std::vector<std::vector<std::pair<std::string, double>>> list = {{}};
-    for (const sim::EffectParameter &p : effect.parameters) {
-        if (p.strength || p.variants.empty()) continue;
-        std::vector<std::vector<std::pair<std::string, double>>> next;
-        for (const auto &base : list)
-            for (const double sign : {1.0, -1.0})
-                for (const double value : p.variants) {
-                    if (sign < 0 && !p.both_signs) continue;
-                    next.push_back(base);
-                    next.back().emplace_back(std::string(p.name), sign * value);
-                }
-        list = std::move(next);
-    }
-    return list;
-}
-
 // Windows along the path that the log covers: starts every half length.
 std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Motion &motion, std::initializer_list<double> lengths) {
     std::vector<std::vector<std::pair<std::string, double>>> list;
@@ -78,6 +60,7 @@ class MachineScale {
             const double slower = 7.2 / 0.265 * 0.057 / (volt / KG * radius);
             by_unit_["s/m"] = slower;
             by_unit_["s^2/m^2"] = slower * slower;
+            by_unit_["rad/s"] = volt / KG / (7.2 / 0.265);
             by_unit_["s/rad"] = 7.2 / 0.265 / (volt / KG);
             by_unit_["N m s^2"] = KG * KG * KG / Ra / volt / (0.265 * 0.265 * 0.265 / 3.24 / 7.2);
             if (weight > 0) by_unit_["N s^2/m^2"] = weight / (2.88 * 9.81) * slower * slower;
@@ -92,11 +75,31 @@ class MachineScale {
         if (found == by_unit_.end() || (found->second > 0.67 && found->second < 1.5)) return;
         const double factor = std::clamp(found->second, 0.01, 1000.0);
         for (double *x : {&p.minimum, &p.maximum, &p.of_interest}) *x *= factor;
+        for (double &x : p.variants) x *= factor;
     }
 
   private:
     std::map<std::string, double> by_unit_;
 };
+
+// Combinations of the shape parameters' variants, those of a speed in the machine's own.
+std::vector<std::vector<std::pair<std::string, double>>> shape_choices(const sim::Effect &effect, const MachineScale &scale) {
+    std::vector<std::vector<std::pair<std::string, double>>> list = {{}};
+    for (sim::EffectParameter p : effect.parameters) {
+        if (p.strength || p.variants.empty()) continue;
+        if (p.unit == "rad/s") scale.apply(p);
+        std::vector<std::vector<std::pair<std::string, double>>> next;
+        for (const auto &base : list)
+            for (const double sign : {1.0, -1.0})
+                for (const double value : p.variants) {
+                    if (sign < 0 && !p.both_signs) continue;
+                    next.push_back(base);
+                    next.back().emplace_back(std::string(p.name), sign * value);
+                }
+        list = std::move(next);
+    }
+    return list;
+}
 
 // The most turns that a wheel makes.
 double turns_of(const Dataset &data) {
@@ -268,7 +271,7 @@ std::vector<Candidate> catalogue_candidates(const Model &model, const Dataset &d
         if (effect == nullptr || model.find_effect(handle.name, -1) != nullptr) continue;
         auto shapes = handle.name == "soil_patch"         ? patch_choices(motion, {0.25, 0.5, 1.0, 1.5, 2.5})
                       : handle.name == "resistance_patch" ? patch_choices(motion, {0.5, 1.0, 2.0})
-                                                          : shape_choices(*effect);
+                                                          : shape_choices(*effect, scale);
         const auto wheels = wheel_choices(*effect, model);
         for (const auto &shape : shapes)
             for (const int wheel : wheels) {

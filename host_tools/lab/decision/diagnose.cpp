@@ -69,6 +69,7 @@ class Search {
         if (!d_.model_fit) settle_last(problem);
         refine_shapes(problem);
         d_.limits = limits_of(problem);
+        for (std::string &moved : moved_far(problem)) d_.messages.push_back(std::move(moved));
         conclude(d_);
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), d_.unknown ? d_.unknown->gain : 0))
             name_nothing(d_, stated_, *d);
@@ -236,7 +237,7 @@ class Search {
         for (std::size_t i = problem.parameters.size() - t.value.size(); i < problem.parameters.size(); ++i)
             value.push_back(problem.parameters[i].base + problem.theta[static_cast<Eigen::Index>(i)]);
         t.verdict = "not_held_out";
-        if (!large_enough(t.candidate, value) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
+        if ((!t.matters && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
         if (const std::optional<std::string> only_with = conflict(problem, t.candidate)) {
             t.verdict = "conflict";
             note_conflict(d_, t.candidate.label(), *only_with);

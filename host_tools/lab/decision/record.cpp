@@ -125,8 +125,10 @@ bool is_on_a_scale(const sim::EffectParameter &spec) { return !spec.strength && 
 
 void set_free(Parameter &p, const sim::EffectParameter &spec) {
     p.fixed = false;
-    p.minimum = std::max(spec.minimum, spec.unit == "m" ? p.value - reach_m : p.value / reach);
-    p.maximum = std::min(spec.maximum, spec.unit == "m" ? p.value + reach_m : p.value * reach);
+    // a variant of the machine's own scale may lie beyond the catalogue's range, which is the reference rover's
+    const double least = p.value > spec.minimum ? spec.minimum : p.value / 2, most = p.value < spec.maximum ? spec.maximum : p.value * 2;
+    p.minimum = std::max(least, spec.unit == "m" ? p.value - reach_m : p.value / reach);
+    p.maximum = std::min(most, spec.unit == "m" ? p.value + reach_m : p.value * reach);
     if (spec.unit == "rad") p.minimum = p.value - 1.6, p.maximum = p.value + 1.6;
 }
 

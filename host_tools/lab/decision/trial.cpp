@@ -12,9 +12,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double least_gain_squares = 9; // three deviations of white noise, where nearly all that the baseline leaves is noise
-constexpr double clearly_worse = 1.02;   // of the baseline's error: beyond such a size no better one is sought (assumed)
-constexpr double classes_tried = 26;     // catalogue effects that are not near copies of one another: about half of the catalogue
+constexpr double share_that_matters = 0.5; // assumed
+constexpr double least_gain_squares = 9;   // three deviations of white noise, where nearly all that the baseline leaves is noise
+constexpr double clearly_worse = 1.02;     // of the baseline's error: beyond such a size no better one is sought (assumed)
+constexpr double classes_tried = 26;       // catalogue effects that are not near copies of one another: about half of the catalogue
 
 bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
     for (std::size_t j = 0; j < value.size(); ++j)
@@ -87,7 +88,7 @@ bool large_enough(const Candidate &c, const std::vector<double> &value) {
 bool is_solid(const CandidateResult &r) {
     bool sure = false;
     for (std::size_t j = 0; j < r.value.size(); ++j) sure = sure || r.low[j] * r.high[j] > 0;
-    return sure && large_enough(r.candidate, r.value);
+    return sure && (r.matters || large_enough(r.candidate, r.value));
 }
 
 Problem held_ground(const Problem &with, const Problem &before) {
@@ -223,12 +224,13 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen) {
 void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
     t.by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
                 t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
+    t.matters = t.by_rows && t.gain > share_that_matters * explainable;
     const bool gains = t.gain > 0 && (t.by_rows || t.assessment.spared > options.least_prior_reduction);
     if (!((t.by_rows ? t.p_value : t.own_p_value) < options.p_limit) || !gains)
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
         t.verdict = "wrong_sign";
-    else if (!large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
+    else if (!t.matters && !large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
         t.verdict = "too_small";
     else if (t.refitted && beyond_range(t.candidate, t.value))
         t.verdict = "beyond_range";
@@ -253,6 +255,7 @@ CandidateResult result_of(const Trial &t, double base_error, const Screen &scree
     r.p_value = t.p_value;
     r.verdict = t.verdict;
     r.sheet_alone = t.sheet_alone;
+    r.matters = t.matters;
     if (const sim::Effect *effect = sim::find_effect(t.candidate.effect)) r.explains = std::string(effect->signature);
     std::vector<std::pair<double, std::size_t>> order;
     double positive = 0;

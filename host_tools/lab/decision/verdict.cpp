@@ -42,7 +42,7 @@ std::string verdict_text(const Diagnosis &d) {
             text += "Unknown: no effect of the catalogue explains it:";
         text += " what is left depends on " + d.unknown->variable + ": " + d.unknown->balance + '.';
         for (std::size_t i = 0; i < d.nearest.size(); ++i)
-            text += (i == 0 ? " Nearest in the catalogue, not the cause: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
+            text += (i == 0 ? " Nearest in the catalogue, and not named: " : ", ") + d.nearest[i] + (i + 1 == d.nearest.size() ? "." : "");
     }
     return text;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
 
 namespace traction::lab {
 
@@ -50,9 +51,9 @@ double times_median(double freedom, double p) {
 
 // A parameter; of one that wheels share and differ in, the mean over the wheels: the shared part and theirs only add up.
 struct Mean {
-    std::string name;
+    std::string name, unit;
     Eigen::VectorXd weight; // of the living parameters
-    double value = 0, prior_variance = 0;
+    double value = 0, prior_variance = 0, stated = 0;
 };
 
 std::vector<Mean> means_of(const Problem &problem, const std::vector<Eigen::Index> &alive) {
@@ -72,7 +73,8 @@ std::vector<Mean> means_of(const Problem &problem, const std::vector<Eigen::Inde
         }
         if (p.own) continue;
         shared = &p;
-        Mean mean{name_of(p), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(alive.size())), p.base + theta, p.prior * p.prior};
+        Mean mean{name_of(p),        p.unit, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(alive.size())), p.base + theta,
+                  p.prior * p.prior, p.base};
         mean.weight[static_cast<Eigen::Index>(i)] = 1;
         list.push_back(std::move(mean));
     }
@@ -102,6 +104,28 @@ std::string limit_text(const Limit &limit) {
                   limit.value, limit.unit == "1" || limit.unit.empty() ? "" : " ", limit.unit == "1" ? "" : limit.unit.c_str(),
                   limit.of_prior ? " (six of its prior's deviations)" : "");
     return text;
+}
+
+std::vector<std::string> moved_far(const Problem &problem) {
+    constexpr double far = 3; // stated deviations
+    std::vector<Eigen::Index> all(problem.parameters.size());
+    std::iota(all.begin(), all.end(), 0);
+    const std::vector<Limit> limits = limits_of(problem);
+    std::vector<std::string> list;
+    for (const Mean &mean : means_of(problem, all)) {
+        const double away = std::fabs(mean.value - mean.stated) / std::sqrt(mean.prior_variance);
+        if (mean.name.starts_with("sensors.")) continue; // an offset is a run's, not a sheet's
+        const bool told = std::any_of(limits.begin(), limits.end(), [&](const Limit &l) { return l.parameter == mean.name; });
+        if (!(mean.prior_variance > 0) || !(away > far) || told) continue;
+        char text[400];
+        std::snprintf(text, sizeof text,
+                      "the fit takes %s from %.4g to %.4g%s%s, %.1f of its stated deviations: the model file is wrong there, or something "
+                      "that acts alike is missing",
+                      mean.name.c_str(), mean.stated, mean.value, mean.unit == "1" ? "" : " ", mean.unit == "1" ? "" : mean.unit.c_str(),
+                      away);
+        list.emplace_back(text);
+    }
+    return list;
 }
 
 bool is_dead(const Problem &problem, std::size_t i) {

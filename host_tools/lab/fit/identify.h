@@ -38,6 +38,9 @@ struct Identifiability {
 // Parameters that stand at a limit of the fit. What a wheel's own differs is told by that wheel.
 std::vector<Limit> limits_of(const Problem &problem);
 std::string limit_text(const Limit &limit);
+// Parameters but the sensors' (of what wheels share and differ in, the mean) that stand at no limit and yet more than three of their
+// priors' deviations from the model's value, a sentence each.
+std::vector<std::string> moved_far(const Problem &problem);
 
 // The problem must be linearised at its optimum.
 Identifiability identifiability(const Problem &problem);

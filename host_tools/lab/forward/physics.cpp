@@ -151,7 +151,7 @@ void add_user_effect(Physics &physics, const Model &model, const EffectUse &use)
         term.term = make_expression(use.expression, names);
     } catch (const std::runtime_error &error) {
         throw ModelError(model.file, 0, "effect." + use.name + ".expression", error.what(),
-                         "use t w v s Fn theta x a I u Ft V r, the effect's own parameters, and muparser's functions");
+                         "use t w v s Fn theta x X a d I Io Ia Is u Ft V r, the effect's own parameters, and muparser's functions");
     }
     physics.terms.push_back(std::move(term));
 }

@@ -86,7 +86,7 @@ std::string candidate_words(const CandidateResult &r, const Diagnosis &d) {
     static const std::pair<const char *, const char *> words[] = {
         {"named", "found"},
         {"class", "possible: this log cannot tell it from the others marked so"},
-        {"nearest", "comes near, and is not the cause"},
+        {"nearest", "comes near, and is not named"},
         {"not_needed", "not needed beside what was found"},
         {"not_held_out", "predicts the rest of the log no better"},
         {"strains_sheet", "takes the model's numbers farther from their data sheet"},

@@ -85,7 +85,7 @@ std::string missing(const Diagnosis &d) {
     if (d.unknown && d.unknown->instead_of.empty())
         text += (text.empty() ? "" : " ") + std::string("Something that is in no catalogue: ") + d.unknown->balance +
                 ", which depends on " + d.unknown->variable + ".";
-    if (!d.nearest.empty()) text += " Nearest in the catalogue, not the cause: " + joined(d.nearest, ", ") + ".";
+    if (!d.nearest.empty()) text += " Nearest in the catalogue, and not named: " + joined(d.nearest, ", ") + ".";
     return text.empty() ? "Nothing that this log can show." : text;
 }
 
