@@ -181,7 +181,7 @@ typedef struct {
     float gyro_sure_m_s2;                 // of (16): |b - m| that noise makes
     float gyro_steady_m2_s2;              // of (16): s^2
     float quiet_noise_m2_s2;              // R of that speed, taken as 0
-    float still_m_s;                      // rim speed below which the wheels are at rest
+    float still_m_s;                      // rim speed below which the wheels are at rest; 0: there are none to ask
     float rest_m_s;                       // of (24): a quarter of it
     int32_t still_needed;                 // ticks of rest before the rover can be standing
     int32_t parked_needed;                // and before it is, where the radar tells of no speed
