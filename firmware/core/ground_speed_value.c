@@ -209,7 +209,7 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     ground_speed_keep_best(state, &track);
 }
 
-enum { QUIET_BELIEVED = 4 }; // a second: no fade of the echo lasts so long
+enum { QUIET_BELIEVED = 4 }; // values, half a second of the reference's radar: longer than a fade of the echo, assumed
 
 // A quiet echo says that the window's mean speed was too low to be heard.
 void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)

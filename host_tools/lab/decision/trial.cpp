@@ -12,7 +12,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double share_that_matters = 0.5; // assumed
+constexpr double share_that_matters = 0.5; // of what is not noise, assumed
 constexpr double least_gain_squares = 9;   // three deviations of white noise, where nearly all that the baseline leaves is noise
 constexpr double clearly_worse = 1.02;     // of the baseline's error: beyond such a size no better one is sought (assumed)
 constexpr double classes_tried = 26;       // catalogue effects that are not near copies of one another: about half of the catalogue

@@ -66,7 +66,7 @@ inline double slip_of(double rim, double v) { return plain_slip(rim, v); }
 TRACTION_LANE_INLINE Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v); }
 
 // The speed at which a slip is worn off: at rest it is not kept, for the tyres turn what stands on them until nothing pulls any more,
-// which the measured yaw rate does not resolve. Below 15 mm/s alone (assumed): a wheel at 5 cm/s loses 0.8 % of its slip by it.
+// which the measured yaw rate does not resolve. Below 15 mm/s alone (assumed): a wheel at 5 cm/s loses 0.24 % of its slip by it.
 template <typename T> inline T wears_m_s(const T &rim, const T &v) {
     constexpr double rest_m_s = 0.015, rest_4 = rest_m_s * rest_m_s * rest_m_s * rest_m_s;
     const T faster = law::larger(law::magnitude(rim), law::magnitude(v)), square = faster * faster;
