@@ -74,6 +74,23 @@ TEST(Sizes, are_the_catalogues_for_the_rover_that_it_is_of) {
     }
 }
 
+// The speeds at which a friction is tried that falls with speed are those of a motor as fast as table I's; a faster one's lie higher.
+TEST(Sizes, of_a_speed_go_with_the_top_speed) {
+    const auto speeds = [](const Machine &m) {
+        std::vector<double> out;
+        for (const Candidate &c : catalogue_candidates(m.model, m.data, m.motion))
+            if (c.effect == "stribeck_friction" && c.wheel < 0) out.push_back(c.variant.at(0).second);
+        return out;
+    };
+    Machine m;
+    EXPECT_EQ(speeds(m), (std::vector<double>{0.5, 1, 2, 4}));
+    m.times("torque_constant_Nm_A", 0.1);
+    const std::vector<double> faster = speeds(m);
+    ASSERT_EQ(faster.size(), 4U);
+    EXPECT_NEAR(faster.front(), 5, 1e-9);
+    EXPECT_NEAR(faster.back(), 40, 1e-9);
+}
+
 // By what a motor can: stall torque K U / R, damping K^2 / R, stall current U / R, speed U / K, and a rover's weight and half diagonal.
 TEST(Sizes, go_with_the_machine) {
     Machine m;

@@ -341,5 +341,18 @@ TEST(Motor, that_the_fit_moved_grossly_for_little_is_not_told) {
     EXPECT_FALSE(m.asked());
 }
 
+// Half of the size of interest, and nearly all of the error: it is named, and the friction that it is.
+TEST(Bench, of_a_friction_below_the_size_of_interest_names_what_takes_most_of_the_error) {
+    EffectUse hidden;
+    hidden.name = "churning_friction";
+    hidden.parameters["coefficient_Nms2"].value = 3e-5;
+    const Motor m(240, nullptr, 0.01, {hidden});
+    const Diagnosis d = diagnose(m.model, m.data, {});
+    ASSERT_EQ(d.effects, std::vector<std::string>{"churning_friction"}) << d.text;
+    EXPECT_TRUE(d.accepted[0].matters);
+    EXPECT_LT(d.accepted[0].low[0], 3e-5);
+    EXPECT_GT(d.accepted[0].high[0], 3e-5);
+}
+
 } // namespace
 } // namespace traction::lab

@@ -400,5 +400,22 @@ TEST(Inputs, a_driven_wheel_without_a_speed_turns_as_the_others_of_its_side) {
         EXPECT_NEAR(none.wheel[2].speed_rad_s[k], 0.5 * (none.wheel[1].speed_rad_s[k] + none.wheel[3].speed_rad_s[k]), 1e-12);
 }
 
+TEST(Inputs, wheels_without_grip_are_told_where_a_body_is_moved_by_them) {
+    sim::Scenario scenario = sim::parse_scenario("title = \"on\"\nduration_s = 3\n[ground]\nsoil = \"sand\"\n[[drive]]\nfor_s = 3\nmode = "
+                                                 "\"platform_speed\"\nspeed_m_s = 0.3\n",
+                                                 "on");
+    const log::Log log = simulate(scenario).log;
+    Model model = read_model("models/rover_sand.toml");
+    const auto told = [&] {
+        const std::vector<std::string> messages = make_dataset(model, log).messages;
+        return std::count_if(messages.begin(), messages.end(), [](const std::string &m) { return m.ends_with(": it has no grip"); });
+    };
+    EXPECT_EQ(told(), 0);
+    for (std::size_t i = 0; i < 2; ++i) model.wheel[i].soil.at("mu").value = model.wheel[i].soil.at("adhesion_N").value = 0;
+    EXPECT_EQ(told(), 2);
+    model.motion = BodyMotion::none;
+    EXPECT_EQ(told(), 0);
+}
+
 } // namespace
 } // namespace traction::lab

@@ -256,6 +256,12 @@ TEST(Shape, parameters_on_a_scale_are_set_free_by_a_factor_of_four_a_metre_or_a_
     EXPECT_DOUBLE_EQ(p.maximum, 100); // the catalogue's end is nearer
     p.value = 0.2, set_free(p, spec);
     EXPECT_DOUBLE_EQ(p.minimum, 0.1);
+    p.value = 400, set_free(p, spec); // a variant of the machine's own scale, beyond the catalogue's: up to twice, and down to its end
+    EXPECT_DOUBLE_EQ(p.minimum, 100);
+    EXPECT_DOUBLE_EQ(p.maximum, 800);
+    p.value = 0.05, set_free(p, spec);
+    EXPECT_DOUBLE_EQ(p.minimum, 0.025);
+    EXPECT_DOUBLE_EQ(p.maximum, 0.2);
     spec.unit = "m", p.value = 3, set_free(p, spec);
     EXPECT_DOUBLE_EQ(p.minimum, 2);
     EXPECT_DOUBLE_EQ(p.maximum, 4);

@@ -186,7 +186,10 @@ TEST(Speed, a_recording_without_wheels_begins_forward) {
     const Beam beam{"24 GHz", 24.125e9, 40, 60, 30, 1000};
     const Drive drive{6, [](double t) { return 0.25 + 0.05 * std::sin(t); }};
     for (std::uint64_t seed = 81; seed < 87; seed++) {
-        const log::Log log = log_of(beam, drive, echo_of(beam, drive, seed, 3), true, seed);
+        log::Log log = log_of(beam, drive, echo_of(beam, drive, seed, 3), true, seed);
+        for (log::Signal &signal : log.signals)
+            if (signal.name == "imu.accel_x_m_s2")
+                for (double &a : signal.value) a -= 0.35; // on a slope of two degrees it tells of going backwards, until the first value
         const Result result = measured(beam, log, true);
         for (std::size_t i = 50; i < result.speed_m_s.size(); i++) EXPECT_GT(result.speed_m_s[i], 0) << seed << " at " << result.t_s[i];
     }

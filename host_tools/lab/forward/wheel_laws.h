@@ -1,8 +1,9 @@
 // wheel_laws.h - what the ground does to a wheel at a given slip and speed, for one wheel (double) or four side by side (Lane).
 //
 //   s = (R w - v) / max(|R w|, |v|)                 slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest        (1)
-//   s = (s' + h (R w - v)) / (1 + h max(|R w|, |v|))  where it lags, h = step over relaxation length                       (2)
-//   sy = (sy' - h vy) / (1 + h max(|R w|, |v|)),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
+//   s = (s' + h (R w - v)) / (1 + h g)              where it lags, h = step over relaxation length                        (2)
+//   g = m + r r^4/(m^4 + r^4),  m = max(|R w|, |v|),  r = 15 mm/s: at rest it is worn off (assumed)                       (5)
+//   sy = (sy' - h vy) / (1 + h g),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
 //   Ft / Fm = 1 - (1 - exp(-x)) / x, x = |s| / sc   (20) janosi;  1 - exp(-x)  (21) burckhardt                             (3)
 #pragma once
 
@@ -65,7 +66,7 @@ template <typename T> inline T plain_slip(const T &rim, const T &v) {
 inline double slip_of(double rim, double v) { return plain_slip(rim, v); }
 TRACTION_LANE_INLINE Lane slip_of(const Lane &rim, const Lane &v) { return plain_slip(rim, v); }
 
-// The speed at which a slip is worn off: at rest it is not kept, for the tyres turn what stands on them until nothing pulls any more,
+// (5), the speed at which a slip is worn off: at rest it is not kept, for the tyres turn what stands on them until nothing pulls any more,
 // which the measured yaw rate does not resolve. Below 15 mm/s alone (assumed): a wheel at 5 cm/s loses 0.24 % of its slip by it.
 template <typename T> inline T wears_m_s(const T &rim, const T &v) {
     constexpr double rest_m_s = 0.015, rest_4 = rest_m_s * rest_m_s * rest_m_s * rest_m_s;
