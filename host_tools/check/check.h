@@ -35,6 +35,7 @@ struct Machine {
     std::vector<int> motor_of_wheel = {}; // of each, the wheel whose motor turns it; empty: every wheel has its own
     std::size_t free_wheels = 0;          // of them, those that no motor turns
     bool wheels_point_forward = true;     // false (omni): wheel speeds are not compared with the body's
+    bool unsigned_current = false;        // the model knows currents as magnitudes, whatever the log's header says
     bool on_ground = true;                // false: wheels in the air
     bool rolls_freely = true;             // false: a bench imposes slip, so speed over ground says nothing of the radius
 };

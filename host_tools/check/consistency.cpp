@@ -172,7 +172,7 @@ void check_units(const std::vector<Law> &laws, const Grid &grid, const Machine &
             slip != nullptr && !reported(speed)) {
             add(findings, "unit", Severity::error, speed,
                 say("'%s' is %.3g times too large for its motor's back-EMF: it looks like %s", speed.c_str(), ke / law.fit.a,
-                    slip->written),
+                    looks_like(*slip, speed).c_str()),
                 say("multiply it by %.6g", 1 / slip->factor), ke / law.fit.a);
         }
         if (const UnitSlip *slip = law.fit.b > 4 * law.fit.error_b ? unit_slip('I', resistance / law.fit.b) : nullptr;
@@ -317,7 +317,7 @@ void check_drives(const Grid &grid, const Machine &machine, Findings &findings) 
                 "turn its sign round (map: sign = -1)", line.a);
         } else if (const UnitSlip *slip = line.good && (share_explained(line) > 0.7 || alike > 0.8) ? unit_slip('w', line.a) : nullptr) {
             add(findings, "unit", Severity::error, name,
-                say("'%s' is %.3g times its reference: it looks like %s", name.c_str(), line.a, slip->written),
+                say("'%s' is %.3g times its reference: it looks like %s", name.c_str(), line.a, looks_like(*slip, name).c_str()),
                 say("multiply it by %.6g", 1 / slip->factor), line.a);
         }
     }

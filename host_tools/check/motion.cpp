@@ -260,9 +260,14 @@ void Motion::ground() {
         }
         const bool wheels = absurd == sources.size() && (linear == nullptr || (angular != nullptr && source.radius < expected));
         if (wheels) {
-            add("unit", Severity::error, "wheel.speed_rad_s",
-                describe(source) + (angular != nullptr ? std::string(": the wheel speeds look like ") + angular->written : ""),
-                angular != nullptr ? say("multiply all wheel speeds by %.6g", 1 / angular->factor) : "check the units of both",
+            const std::string column = grid_.wheel.empty() ? "" : grid_.wheel.front().speed_column;
+            const bool angles = column.find(".angle_rad") != column.npos;
+            add("unit", Severity::error, angles ? "wheel.angle_rad" : "wheel.speed_rad_s",
+                describe(source) + (angular == nullptr ? ""
+                                    : angles           ? ": the wheels' angles look like " + looks_like(*angular, column)
+                                                       : ": the wheel speeds look like " + looks_like(*angular, column)),
+                angular == nullptr ? "check the units of both"
+                                   : say("multiply all wheel %s by %.6g", angles ? "angles" : "speeds", 1 / angular->factor),
                 source.radius);
             return;
         }

@@ -200,16 +200,21 @@ void accel_scale(const Grid &grid, const Machine &machine, Findings &findings) {
 
 // A current that never is negative although the motor pushes both ways.
 void magnitude(const Wheel &wheel, Findings &findings) {
-    if (wheel.unsigned_current || wheel.current.empty() || wheel.speed.empty()) return;
+    if (wheel.current.empty() || wheel.speed.empty()) return;
     const std::string name = "wheel" + std::to_string(wheel.index) + ".current_A";
     std::vector<double> size = wheel.current, turn = wheel.speed;
     for (double &v : size) v = std::fabs(v);
     for (double &v : turn) v = std::fabs(v);
     const double largest = quantile(size, 0.98), least = quantile(wheel.current, 0.005), fastest = quantile(turn, 0.98);
-    if (!(largest > 0) || least < -0.05 * largest) return;
+    if (wheel.unsigned_current && largest > 0 && least < -0.2 * largest) // noise about zero may fall below it, no more
+        add_error(findings, "magnitude", name, say("'%s' is declared a magnitude, but reaches %.3g A", name.c_str(), least),
+                  "take unsigned out of the map, the header or [sensors.current] of the model: this current has its sign", least);
+    if (wheel.unsigned_current || !(largest > 0) || least < -0.05 * largest) return;
     const auto tell = [&](const char *evidence, double value) {
         add_error(findings, "magnitude", name, say("'%s' is never negative, but %s", name.c_str(), evidence),
-                  "declare it a magnitude: unsigned = true in the map, or '# unsigned." + name + ": 1' in the header", value);
+                  "declare it a magnitude: unsigned = true in the map or in [sensors.current] of the model, or '# unsigned." + name +
+                      ": 1' in the header",
+                  value);
     };
     double back = 0, backwards = 0, forward = 0, forwards = 0;
     for (std::size_t k = 0; k < wheel.speed.size(); ++k) {

@@ -113,6 +113,13 @@ const UnitSlip *unit_slip(char kind, double factor) {
     }
 }
 
+std::string looks_like(const UnitSlip &slip, std::string_view column) {
+    const std::string rate = slip.written;
+    if (column.find(".encoder_count") != column.npos) return "a turn of another number of counts";
+    if (column.find(".angle_rad") == column.npos) return rate;
+    return rate == "deg/s" ? "degrees" : rate == "rpm" ? "another unit" : rate.substr(0, rate.find('/'));
+}
+
 // At least three jumps of about a turn, within a range of a turn: an angle that should be continuous and is not.
 bool wraps(const log::Signal &angle) {
     constexpr double turn = 6.283185307179586;
@@ -232,7 +239,7 @@ void add_wheels(const log::Log &log, const Machine &machine, Grid &grid) {
         wheel.duty = get("duty");
         wheel.voltage = get("voltage_V");
         const auto flag = log.header.find("unsigned." + name + "current_A");
-        wheel.unsigned_current = flag != log.header.end() && flag->second != "0";
+        wheel.unsigned_current = machine.unsigned_current || (flag != log.header.end() && flag->second != "0");
         const std::vector<double> count = get("encoder_count");
         std::vector<double> angle;
         if (const log::Signal *turned = log.find(name + "angle_rad")) {

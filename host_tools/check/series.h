@@ -85,6 +85,8 @@ struct UnitSlip {
 // The slip whose factor is within 1.35 times of `factor` either way, nullptr when there is none. kind: 'w' angular speed, 'I', 'v' speed or
 // length, 'a'.
 const UnitSlip *unit_slip(char kind, double factor);
+// What a column looks like by such a slip of the wheel's speed: an angle's unit where the speed comes from angles ("degrees").
+std::string looks_like(const UnitSlip &slip, std::string_view column);
 
 // printf into a string.
 std::string say(const char *format, ...) __attribute__((format(printf, 1, 2)));

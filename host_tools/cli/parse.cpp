@@ -3,7 +3,8 @@
 #include "parse.h"
 
 #include "help.h"
-#include "suggest.h"
+
+#include "host_tools/suggest/suggest.h"
 
 #include <CLI/CLI.hpp>
 

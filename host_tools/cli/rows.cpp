@@ -1,8 +1,7 @@
 #include "rows.h"
 
-#include "suggest.h"
-
 #include "host_tools/lab/session.h"
+#include "host_tools/suggest/suggest.h"
 #include "sim/physics/effects/catalogue.h"
 
 namespace traction::cli {

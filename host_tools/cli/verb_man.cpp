@@ -1,9 +1,9 @@
 // verb_man.cpp - traction man [VERB]: the manual pages, from the verbs' tables.
 #include "shell_text.h"
-#include "suggest.h"
 #include "verbs.h"
 
 #include "host_tools/log/write_file.h"
+#include "host_tools/suggest/suggest.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -28,6 +28,7 @@ check::Machine machine_of(const Model &model) {
         machine.counts_per_turn = counts->second.value;
     machine.wheels_point_forward = model.motion != BodyMotion::none;
     machine.on_ground = model.motion != BodyMotion::none;
+    machine.unsigned_current = model.unsigned_current;
     machine.rolls_freely = model.motion != BodyMotion::imposed;
     for (const WheelSpec &wheel : model.wheel) {
         const auto heading = wheel.geometry.find("heading_rad");

@@ -8,18 +8,44 @@
 #include "host_tools/lab/inputs/begin_runs.h"
 #include "host_tools/lab/inputs/join_runs.h"
 #include "host_tools/lab/inputs/long_log.h"
+#include "host_tools/lab/model/model_reader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace traction::lab {
+
+namespace {
+
+// The part that --from and --to ask for; a part that no log has is refused, for what comes next would complain of a log without columns.
+void keep_asked(log::Log &log, const std::string &file, const Request &request) {
+    const auto refuse = [&](const char *option, double value, const std::string &wrong, const std::string &mend) {
+        throw ModelError(file, 0, option, number_text(value) + " s " + wrong, mend);
+    };
+    for (const auto &[option, value] : {std::pair("--from", request.from_s), std::pair("--to", request.to_s)})
+        if (!(value >= 0 && std::isfinite(value))) refuse(option, value, "is no time", "give seconds of the log's own clock, 0 or more");
+    if (request.to_s > 0 && !(request.from_s < request.to_s))
+        refuse("--from", request.from_s, "is not before --to " + number_text(request.to_s), "give an earlier --from or a later --to");
+    double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
+    for (const log::Signal &signal : log.signals)
+        if (!signal.t_s.empty()) first_s = std::min(first_s, signal.t_s.front()), last_s = std::max(last_s, signal.t_s.back());
+    const std::string span = "the log goes from " + number_text(first_s) + " to " + number_text(last_s) + " s";
+    if (first_s <= last_s && request.from_s > last_s) refuse("--from", request.from_s, "is behind the log's end", span);
+    if (first_s <= last_s && request.to_s > 0 && request.to_s < first_s) refuse("--to", request.to_s, "is before the log begins", span);
+    keep_part(log, request.from_s, request.to_s);
+}
+
+} // namespace
 
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,
                      std::vector<std::string> &told, std::vector<std::string> &despite) {
     std::vector<log::Repair> repairs;
     log::Log log = request.read ? request.read(file, map, repairs) : log::read_csv(file, map, repairs);
-    keep_part(log, request.from_s, request.to_s);
+    keep_asked(log, file, request);
     for (std::string &sentence : pass_gate(check::check(log, repairs, machine_of(model)), file, request.despite, despite))
         told.push_back(std::move(sentence));
     if (!request.repeat.empty()) return log; // two runs are compared time by time

@@ -5,7 +5,10 @@
 #include "ulog.h"
 #include "vocabulary.h"
 
+#include "host_tools/suggest/suggest.h"
+
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -36,13 +39,37 @@ void name_in_vocabulary(Column &column, const std::vector<std::string> &names, s
     unknown.push_back(signal.name);
 }
 
-void say_unknown(const std::vector<std::string> &unknown, std::size_t columns, std::vector<Repair> &repairs) {
+// " (did you mean 'wheel0.current_A'?)" of a column one or two letters away from a name that the file lacks; letters of the other case
+// count as none.
+std::string meant_by(const std::string &name, const std::vector<std::string> &names) {
+    const std::string object = name.substr(0, name.find('.'));
+    const std::size_t digit = object.find_first_of("0123456789");
+    const auto lower = [](std::string text) {
+        for (char &c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return text;
+    };
+    std::string best;
+    std::size_t least = 3;
+    for (const Quantity &q : vocabulary()) {
+        const bool of_wheel = q.object == "wheel<i>";
+        if (of_wheel && digit == object.npos) continue;
+        std::string known = of_wheel ? "wheel" + object.substr(digit) : std::string(q.object);
+        known += "." + std::string(q.quantity) + (q.unit.empty() ? "" : "_" + std::string(q.unit));
+        if (find_quantity(known) == nullptr || std::find(names.begin(), names.end(), known) != names.end()) continue;
+        if (const std::size_t d = distance(lower(name), lower(known)); d < least) least = d, best = std::move(known);
+    }
+    return best.empty() ? "" : " (did you mean '" + best + "'?)";
+}
+
+void say_unknown(const std::vector<std::string> &unknown, const std::vector<std::string> &names, std::size_t columns,
+                 std::vector<Repair> &repairs) {
     if (unknown.empty()) return;
     std::string text = unknown.size() == columns
                            ? "no column is"
                            : std::to_string(unknown.size()) + (unknown.size() == 1 ? " column is not" : " columns are not");
     text += " in the vocabulary (";
-    for (std::size_t i = 0; i < unknown.size() && i < 4; ++i) text += (i == 0 ? "'" : ", '") + unknown[i] + "'";
+    for (std::size_t i = 0; i < unknown.size() && i < 4; ++i)
+        text += (i == 0 ? "'" : ", '") + unknown[i] + "'" + meant_by(unknown[i], names);
     text += unknown.size() > 4 ? ", ...): " : "): ";
     text += unknown.size() == columns ? "a foreign file wants a map (--map)" : "kept under their own names, used by no balance";
     repairs.push_back({"unknown_name", unknown.front(), unknown.size(), 0, text});
@@ -58,7 +85,7 @@ void take_columns(Log &log, std::vector<Column> &columns, std::vector<std::strin
         if (column.signal.name != before) names.push_back(column.signal.name); // rpm and deg_s of one quantity: the first wins
         log.signals.push_back(std::move(column.signal));
     }
-    say_unknown(unknown, columns.size(), repairs);
+    say_unknown(unknown, names, columns.size(), repairs);
 }
 
 // A column in memory as the reader of a file leaves one.

@@ -2,6 +2,8 @@
 
 #include "axis.h"
 
+#include "host_tools/suggest/suggest.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,20 +58,6 @@ bool matches(std::string_view pattern, std::string_view name) {
     if (pattern.empty()) return name.empty();
     if (pattern.front() == '*') return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
     return !name.empty() && pattern.front() == name.front() && matches(pattern.substr(1), name.substr(1));
-}
-
-// Number of letters to change, insert or drop (Levenshtein) between two names.
-std::size_t distance(const std::string &a, const std::string &b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t corner = std::exchange(row[0], i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t best = std::min({row[j] + 1, row[j - 1] + 1, corner + (a[i - 1] == b[j - 1] ? 0u : 1u)});
-            corner = std::exchange(row[j], best);
-        }
-    }
-    return row.back();
 }
 
 log::LogError no_such_signal(const log::Log &log, const std::string &name) {

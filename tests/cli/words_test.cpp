@@ -1,6 +1,6 @@
 // Progress in words, and what a mistyped word is taken for.
 #include "host_tools/cli/progress.h"
-#include "host_tools/cli/suggest.h"
+#include "host_tools/suggest/suggest.h"
 
 #include <gtest/gtest.h>
 

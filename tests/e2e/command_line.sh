@@ -94,6 +94,9 @@ for verb in check replay "compare --model rover_sand" "plot --out p.svg --signal
     "$cli" $verb --log run.csv >as_option.txt 2>&1
     [ $? -eq $one ] && [ $one -le 1 ] && cmp -s as_argument.txt as_option.txt || bad "$verb LOG and $verb --log LOG differ"
 done
+says 3 "clean.csv: --from: 500 s is behind the log's end; the log goes from 0" diagnose --model rover_sand clean.csv --from 500
+says 3 "clean.csv: --from: 30 s is not before --to 10" compare --model rover_sand clean.csv --from 30 --to 10
+says 3 "clean.csv: --to: -3 s is no time" fit --model rover_sand clean.csv --to -3
 says 3 "nearest are estimate.speed_m_s" plot run.csv --signals estimat.speed_m_s --out p.svg
 
 # standard output

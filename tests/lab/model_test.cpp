@@ -79,6 +79,33 @@ TEST(Model, what_is_of_another_kind_is_told_and_not_left_out) {
     is(rover + wheel + "[[effect]]\nname = \"slip_sinkage\"\nwheel = \"0\"\n", "effect[0].wheel", "is not a whole number");
 }
 
+TEST(Model, a_number_given_twice_is_refused_and_a_key_is_known_by_what_may_stand_there) {
+    const std::string rover = "[rover]\nmotion = \"imposed\"\n", wheel = "[[wheel]]\nradius_m = 0.1\nload_N = 7\n";
+    const auto is = [](const std::string &text, const std::string &what) {
+        EXPECT_NE(message_of(text).find(what), std::string::npos) << text << message_of(text);
+    };
+    is(rover + wheel + "[motor]\ntorque_constant_Nm_A = 0.5\nmotor_constant_Nm_A = 0.01\ngear_ratio = 50\n",
+       "m.toml:8: motor.motor_constant_Nm_A: stands beside torque_constant_Nm_A, which it makes; give one of the two");
+    is(rover + wheel + "[motor]\nback_emf_Vs_rad = 0.5\nmotor_back_emf_Vs_rad = 0.01\n", "stands beside back_emf_Vs_rad");
+    is(rover + wheel + "[motor]\ninertia_kg_m2 = 0.5\nmotor_inertia_kg_m2 = 0.01\n", "stands beside inertia_kg_m2");
+    is(rover + wheel + "[soil]\nmu = 0.6\nstrength_N = 5\n", "soil.mu: stands beside strength_N, which makes it");
+    const std::string bekker = "[soil]\nlaw = \"bekker\"\ncohesion_Pa = 1\nfriction_angle_rad = 0.4\nshear_length_m = 0.02\n"
+                               "contact_length_m = 0.04\n";
+    EXPECT_EQ(message_of(rover + wheel + bekker), "");
+    is(rover + wheel + bekker + "shear_slip = 0.4\n", "soil.shear_slip: stands beside shear_length_m, which makes it");
+    // a motor of one side for all, and of the other side for one wheel: the wheel's own holds
+    const Model one = parse_model(rover + wheel +
+                                      "[wheel.motor]\nmotor_constant_Nm_A = 0.01\ngear_ratio = 30\n[motor]\n"
+                                      "torque_constant_Nm_A = 0.5\n",
+                                  "m");
+    EXPECT_DOUBLE_EQ(one.wheel[0].motor.at("torque_constant_Nm_A").value, 0.3);
+
+    is(rover + wheel + "drivn = false\n", "wheel[0].drivn: is not a known key; did you mean driven?"); // not x_m
+    is(rover + wheel + "[sensors.radar]\nunsigned = true\n", "sensors.radar.unsigned: is not a known key; known here: noise_m_s");
+    is(rover + wheel + "[sensors.acel]\nnoise_m_s2 = 1\n", "did you mean accel.noise_m_s2?");
+    is(rover + wheel + "[motor]\ncolour = 1\n", "known here: ");
+}
+
 TEST(Model, what_is_written_reads_back_to_the_same_numbers) {
     const Model model =
         parse_model(bench + "[[effect]]\nname = \"slip_sinkage\"\ncoefficient = { value = 0.15, low = 0.1, high = 0.2 }\n", "b");

@@ -4,6 +4,7 @@
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/simulate/simulate.h"
 
+#include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
 #include <limits>
@@ -38,23 +39,33 @@ Dataset rolling(double yaw_rad_s, std::size_t count) {
     return data;
 }
 
-TEST(WheelStep, slip_across_comes_over_the_relaxation_length) {
-    const Dataset data = rolling(0, 40);
+// (4) and (5) of wheel_laws.h in closed form: over n steps at a steady speed -vy / g (1 - (1 + h g)^-n), h = step over length.
+TEST(WheelStep, slip_across_comes_over_the_relaxation_length_and_goes_at_rest) {
+    constexpr double relaxation_m = 0.1, aside_m_s = 0.02, rest_m_s = 0.015;
+    Dataset data = rolling(0, 240);
+    const std::size_t stops = 40;
+    for (WheelInput &w : data.wheel) std::fill(w.speed_rad_s.begin() + static_cast<std::ptrdiff_t>(stops), w.speed_rad_s.end(), 0.0);
     Physics physics = make_physics(sliding("gravel"));
-    constexpr double relaxation_m = 0.1, aside_m_s = 0.02;
     for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.radius = radius_m, w.lateral = 0;
     WheelStep step(data, physics);
-    const double reach = data.step_s * speed_m_s / relaxation_m; // of the length, a step; implicit Euler forgets 1/(1 + reach)
-    double left = 1;
+    const double per_m = data.step_s / relaxation_m;
+    double side = 0;
     for (std::size_t k = 0; k < data.count; ++k) {
-        step.prepare(k, speed_m_s, 0, 0, 0);
-        step.forces({speed_m_s, aside_m_s, 0}, nullptr);
-        left /= 1 + reach;
-        for (std::size_t i = 0; i < 4; ++i)
-            EXPECT_NEAR(step.state(i).side_slip, -aside_m_s / speed_m_s * (1 - left), 1e-12); // (4) of wheel_laws.h, rounding
+        const bool rolls = k < stops;
+        const double v = rolls ? speed_m_s : 0, aside = rolls ? aside_m_s : 0;
+        step.prepare(k, v, 0, 0, 0);
+        step.forces({v, aside, 0}, nullptr);
+        const double g = v + rest_m_s / (1 + std::pow(v / rest_m_s, 4)); // m + r r^4 / (m^4 + r^4)
+        side = (side - per_m * aside) / (1 + per_m * g);
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).side_slip, side, 1e-12) << k; // rounding
         step.commit();
+        if (k + 1 != stops) continue;
+        const double reach = per_m * speed_m_s, left = std::pow(1 + reach, -static_cast<double>(stops)), all = aside_m_s / speed_m_s;
+        EXPECT_NEAR(side, -all * (1 - left), 1e-6 * all);                      // (5) takes (r / v)^5 = 7e-8 of it
+        EXPECT_NEAR(left, std::exp(-static_cast<double>(stops) * reach), 0.1); // the length's own law, first order in reach = 0.08
+        EXPECT_NEAR(side, -all, 0.1 * all);
     }
-    EXPECT_NEAR(left, std::exp(-static_cast<double>(data.count) * reach), 0.1); // of the length's own law, first order in reach = 0.08
+    EXPECT_NEAR(side, -aside_m_s / speed_m_s * std::exp(-0.6), 0.1 * aside_m_s / speed_m_s); // 4 s at r over the length: 0.15 / s
 }
 
 TEST(Lane, exp_is_the_exponential_and_ends_where_a_double_would) {

@@ -193,6 +193,45 @@ TEST(Check, names_a_unit_that_is_wrong_on_every_wheel) {
     expect_only(log, "unit", "camera.x_m", Severity::error);
 }
 
+// Angles are no speeds: what is said of them is an angle's unit.
+TEST(Check, names_angles_in_degrees) {
+    for (const bool every : {true, false}) {
+        log::Log log = good();
+        for (int i = 0; i < 4; ++i) {
+            log::Signal &speed = at(log, "wheel" + std::to_string(i) + ".speed_rad_s");
+            double angle = 0;
+            for (std::size_t k = 0; k < speed.value.size(); ++k) {
+                const double rad_s = speed.value[k];
+                if (k > 0) angle += rad_s * (speed.t_s[k] - speed.t_s[k - 1]);
+                speed.value[k] = angle * (every || i == 1 ? 57.29577951 : 1);
+            }
+            speed.name = "wheel" + std::to_string(i) + ".angle_rad";
+        }
+        const check::Report report = check::check(log, {}, {});
+        const check::Finding *finding = report.find("unit", every ? "wheel.angle_rad" : "wheel1.angle_rad");
+        ASSERT_NE(finding, nullptr) << listed(report, Severity::note);
+        EXPECT_NE(finding->text.find("like degrees"), std::string::npos) << finding->text;
+        EXPECT_EQ(finding->text.find("deg/s"), std::string::npos) << finding->text;
+    }
+}
+
+// What the model says of the currents is enough: no header is asked for beside it. A current with its sign is no magnitude.
+TEST(Check, knows_currents_as_magnitudes_by_the_model_as_by_the_header) {
+    check::Machine machine = spec_rover();
+    machine.unsigned_current = true;
+    log::Log folded = good(), by_header = good();
+    for (log::Log *log : {&folded, &by_header})
+        for (int i = 0; i < 4; ++i)
+            for (double &v : at(*log, "wheel" + std::to_string(i) + ".current_A").value) v = std::fabs(v);
+    EXPECT_NE(check::check(folded, {}, spec_rover()).find("magnitude"), nullptr);
+    EXPECT_EQ(listed(check::check(folded, {}, machine), Severity::warning), "");
+    for (int i = 0; i < 4; ++i) by_header.header["unsigned.wheel" + std::to_string(i) + ".current_A"] = "1";
+    EXPECT_EQ(listed(check::check(by_header, {}, spec_rover()), Severity::warning), "");
+    const check::Report of_signed = check::check(good(), {}, machine);
+    ASSERT_NE(of_signed.find("magnitude", "wheel0.current_A"), nullptr);
+    EXPECT_NE(of_signed.find("magnitude")->text.find("is declared a magnitude, but reaches -"), std::string::npos);
+}
+
 TEST(Check, names_swapped_wheels) {
     for (const char *quantity : {"current_A", "speed_rad_s", "duty"}) {
         SCOPED_TRACE(quantity);

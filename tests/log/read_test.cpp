@@ -241,6 +241,17 @@ TEST(Read, an_unknown_name_is_kept_and_said) {
     EXPECT_EQ(foreign.find("unknown_name")->text, "no column is in the vocabulary ('a', 'b'): a foreign file wants a map (--map)");
 }
 
+TEST(Read, a_mistyped_name_is_told_with_what_it_was_to_be) {
+    const auto told = [](const std::string &columns) {
+        return read("# format: traction-log 1\nt_s," + columns + "\n0,1,2\n").find("unknown_name")->text;
+    };
+    EXPECT_NE(told("wheel2.current_a,camera.x_m").find("'wheel2.current_a' (did you mean 'wheel2.current_A'?)"), std::string::npos);
+    EXPECT_NE(told("whel11.speed_rad_s,camera.x_m").find("(did you mean 'wheel11.speed_rad_s'?)"), std::string::npos);
+    EXPECT_NE(told("imu.acel_x_m_s2,camera.x_m").find("(did you mean 'imu.accel_x_m_s2'?)"), std::string::npos);
+    EXPECT_EQ(told("camera.x,camera.x_m").find("did you mean 'camera.x_m'"), std::string::npos); // which the file has
+    EXPECT_EQ(told("arm.joint_rad,camera.x_m").find("did you mean"), std::string::npos);
+}
+
 TEST(Read, a_known_quantity_in_another_unit_is_converted_and_said) {
     const Read r =
         read("# format: traction-log 1\nt_s,wheel0.speed_rpm,wheel0.current_mA,imu.gyro_z_deg_s,camera.x_furlong\n0,60,250,180,1\n");

@@ -23,7 +23,7 @@ list(APPEND rules "host_tools/lab|${same_folder}|sim/physics/.+|host_tools/(log|
 set(earlier "")
 foreach(room IN LISTS rooms)
   string(APPEND earlier "|host_tools/lab/${room}/.+")
-  list(APPEND rules "host_tools/lab/${room}|${same_folder}|sim/physics/.+|host_tools/log/.+${earlier}|*")
+  list(APPEND rules "host_tools/lab/${room}|${same_folder}|sim/physics/.+|host_tools/(log|suggest)/.+${earlier}|*")
 endforeach()
 # System headers that are somebody's own: folder that may have them
 set(owned "linux/.+=(hal/linux|emulate)" "gpiod.h=hal/linux" "sys/socket.h=(hal/linux|firmware/app|host_tools|emulate)"

@@ -80,6 +80,13 @@ void read_motor(const ModelReader &reader, const toml::table &source, const std:
     };
     const double gear = std::isnan(get("gear_ratio")) ? 1.0 : get("gear_ratio");
     const double efficiency = std::isnan(get("gear_efficiency")) ? 1.0 : get("gear_efficiency");
+    // A number of the wheel's side and the motor's that it is made of: one of them would be left out in silence.
+    for (const auto &[motor_side, wheel_side] :
+         {std::pair("motor_constant_Nm_A", "torque_constant_Nm_A"), std::pair("motor_back_emf_Vs_rad", "back_emf_Vs_rad"),
+          std::pair("motor_inertia_kg_m2", "inertia_kg_m2")})
+        if (source.contains(motor_side) && source.contains(wheel_side))
+            reader.fail(*source.get(motor_side), where + "." + motor_side, "stands beside " + std::string(wheel_side) + ", which it makes",
+                        "give one of the two: of the motor, with gear_ratio, or at the wheel");
     const double kt = get("motor_constant_Nm_A"), ke = get("motor_back_emf_Vs_rad"), rotor = get("motor_inertia_kg_m2");
     if (!std::isnan(kt))
         put(into, reader, source, where, motor_keys(), "torque_constant_Nm_A", kt * gear * efficiency, "motor constant times gear ratio");
@@ -106,6 +113,17 @@ void read_soil(const ModelReader &reader, const toml::table &source, const std::
         reader.parameter(*node, where + "." + key, p);
         return p.value;
     };
+    // The same of a ground: what makes mu, the adhesion and the slip of half strength, and these themselves.
+    const auto alone = [&](const char *whole, const char *key) {
+        if (source.contains(whole) && source.contains(key))
+            reader.fail(*source.get(key), where + "." + key, "stands beside " + std::string(whole) + ", which makes it",
+                        "give one of the two");
+    };
+    alone("strength_N", "mu");
+    if (law == "bekker")
+        for (const auto &[whole, key] :
+             {std::pair("friction_angle_rad", "mu"), std::pair("cohesion_Pa", "adhesion_N"), std::pair("shear_length_m", "shear_slip")})
+            alone(whole, key);
     const double strength = get("strength_N");
     if (!std::isnan(strength)) {
         if (!(load_N > 0))
@@ -177,8 +195,10 @@ void read_sensors(const ModelReader &reader, const toml::table &root, Model &mod
             const std::string name(name_key.str());
             const toml::table *table = node.as_table();
             if (table == nullptr) reader.fail(node, "sensors." + name, "is not a table", "write [sensors." + name + "]");
-            reader.table(*table, "sensors." + name, sensor_keys(), model.sensors, {"unsigned"}, name + ".");
-            if (name == "current") model.unsigned_current = reader.flag(*table, "sensors." + name, "unsigned", false);
+            const bool current = name == "current";
+            reader.table(*table, "sensors." + name, sensor_keys(), model.sensors,
+                         current ? std::vector<std::string>{"unsigned"} : std::vector<std::string>{}, name + ".");
+            if (current) model.unsigned_current = reader.flag(*table, "sensors." + name, "unsigned", false);
         }
     }
     fill_defaults(sensor_keys(), model.sensors);

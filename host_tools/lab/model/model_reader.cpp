@@ -1,35 +1,13 @@
 #include "model_reader.h"
 
+#include "host_tools/suggest/suggest.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace traction::lab {
-
-namespace {
-
-std::string nearest(const std::string &name, std::span<const ModelKey> known) {
-    std::string best;
-    std::size_t best_distance = 1000;
-    for (const ModelKey &k : known) {
-        std::vector<std::size_t> row(k.key.size() + 1);
-        for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-        for (std::size_t i = 1; i <= name.size(); ++i) {
-            std::size_t diagonal = row[0];
-            row[0] = i;
-            for (std::size_t j = 1; j < row.size(); ++j) {
-                const std::size_t up = row[j];
-                row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (name[i - 1] == k.key[j - 1] ? 0u : 1u)});
-                diagonal = up;
-            }
-        }
-        if (row.back() < best_distance) best_distance = row.back(), best = k.key;
-    }
-    return best;
-}
-
-} // namespace
 
 std::string number_text(double value) {
     std::ostringstream stream;
@@ -127,14 +105,36 @@ void ModelReader::check_unit(const toml::node &item, const std::string &path, Pa
         fail(item, path, "is \"" + unit + "\"", "this key is in " + p.unit + ": convert the value");
 }
 
+namespace {
+
+// What a key that nobody knows was to be: the nearest that may stand there, else all of them.
+std::string known_keys(const std::string &name, std::span<const ModelKey> known, const std::vector<std::string> &also,
+                       const std::string &prefix) {
+    std::vector<std::string> keys = also, whole;
+    for (const ModelKey &k : known) {
+        if (k.key.starts_with(prefix)) keys.emplace_back(k.key.substr(prefix.size()));
+        whole.emplace_back(k.key);
+    }
+    const auto meant = [](const std::string &word, const std::vector<std::string> &among) {
+        const std::string *found = nearest(word, among, std::max<std::size_t>(2, word.size() / 3));
+        return found == nullptr ? std::string() : "did you mean " + *found + "?";
+    };
+    if (const std::string text = meant(name, keys); !text.empty()) return text;
+    if (const std::string text = keys.empty() ? meant(prefix + name, whole) : ""; !text.empty()) return text;
+    std::string all;
+    for (const std::string &key : keys.empty() ? whole : keys) all += (all.empty() ? "known here: " : ", ") + key;
+    return all;
+}
+
+} // namespace
+
 void ModelReader::table(const toml::table &source, const std::string &where, std::span<const ModelKey> known, Parameters &into,
                         const std::vector<std::string> &also, const std::string &prefix) const {
     for (const auto &[name_key, node] : source) {
         const std::string name(name_key.str());
         if (std::find(also.begin(), also.end(), name) != also.end()) continue;
         const auto found = std::find_if(known.begin(), known.end(), [&](const ModelKey &k) { return k.key == prefix + name; });
-        if (found == known.end())
-            fail(node, where + "." + name, "is not a known key", "did you mean " + nearest(prefix + name, known) + "?");
+        if (found == known.end()) fail(node, where + "." + name, "is not a known key", known_keys(name, known, also, prefix));
         Parameter p = into.count(prefix + name) != 0 ? into.at(prefix + name) : Parameter{};
         p.unit = found->unit;
         p.minimum = found->minimum;

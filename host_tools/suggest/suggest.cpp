@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace traction::cli {
+namespace traction {
 
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -19,20 +19,25 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string> &known) {
-    const std::string *nearest = nullptr;
-    std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
+const std::string *nearest(std::string_view word, const std::vector<std::string> &known, std::size_t most) {
+    const std::string *found = nullptr;
+    std::size_t best = most + 1;
     for (const std::string &candidate : known) {
         const bool begins = word.size() >= 3 && candidate.rfind(word, 0) == 0; // cut short
         const std::size_t d = begins ? 1 : distance(word, candidate);
-        if (d < best && d < std::max(word.size(), candidate.size())) best = d, nearest = &candidate;
+        if (d < best && d < std::max(word.size(), candidate.size())) best = d, found = &candidate;
     }
-    return nearest == nullptr ? "" : "; did you mean '" + *nearest + "'?";
+    return found;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string> &known) {
+    const std::string *found = nearest(word, known, std::max<std::size_t>(2, word.size() / 3));
+    return found == nullptr ? "" : "; did you mean '" + *found + "'?";
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string> &known, const std::string &command) {
-    const std::string nearest = did_you_mean(word, known);
-    return (nearest.empty() ? ";" : nearest) + " `" + command + "` lists all";
+    const std::string meant = did_you_mean(word, known);
+    return (meant.empty() ? ";" : meant) + " `" + command + "` lists all";
 }
 
-} // namespace traction::cli
+} // namespace traction
