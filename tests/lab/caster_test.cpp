@@ -5,6 +5,7 @@
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/lab/gate.h"
+#include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/session.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
@@ -136,6 +137,21 @@ TEST(Caster, has_no_part_in_how_fast_the_wheels_are) {
     ASSERT_FALSE(with_it.empty());
     EXPECT_GT(*std::max_element(with_it.begin(), with_it.end()), 1);
     EXPECT_EQ(with_it, radar(measured_data(without, clean())));
+}
+
+// An interval of +-87799 N m s was written into the model: of what no motor turns nothing is learnt.
+TEST(Caster, friction_of_a_motor_that_it_lacks_is_refused_and_its_own_resistance_is_fitted) {
+    const Session session = opened(clean(), two_and_caster());
+    for (const char *effect : {"viscous_friction", "wiring_resistance", "current_gain"}) {
+        try {
+            add_effect(session.model, session.data, effect, static_cast<int>(caster), "");
+            ADD_FAILURE() << effect << " was added";
+        } catch (const ModelError &error) {
+            EXPECT_NE(std::string(error.what()).find("changes nothing that this log holds on wheel 2"), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_NO_THROW(add_effect(session.model, session.data, "viscous_friction", 0, ""));
+    EXPECT_NO_THROW(add_effect(session.model, session.data, "rolling_resistance", static_cast<int>(caster), ""));
 }
 
 TEST(Caster, a_clean_drive_gets_no_name) {

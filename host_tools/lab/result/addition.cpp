@@ -1,6 +1,7 @@
 #include "addition.h"
 
 #include "host_tools/lab/fit/heldout.h"
+#include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/screen.h"
 #include "result.h"
 #include "words.h"
@@ -28,6 +29,8 @@ void append_lineage(Model &model, const Dataset &data, const std::vector<LadderS
 
 namespace {
 
+std::string on_wheel(int wheel) { return wheel >= 0 ? " on wheel " + std::to_string(wheel) : ""; }
+
 void refuse_turned(const Model &model, const EffectUse &use) {
     const int motor = use.wheel < 0 ? -1 : model.wheel[static_cast<std::size_t>(use.wheel)].drive;
     if (motor < 0 || !acts_on_motor(use)) return;
@@ -35,6 +38,20 @@ void refuse_turned(const Model &model, const EffectUse &use) {
                      "is " + std::to_string(use.wheel) + ", which turns with wheel " + std::to_string(motor) + ", and " + use.name +
                          " is on a motor",
                      "give --wheel " + std::to_string(motor));
+}
+
+// Whose own size, and it is away from zero, changes nothing that the log holds: its interval would be that of no datum at all.
+void refuse_dead(const Model &model, const EffectUse &use, const Problem &fitted) {
+    bool any = false;
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+        const FreeParameter &p = fitted.parameters[i];
+        if (p.owner != use.name || p.wheel != use.wheel) continue;
+        any = true;
+        if (!is_dead(fitted, i) || p.base + fitted.theta[static_cast<Eigen::Index>(i)] == 0) return;
+    }
+    if (any)
+        throw ModelError(model.file, 0, use.name, "changes nothing that this log holds" + on_wheel(use.wheel),
+                         "add it where a motor or a sensor of the log feels it, or drive so that it matters");
 }
 
 } // namespace
@@ -98,8 +115,9 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
                              "drive further, or give its parameters in the model file");
         added.model.effects.push_back(use);
     }
-    const std::string label = "+ " + effect + (wheel >= 0 ? " on wheel " + std::to_string(wheel) : "");
+    const std::string label = "+ " + effect + on_wheel(wheel);
     const Problem before = fitted_problem(model, data), after = fitted_problem(added.model, data);
+    refuse_dead(model, added.model.effects.back(), after);
     const HeldOut left_before = held_out(before), left_after = held_out(after);
     const Fall fall = fall_between(left_before, left_after, noise_weight(before));
     Model baseline = model;
