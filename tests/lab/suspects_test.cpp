@@ -214,23 +214,24 @@ TEST(Law, of_the_catalogue_that_is_a_datum_by_another_name_is_known) {
     const auto is = [&](const char *effect, const char *key) {
         const Problem p = hand_made::problem_of(data, {hand_made::parameter("motor", "x", 1, 1), hand_made::parameter(effect, "y", 1, 0)},
                                                 Eigen::MatrixXd::Zero(2, 2), Eigen::VectorXd::Zero(2));
-        return is_its_law(p, datum(key));
+        return kin_of(p, datum(key));
     };
-    for (const auto &[effect, key] :
-         {std::pair{"torque_constant", "torque_constant_Nm_A"}, std::pair{"current_gain", "torque_constant_Nm_A"},
-          std::pair{"wheel_radius", "radius_m"}, std::pair{"shear_stiffness", "shear_slip"}, std::pair{"voltage_gain", "back_emf_Vs_rad"},
-          std::pair{"voltage_gain", "torque_constant_Nm_A"}})
-        EXPECT_TRUE(is(effect, key)) << effect;
-    EXPECT_FALSE(is("torque_constant", "radius_m"));
-    EXPECT_FALSE(is("slip_sinkage", "shear_slip"));
+    for (const auto &[effect, key] : {std::pair{"torque_constant", "torque_constant_Nm_A"}, std::pair{"wheel_radius", "radius_m"},
+                                      std::pair{"shear_stiffness", "shear_slip"}})
+        EXPECT_EQ(is(effect, key), Kin::its_number) << effect;
+    for (const auto &[effect, key] : {std::pair{"current_gain", "torque_constant_Nm_A"}, std::pair{"voltage_gain", "back_emf_Vs_rad"},
+                                      std::pair{"voltage_gain", "torque_constant_Nm_A"}})
+        EXPECT_EQ(is(effect, key), Kin::acts_alike) << effect;
+    EXPECT_EQ(is("torque_constant", "radius_m"), Kin::none);
+    EXPECT_EQ(is("slip_sinkage", "shear_slip"), Kin::none);
 }
 
 // (doubt.h) one number must describe what names do: much better than the model as stated, and better than they.
 TEST(Suspect, beside_nothing_that_was_named_must_halve_the_error_and_beat_a_shape_by_a_tenth) {
     const auto told = [](const Suspect &s, std::size_t accepted, double before, double left, bool relieves = false, double lead = -1,
-                         bool law = false) {
+                         Kin kin = Kin::none) {
         return is_suspect(
-            s, accepted, before, left, [=] { return relieves; }, [=] { return lead; }, [=] { return law; });
+            s, accepted, before, left, [=] { return relieves; }, [=] { return lead; }, [=] { return kin; });
     };
     EXPECT_TRUE(told(suspect(20, 4.9), 0, 10, 10));
     EXPECT_FALSE(told(suspect(20, 5), 0, 10, 10));
@@ -249,8 +250,15 @@ TEST(Suspect, beside_nothing_that_was_named_must_halve_the_error_and_beat_a_shap
     EXPECT_TRUE(told(suspect(20, 9.4), 1, 10, 12, true));
     EXPECT_TRUE(told(suspect(20, 8.1), 1, 10, 8, false, 0.1));
     EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, false, 0));
-    EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, false, 1.9, true)); // its own law: surely better
-    EXPECT_TRUE(told(suspect(20, 8.1), 1, 10, 8, false, 2.1, true));
+    EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, false, 1.9, Kin::acts_alike)); // its own law: surely better
+    EXPECT_TRUE(told(suspect(20, 8.1), 1, 10, 8, false, 2.1, Kin::acts_alike));
+    EXPECT_TRUE(told(suspect(20, 8.1), 1, 10, 8, true, -1, Kin::acts_alike));
+    EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, true, 1.9, Kin::its_number)); // no less contradicted by another name
+    EXPECT_TRUE(told(suspect(20, 8.1), 1, 10, 8, true, 2.1, Kin::its_number));
+    EXPECT_TRUE(told(suspect(20, 7.1), 1, 10, 8, false, -1, Kin::its_number));   // a tenth better: the name did not find its place
+    EXPECT_FALSE(told(suspect(20, 5.4), 2, 10, 5, false, 1.9, Kin::its_number)); // one of the two names has it free already
+    EXPECT_TRUE(told(suspect(20, 5.4), 2, 10, 5, false, 2.1, Kin::its_number));
+    EXPECT_TRUE(told(suspect(20, 5.4), 2, 10, 5, false, -1, Kin::acts_alike));
     EXPECT_FALSE(told(suspect(11, 8.1), 1, 10, 8, true));
     // beside two: one number is simpler
     EXPECT_TRUE(told(suspect(20, 5.4), 2, 10, 5));
@@ -271,7 +279,8 @@ TEST(Suspect, beside_nothing_that_was_named_must_halve_the_error_and_beat_a_shap
     EXPECT_FALSE(told(suspect(20, 0.95 * 10), 1, 10, 12, true));
     EXPECT_FALSE(told(suspect(20, 1.1 * 5), 2, 10, 5));
     EXPECT_FALSE(told(suspect(20, 0.5 * 10), 0, 10, 10));
-    EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, false, 2, true));
+    EXPECT_FALSE(told(suspect(20, 8.1), 1, 10, 8, false, 2, Kin::acts_alike));
+    EXPECT_FALSE(told(suspect(20, 5.4), 2, 10, 5, false, 2, Kin::its_number));
     EXPECT_FALSE(told(suspect(12.5, 5.4, true), 2, 10, 5, false, 0.1));
     EXPECT_FALSE(told(suspect(20, 0.75 * 10, true), 2, 10, 9, false, 0.1));
     EXPECT_FALSE(told(suspect(20, 1.1 * 5, true), 2, 10, 5, false, 0.1));
@@ -286,7 +295,7 @@ TEST(Suspect, is_looked_for_up_to_the_share_that_would_be_told) {
             const double share = largest_share(accepted, 10, left);
             const auto told = [&](double error) {
                 return is_suspect(
-                    suspect(20, error), accepted, 10, left, [] { return true; }, [] { return 9.0; }, [] { return false; });
+                    suspect(20, error), accepted, 10, left, [] { return true; }, [] { return 9.0; }, [] { return Kin::none; });
             };
             EXPECT_TRUE(told(9.999 * share)) << accepted << ' ' << left;
             EXPECT_FALSE(told(10.001 * share)) << accepted << ' ' << left;

@@ -194,7 +194,7 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     for (Freed &f : found) {
         const auto lead = [&] { return lead_of(last, *f.problem); };
         const auto relieves = [&] { return strained(last) && !strained(*f.problem); };
-        if (is_suspect(f.suspect, accepted, before, left, relieves, lead, [&] { return is_its_law(last, *f.datum); }))
+        if (is_suspect(f.suspect, accepted, before, left, relieves, lead, [&] { return kin_of(last, *f.datum); }))
             out.suspects.push_back(std::move(f.suspect));
     }
     out.suspects = told_once(std::move(out.suspects));

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <string_view>
 #include <utility>
 
 namespace traction::lab {
@@ -158,14 +160,25 @@ bool strained(const Problem &problem) {
     return false;
 }
 
-bool is_its_law(const Problem &last, const Datum &datum) {
-    static constexpr const char *laws[][2] = {
-        {"torque_constant", "torque_constant_Nm_A"}, {"current_gain", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"},
-        {"shear_stiffness", "shear_slip"},           {"voltage_gain", "back_emf_Vs_rad"},      {"voltage_gain", "torque_constant_Nm_A"}};
+namespace {
+
+using Law = const char *[2]; // effect, datum
+
+bool has_law(const Problem &last, const Datum &datum, std::span<const Law> laws) {
     return std::any_of(last.parameters.begin(), last.parameters.end(), [&](const FreeParameter &p) {
-        return std::any_of(std::begin(laws), std::end(laws),
-                           [&](const auto &law) { return p.owner == law[0] && law[1] == std::string(datum.key); });
+        return std::any_of(laws.begin(), laws.end(),
+                           [&](const Law &law) { return p.owner == law[0] && std::string_view(law[1]) == datum.key; });
     });
+}
+
+} // namespace
+
+Kin kin_of(const Problem &last, const Datum &datum) {
+    static constexpr Law numbers[] = {
+        {"torque_constant", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"}, {"shear_stiffness", "shear_slip"}};
+    static constexpr Law likenesses[] = {
+        {"current_gain", "torque_constant_Nm_A"}, {"voltage_gain", "back_emf_Vs_rad"}, {"voltage_gain", "torque_constant_Nm_A"}};
+    return has_law(last, datum, numbers) ? Kin::its_number : has_law(last, datum, likenesses) ? Kin::acts_alike : Kin::none;
 }
 
 double largest_share(std::size_t accepted, double before, double left) {
@@ -175,7 +188,7 @@ double largest_share(std::size_t accepted, double before, double left) {
 }
 
 bool is_suspect(const Suspect &s, std::size_t accepted, double before, double left, const std::function<bool()> &relieves,
-                const std::function<double()> &lead, const std::function<bool()> &is_its_law) {
+                const std::function<double()> &lead, const std::function<Kin()> &kin) {
     // more of it is an effect, unless it alone does what took two names: then one of them is none
     if (accepted >= 2 && s.more_is_an_effect && s.fitted > s.stated * s.gross && s.error < better * before &&
         s.error < several_names * left && lead() > 0)
@@ -183,11 +196,12 @@ bool is_suspect(const Suspect &s, std::size_t accepted, double before, double le
     if (!is_gross(s)) return false;
     const bool helps = s.error < (accepted > 0 ? better : much_better) * before;
     const bool alone = s.error < (accepted >= 2 ? several_names : one_name) * left; // one number against all that was named
+    // what was named has the datum's own number free already: that is no simpler, nor less contradicted, only better or not
+    if (helps && alone) return accepted < 2 || kin() != Kin::its_number || lead() > sure;
     // one number against one effect: what is named leaves the sheet contradicted and the datum does not, or it predicts at least as
     // well
-    const bool rivals =
-        accepted == 1 && s.error < as_much * left && s.error < notable * before && (relieves() || lead() > (is_its_law() ? sure : 0));
-    return (helps && alone) || rivals;
+    if (!(accepted == 1 && s.error < as_much * left && s.error < notable * before)) return false;
+    return (kin() != Kin::its_number && relieves()) || lead() > (kin() == Kin::none ? 0 : sure);
 }
 
 std::vector<Suspect> told_once(std::vector<Suspect> suspects) {

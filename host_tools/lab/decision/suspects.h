@@ -54,17 +54,19 @@ double error_less(const Problem &fitted, const Eigen::VectorXd &squares);
 // Data of the sheet at their bounds.
 bool strained(const Problem &problem);
 
-// An effect of the catalogue that is the datum by another name: of the two the effect is told.
-bool is_its_law(const Problem &last, const Datum &datum);
+// What was named and a datum: an effect of the catalogue that changes the datum itself, within what the catalogue gives it, or one that
+// acts as the datum does. Of such two the effect is told.
+enum class Kin { none, acts_alike, its_number };
+Kin kin_of(const Problem &last, const Datum &datum);
 
 // Of the error as stated, `before`, the largest share that is_suspect() lets a datum leave; `left`: what is left with all that was
 // accepted.
 double largest_share(std::size_t accepted, double before, double left);
 
 // Is a datum, set free, to be told instead of the `accepted` effects? relieves: what was named leaves the sheet contradicted, and the datum
-// does not; lead: by how many standard errors the datum predicts blocks left out better; is_its_law: above. Asked only where it matters.
+// does not; lead: by how many standard errors the datum predicts blocks left out better. Asked only where it matters.
 bool is_suspect(const Suspect &suspect, std::size_t accepted, double before, double left, const std::function<bool()> &relieves,
-                const std::function<double()> &lead, const std::function<bool()> &is_its_law);
+                const std::function<double()> &lead, const std::function<Kin()> &kin);
 
 // Least error first, each quantity once.
 std::vector<Suspect> told_once(std::vector<Suspect> suspects);

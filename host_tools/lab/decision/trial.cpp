@@ -1,12 +1,15 @@
 #include "trial.h"
 
 #include "host_tools/lab/fit/distribution.h"
+#include "host_tools/lab/fit/ladder.h"
 
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace traction::lab {
 
@@ -195,9 +198,13 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen) {
         else if (t.start.empty())
             shorten(problem, n);
         if (t.start_change.size() == n) problem.theta.head(n) += t.start_change, problem.within_bounds();
-        problem.gauss_newton(strongly_nonlinear(t.candidate.effect) || t.leaves_active_set
-                                 ? 8
-                                 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
+        const bool remembers = strongly_nonlinear(t.candidate.effect);
+        problem.gauss_newton(remembers || t.leaves_active_set ? 8 : 3); // the soil's curve is strongly nonlinear: fresh sensitivities
+        if (remembers && k == 1) { // from the baseline's place too, for a linear step of its numbers goes astray
+            Problem there = problem;
+            there.theta.head(n) = base.theta;
+            if (std::optional<Problem> other = from_afar(there, static_cast<std::size_t>(n), problem.cost())) problem = std::move(*other);
+        }
     } else {
         problem.quick_fit(base, 3);
     }

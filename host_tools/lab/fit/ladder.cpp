@@ -48,6 +48,19 @@ Problem held_back(const Problem &fitted, Problem other) {
 
 } // namespace
 
+std::optional<Problem> from_afar(const Problem &problem, std::size_t parameter, double least) {
+    const FreeParameter &p = problem.parameters[parameter];
+    std::optional<Problem> best;
+    for (const double part : {0.05, 0.15, 0.4}) {
+        Problem other = problem;
+        other.theta[static_cast<Eigen::Index>(parameter)] = p.minimum + part * (p.maximum - p.minimum) - p.base;
+        other.jacobian.resize(0, 0);
+        other.gauss_newton(4);
+        if (const double cost = other.cost(); cost < least) least = cost, best = std::move(other);
+    }
+    return best;
+}
+
 Problem fitted_problem(const Model &model, const Dataset &data) {
     const Physics physics = make_physics(model);
     const Problem stated(data, physics, free_parameters(model, physics));
@@ -63,13 +76,7 @@ Problem fitted_problem(const Model &model, const Dataset &data) {
         const FreeParameter p = best.parameters[i];
         const EffectHandle *handle = find_handle(p.owner);
         if (handle == nullptr || !handle->remembers || !std::isfinite(p.maximum - p.minimum)) continue;
-        for (const double part : {0.05, 0.15, 0.4}) {
-            Problem other = first;
-            other.theta[static_cast<Eigen::Index>(i)] = p.minimum + part * (p.maximum - p.minimum) - p.base;
-            other.jacobian.resize(0, 0);
-            other.gauss_newton(4);
-            if (const double cost = other.cost(); cost < least) least = cost, best = std::move(other);
-        }
+        if (std::optional<Problem> other = from_afar(first, i, least)) best = std::move(*other), least = best.cost();
     }
     if (least < first.cost()) best.settle_from_here();
     return best;

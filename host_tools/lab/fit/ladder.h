@@ -4,6 +4,7 @@
 
 #include "problem.h"
 
+#include <optional>
 #include <string>
 
 namespace traction::lab {
@@ -20,6 +21,10 @@ double overall_error(const Problem &problem);
 // The model's problem at its optimum, linearised there. A strength whose slope at zero says little (what remembers: play, relaxation) is
 // started from several places over its range as well; the least squares on the first start's scales are kept.
 Problem fitted_problem(const Model &model, const Dataset &data);
+
+// The same problem with a parameter that remembers at 5, 15 and 40 % of its range, all others where they stand, each searched for from
+// there: the one of the least cost, on the same scales; nothing where none lies below `least`.
+std::optional<Problem> from_afar(const Problem &problem, std::size_t parameter, double least);
 
 // The optimum of fitted_problem(); writes the values with their 95 % intervals into it.
 LadderStep fit_model(Model &model, const Dataset &data, const std::string &label);
