@@ -148,6 +148,8 @@ class Search {
             if (refit_passing(trials, options_.refits, refit_one)) continue;
             if (std::exchange(sought_afar, true) || !refit_from_afar(trials, refit_one)) break;
         }
+        if (!next) next = by_scales_of_its_own(trials, winner, problem);
+        if (!next && is_first) next = by_a_number_gone_far(trials, winner, problem, screen);
         if (next && !sought_afar && worst_error_of(next->held) > far_off) prefer_from_afar(trials, winner, *next, problem, refit_one);
         if (next) prefer_stated(trials, winner, *next, problem, screen);
         for (const Trial &t : trials)
@@ -195,6 +197,39 @@ class Search {
         HeldOut held;
         std::string rival; // a tolerance that explains as much; empty: none does
     };
+
+    // The fit itself has taken a number far from the sheet, and an effect of the catalogue is that number by another size: its own step
+    // sees next to nothing from there.
+    std::optional<Next> by_a_number_gone_far(std::vector<Trial> &trials, std::size_t &winner, const Problem &problem,
+                                             const Screen &screen) {
+        for (std::size_t i = 0; i < trials.size(); ++i) {
+            Trial &t = trials[i];
+            if (t.candidate.wheel >= 0 || t.candidate.strengths.size() != 1) continue;
+            const std::optional<double> change = taken_by_the_fit(stated_, problem, t.candidate.effect);
+            if (!change || !(*change > t.candidate.minimum[0] && *change < t.candidate.maximum[0])) continue;
+            Trial far = t;
+            far.start = {*change}, far.start_change.resize(0);
+            refit(far, problem, screen);
+            if (std::optional<Next> next = with(far, problem)) {
+                t = std::move(far), winner = i;
+                return next;
+            }
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Next> by_scales_of_its_own(std::vector<Trial> &trials, std::size_t &winner, const Problem &problem) {
+        for (const std::size_t i : nearly_sure(trials)) {
+            const std::string verdict = trials[i].verdict;
+            std::optional<Next> next = with(trials[i], problem);
+            if (next && takes_most(held_, next->held)) {
+                winner = i;
+                return next;
+            }
+            trials[i].verdict = verdict;
+        }
+        return std::nullopt;
+    }
 
     // What explains the most of that which is near may be no more than what a law that is seen from afar leaves of it: where with the
     // winner a balance is still missed by far, those are asked too, and the one that predicts better stands in its place.

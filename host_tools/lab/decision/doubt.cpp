@@ -119,27 +119,37 @@ std::vector<const Datum *> promising_data(const Model &stated, const Problem &fi
     return list;
 }
 
+// The model with the numbers of its fit.
+Model stored(const Model &stated, const Problem &fitted) {
+    Model model = stated;
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i)
+        store(model, fitted.parameters[i], fitted.theta[static_cast<Eigen::Index>(i)], 0);
+    return model;
+}
+
+// A datum that the fit within the priors has itself taken beyond its sheet, in the mean over the wheels.
+std::optional<Suspect> moved_by_the_fit(Model &before, Model &after, const Datum &datum) {
+    const std::vector<Parameter *> was = values_of(before, datum), is = values_of(after, datum);
+    double value = 0, fitted = 0, prior = 0;
+    for (std::size_t i = 0; i < was.size() && i < is.size(); ++i) value += was[i]->value, fitted += is[i]->value, prior += was[i]->prior;
+    if (!(value > 0) || !(std::fabs(fitted - value) > beyond_a_sheet * prior)) return std::nullopt;
+    const auto n = static_cast<double>(was.size());
+    return Suspect{datum.name, value / n, fitted / n, was.front()->unit, 0, datum.gross, datum.more_is_an_effect};
+}
+
 // Data that the fit within the priors has itself moved grossly (the sheet's deviation was too wide to hold them), and without which it
 // describes the log notably worse, and blocks left out by their ranks: what uneven ground does to a soil's stiffness is less, and a few
 // turns in which wheels spin are not the log. A soil that is too soft also predicts better because it does not follow the encoders'
 // scatter ((1) of forward/rounding.h): what that may be is no evidence.
 std::vector<Suspect> moved_grossly(const Model &stated, const Problem &first, double &held_error) {
-    Model before = stated, after = stated, held = stated;
-    for (std::size_t i = 0; i < first.parameters.size(); ++i)
-        store(after, first.parameters[i], first.theta[static_cast<Eigen::Index>(i)], 0);
+    Model before = stated, after = stored(stated, first), held = stated;
     std::vector<Suspect> out;
     for (const Datum *one : all_data()) {
-        const Datum &datum = *one;
-        const std::vector<Parameter *> was = values_of(before, datum), is = values_of(after, datum);
-        double value = 0, fitted = 0, prior = 0;
-        for (std::size_t i = 0; i < was.size() && i < is.size(); ++i)
-            value += was[i]->value, fitted += is[i]->value, prior += was[i]->prior;
-        if (!(value > 0) || !(std::fabs(fitted - value) > beyond_a_sheet * prior)) continue;
-        const auto n = static_cast<double>(was.size());
-        Suspect s{datum.name, value / n, fitted / n, was.front()->unit, overall_error(first), datum.gross, datum.more_is_an_effect};
-        if (!is_gross(s) || std::fabs(s.fitted - s.stated) < datum.little) continue;
-        out.push_back(std::move(s));
-        for (Parameter *stays : values_of(held, datum)) stays->fixed = true;
+        const std::optional<Suspect> s = moved_by_the_fit(before, after, *one);
+        if (!s || !is_gross(*s) || std::fabs(s->fitted - s->stated) < one->little) continue;
+        out.push_back(*s);
+        out.back().error = overall_error(first);
+        for (Parameter *stays : values_of(held, *one)) stays->fixed = true;
     }
     if (out.empty()) return out;
     const Physics physics = make_physics(held);
@@ -167,6 +177,14 @@ double lead_of(const Problem &last, Problem &datum) {
 }
 
 } // namespace
+
+std::optional<double> taken_by_the_fit(const Model &stated, const Problem &fitted, std::string_view effect) {
+    const Datum *datum = number_of(effect);
+    if (datum == nullptr) return std::nullopt;
+    Model before = stated, after = stored(stated, fitted);
+    const std::optional<Suspect> s = moved_by_the_fit(before, after, *datum);
+    return s && is_gross(*s) ? std::optional<double>(s->fitted / s->stated - 1) : std::nullopt;
+}
 
 std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data) {
     std::vector<Suspect> out;

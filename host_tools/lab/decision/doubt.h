@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace traction::lab {
@@ -36,6 +37,10 @@ std::vector<double> misfits(const Problem &problem);
 // The largest (1) of currents by either balance, radar and camera, forces and torques. Acceleration and yaw rate are near zero in a drive
 // straight on at one speed, and what is left of them is ground: not asked.
 double worst_misfit(const Problem &problem);
+
+// Share by which the fit within the priors has itself taken grossly away, beyond three stated deviations, the number that this effect of
+// the catalogue changes; nothing where it has not.
+std::optional<double> taken_by_the_fit(const Model &stated, const Problem &fitted, std::string_view effect);
 
 // Every datum of the model that a log can tell, each grossly free by itself; least error first.
 std::vector<Suspect> gross_errors(const Model &stated, const Dataset &data);

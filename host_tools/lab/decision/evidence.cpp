@@ -32,7 +32,7 @@ Evidence evidence_of(const Candidate &candidate, const Problem &before, const He
         out = falls_of(before, left_before, held_out(on_ground));
         take_off(on_ground);
     }
-    out.smooths = !(out.scaled.sum > least) || only_averages(before, left_before, with, left_with);
+    out.smooths = !(out.scaled.sum > least) || (!takes_most(left_before, left_with) && only_averages(before, left_before, with, left_with));
     return out;
 }
 

@@ -8,8 +8,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double part_of_range = 0.25; // of the catalogue's: assumed
-constexpr double elsewhere = 0.5;      // of a size: a refit that ends so far from where it was sure is another one (assumed)
+constexpr double part_of_range = 0.25;         // of the catalogue's: assumed
+constexpr double by_far = 2, most_of_it = 0.5; // times noise; of the squares beyond it (assumed)
+constexpr double nearly = 0.05;                // corrected p
+constexpr double elsewhere = 0.5;              // of a size: a refit that ends so far from where it was sure is another one (assumed)
 // Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
 // machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
 // own. Assumed.
@@ -169,6 +171,23 @@ double worst_error(const HeldOut &held, const Dataset &data, const Eigen::Vector
         row += n;
     }
     return std::sqrt(most);
+}
+
+bool takes_most(const HeldOut &before, const HeldOut &after) {
+    return before.error > by_far && after.error * after.error - 1 < (1 - most_of_it) * (before.error * before.error - 1);
+}
+
+std::vector<std::size_t> nearly_sure(const std::vector<Trial> &trials) {
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        const Trial &t = trials[i];
+        if (t.verdict == "not_significant" && t.refitted && t.p_value < nearly && t.gain > 0 && plausible_sign(t.candidate, t.value) &&
+            large_enough(t.candidate, t.value) && !beyond_range(t.candidate, t.value))
+            list.push_back(i);
+    }
+    std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) { return larger_reduction(trials[a], trials[b]); });
+    if (list.size() > 3) list.resize(3);
+    return list;
 }
 
 bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data) {

@@ -74,6 +74,14 @@ bool lost(const Trial &now, const Earlier &earlier);
 // The largest held-out error of a balance, in units of its noise.
 double worst_error(const HeldOut &held, const Dataset &data, const Eigen::VectorXd &noise_rows);
 
+// Of a model that misses by far (twice the noise): whether a law takes half of the squares that noise does not explain. No scatter of an
+// encoder does, and chance has no part in so much.
+bool takes_most(const HeldOut &before, const HeldOut &after);
+
+// Those whose refit on the baseline's scales is nearly sure and large, the largest fall of the error first, at most three: where a large
+// missing law has blown the scales up, its own rows hardly count on them, and only a fit with scales of its own tells (assumed).
+std::vector<std::size_t> nearly_sure(const std::vector<Trial> &trials);
+
 // Whether a name lowers the held-out error by as much as a name must, of all or of one balance.
 bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data);
 

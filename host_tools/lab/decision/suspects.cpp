@@ -163,6 +163,9 @@ bool strained(const Problem &problem) {
 namespace {
 
 using Law = const char *[2]; // effect, datum
+constexpr Law numbers[] = {{"torque_constant", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"}, {"shear_stiffness", "shear_slip"}};
+constexpr Law likenesses[] = {
+    {"current_gain", "torque_constant_Nm_A"}, {"voltage_gain", "back_emf_Vs_rad"}, {"voltage_gain", "torque_constant_Nm_A"}};
 
 bool has_law(const Problem &last, const Datum &datum, std::span<const Law> laws) {
     return std::any_of(last.parameters.begin(), last.parameters.end(), [&](const FreeParameter &p) {
@@ -173,11 +176,14 @@ bool has_law(const Problem &last, const Datum &datum, std::span<const Law> laws)
 
 } // namespace
 
+const Datum *number_of(std::string_view effect) {
+    for (const Law &law : numbers)
+        for (const Datum &datum : data_of_a_model)
+            if (effect == law[0] && std::string_view(law[1]) == datum.key) return &datum;
+    return nullptr;
+}
+
 Kin kin_of(const Problem &last, const Datum &datum) {
-    static constexpr Law numbers[] = {
-        {"torque_constant", "torque_constant_Nm_A"}, {"wheel_radius", "radius_m"}, {"shear_stiffness", "shear_slip"}};
-    static constexpr Law likenesses[] = {
-        {"current_gain", "torque_constant_Nm_A"}, {"voltage_gain", "back_emf_Vs_rad"}, {"voltage_gain", "torque_constant_Nm_A"}};
     return has_law(last, datum, numbers) ? Kin::its_number : has_law(last, datum, likenesses) ? Kin::acts_alike : Kin::none;
 }
 

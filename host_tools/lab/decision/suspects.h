@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace traction::lab {
@@ -56,6 +57,8 @@ bool strained(const Problem &problem);
 
 // What was named and a datum: an effect of the catalogue that changes the datum itself, within what the catalogue gives it, or one that
 // acts as the datum does. Of such two the effect is told.
+// The datum that an effect of the catalogue changes; nullptr: of none.
+const Datum *number_of(std::string_view effect);
 enum class Kin { none, acts_alike, its_number };
 Kin kin_of(const Problem &last, const Datum &datum);
 

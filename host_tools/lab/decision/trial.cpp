@@ -20,12 +20,6 @@ constexpr double least_gain_squares = 9;   // three deviations of white noise, w
 constexpr double clearly_worse = 1.02;     // of the baseline's error: beyond such a size no better one is sought (assumed)
 constexpr double classes_tried = 26;       // catalogue effects that are not near copies of one another: about half of the catalogue
 
-bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
-    for (std::size_t j = 0; j < value.size(); ++j)
-        if (j < c.minimum.size() && c.minimum[j] >= 0 && value[j] < 0) return false;
-    return true;
-}
-
 // Of the coefficient's own test and, four to one, the ranks of the held-out error's falls over blocks (as of shapes): an effect that acts
 // in few blocks has a coefficient that scatters though it helps in all of them.
 void test(Trial &t) {
@@ -75,6 +69,12 @@ Problem beside(const Problem &base, const Candidate &candidate) {
     problem.start_near(base);
     problem.theta.head(base.theta.size()) = base.theta;
     return problem;
+}
+
+bool plausible_sign(const Candidate &c, const std::vector<double> &value) {
+    for (std::size_t j = 0; j < value.size(); ++j)
+        if (j < c.minimum.size() && c.minimum[j] >= 0 && value[j] < 0) return false;
+    return true;
 }
 
 bool strongly_nonlinear(const std::string &effect) { return effect == "backlash" || effect == "relaxation_length"; }

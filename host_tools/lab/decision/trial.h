@@ -55,6 +55,8 @@ Problem held_ground(const Problem &with, const Problem &before);
 
 // explainable: the part of the baseline's held-out error that is not noise (Screen).
 void judge(Trial &trial, double explainable, const DiagnoseOptions &options);
+// Of a strength whose sign is physical.
+bool plausible_sign(const Candidate &candidate, const std::vector<double> &value);
 bool large_enough(const Candidate &candidate, const std::vector<double> &value);
 bool beyond_range(const Candidate &candidate, const std::vector<double> &value); // the fit took a size to where it may go no further
 // Of an effect that was named: larger than its own uncertainty, and of interest.
