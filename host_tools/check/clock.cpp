@@ -149,14 +149,15 @@ void tell_late(const std::string &column, double seconds, const char *beside, do
               say("shift it (map: delay_s = %.2f), or stamp it where it is measured", seconds), seconds);
 }
 
-// Signals that see one motion; `widest_s`: what windows, filters and delays of the catalogue account for.
+// Signals that see one motion; `early_s`, `late_s`: what windows, filters and delays of the catalogue account for.
 void one_moment(const std::string &column, const std::vector<double> &reference, const std::vector<double> &signal, const char *beside,
-                double nominal_s, double widest_s, Findings &findings) {
+                double nominal_s, double early_s, double late_s, Findings &findings) {
     if (reference.empty() || signal.empty() || has_error(findings, column)) return;
     const int nominal = static_cast<int>(std::lround(nominal_s / step_s));
     const Lag lag = lag_of(reference, signal, nominal);
     const double off_s = (lag.cells - nominal) * step_s;
-    if (std::fabs(off_s) < widest_s || std::abs(lag.cells) == farthest || lag.best < 0.85 || 1 - lag.now < 3 * (1 - lag.best)) return;
+    if ((off_s < late_s && off_s > -early_s) || std::abs(lag.cells) == farthest || lag.best < 0.85 || 1 - lag.now < 3 * (1 - lag.best))
+        return;
     tell_late(column, lag.cells * step_s, beside, std::sqrt((1 - lag.now) / (1 - lag.best)), findings);
 }
 
@@ -234,15 +235,15 @@ void check_clock(const log::Log &log, const Grid &grid, const Machine &machine, 
     const bool rolls = machine.wheels_point_forward && machine.rolls_freely && !has_error(findings, "wheel");
     unrelated(grid, machine, findings);
     const std::vector<double> nothing;
-    // the catalogue's camera_delay goes to 0.4 s; a radar's window of a second is a quarter late and a half long
-    one_moment("camera.x_m", rolls ? smooth(size, 5) : nothing, grid.camera_speed, "the wheels", 0, 0.6, findings);
+    // the catalogue's camera_delay goes to 0.4 s, its radar_delay to 1 s; a radar's window of a second is a quarter late and a half long
+    one_moment("camera.x_m", rolls ? smooth(size, 5) : nothing, grid.camera_speed, "the wheels", 0, 0.6, 0.6, findings);
     std::vector<double> radar = grid.radar;
     for (double &v : radar) v = std::fabs(v);
-    one_moment("radar.speed_m_s", rolls ? smooth(size, 5) : nothing, radar, "the wheels", 0.25, 0.6, findings);
+    one_moment("radar.speed_m_s", rolls ? smooth(size, 5) : nothing, radar, "the wheels", 0.25, 0.6, 1.0, findings);
     one_moment("imu.gyro_z_rad_s", grid.camera_yaw_rate, grid.gyro.empty() ? nothing : smooth(grid.gyro, 5), "the camera's heading", 0, 0.6,
-               findings);
+               0.6, findings);
     one_moment("imu.accel_x_m_s2", rolls ? slope(smooth(grid.mean_speed, 2), 3) : nothing,
-               grid.accel.empty() ? nothing : smooth(grid.accel, 3), "the wheels", 0, 0.3, findings);
+               grid.accel.empty() ? nothing : smooth(grid.accel, 3), "the wheels", 0, 0.3, 0.3, findings);
 }
 
 } // namespace traction::check

@@ -348,6 +348,37 @@ TEST(Round, asks_of_a_name_that_the_error_falls_notably_in_all_or_in_one_balance
     EXPECT_FALSE(falls(0.981, 3, 9));
 }
 
+TEST(Round, knows_a_law_that_takes_half_of_what_is_no_noise_of_a_model_that_misses_by_far) {
+    const auto takes = [](double before, double after) {
+        return takes_most(held(Eigen::VectorXd::Ones(1), before), held(Eigen::VectorXd::Ones(1), after));
+    };
+    EXPECT_TRUE(takes(3, 2.2));  // 8 squares beyond noise, 3.84
+    EXPECT_FALSE(takes(3, 2.3)); // 4.29
+    EXPECT_TRUE(takes(2.01, 1));
+    EXPECT_FALSE(takes(2, 1)); // not by far
+    EXPECT_FALSE(takes(0, 0));
+}
+
+TEST(Round, asks_scales_of_its_own_of_three_that_are_nearly_sure_and_may_be_told) {
+    const auto refitted = [](const char *effect, double p, double reduction, double value = 0.5) {
+        Trial t = trial(effect, p, reduction);
+        t.refitted = true, t.gain = 1, t.value = {value};
+        return t;
+    };
+    std::vector<Trial> all = {refitted("a", 0.049, 10), refitted("b", 0.051, 90), refitted("c", 0.01, 30), refitted("d", 0.01, 20),
+                              refitted("e", 0.01, 15)};
+    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{2, 3, 4}));
+    all[3].refitted = false;
+    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{2, 4, 0}));
+    all[2].verdict = "too_small"; // was refused for another reason
+    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{4, 0}));
+    all[4].gain = 0;
+    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{0}));
+    EXPECT_TRUE(nearly_sure({refitted("a", 0.01, 10, -0.5)}).empty()); // of a sign that cannot be
+    EXPECT_TRUE(nearly_sure({refitted("a", 0.01, 10, 0.05)}).empty()); // of no interest
+    EXPECT_TRUE(nearly_sure({refitted("a", 0.01, 10, 1)}).empty());    // at its limit
+}
+
 TEST(Afar, the_one_that_gains_most_and_more_than_the_winner_may_take_its_place) {
     std::vector<Trial> all = {trial("a", 0.1, 1), trial("b", 0.1, 1), trial("c", 0.1, 1)};
     const double gains[] = {30, 50, 40};

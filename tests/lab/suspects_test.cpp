@@ -226,6 +226,14 @@ TEST(Law, of_the_catalogue_that_is_a_datum_by_another_name_is_known) {
     EXPECT_EQ(is("slip_sinkage", "shear_slip"), Kin::none);
 }
 
+TEST(Law, that_changes_a_datum_is_known_by_its_name) {
+    EXPECT_STREQ(number_of("shear_stiffness")->key, "shear_slip");
+    EXPECT_STREQ(number_of("wheel_radius")->key, "radius_m");
+    EXPECT_STREQ(number_of("torque_constant")->key, "torque_constant_Nm_A");
+    EXPECT_EQ(number_of("current_gain"), nullptr);
+    EXPECT_EQ(number_of(""), nullptr);
+}
+
 // (doubt.h) one number must describe what names do: much better than the model as stated, and better than they.
 TEST(Suspect, beside_nothing_that_was_named_must_halve_the_error_and_beat_a_shape_by_a_tenth) {
     const auto told = [](const Suspect &s, std::size_t accepted, double before, double left, bool relieves = false, double lead = -1,

@@ -218,11 +218,23 @@ class Search {
         return std::nullopt;
     }
 
+    // Whether a law that was sure of its coefficient, and refused for what is left out, leaves less of all that was fitted: then the log
+    // does not tell which of the two it is.
+    bool refused_fits_better(const std::vector<Trial> &trials, const Problem &problem, double error) const {
+        return std::any_of(trials.begin(), trials.end(), [&](const Trial &t) {
+            if (!t.refitted || t.verdict != "not_held_out") return false;
+            Model model = d_.model;
+            model.effects.push_back(effect_of(t.candidate, t.value));
+            return overall_error(fitted(model, &problem)) < error;
+        });
+    }
+
+    // A large missing law has blown the scales up: of those that are nearly sure on them, a fit with scales of its own tells.
     std::optional<Next> by_scales_of_its_own(std::vector<Trial> &trials, std::size_t &winner, const Problem &problem) {
         for (const std::size_t i : nearly_sure(trials)) {
             const std::string verdict = trials[i].verdict;
             std::optional<Next> next = with(trials[i], problem);
-            if (next && takes_most(held_, next->held)) {
+            if (next && takes_most(held_, next->held) && !refused_fits_better(trials, problem, overall_error(next->problem))) {
                 winner = i;
                 return next;
             }
@@ -296,7 +308,8 @@ class Search {
         else
             problem = std::move(compared); // what its own scales weigh predicts worse: they stay
         const bool pay = rival && tolerances_pay(spared, held.error, broken, options_.least_prior_reduction);
-        if (!pay && !falls_notably(held_, held, data_)) return std::nullopt;
+        const bool on_ground = wanders(t.candidate);
+        if ((!pay || on_ground) && !falls_notably(held_, held, data_, on_ground)) return std::nullopt;
         if (strains_sheet(spared, held_.error, held.error, options_.least_prior_reduction)) {
             t.verdict = "strains_sheet";
             return std::nullopt;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <string_view>
 
 namespace traction::lab {
 
@@ -16,6 +18,9 @@ constexpr double elsewhere = 0.5;              // of a size: a refit that ends s
 // machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
 // own. Assumed.
 constexpr double least_fall = 0.002, least_fall_of_one = 0.02;
+// The same of what wanders: 6 % of the squares, as of the ground's shapes over time and path. Of 70 clean logs four had such a name by 0.3
+// to 2 %; of 115 with one hidden effect six such names fell by 14 % and more, all true.
+constexpr double least_fall_of_ground = 0.03;
 
 std::string figures(double value) {
     char buffer[64];
@@ -190,7 +195,13 @@ std::vector<std::size_t> nearly_sure(const std::vector<Trial> &trials) {
     return list;
 }
 
-bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data) {
+bool wanders(const Candidate &c) {
+    static constexpr std::string_view laws[] = {"soil_patch", "resistance_patch", "soil_gradient", "relaxation_length"};
+    return std::find(std::begin(laws), std::end(laws), c.effect) != std::end(laws);
+}
+
+bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data, bool wanders) {
+    if (wanders) return after.error < (1 - least_fall_of_ground) * before.error;
     Eigen::Index row = 0;
     double most = 0;
     for (const Balance &b : data.balance) {

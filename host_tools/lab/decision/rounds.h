@@ -82,7 +82,10 @@ bool takes_most(const HeldOut &before, const HeldOut &after);
 // missing law has blown the scales up, its own rows hardly count on them, and only a fit with scales of its own tells (assumed).
 std::vector<std::size_t> nearly_sure(const std::vector<Trial> &trials);
 
-// Whether a name lowers the held-out error by as much as a name must, of all or of one balance.
-bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data);
+// A law of a place, or of the way behind a wheel: whatever ground wanders, and whatever an encoder scatters, has a bit of it somewhere.
+bool wanders(const Candidate &candidate);
+
+// Whether a name lowers the held-out error by as much as a name must, of all or of one balance; what wanders, of all.
+bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data, bool wanders = false);
 
 } // namespace traction::lab
