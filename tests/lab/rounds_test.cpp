@@ -357,26 +357,35 @@ TEST(Round, knows_a_law_that_takes_half_of_what_is_no_noise_of_a_model_that_miss
     EXPECT_TRUE(takes(2.01, 1));
     EXPECT_FALSE(takes(2, 1)); // not by far
     EXPECT_FALSE(takes(0, 0));
+    const Dataset data = hand_made::data_of(2, 2, 1);
+    const auto of_one = [&](double first, double second) { // from 6 and 1 times a noise of 0.5
+        const Eigen::VectorXd before = (Eigen::VectorXd(4) << 3, 3, 0.5, 0.5).finished();
+        const Eigen::VectorXd after = (Eigen::VectorXd(4) << first, first, second, second).finished();
+        return takes_most_of_one(held(before, 4), held(after, 4), data, Eigen::VectorXd::Constant(4, 0.5));
+    };
+    EXPECT_TRUE(of_one(2.13, 0.9)); // 36 to 18.1 squares
+    EXPECT_FALSE(of_one(2.16, 0));
+    EXPECT_FALSE(of_one(3, 0));
 }
 
-TEST(Round, asks_scales_of_its_own_of_three_that_are_nearly_sure_and_may_be_told) {
+TEST(Round, asks_scales_of_its_own_of_three_that_are_not_unlikely_and_may_be_told) {
     const auto refitted = [](const char *effect, double p, double reduction, double value = 0.5) {
         Trial t = trial(effect, p, reduction);
         t.refitted = true, t.gain = 1, t.value = {value};
         return t;
     };
-    std::vector<Trial> all = {refitted("a", 0.049, 10), refitted("b", 0.051, 90), refitted("c", 0.01, 30), refitted("d", 0.01, 20),
+    std::vector<Trial> all = {refitted("a", 0.449, 10), refitted("b", 0.451, 90), refitted("c", 0.01, 30), refitted("d", 0.01, 20),
                               refitted("e", 0.01, 15)};
-    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{2, 3, 4}));
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{2, 3, 4}));
     all[3].refitted = false;
-    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{2, 4, 0}));
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{2, 4, 0}));
     all[2].verdict = "too_small"; // was refused for another reason
-    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{4, 0}));
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{4, 0}));
     all[4].gain = 0;
-    EXPECT_EQ(nearly_sure(all), (std::vector<std::size_t>{0}));
-    EXPECT_TRUE(nearly_sure({refitted("a", 0.01, 10, -0.5)}).empty()); // of a sign that cannot be
-    EXPECT_TRUE(nearly_sure({refitted("a", 0.01, 10, 0.05)}).empty()); // of no interest
-    EXPECT_TRUE(nearly_sure({refitted("a", 0.01, 10, 1)}).empty());    // at its limit
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{0}));
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, -0.5)}, 0.003).empty()); // of a sign that cannot be
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 0.05)}, 0.003).empty()); // of no interest
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 1)}, 0.003).empty());    // at its limit
 }
 
 TEST(Afar, the_one_that_gains_most_and_more_than_the_winner_may_take_its_place) {

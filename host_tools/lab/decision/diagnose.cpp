@@ -229,12 +229,14 @@ class Search {
         });
     }
 
-    // A large missing law has blown the scales up: of those that are nearly sure on them, a fit with scales of its own tells.
+    // A large missing law has blown the scales up: of those that are not unlikely on them, a fit with scales of its own tells.
     std::optional<Next> by_scales_of_its_own(std::vector<Trial> &trials, std::size_t &winner, const Problem &problem) {
-        for (const std::size_t i : nearly_sure(trials)) {
+        for (const std::size_t i : worth_scales_of_its_own(trials, options_.p_limit)) {
             const std::string verdict = trials[i].verdict;
             std::optional<Next> next = with(trials[i], problem);
-            if (next && takes_most(held_, next->held) && !refused_fits_better(trials, problem, overall_error(next->problem))) {
+            const auto noise = [&] { return d_.stated_fit->noise_rows(); };
+            if (next && (takes_most(held_, next->held) || takes_most_of_one(held_, next->held, data_, noise())) &&
+                !refused_fits_better(trials, problem, overall_error(next->problem))) {
                 winner = i;
                 return next;
             }

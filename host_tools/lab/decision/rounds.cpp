@@ -12,7 +12,7 @@ namespace {
 
 constexpr double part_of_range = 0.25;         // of the catalogue's: assumed
 constexpr double by_far = 2, most_of_it = 0.5; // times noise; of the squares beyond it (assumed)
-constexpr double nearly = 0.05;                // corrected p
+constexpr double not_unlikely = 150;           // times the limit of the corrected p: below a half
 constexpr double elsewhere = 0.5;              // of a size: a refit that ends so far from where it was sure is another one (assumed)
 // Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
 // machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
@@ -178,16 +178,34 @@ double worst_error(const HeldOut &held, const Dataset &data, const Eigen::Vector
     return std::sqrt(most);
 }
 
-bool takes_most(const HeldOut &before, const HeldOut &after) {
-    return before.error > by_far && after.error * after.error - 1 < (1 - most_of_it) * (before.error * before.error - 1);
+namespace {
+
+bool is_most(double before, double after) { // squares, in units of noise
+    return before > by_far * by_far && after - 1 < (1 - most_of_it) * (before - 1);
 }
 
-std::vector<std::size_t> nearly_sure(const std::vector<Trial> &trials) {
+} // namespace
+
+bool takes_most(const HeldOut &before, const HeldOut &after) { return is_most(before.error * before.error, after.error * after.error); }
+
+bool takes_most_of_one(const HeldOut &before, const HeldOut &after, const Dataset &data, const Eigen::VectorXd &noise_rows) {
+    const Eigen::VectorXd was = before.residual.cwiseQuotient(noise_rows).cwiseAbs2(),
+                          is = after.residual.cwiseQuotient(noise_rows).cwiseAbs2();
+    Eigen::Index row = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        if (n > 0 && is_most(was.segment(row, n).mean(), is.segment(row, n).mean())) return true;
+        row += n;
+    }
+    return false;
+}
+
+std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit) {
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const Trial &t = trials[i];
-        if (t.verdict == "not_significant" && t.refitted && t.p_value < nearly && t.gain > 0 && plausible_sign(t.candidate, t.value) &&
-            large_enough(t.candidate, t.value) && !beyond_range(t.candidate, t.value))
+        if (t.verdict == "not_significant" && t.refitted && t.p_value < not_unlikely * p_limit && t.gain > 0 &&
+            plausible_sign(t.candidate, t.value) && large_enough(t.candidate, t.value) && !beyond_range(t.candidate, t.value))
             list.push_back(i);
     }
     std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) { return larger_reduction(trials[a], trials[b]); });

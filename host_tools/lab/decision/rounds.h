@@ -78,9 +78,13 @@ double worst_error(const HeldOut &held, const Dataset &data, const Eigen::Vector
 // encoder does, and chance has no part in so much.
 bool takes_most(const HeldOut &before, const HeldOut &after);
 
-// Those whose refit on the baseline's scales is nearly sure and large, the largest fall of the error first, at most three: where a large
-// missing law has blown the scales up, its own rows hardly count on them, and only a fit with scales of its own tells (assumed).
-std::vector<std::size_t> nearly_sure(const std::vector<Trial> &trials);
+// The same of a balance that is missed by far.
+bool takes_most_of_one(const HeldOut &before, const HeldOut &after, const Dataset &data, const Eigen::VectorXd &noise_rows);
+
+// Those whose refit on the baseline's scales is not unlikely (150 times the limit of p) and large, the largest fall of the error first, at
+// most three: where a large missing law has blown the scales up, its own rows hardly count on them, and only a fit with scales of its own
+// tells (assumed).
+std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit);
 
 // A law of a place, or of the way behind a wheel: whatever ground wanders, and whatever an encoder scatters, has a bit of it somewhere.
 bool wanders(const Candidate &candidate);
