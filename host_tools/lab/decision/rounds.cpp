@@ -10,10 +10,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double part_of_range = 0.25;         // of the catalogue's: assumed
-constexpr double by_far = 2, most_of_it = 0.5; // times noise; of the squares beyond it (assumed)
-constexpr double not_unlikely = 150;           // times the limit of the corrected p: below a half
-constexpr double elsewhere = 0.5;              // of a size: a refit that ends so far from where it was sure is another one (assumed)
+constexpr double part_of_range = 0.25;          // of the catalogue's: assumed
+constexpr double by_far = 2, share_taken = 0.5; // times noise; of the squares beyond it (assumed)
+constexpr double not_unlikely = 150;            // times the limit of the corrected p: below a half
+constexpr double elsewhere = 0.5;               // of a size: a refit that ends so far from where it was sure is another one (assumed)
 // Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
 // machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
 // own. Assumed.
@@ -181,7 +181,7 @@ double worst_error(const HeldOut &held, const Dataset &data, const Eigen::Vector
 namespace {
 
 bool is_most(double before, double after) { // squares, in units of noise
-    return before > by_far * by_far && after - 1 < (1 - most_of_it) * (before - 1);
+    return before > by_far * by_far && after - 1 < (1 - share_taken) * (before - 1);
 }
 
 } // namespace
