@@ -55,10 +55,11 @@ double error_less(const Problem &fitted, const Eigen::VectorXd &squares);
 // Data of the sheet at their bounds.
 bool strained(const Problem &problem);
 
-// What was named and a datum: an effect of the catalogue that changes the datum itself, within what the catalogue gives it, or one that
-// acts as the datum does. Of such two the effect is told.
 // The datum that an effect of the catalogue changes; nullptr: of none.
 const Datum *number_of(std::string_view effect);
+
+// What was named and a datum: an effect of the catalogue that changes the datum itself, within what the catalogue gives it, or one that
+// acts as the datum does. Of such two the effect is told.
 enum class Kin { none, acts_alike, its_number };
 Kin kin_of(const Problem &last, const Datum &datum);
 
