@@ -348,6 +348,20 @@ TEST(Round, asks_of_a_name_that_the_error_falls_notably_in_all_or_in_one_balance
     EXPECT_FALSE(falls(0.981, 3, 9));
 }
 
+// 3 % of all, whatever one balance says.
+TEST(Round, asks_more_of_a_law_that_wanders_with_the_ground) {
+    for (const char *law : {"soil_patch", "resistance_patch", "soil_gradient", "relaxation_length"})
+        EXPECT_TRUE(wanders(candidate(law))) << law;
+    for (const char *law : {"slip_sinkage", "soil", "mass_offset_y", ""}) EXPECT_FALSE(wanders(candidate(law))) << law;
+    const Dataset data = hand_made::data_of(2, 1, 1);
+    const auto falls = [&](double share_left, double first) {
+        return falls_notably(held(Eigen::VectorXd::Ones(2), 2), held(Eigen::Vector2d(first, 1), 2 * share_left), data, true);
+    };
+    EXPECT_FALSE(falls(0.971, 1));
+    EXPECT_TRUE(falls(0.969, 1));
+    EXPECT_FALSE(falls(0.971, 0.1));
+}
+
 TEST(Round, knows_a_law_that_takes_half_of_what_is_no_noise_of_a_model_that_misses_by_far) {
     const auto takes = [](double before, double after) {
         return takes_most(held(Eigen::VectorXd::Ones(1), before), held(Eigen::VectorXd::Ones(1), after));

@@ -232,6 +232,18 @@ TEST(Check, knows_currents_as_magnitudes_by_the_model_as_by_the_header) {
     EXPECT_NE(of_signed.find("magnitude")->text.find("is declared a magnitude, but reaches -"), std::string::npos);
 }
 
+// The catalogue's radar_delay goes to 1 s: what lies within it the lab names, what is later or early the check refuses.
+TEST(Check, names_a_radar_that_is_later_than_its_law_goes_or_early) {
+    const auto late = [](double seconds) {
+        log::Log log = good();
+        for (double &t : at(log, "radar.speed_m_s").t_s) t += seconds;
+        const check::Report report = check::check(log, {}, {});
+        return report.find("late", "radar.speed_m_s") != nullptr;
+    };
+    for (const double seconds : {0.0, 0.3, 0.7, 0.9}) EXPECT_FALSE(late(seconds)) << seconds;
+    for (const double seconds : {1.4, 1.6, -0.8}) EXPECT_TRUE(late(seconds)) << seconds;
+}
+
 TEST(Check, names_swapped_wheels) {
     for (const char *quantity : {"current_A", "speed_rad_s", "duty"}) {
         SCOPED_TRACE(quantity);
