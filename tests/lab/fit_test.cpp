@@ -544,6 +544,14 @@ TEST(MovedFar, is_told_of_what_the_fit_took_beyond_three_stated_deviations) {
     EXPECT_TRUE(moved_far(at({stated, own, other}, {0.3, 0.1, 0.1})).empty());
 }
 
+TEST(MovedFar, has_a_farthest_that_may_stand_at_its_limit_and_is_no_sensors) {
+    const FreeParameter stated = parameter("motor", "x", 1, 0.1, 0, 9), other = parameter("soil", "y", 1, 0.2, 0, 9),
+                        sensor = parameter("sensors.radar", "scale", 0, 0.01), unstated = parameter("drag", "y", 0.5, 0, 0, 9);
+    EXPECT_DOUBLE_EQ(furthest_of_sheet(at({stated, other, sensor, unstated}, {0.1, -0.45, 0.05, 5})), 2.25);
+    EXPECT_DOUBLE_EQ(furthest_of_sheet(at({stated, other}, {0.6, 0.2})), 6);
+    EXPECT_EQ(furthest_of_sheet(at({sensor, unstated}, {0.05, 5})), 0);
+}
+
 TEST(Dead, is_what_moves_the_log_by_less_than_a_tenth_of_a_deviation) {
     const LinearMachine m(24);
     Problem p(m.data, m.physics, {a0(0.2), g0()});

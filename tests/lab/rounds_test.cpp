@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <tuple>
+#include <utility>
 
+#include <algorithm>
 #include <cmath>
 
 namespace traction::lab {
@@ -298,23 +300,35 @@ HeldOut held(const Eigen::VectorXd &residual, double error) {
     return h;
 }
 
+HeldOut held_at(const std::vector<double> &residual, double error) {
+    HeldOut h;
+    h.residual.resize(static_cast<Eigen::Index>(residual.size()));
+    std::copy(residual.begin(), residual.end(), h.residual.begin());
+    h.error = error;
+    return h;
+}
+
 TEST(Round, keeps_a_name_that_is_solid_and_passes_again_or_without_which_more_is_left_out_wrongly) {
     int asked = 0;
-    const auto predicts = [&](bool it) {
+    const auto says = [&](bool it) {
         return [&asked, it] {
             ++asked;
             return it;
         };
     };
+    const auto yes = says(true), no = says(false);
     for (const char *verdict : {"passes", "beyond_range"}) {
-        EXPECT_TRUE(stays(verdict, true, predicts(false)));
-        EXPECT_FALSE(stays(verdict, false, predicts(true)));
+        EXPECT_TRUE(stays(verdict, true, no, no));
+        EXPECT_EQ(asked, 0); // it costs twenty predictions and more
+        EXPECT_FALSE(stays(verdict, false, yes, no));
+        EXPECT_EQ(std::exchange(asked, 0), 1); // its coefficient is unsure: what it takes alone is asked
     }
-    EXPECT_EQ(asked, 0); // it costs twenty predictions and more
-    EXPECT_TRUE(stays("not_significant", true, predicts(true)));
-    EXPECT_FALSE(stays("not_significant", true, predicts(false)));
-    EXPECT_EQ(asked, 2);
-    EXPECT_FALSE(stays("too_small", false, predicts(true)));
+    EXPECT_TRUE(stays("not_significant", true, yes, no));
+    EXPECT_EQ(std::exchange(asked, 0), 1);
+    EXPECT_FALSE(stays("not_significant", true, no, no));
+    EXPECT_TRUE(stays("not_significant", true, no, yes));
+    EXPECT_FALSE(stays("too_small", false, yes, no));
+    EXPECT_TRUE(stays("too_small", false, no, yes));
 }
 
 TEST(Round, knows_the_balance_that_is_missed_the_most_in_its_own_noise) {
@@ -348,6 +362,19 @@ TEST(Round, asks_of_a_name_that_the_error_falls_notably_in_all_or_in_one_balance
     EXPECT_FALSE(falls(0.981, 3, 9));
 }
 
+// 1 % of all, or 3 % of one balance: less, and it is the data sheet that speaks.
+TEST(Round, knows_a_fall_that_the_sheet_has_no_part_in) {
+    const Dataset data = hand_made::data_of(2, 2, 1);
+    const HeldOut before = held_at({3, 4, 6, 8}, 2);
+    const auto falls = [&](double second, double error) {
+        return falls_without_the_sheet(before, held_at({3, 4, 6 * second, 8 * second}, error), data);
+    };
+    EXPECT_FALSE(falls(1, 2 * 0.991));
+    EXPECT_TRUE(falls(1, 2 * 0.989));
+    EXPECT_FALSE(falls(0.971, 2));
+    EXPECT_TRUE(falls(0.969, 2));
+}
+
 // 3 % of all, whatever one balance says.
 TEST(Round, asks_more_of_a_law_that_wanders_with_the_ground) {
     for (const char *law : {"soil_patch", "resistance_patch", "soil_gradient", "relaxation_length"})
@@ -363,19 +390,16 @@ TEST(Round, asks_more_of_a_law_that_wanders_with_the_ground) {
 }
 
 TEST(Round, knows_a_law_that_takes_half_of_what_is_no_noise_of_a_model_that_misses_by_far) {
-    const auto takes = [](double before, double after) {
-        return takes_most(held(Eigen::VectorXd::Ones(1), before), held(Eigen::VectorXd::Ones(1), after));
-    };
+    const auto takes = [](double before, double after) { return takes_most(held_at({}, before), held_at({}, after)); };
     EXPECT_TRUE(takes(3, 2.2));  // 8 squares beyond noise, 3.84
     EXPECT_FALSE(takes(3, 2.3)); // 4.29
     EXPECT_TRUE(takes(2.01, 1));
     EXPECT_FALSE(takes(2, 1)); // not by far
     EXPECT_FALSE(takes(0, 0));
     const Dataset data = hand_made::data_of(2, 2, 1);
+    const Eigen::VectorXd noise = Eigen::VectorXd::Constant(4, 0.5);
     const auto of_one = [&](double first, double second) { // from 6 and 1 times a noise of 0.5
-        const Eigen::VectorXd before = (Eigen::VectorXd(4) << 3, 3, 0.5, 0.5).finished();
-        const Eigen::VectorXd after = (Eigen::VectorXd(4) << first, first, second, second).finished();
-        return takes_most_of_one(held(before, 4), held(after, 4), data, Eigen::VectorXd::Constant(4, 0.5));
+        return takes_most_of_one(held_at({3, 3, 0.5, 0.5}, 4), held_at({first, first, second, second}, 4), data, noise);
     };
     EXPECT_TRUE(of_one(2.13, 0.9)); // 36 to 18.1 squares
     EXPECT_FALSE(of_one(2.16, 0));

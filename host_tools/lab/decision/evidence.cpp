@@ -3,6 +3,7 @@
 #include "host_tools/lab/fit/scatter.h"
 #include "lag.h"
 #include "rounds.h"
+#include "uneven_grip.h"
 
 namespace traction::lab {
 
@@ -32,7 +33,9 @@ Evidence evidence_of(const Candidate &candidate, const Problem &before, const He
         out = falls_of(before, left_before, held_out(on_ground));
         take_off(on_ground);
     }
-    out.smooths = !(out.scaled.sum > least) || (!takes_most(left_before, left_with) && only_averages(before, left_before, with, left_with));
+    out.smooths = !(out.scaled.sum > least) ||
+                  (!takes_most(left_before, left_with) && only_averages(before, left_before, with, left_with)) ||
+                  !holds_in_common(candidate, before, left_before, left_with);
     return out;
 }
 

@@ -4,7 +4,7 @@
 //
 // in units of noise and on the scales of the model without it. Beyond smoothing a name must gain a twentieth of what scatter may be of the
 // squares; where a softer ground beside it is all that smooths, (1) is asked with the ground as it was. A law that lags must gain where
-// speeds change (lag.h).
+// speeds change (lag.h), a grip that falls with slip in what the wheels have in common (uneven_grip.h).
 #pragma once
 
 #include "host_tools/lab/fit/heldout.h"
@@ -18,7 +18,7 @@ namespace traction::lab {
 // (1), on the scales of the model without the name and in units of noise.
 struct Evidence {
     Fall scaled, noise;
-    bool smooths = false; // that is all it does: none
+    bool smooths = false; // that is all it does, or its like (lag.h, uneven_grip.h): none
     bool falls() const { return !smooths && scaled.sure() && noise.sure(); }
 };
 

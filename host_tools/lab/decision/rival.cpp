@@ -89,6 +89,14 @@ bool is_same_change(const Eigen::VectorXd &law, const Eigen::VectorXd &shape) {
     return norm > 0 && std::fabs(law.dot(shape)) > same_cosine * norm;
 }
 
+Problem on_scales_of(const Problem &less, const Problem &last) {
+    Problem with = last;
+    with.keep_scales(less);
+    with.jacobian.resize(0, 0);
+    with.gauss_newton(2);
+    return with;
+}
+
 } // namespace
 
 bool is_own_axis(const std::string &effect, Axis axis) {
@@ -119,10 +127,7 @@ std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::str
     const Scatter scatter(less);
     const Eigen::VectorXd weight = less.row_scale.cwiseAbs2(), noise = noise_weight(less);
     const HeldOut left = held_out(less);
-    Problem with = last;
-    with.keep_scales(less);
-    with.jacobian.resize(0, 0);
-    with.gauss_newton(2);
+    const Problem with = on_scales_of(less, last);
     const HeldOut by_name = sharp(with, less, named.touched, scatter);
     const Fall own = fall_between(left, by_name, weight);
     if (!own.sure()) return std::nullopt; // precise rows speak for it, which these squares hardly see
@@ -158,6 +163,13 @@ std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::str
         most = fall.sum;
     }
     return best;
+}
+
+bool outdoes(const Candidate &named, const Problem &last, const Problem &less, const ShapeScore &shape) {
+    const Scatter scatter(less);
+    const HeldOut by_name = sharp(on_scales_of(less, last), less, named.touched, scatter),
+                  by_shape = sharp(with_shape(less, shape), less, shape.candidate.touched, scatter);
+    return is_sure_fall(fall_between(by_shape, by_name, less.row_scale.cwiseAbs2()));
 }
 
 } // namespace traction::lab

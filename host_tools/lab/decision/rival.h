@@ -32,4 +32,8 @@ bool is_constant_of(const std::string &effect, TermTarget target);
 std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::string> &alternatives, const Problem &last, Problem less,
                               const DiagnoseOptions &options);
 
+// Of a shape that by its linear step explains what was named, and leaves nothing to the name: does the name predict blocks left out surely
+// better than the shape fitted in its place? `last` and `less` as above.
+bool outdoes(const Candidate &named, const Problem &last, const Problem &less, const ShapeScore &shape);
+
 } // namespace traction::lab

@@ -59,8 +59,10 @@ void take_increments(Problem &problem, const Problem &from);
 bool predicts_better(const Problem &before, const Problem &after);
 
 // Asked again beside the others, does a name stay? It must be solid (is_solid), and pass by its refit, or as one that was accepted as a
-// least size, or the model must predict blocks left out better with it (`predicts`, asked last).
-bool stays(const std::string &verdict, bool solid, const std::function<bool()> &predicts);
+// least size, or the model must predict blocks left out better with it (`predicts`). What is not solid by its own coefficient stays where
+// it takes most of what is left out wrongly without it (`most`, asked last): a coefficient that a few blocks tell is as unsure as they
+// are few.
+bool stays(const std::string &verdict, bool solid, const std::function<bool()> &predicts, const std::function<bool()> &most);
 
 // What passed in a round before, as it was found there.
 struct Earlier {
@@ -91,5 +93,8 @@ bool wanders(const Candidate &candidate);
 
 // Whether a name lowers the held-out error by as much as a name must, of all or of one balance; what wanders, of all.
 bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data, bool wanders = false);
+
+// Whether the rows speak for a name: by 1 % of all or 3 % of one balance. Else it stands for the data sheet's sake.
+bool falls_without_the_sheet(const HeldOut &before, const HeldOut &after, const Dataset &data);
 
 } // namespace traction::lab

@@ -106,17 +106,35 @@ std::string limit_text(const Limit &limit) {
     return text;
 }
 
-std::vector<std::string> moved_far(const Problem &problem) {
-    constexpr double far = 3; // stated deviations
+namespace {
+
+// Of what wheels share and differ in; an offset of a sensor is a run's, not a sheet's.
+std::vector<Mean> means_of_sheet(const Problem &problem) {
     std::vector<Eigen::Index> all(problem.parameters.size());
     std::iota(all.begin(), all.end(), 0);
+    std::vector<Mean> list = means_of(problem, all);
+    std::erase_if(list, [](const Mean &mean) { return mean.name.starts_with("sensors.") || !(mean.prior_variance > 0); });
+    return list;
+}
+
+double deviations_of(const Mean &mean) { return std::fabs(mean.value - mean.stated) / std::sqrt(mean.prior_variance); }
+
+} // namespace
+
+double furthest_of_sheet(const Problem &problem) {
+    double most = 0;
+    for (const Mean &mean : means_of_sheet(problem)) most = std::max(most, deviations_of(mean));
+    return most;
+}
+
+std::vector<std::string> moved_far(const Problem &problem) {
+    constexpr double far = 3; // stated deviations
     const std::vector<Limit> limits = limits_of(problem);
     std::vector<std::string> list;
-    for (const Mean &mean : means_of(problem, all)) {
-        const double away = std::fabs(mean.value - mean.stated) / std::sqrt(mean.prior_variance);
-        if (mean.name.starts_with("sensors.")) continue; // an offset is a run's, not a sheet's
+    for (const Mean &mean : means_of_sheet(problem)) {
+        const double away = deviations_of(mean);
         const bool told = std::any_of(limits.begin(), limits.end(), [&](const Limit &l) { return l.parameter == mean.name; });
-        if (!(mean.prior_variance > 0) || !(away > far) || told) continue;
+        if (!(away > far) || told) continue;
         char text[400];
         std::snprintf(text, sizeof text,
                       "the fit takes %s from %.4g to %.4g%s%s, %.1f of its stated deviations: the model file is wrong there, or something "

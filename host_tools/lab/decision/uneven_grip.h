@@ -1,0 +1,22 @@
+// uneven_grip.h - whether a law by which grip falls as the wheel slips more does more than a ground that grips unevenly.
+//
+// Where the ground holds less the wheel slips more, wheel by wheel: that alone looks like a grip that falls with slip. It is each wheel's
+// own; the law is all wheels'. So of the torque balances' held-out squares, each row the mean over a second,
+//   share taken of the mean of all wheels > 1/2 x share taken of the wheels', or the latter > 1/2                                  (1)
+#pragma once
+
+#include "host_tools/lab/fit/heldout.h"
+#include "trial.h"
+
+namespace traction::lab {
+
+// Shares of the held-out squares, means over a second, that a model takes off another's on the same data; negative: it adds.
+struct SharesTaken {
+    double of_wheels = 0, of_all_together = 0;
+};
+SharesTaken shares_taken(const Problem &before, const HeldOut &left_before, const HeldOut &left_with);
+
+// (1); true of a law that is not of this kind or of one wheel, and of machines of one wheel.
+bool holds_in_common(const Candidate &law, const Problem &before, const HeldOut &left_before, const HeldOut &left_with);
+
+} // namespace traction::lab
