@@ -4,8 +4,8 @@
 #include "sim/physics/effects/catalogue.h"
 #include "tests/lab/four_wheels.h"
 
-#include <optional>
 #include <gtest/gtest.h>
+#include <optional>
 
 namespace traction::lab {
 namespace {

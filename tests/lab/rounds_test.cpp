@@ -358,8 +358,9 @@ TEST(Round, asks_of_a_name_that_the_error_falls_notably_in_all_or_in_one_balance
     EXPECT_TRUE(falls(1, 1, 2 * 0.9979));
     EXPECT_TRUE(falls(1, 0.979, 2));
     EXPECT_FALSE(falls(1, 0.981, 2));
-    EXPECT_TRUE(falls(0.979, 3, 9)); // another may rise
-    EXPECT_FALSE(falls(0.981, 3, 9));
+    EXPECT_TRUE(falls(0.97, 1.009, 2)); // another may rise by what is left over
+    EXPECT_FALSE(falls(0.97, 1.011, 2));
+    EXPECT_TRUE(falls(0.97, 1.011, 1.99));
 }
 
 // 1 % of all, or 3 % of one balance: less, and it is the data sheet that speaks.

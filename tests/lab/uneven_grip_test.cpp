@@ -29,8 +29,7 @@ struct Ground {
         int wheel = 0;
         for (const Balance &b : rover.data.balance) {
             const bool torque = b.kind == BalanceKind::current_torque;
-            for (std::size_t r = 0; r < b.t0_s.size(); ++r)
-                held.residual[row++] = torque ? common + (wheel % 2 == 0 ? own : -own) : other;
+            for (std::size_t r = 0; r < b.t0_s.size(); ++r) held.residual[row++] = torque ? common + (wheel % 2 == 0 ? own : -own) : other;
             wheel += torque;
         }
         return held;
@@ -64,11 +63,12 @@ TEST(UnevenGrip, a_law_of_falling_grip_must_gain_in_common_half_of_what_it_gains
     const Ground g;
     const HeldOut was = g.left(3, 4);
     for (const char *law : {"shear_peak", "sliding_speed_loss"}) {
-        EXPECT_FALSE(g.holds(law, was, g.left(1, 4)));   // 8 of 25, nothing
-        EXPECT_FALSE(g.holds(law, was, g.left(1, 3.8))); // 9.56 of 25, 1.56 of 16: a quarter of it
-        EXPECT_TRUE(g.holds(law, was, g.left(2, 3.6)));  // 8.04 of 25, 3.04 of 16: 0.59 of it
-        EXPECT_TRUE(g.holds(law, was, g.left(0, 3.5)));  // 12.75 of 25: more than half
-        EXPECT_TRUE(g.holds(law, was, g.left(1, 4), 2)); // one wheel's own
+        EXPECT_FALSE(g.holds(law, was, g.left(1, 4)));     // 8 of 25, nothing
+        EXPECT_FALSE(g.holds(law, was, g.left(1, 3.8)));   // 9.56 of 25, 1.56 of 16: a quarter of it
+        EXPECT_TRUE(g.holds(law, was, g.left(2, 3.6)));    // 8.04 of 25, 3.04 of 16: 0.59 of it
+        EXPECT_TRUE(g.holds(law, was, g.left(0, 3.5)));    // 12.75 of 25: more than half
+        EXPECT_FALSE(g.holds(law, was, g.left(2.5, 3.4))); // 7.19 of 25: too little of either
+        EXPECT_TRUE(g.holds(law, was, g.left(1, 4), 2));   // one wheel's own
     }
     EXPECT_TRUE(g.holds("slip_sinkage", was, g.left(1, 4)));
 }

@@ -16,7 +16,7 @@ constexpr double not_unlikely = 150;            // times the limit of the correc
 constexpr double elsewhere = 0.5;               // of a size: a refit that ends so far from where it was sure is another one (assumed)
 // Of the held-out error, by which a name must lower it at least: an hour of rows makes less than this significant, and the laws of no
 // machine and the steps of no integration are known that well. What one sensor shows alone hardly moves the error of all: then of its
-// own. Assumed.
+// own, less what it adds to another's. Assumed.
 constexpr double least_fall = 0.002, least_fall_of_one = 0.02;
 // From where on the rows speak for a name and not the data sheet, as the answer has it (result/story.cpp).
 constexpr double fall_told = 0.01, fall_told_of_one = 0.03;
@@ -224,14 +224,15 @@ namespace {
 
 bool falls_by(double of_all, double of_one, const HeldOut &before, const HeldOut &after, const Dataset &data) {
     Eigen::Index row = 0;
-    double most = 0;
+    double most = 0, rise = 0;
     for (const Balance &b : data.balance) {
         const auto n = static_cast<Eigen::Index>(b.measured.size());
         const double was = before.residual.segment(row, n).norm();
-        if (was > 0) most = std::max(most, 1 - after.residual.segment(row, n).norm() / was);
+        const double fall = was > 0 ? 1 - after.residual.segment(row, n).norm() / was : 0;
+        most = std::max(most, fall), rise = std::max(rise, -fall);
         row += n;
     }
-    return after.error < (1 - of_all) * before.error || most > of_one;
+    return after.error < (1 - of_all) * before.error || most - rise > of_one; // what one gains at another's cost is nothing
 }
 
 } // namespace

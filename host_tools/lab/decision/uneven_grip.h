@@ -1,8 +1,8 @@
 // uneven_grip.h - whether a law by which grip falls as the wheel slips more does more than a ground that grips unevenly.
 //
 // Where the ground holds less the wheel slips more, wheel by wheel: that alone looks like a grip that falls with slip. It is each wheel's
-// own; the law is all wheels'. So of the torque balances' held-out squares, each row the mean over a second,
-//   share taken of the mean of all wheels > 1/2 x share taken of the wheels', or the latter > 1/2                                  (1)
+// own; the law is all wheels', and tells in seconds. So of the torque balances' held-out squares, each row the mean over a second,
+//   share taken of the wheels' > 1/2, or > 0.3 and share taken of the mean of all wheels > 1/2 of that                              (1)
 #pragma once
 
 #include "host_tools/lab/fit/heldout.h"
