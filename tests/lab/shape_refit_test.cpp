@@ -4,6 +4,7 @@
 #include "tests/lab/four_wheels.h"
 
 #include <gtest/gtest.h>
+#include <optional>
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +74,34 @@ TEST(ShapeRefit, finds_what_acts_on_one_wheel_and_holds_there_alone) {
     const Eigen::VectorXd strength = with.theta.tail(static_cast<Eigen::Index>(knots.size()));
     EXPECT_NEAR(std::fabs(strength[strength.size() - 1] - strength[0]), 0.01 * (knots.back() - knots.front()), 0.01) << strength;
     EXPECT_TRUE(is_worth_a_word(fall_by(on(2), problem, left, scatter), scatter.share));
+    // told as that fit has it: the linear step of `on` is none
+    ShapeScore step = on(2);
+    step.assessment.standard_error = Eigen::VectorXd::Constant(strength.size(), 9);
+    const std::optional<ShapeScore> told = as_refitted(step, problem);
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->assessment.strength, strength);
+    EXPECT_GT(told->assessment.standard_error.minCoeff(), 0);
+    EXPECT_LT(told->assessment.standard_error.maxCoeff(), 0.05);
+    ShapeScore nothing = on(1);
+    nothing.assessment.standard_error = step.assessment.standard_error;
+    EXPECT_FALSE(as_refitted(nothing, problem));
     EXPECT_GT(fall_by(on(2), problem, left, scatter).share, 3 * std::max(0.01, fall_by(on(1), problem, left, scatter).share));
+}
+
+TEST(ShapeRefit, knows_that_what_multiplies_stays_positive) {
+    ShapeScore shape;
+    shape.candidate.target = TermTarget::soil_strength;
+    shape.assessment.strength = Eigen::Vector3d(0.5, -0.99, 2);
+    EXPECT_TRUE(is_possible(shape));
+    shape.assessment.strength[1] = -1.01;
+    EXPECT_FALSE(is_possible(shape));
+    shape.candidate.target = TermTarget::wheel_torque; // that is added
+    EXPECT_TRUE(is_possible(shape));
+    shape.candidate.target = TermTarget::soil_strength, shape.candidate.order = 2; // a wave
+    shape.assessment.strength = Eigen::Vector2d(0.8, 0.7);
+    EXPECT_FALSE(is_possible(shape));
+    shape.assessment.strength = Eigen::Vector2d(0.7, 0.7);
+    EXPECT_TRUE(is_possible(shape));
 }
 
 // Of a bump the middle one of three values is free.

@@ -196,7 +196,9 @@ claim('a sealed game: look, try, keep, open', async () => {
   await until(page, () => !document.querySelector('#game button:disabled'));
   const hidden = JSON.parse(readFileSync(`${folder}/game/sealed.json`, 'utf8')).effects[0];
   assert.doesNotMatch(await page.evaluate(async () => JSON.stringify(await (await fetch('/api/result/' + document.querySelector('#history tbody tr .quiet').textContent.match(/\d+/)[0] + location.search)).json())), /"hidden"|"parameters"/);
+  const before = await newest(page);
   await click(page, '#game', 'Look');
+  await until(page, (was) => document.querySelector('#history tbody tr').textContent !== was, before); // the page may show a comparison already
   await title(page, 'compare');
   await until(page, () => !document.querySelector('#game button:disabled'));
   await page.selectOption('#guess', hidden.name);

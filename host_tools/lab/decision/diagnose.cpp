@@ -60,12 +60,7 @@ class Search {
             settle_last(left);
             return left;
         });
-        // it has stood against names; told it is only where its own fit bears it
-        if (d_.unknown && !holds_refitted(*d_.unknown->score, problem)) {
-            d_.messages.push_back(d_.unknown->balance +
-                                  " seemed to explain a part, but fitted in full it does not predict what was left out: not told");
-            d_.unknown.reset();
-        }
+        if (d_.unknown) tell_as_fitted(problem);
         if (options_.shapes && !d_.unknown) face_rivals(first, problem);
         if (!d_.model_fit) settle_last(problem);
         drop_beside_bent_sheet(problem);
@@ -428,6 +423,19 @@ class Search {
             again = again && !d_.accepted.empty();
             if (d_.accepted.empty() && !named.empty()) d_.unknown = *alone;
         }
+    }
+
+    // The shape has stood against names by linear steps; told it is only where its own fit bears it, and as that has it.
+    void tell_as_fitted(const Problem &last) {
+        if (const std::optional<ShapeScore> fitted = as_refitted(*d_.unknown->score, last)) {
+            const double gain = d_.unknown->gain;
+            d_.unknown = describe(*fitted, 1);
+            d_.unknown->gain = gain;
+            return;
+        }
+        d_.messages.push_back(d_.unknown->balance +
+                              " seemed to explain a part, but fitted in full it does not predict what was left out: not told");
+        d_.unknown.reset();
     }
 
     // Linear steps find a proxy; refits tell whether it is one.

@@ -155,11 +155,13 @@ std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::str
         const bool as_well = is_sure_fall(fall) && lead.sum > -lead.error && -noise_lead.sum < errors_ahead * noise_lead.error;
         if (!better && !as_well) continue;
         if (!better && is_same_change(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;
+        ShapeScore fitted = as_fitted(s, shaped);
+        if (!is_possible(fitted)) continue;
         const Problem both = with_shape(with, s);
         const Fall beside = fall_between(by_shape, sharp(both, less, named.touched | c.touched, scatter), weight);
         const bool needed = is_sure_fall(beside) && beside.sum > (better ? half_of_it : least_beside) * own.sum;
         if (needed || (best && (best->better > better || !(fall.sum > most)))) continue;
-        best = Rival{std::move(s), better, screen.heldout_error()};
+        best = Rival{std::move(fitted), better, screen.heldout_error()};
         most = fall.sum;
     }
     return best;

@@ -3,6 +3,8 @@
 #include "trial.h"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 namespace traction::lab {
 
@@ -36,7 +38,10 @@ Problem with_shape(const Problem &without, const ShapeScore &shape) {
 }
 
 ShapeFall fall_by(const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter) {
-    const Problem with = with_shape(without, shape);
+    return fall_to(with_shape(without, shape), shape, without, left, scatter);
+}
+
+ShapeFall fall_to(const Problem &with, const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter) {
     HeldOut after = held_out(with);
     const Eigen::VectorXd weight = without.row_scale.cwiseAbs2();
     Eigen::VectorXd smoothed = Eigen::VectorXd::Zero(weight.size());
@@ -64,9 +69,29 @@ bool is_worth_a_word(const ShapeFall &fall, double scatter_share) {
            (fall.balance_share > least_of_balance + scatter_share && fall.whole.sure() && surely(fall.balance));
 }
 
-bool holds_refitted(const ShapeScore &shape, const Problem &without) {
+ShapeScore as_fitted(const ShapeScore &shape, Problem with) {
+    with.linearise();
+    const std::vector<ParameterError> errors = Screen(with).parameter_errors();
+    const Eigen::Index k = shape.assessment.strength.size(), n = with.theta.size() - k;
+    ShapeScore fitted = shape;
+    fitted.assessment.strength = with.theta.tail(k);
+    for (Eigen::Index j = 0; j < k; ++j) fitted.assessment.standard_error[j] = errors[static_cast<std::size_t>(n + j)].standard;
+    return fitted;
+}
+
+bool is_possible(const ShapeScore &shape) {
+    const TermTarget t = shape.candidate.target;
+    const bool multiplies = t == TermTarget::soil_strength || t == TermTarget::motor_constant || t == TermTarget::resistance;
+    const Eigen::VectorXd &strength = shape.assessment.strength;
+    return !multiplies || (shape.candidate.order > 0 ? strength.norm() : -strength.minCoeff()) < 1;
+}
+
+std::optional<ShapeScore> as_refitted(const ShapeScore &shape, const Problem &without) {
     const Scatter scatter(without);
-    return is_worth_a_word(fall_by(shape, without, held_out(without), scatter), scatter.share);
+    const Problem with = with_shape(without, shape);
+    if (!is_worth_a_word(fall_to(with, shape, without, held_out(without), scatter), scatter.share)) return std::nullopt;
+    ShapeScore fitted = as_fitted(shape, with);
+    return is_possible(fitted) ? std::optional<ShapeScore>(std::move(fitted)) : std::nullopt;
 }
 
 } // namespace traction::lab

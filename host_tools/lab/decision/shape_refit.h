@@ -22,11 +22,18 @@ struct ShapeFall {
 Problem with_shape(const Problem &without, const ShapeScore &shape);
 
 ShapeFall fall_by(const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter);
+ShapeFall fall_to(const Problem &with, const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter);
 
 // Surely (twice its error over blocks, and not by two blocks alone), and by enough: of all squares, or of one balance's.
 bool is_worth_a_word(const ShapeFall &fall, double scatter_share);
 
-// Of a shape that would be told beside what was named.
-bool holds_refitted(const ShapeScore &shape, const Problem &without);
+// The shape with the coefficients and standard errors of the model that with_shape() fitted.
+ShapeScore as_fitted(const ShapeScore &shape, Problem with);
+
+// A number that a shape multiplies by one and its value stays positive: no soil pushes back, no winding resists less than not at all.
+bool is_possible(const ShapeScore &shape);
+
+// A shape that would be told beside what was named, as_fitted(); nothing where that is not worth a word, or not possible.
+std::optional<ShapeScore> as_refitted(const ShapeScore &shape, const Problem &without);
 
 } // namespace traction::lab
