@@ -9,6 +9,8 @@
 #include "host_tools/lab/fit/scatter.h"
 #include "shape_rules.h"
 
+#include <optional>
+
 namespace traction::lab {
 
 // Both models fitted, on the scales of the one without the shape: fall of the squares of blocks left out, less what the shape gains by
