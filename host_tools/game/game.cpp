@@ -1,7 +1,6 @@
 #include "game.h"
 
 #include "host_tools/check/check.h"
-#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/result/addition.h"
 #include "host_tools/lab/result/compare.h"
 #include "host_tools/lab/result/result.h"
@@ -56,14 +55,14 @@ json read_state(const std::string &folder) {
 
 void write_state(const std::string &folder, const json &state) { report::write_text(state.dump(1) + "\n", path_in(folder, "game.json")); }
 
-// The rows are those that the baseline makes of the log, whatever the model has grown to: errors on other rows would not compare. The log
-// is the game's own: what the check takes for an error of it (a sensor that is late) is what was hidden.
+// The log is the game's own: what the check takes for an error of it (a sensor that is late) is what was hidden.
+lab::Session session_of(const std::string &folder, const std::string &model) {
+    return lab::open_session({.model = model, .log = path_in(folder, "run.csv"), .map = "", .repeat = "", .despite = check::error_ids()});
+}
+
+// The rows are those that the baseline makes of the log, whatever the model has grown to: errors on other rows would not compare.
 lab::Session session_of(const std::string &folder) {
-    lab::Session session = lab::open_session({.model = path_in(folder, "baseline.toml"),
-                                              .log = path_in(folder, "run.csv"),
-                                              .map = "",
-                                              .repeat = "",
-                                              .despite = check::error_ids()});
+    lab::Session session = session_of(folder, path_in(folder, "baseline.toml"));
     session.model = lab::read_model(path_in(folder, "model.toml"));
     return session;
 }
@@ -112,17 +111,18 @@ Turn start(const NewGame &request) {
     scenario.duration_s = std::min(scenario.duration_s, request.duration_s);
     scenario.plant.ground.soil = *soil;
     scenario.plant.ground.grip_noise = request.soil == "concrete" ? 0.02 : 0.06; // docs/scenario_format.md
-    const lab::Model model = lab::read_model(model_file);
     SimulateOptions options;
     options.seed = request.seed;
     options.hide = sim::HiddenDraw{.seed = request.seed, .count = 1, .among = request.hard ? std::vector<std::string>{} : plain_effects};
     const SimulationResult run = simulate(scenario, options);
-    lab::Model fitted = model;
-    const lab::LadderStep baseline = lab::fit_model(fitted, lab::make_dataset(model, run.log), "baseline");
     fs::create_directories(request.folder);
     fs::remove(path_in(request.folder, "game.json")); // no game until everything stands
     log::write_csv(run.log, path_in(request.folder, "run.csv"));
-    for (const char *name : {"baseline.toml", "model.toml"}) lab::write_model(model, path_in(request.folder, name));
+    const lab::Session session = session_of(request.folder, model_file);
+    // with what opening it found of the log (a rover that drifts in its bends), so that every turn has the same rows and the same motion
+    for (const char *name : {"baseline.toml", "model.toml"}) lab::write_model(session.model, path_in(request.folder, name));
+    lab::Model fitted = session.model;
+    const lab::LadderStep baseline = lab::fit_model(fitted, session.data, "baseline");
     report::write_text(sim::seal_text(run.hidden, scenario.name, request.seed), path_in(request.folder, "sealed.json"));
     const json state = {{"schema", schema},
                         {"verb", "game"},

@@ -40,15 +40,14 @@ void refuse_turned(const Model &model, const EffectUse &use) {
                      "give --wheel " + std::to_string(motor));
 }
 
-// Whose own size, and it is away from zero, changes nothing that the log holds: its interval would be that of no datum at all. What moves
-// the body may be blind only where the fit ended, and is left to the error.
+// Whose own size, and it is away from zero, changes nothing that the log holds: its interval would be that of no datum at all.
 void refuse_dead(const Model &model, const EffectUse &use, const Problem &fitted) {
     bool any = false;
     for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
         const FreeParameter &p = fitted.parameters[i];
         if (p.owner != use.name || p.wheel != use.wheel) continue;
         any = true;
-        if ((p.touched & stage_motion) != 0 || !is_dead(fitted, i) || p.base + fitted.theta[static_cast<Eigen::Index>(i)] == 0) return;
+        if (!is_dead(fitted, i) || p.base + fitted.theta[static_cast<Eigen::Index>(i)] == 0) return;
     }
     if (any)
         throw ModelError(model.file, 0, use.name, "changes nothing that this log holds" + on_wheel(use.wheel),
