@@ -1,5 +1,6 @@
 // What the catalogue does not hold: the lab says on what it depends, and asserts no effect that is merely its proxy.
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/decision/shape_refit.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/result/result.h"
 #include "tests/lab/generator/generator.h"
@@ -8,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <numeric>
+#include <utility>
 
 namespace traction::lab {
 namespace {
@@ -16,9 +19,15 @@ namespace {
 using generator::GeneratorConfig;
 using generator::Soil;
 
+// Logs outlive the fits of them, which a diagnosis holds.
+const Dataset &kept(Dataset data) {
+    static std::deque<Dataset> all;
+    return all.emplace_back(std::move(data));
+}
+
 Diagnosis ask(const GeneratorConfig &config) {
     const Model model = read_model("models/rover_" + generator::name_of(config.soil) + ".toml");
-    return diagnose(model, make_dataset(model, generator::generate(config)), {});
+    return diagnose(model, kept(make_dataset(model, generator::generate(config))), {});
 }
 
 Diagnosis ask(Soil soil, const std::string &hidden, std::uint64_t seed) {
@@ -28,6 +37,14 @@ Diagnosis ask(Soil soil, const std::string &hidden, std::uint64_t seed) {
     config.duration_s = 120;
     config.hidden.push_back(generator::parse_setting(hidden));
     return ask(config);
+}
+
+// Told alone, and with the coefficients of its fit: fitted from there it stays.
+void expect_as_fitted(const Diagnosis &d) {
+    ASSERT_TRUE(d.unknown && d.accepted.empty());
+    const Eigen::VectorXd told = d.unknown->score->assessment.strength,
+                          again = with_shape(*d.stated_fit, *d.unknown->score).theta.tail(told.size());
+    EXPECT_LT((again - told).norm(), 0.03 * told.norm()) << told.transpose() << " and " << again.transpose();
 }
 
 bool is_nearest(const Diagnosis &d, const std::string &effect) {
@@ -40,7 +57,7 @@ TEST(Shapes, a_proxy_is_the_nearest_and_not_the_cause) {
     config.seed = 31;
     config.hidden.push_back(generator::parse_setting("friction_hysteresis:torque_Nm=0.06"));
     const Model sheet = parse_model(generator::data_sheet(config), "sheet");
-    const Diagnosis d = diagnose(sheet, make_dataset(sheet, generator::generate(config)), {});
+    const Diagnosis d = diagnose(sheet, kept(make_dataset(sheet, generator::generate(config))), {});
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_NE(d.unknown->variable.find("reversal"), std::string::npos) << d.unknown->variable;
@@ -52,6 +69,7 @@ TEST(Shapes, a_proxy_is_the_nearest_and_not_the_cause) {
     put_diagnosis(json, d);
     EXPECT_EQ(json["verdict"]["nearest"], nlohmann::json(d.nearest));
     EXPECT_NE(d.text.find("and not named"), std::string::npos);
+    expect_as_fitted(d);
 }
 
 TEST(Shapes, a_law_that_is_right_keeps_its_name_beside_freer_shapes) {
@@ -78,12 +96,13 @@ TEST(Shapes, a_bad_tooth_is_no_ripple) {
     ASSERT_TRUE(d.unknown) << d.text;
     EXPECT_EQ(d.unknown->balance, "friction(wheel angle) on wheel 1");
     EXPECT_GT(d.unknown->gain, 0.05);
+    expect_as_fitted(d);
 }
 
 Diagnosis ask_fleet(std::uint64_t seed, const char *category) {
     const generator::BlindCase one = generator::draw_fleet_case(seed, category);
     const Model model = parse_model(generator::data_sheet(one.config), "sheet");
-    return diagnose(model, make_dataset(model, generator::generate(one.config)), {});
+    return diagnose(model, kept(make_dataset(model, generator::generate(one.config))), {});
 }
 
 // A grip that fades by a third in the run; along the way it fades too, but not as evenly.
@@ -94,6 +113,7 @@ TEST(Shapes, a_grip_that_fades_in_time_is_no_gradient_along_the_way) {
     EXPECT_EQ(d.unknown->variable, "time");
     EXPECT_EQ(d.unknown->target, "soil_strength");
     EXPECT_TRUE(is_nearest(d, "soil_gradient"));
+    expect_as_fitted(d);
     // the fit that --apply writes into this model is this model's, without the name that was taken back
     if (d.model_fit) {
         EXPECT_EQ(d.model_fit->parameters.size(), free_parameters(d.model, make_physics(d.model)).size());
@@ -119,6 +139,7 @@ TEST(Shapes, a_dead_band_of_the_bridge_shows_over_the_motors_voltage) {
     ASSERT_TRUE(d.unknown);
     EXPECT_EQ(d.unknown->target, "voltage");
     EXPECT_NE(d.unknown->variable.find("motor voltage"), std::string::npos);
+    expect_as_fitted(d);
 }
 
 TEST(Shapes, a_torque_that_saturates_shows_over_the_motors_current) {
@@ -133,6 +154,7 @@ TEST(Shapes, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_NE(d.unknown->variable.find("wheel speed"), std::string::npos) << d.text;
+    expect_as_fitted(d);
 }
 
 TEST(Shapes, a_slow_drift_of_the_grip_shows_over_time) {
@@ -144,6 +166,7 @@ TEST(Shapes, a_slow_drift_of_the_grip_shows_over_time) {
     const std::vector<double> &y = d.unknown->y; // a straight line or a curve: it falls
     const auto half = static_cast<std::ptrdiff_t>(y.size() / 2);
     EXPECT_LT(std::accumulate(y.end() - half, y.end(), 0.0), std::accumulate(y.begin(), y.begin() + half, 0.0));
+    expect_as_fitted(d);
 }
 
 TEST(Shapes, a_shape_takes_no_name_that_is_about_something_else) {

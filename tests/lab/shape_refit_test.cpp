@@ -69,11 +69,12 @@ TEST(ShapeRefit, finds_what_acts_on_one_wheel_and_holds_there_alone) {
         one.assessment.strength = Eigen::VectorXd::Zero(count);
         return one;
     };
+    const auto fall = [&](int wheel) { return fall_by(on(wheel), with_shape(problem, on(wheel)), problem, left, scatter); };
     const Problem with = with_shape(problem, on(2));
     const auto knots = shape.candidate.knots;
     const Eigen::VectorXd strength = with.theta.tail(static_cast<Eigen::Index>(knots.size()));
     EXPECT_NEAR(std::fabs(strength[strength.size() - 1] - strength[0]), 0.01 * (knots.back() - knots.front()), 0.01) << strength;
-    EXPECT_TRUE(is_worth_a_word(fall_by(on(2), problem, left, scatter), scatter.share));
+    EXPECT_TRUE(is_worth_a_word(fall(2), scatter.share));
     // told as that fit has it: the linear step of `on` is none
     ShapeScore step = on(2);
     step.assessment.standard_error = Eigen::VectorXd::Constant(strength.size(), 9);
@@ -85,7 +86,7 @@ TEST(ShapeRefit, finds_what_acts_on_one_wheel_and_holds_there_alone) {
     ShapeScore nothing = on(1);
     nothing.assessment.standard_error = step.assessment.standard_error;
     EXPECT_FALSE(as_refitted(nothing, problem));
-    EXPECT_GT(fall_by(on(2), problem, left, scatter).share, 3 * std::max(0.01, fall_by(on(1), problem, left, scatter).share));
+    EXPECT_GT(fall(2).share, 3 * std::max(0.01, fall(1).share));
 }
 
 TEST(ShapeRefit, knows_that_what_multiplies_stays_positive) {

@@ -13,12 +13,11 @@ namespace {
 
 using namespace hand_made;
 
-// Of the torque balances' rows each second's mean is `own` with the wheel's sign (its neighbours' opposed) and `common` with none; beside
-// them what scatters from row to row.
+// Each row of the torque balances is `common`, and `own` more or less at every other wheel; rows of the others are `other`.
 struct Ground {
     FourWheels rover;
     Problem before;
-    Ground() : before(rover.data, make_physics(rover.model), {}) {
+    explicit Ground(const FourWheels &of = FourWheels()) : rover(of), before(rover.data, make_physics(rover.model), {}) {
         before.fit({});
         before.row_scale.setConstant(2);
     }
@@ -71,6 +70,22 @@ TEST(UnevenGrip, a_law_of_falling_grip_must_gain_in_common_half_of_what_it_gains
         EXPECT_TRUE(g.holds(law, was, g.left(1, 4), 2));   // one wheel's own
     }
     EXPECT_TRUE(g.holds("slip_sinkage", was, g.left(1, 4)));
+}
+
+// Where currents of one wheel alone are measured, or of none, nothing is in common.
+TEST(UnevenGrip, is_not_asked_of_a_log_with_fewer_than_two_wheels_currents) {
+    FourWheels rover;
+    std::vector<Balance> &balance = rover.data.balance;
+    balance.erase(balance.begin() + 2, balance.begin() + 4);
+    const Ground two(rover);
+    EXPECT_EQ(two.taken(two.left(3, 4), two.left(3, 4)).wheels, 2);
+    EXPECT_FALSE(two.holds("shear_peak", two.left(3, 4), two.left(1, 4)));
+    balance.erase(balance.begin() + 1);
+    const Ground one(rover);
+    EXPECT_TRUE(one.holds("shear_peak", one.left(3, 4), one.left(2.9, 4)));
+    balance.erase(balance.begin());
+    const Ground none(rover);
+    EXPECT_TRUE(none.holds("shear_peak", none.left(3, 4, 2), none.left(3, 4, 1)));
 }
 
 } // namespace

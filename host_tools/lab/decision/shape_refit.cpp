@@ -37,11 +37,7 @@ Problem with_shape(const Problem &without, const ShapeScore &shape) {
     return with;
 }
 
-ShapeFall fall_by(const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter) {
-    return fall_to(with_shape(without, shape), shape, without, left, scatter);
-}
-
-ShapeFall fall_to(const Problem &with, const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter) {
+ShapeFall fall_by(const ShapeScore &shape, const Problem &with, const Problem &without, const HeldOut &left, const Scatter &scatter) {
     HeldOut after = held_out(with);
     const Eigen::VectorXd weight = without.row_scale.cwiseAbs2();
     Eigen::VectorXd smoothed = Eigen::VectorXd::Zero(weight.size());
@@ -89,7 +85,7 @@ bool is_possible(const ShapeScore &shape) {
 std::optional<ShapeScore> as_refitted(const ShapeScore &shape, const Problem &without) {
     const Scatter scatter(without);
     const Problem with = with_shape(without, shape);
-    if (!is_worth_a_word(fall_to(with, shape, without, held_out(without), scatter), scatter.share)) return std::nullopt;
+    if (!is_worth_a_word(fall_by(shape, with, without, held_out(without), scatter), scatter.share)) return std::nullopt;
     ShapeScore fitted = as_fitted(shape, with);
     return is_possible(fitted) ? std::optional<ShapeScore>(std::move(fitted)) : std::nullopt;
 }

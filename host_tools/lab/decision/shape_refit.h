@@ -23,8 +23,8 @@ struct ShapeFall {
 // The model with the shape: its coefficients are the last parameters, fitted with the others from the best part of the linear step.
 Problem with_shape(const Problem &without, const ShapeScore &shape);
 
-ShapeFall fall_by(const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter);
-ShapeFall fall_to(const Problem &with, const ShapeScore &shape, const Problem &without, const HeldOut &left, const Scatter &scatter);
+// `with`: of with_shape(); `left`: of the model without it.
+ShapeFall fall_by(const ShapeScore &shape, const Problem &with, const Problem &without, const HeldOut &left, const Scatter &scatter);
 
 // Surely (twice its error over blocks, and not by two blocks alone), and by enough: of all squares, or of one balance's.
 bool is_worth_a_word(const ShapeFall &fall, double scatter_share);

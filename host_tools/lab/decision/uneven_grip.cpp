@@ -35,6 +35,7 @@ SharesTaken shares_taken(const Problem &before, const HeldOut &left_before, cons
     Squares of_wheels, of_all;
     Sums together;
     Eigen::Index row = 0;
+    int wheels = 0;
     for (const Balance &b : before.data().balance) {
         if (b.kind != BalanceKind::current_torque) {
             row += static_cast<Eigen::Index>(b.measured.size());
@@ -49,17 +50,17 @@ SharesTaken shares_taken(const Problem &before, const HeldOut &left_before, cons
             ++row;
         }
         of_wheels.take(own);
+        wheels += own.empty() ? 0 : 1;
     }
     of_all.take(together);
-    return {of_wheels.share(), of_all.share()};
+    return {wheels, of_wheels.share(), of_all.share()};
 }
 
 bool holds_in_common(const Candidate &law, const Problem &before, const HeldOut &left_before, const HeldOut &left_with) {
-    const Dataset &data = before.data();
     if ((law.effect != "shear_peak" && law.effect != "sliding_speed_loss") || law.wheel >= 0) return true;
-    if (data.independent_rows || data.wheel.size() < 2) return true;
     const SharesTaken taken = shares_taken(before, left_before, left_with);
-    return taken.of_wheels > most_of_wheels || (taken.of_wheels > least_of_wheels && taken.of_all_together > in_common * taken.of_wheels);
+    return taken.wheels < 2 || taken.of_wheels > most_of_wheels ||
+           (taken.of_wheels > least_of_wheels && taken.of_all_together > in_common * taken.of_wheels);
 }
 
 } // namespace traction::lab

@@ -12,11 +12,12 @@ namespace traction::lab {
 
 // Shares of the held-out squares, means over a second, that a model takes off another's on the same data; negative: it adds.
 struct SharesTaken {
+    int wheels = 0; // that have such rows
     double of_wheels = 0, of_all_together = 0;
 };
 SharesTaken shares_taken(const Problem &before, const HeldOut &left_before, const HeldOut &left_with);
 
-// (1); true of a law that is not of this kind or of one wheel, and of machines of one wheel.
+// (1); true of a law that is not of this kind or of one wheel, and where fewer than two wheels' currents are measured.
 bool holds_in_common(const Candidate &law, const Problem &before, const HeldOut &left_before, const HeldOut &left_with);
 
 } // namespace traction::lab
