@@ -34,10 +34,10 @@ Assessment falls(std::size_t blocks, double each, double p_value) {
     return a;
 }
 
-// 76 shapes in four fifths of the chance of a false alarm, 137 of some wheels in the last fifth; twice, for there are two tests.
+// 90 shapes in four fifths of the chance of a false alarm, 137 of some wheels in the last fifth; twice, for there are two tests.
 TEST(Corrected, p_of_a_curve_is_that_of_its_coefficients_or_of_the_ranks_of_its_falls_times_the_number_tried) {
-    EXPECT_NEAR(corrected(curve(), falls(20, -1, 1e-6)), 2 * 76 / 0.8 * 1e-6, 1e-15);
-    EXPECT_NEAR(corrected(curve(), falls(20, 1, 0.5)), 2 * 76 / 0.8 * std::ldexp(1, -20), 1e-12);
+    EXPECT_NEAR(corrected(curve(), falls(20, -1, 1e-6)), 2 * 90 / 0.8 * 1e-6, 1e-15);
+    EXPECT_NEAR(corrected(curve(), falls(20, 1, 0.5)), 2 * 90 / 0.8 * std::ldexp(1, -20), 1e-12);
     EXPECT_NEAR(corrected(on_wheels(curve(), {1}), falls(20, -1, 1e-6)), 2 * 137 / 0.2 * 1e-6, 1e-15);
     EXPECT_EQ(corrected(curve(), falls(20, -1, 0.5)), 1);
 }
@@ -48,15 +48,15 @@ TEST(Corrected, p_of_a_wave_is_that_of_its_coefficients_or_of_the_mean_of_its_fa
     wave.order = 3;
     Assessment a = falls(3, 1, 0.5);
     a.gain = 500, a.gain_error = 0.5;
-    EXPECT_NEAR(corrected(wave, a), 2 * 76 / 0.8 * 0.5 * (1 - 1000 / std::sqrt(1e6 + 2)), 1e-9);
+    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.5 * (1 - 1000 / std::sqrt(1e6 + 2)), 1e-9);
     a.p_value = 1e-9;
-    EXPECT_NEAR(corrected(wave, a), 2 * 76 / 0.8 * 1e-9, 1e-18);
+    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 1e-9, 1e-18);
     a.p_value = 0.001, a.gain = -500;
-    EXPECT_NEAR(corrected(wave, a), 2 * 76 / 0.8 * 0.001, 1e-12); // what rises is no fall
+    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.001, 1e-12); // what rises is no fall
     a.gain = 500, a.gain_error = 0;
-    EXPECT_NEAR(corrected(wave, a), 2 * 76 / 0.8 * 0.001, 1e-12);
+    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.001, 1e-12);
     a.gain_error = 0.5, a.block_gain = Eigen::VectorXd::Ones(1); // one block has no scatter
-    EXPECT_NEAR(corrected(wave, a), 2 * 76 / 0.8 * 0.001, 1e-12);
+    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.001, 1e-12);
 }
 
 TEST(Kinds, of_shapes_are_lines_bumps_waves_and_curves) {

@@ -1,5 +1,7 @@
 #include "classes.h"
 
+#include "rounds.h"
+
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
@@ -13,20 +15,22 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
     const Trial &w = trials[winner];
     const bool by_priors =
         w.gain - w.assessment.prior_reduction < options.least_gain * base_error && w.best_balance_gain < options.least_gain_one;
+    // a winner by scales of its own: on the old ones the others of its class are no surer than it was
+    const bool unsure = w.by_rows && !(w.p_value < options.p_limit);
     DiagnoseOptions nearly = options;
-    nearly.p_limit = 0.05;
+    nearly.p_limit = unsure ? unlikely_from(options.p_limit) : 0.05;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (i == winner || !trials[i].refitted || trials[i].smooths) continue;
         Trial t = trials[i];
+        const double norm = w.assessment.projected.norm() * t.assessment.projected.norm();
+        const bool same = norm > 0 && std::fabs(w.assessment.projected.dot(t.assessment.projected)) > options.same_cosine * norm;
         const bool explains_more = t.error_reduction > w.error_reduction;
-        judge(t, explainable, by_priors || explains_more ? nearly : options);
+        judge(t, explainable, by_priors || explains_more || same || unsure ? nearly : options);
         if (t.verdict != "passes") continue;
         // the same effect on two wheels is a question, on all of them or on one of them it is one answer
         if (t.candidate.effect == w.candidate.effect && (t.candidate.wheel < 0 || w.candidate.wheel < 0)) continue;
-        const double error = sum_error(w.block_gain - t.block_gain);
-        const double norm = w.assessment.projected.norm() * t.assessment.projected.norm(), less = w.gain - t.gain;
-        const double cosine = norm > 0 ? w.assessment.projected.dot(t.assessment.projected) / norm : 0;
-        const bool alike = less < 2 * error || std::fabs(cosine) > options.same_cosine;
+        const double error = sum_error(w.block_gain - t.block_gain), less = w.gain - t.gain;
+        const bool alike = less < 2 * error || same;
         // where the rows say little, a share of a gain that is mostly scatter tells nobody apart
         if (explains_more || (by_priors && less < 2 * error) || (less < (by_priors ? 0.5 : 0.1) * w.gain && alike)) members.push_back(i);
     }

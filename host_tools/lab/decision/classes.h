@@ -9,9 +9,9 @@
 namespace traction::lab {
 
 // Which of the candidates that pass the data cannot tell from the winner. The nearly sure are in the class too where they explain more of
-// all rows than the winner does, or where the rows alone would not have named it but the data sheet's tolerances did: then what explains
-// half as much may be meant.
-// base_error: the baseline's held-out error; explainable: the part of it that is not noise.
+// all rows than the winner does, or change the log in the same way, or where the rows alone would not have named it but the data sheet's
+// tolerances did: then what explains half as much may be meant. base_error: the baseline's held-out error; explainable: the part of it that
+// is not noise.
 std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_t winner, double base_error, double explainable,
                                     const DiagnoseOptions &options);
 

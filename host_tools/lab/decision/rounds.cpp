@@ -202,11 +202,13 @@ bool takes_most_of_one(const HeldOut &before, const HeldOut &after, const Datase
     return false;
 }
 
+double unlikely_from(double p_limit) { return not_unlikely * p_limit; }
+
 std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit) {
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const Trial &t = trials[i];
-        if (t.verdict == "not_significant" && t.refitted && t.p_value < not_unlikely * p_limit && t.gain > 0 &&
+        if (t.verdict == "not_significant" && t.refitted && t.p_value < unlikely_from(p_limit) && t.gain > 0 &&
             plausible_sign(t.candidate, t.value) && large_enough(t.candidate, t.value) && !beyond_range(t.candidate, t.value))
             list.push_back(i);
     }

@@ -83,9 +83,11 @@ bool takes_most(const HeldOut &before, const HeldOut &after);
 // The same of a balance that is missed by far.
 bool takes_most_of_one(const HeldOut &before, const HeldOut &after, const Dataset &data, const Eigen::VectorXd &noise_rows);
 
-// Those whose refit on the baseline's scales is not unlikely (150 times the limit of p) and large, the largest fall of the error first, at
-// most three: where a large missing law has blown the scales up, its own rows hardly count on them, and only a fit with scales of its own
-// tells (assumed).
+// From which p a refit on the baseline's scales is unlikely: 150 times the limit (assumed). Where a large missing law has blown the scales
+// up, its own rows hardly count on them, and only a fit with scales of its own tells.
+double unlikely_from(double p_limit);
+
+// Those whose refit on the baseline's scales is not unlikely and large, the largest fall of the error first, at most three.
 std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit);
 
 // A law of a place, or of the way behind a wheel: whatever ground wanders, and whatever an encoder scatters, has a bit of it somewhere.

@@ -17,7 +17,7 @@ constexpr double left_to_explain = 0.01;     // of the error: assumed
 constexpr double place_beside_a_shape = 2.0; // of what was named: assumed
 constexpr double some_wheels_share = 0.2;    // of the chance of a false alarm, spent on shapes of one wheel or axle
 constexpr double some_wheels_tried = 137;    // electric shapes, and straight lines of the ground, x wheels and axles
-constexpr double shapes_tried = 76;          // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double shapes_tried = 90;          // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 } // namespace
 

@@ -133,6 +133,33 @@ void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &pro
     }
 }
 
+// One hat at each inner knot and between two of them, as wide as the knots are apart and half as wide: a resonance has its own place.
+void add_bumps(std::vector<ShapeScore> &list, const Screen &screen, const Candidate &shape, ShapeColumns &columns, const Dataset *keep) {
+    Candidate fine = shape;
+    fine.knots.clear();
+    for (std::size_t j = 0; j < shape.knots.size(); ++j) {
+        fine.knots.push_back(shape.knots[j]);
+        if (j + 1 < shape.knots.size()) fine.knots.push_back(0.5 * (shape.knots[j] + shape.knots[j + 1]));
+    }
+    fine.strengths.assign(fine.knots.size(), shape.strengths[0]);
+    fine.step.assign(fine.knots.size(), shape.step[0]);
+    for (std::size_t j = 0; j < fine.strengths.size(); ++j) fine.strengths[j].slots[0].coefficient = static_cast<int>(j);
+    const Eigen::MatrixXd C = columns.of(fine);
+    const auto last = static_cast<std::size_t>(C.cols()) - 1;
+    for (std::size_t j = 1; j < last; ++j)
+        for (const std::size_t half : {2, 1}) {
+            if (j < half || j + half > last) continue;
+            Candidate bump = shape;
+            bump.effect += ", a bump";
+            bump.knots = {fine.knots[j - half], fine.knots[j], fine.knots[j + half]};
+            bump.strengths = {fine.strengths[1]}; // the middle of its three
+            const auto at = static_cast<Eigen::Index>(j);
+            Eigen::VectorXd column = C.col(at);
+            if (half == 2) column += 0.5 * (C.col(at - 1) + C.col(at + 1));
+            list.push_back(scored(bump, column, screen, keep));
+        }
+}
+
 } // namespace
 
 std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool keeps) {
@@ -150,15 +177,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
         list.push_back(scored(c, C, screen, keep));
         add_on_some_wheels(list, problem, screen, c, C, keep);
         add_moving_on_some_wheels(list, problem, screen, c, columns, keep);
-        for (Eigen::Index j = 1; c.axis == Axis::abs_wheel_speed && j + 1 < C.cols(); ++j) {
-            Candidate bump = c;
-            bump.effect += ", a bump";
-            const auto at = c.knots.begin() + j;
-            bump.knots.assign(at - 1, at + 2);
-            bump.strengths = {c.strengths[static_cast<std::size_t>(j)]};
-            bump.strengths[0].slots[0].coefficient = 1;
-            list.push_back(scored(bump, C.col(j), screen, keep));
-        }
+        if (c.axis == Axis::abs_wheel_speed) add_bumps(list, screen, c, columns, keep);
     }
     const std::vector<Eigen::MatrixXd> of_waves = columns.of_waves(waves);
     for (std::size_t i = 0; i < waves.size(); ++i) list.push_back(scored(waves[i], of_waves[i], screen, keep));
