@@ -157,6 +157,19 @@ TEST(Shapes, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
     expect_as_fitted(d);
 }
 
+// Something rubs from the first minute on: five values over time miss where it began, and a law of the path looked as much like it.
+TEST(Shapes, a_friction_that_begins_at_once_is_a_step_at_its_time) {
+    const Diagnosis d = ask(Soil::concrete, "friction_step:torque_Nm=0.04,time_s=60", 38);
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    ASSERT_TRUE(d.unknown);
+    EXPECT_EQ(d.unknown->variable, "time");
+    ASSERT_EQ(d.unknown->x.size(), 2U) << d.unknown->balance;
+    EXPECT_NEAR(0.5 * (d.unknown->x[0] + d.unknown->x[1]), 60, 4); // half of what the steps are apart
+    EXPECT_EQ(d.unknown->target, "wheel_friction") << d.text;
+    EXPECT_NEAR(d.unknown->y[1], 0.04, 0.01);
+    expect_as_fitted(d);
+}
+
 TEST(Shapes, a_slow_drift_of_the_grip_shows_over_time) {
     const Diagnosis d = ask(Soil::gravel, "grip_drift:change=-0.4", 37);
     EXPECT_EQ(d.kind, "unknown") << d.text;

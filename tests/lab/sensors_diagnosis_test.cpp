@@ -282,6 +282,9 @@ TEST(Bench, of_a_law_of_the_catalogue_and_one_that_is_none_names_the_one_as_a_pa
     EXPECT_NEAR(d.accepted[0].value[0], 0.003, 3 * bench.textbook({a2()}).error);
 }
 
+// Of 120 s: the ninth of sixteen steps is the nearest to 60 s.
+const char *const jump_in_the_middle = "accelerometer(time), a step at 62 s";
+
 // A sensor that jumps in the middle looks like a drift, which leaves more than a curve over time does.
 TEST(Bench, whose_accelerometer_jumps_tells_the_drift_as_the_nearest_and_not_the_cause) {
     Bench bench;
@@ -291,10 +294,13 @@ TEST(Bench, whose_accelerometer_jumps_tells_the_drift_as_the_nearest_and_not_the
     EXPECT_EQ(d.nearest, Labels{"accel_drift"});
     EXPECT_TRUE(d.effects.empty() && d.accepted.empty() && d.model.effects.empty());
     ASSERT_TRUE(d.unknown);
-    EXPECT_EQ(d.unknown->balance, "accelerometer(time)");
-    EXPECT_NEAR(d.unknown->y.front(), 0, 0.06); // its stated offset, 0.02, may take a part
-    EXPECT_NEAR(d.unknown->y.back(), 0.4, 0.06);
-    EXPECT_EQ(d.messages, Labels{"accel_drift of the catalogue comes near, but accelerometer(time) alone explains as much: not named"});
+    EXPECT_EQ(d.unknown->variable, "time");
+    EXPECT_EQ(d.unknown->balance, jump_in_the_middle);
+    ASSERT_EQ(d.unknown->x.size(), 2U);
+    EXPECT_NEAR(0.5 * (d.unknown->x[0] + d.unknown->x[1]), 60, 0.5 * 0.96 * 120 / 17); // half of what the steps are apart
+    EXPECT_NEAR(d.unknown->y[1], 0.4, 0.06);
+    EXPECT_EQ(d.messages,
+              Labels{"accel_drift of the catalogue comes near, but " + d.unknown->balance + " alone explains as much: not named"});
     EXPECT_EQ(of(d.ranking, "accel_drift").verdict, "nearest");
     ASSERT_EQ(d.ladder.size(), 1U);
     // -a0 and 0.4 - a0 in either half of the accelerometer's rows, the others noise: a0 between nothing and its limit, six deviations of
@@ -333,7 +339,7 @@ TEST(Bench, of_a_right_name_beside_a_proxys_keeps_the_right_one) {
     EXPECT_EQ(d.effects, Labels{"radar_scale"});
     EXPECT_EQ(d.nearest, Labels{"accel_drift"});
     ASSERT_TRUE(d.unknown);
-    EXPECT_EQ(d.unknown->balance, "accelerometer(time)");
+    EXPECT_EQ(d.unknown->balance, jump_in_the_middle);
     EXPECT_NEAR(d.accepted[0].value[0], 0.08, 3 * bench.textbook({r1()}).error);
     ASSERT_EQ(d.ladder.size(), 2U);
     EXPECT_EQ(d.ladder[1].label, "+ radar_scale");
@@ -367,7 +373,7 @@ TEST(Bench, whose_sheet_alone_speaks_for_a_name_is_told_it_beside_a_shape_only_w
     EXPECT_TRUE(much.effects.empty() && much.model.effects.empty());
     EXPECT_EQ(much.nearest, Labels{"accel_drift"}); // the name of the sheet is not even near
     ASSERT_TRUE(much.unknown);
-    EXPECT_EQ(much.unknown->balance, "accelerometer(time)");
+    EXPECT_EQ(much.unknown->balance, jump_in_the_middle);
     EXPECT_EQ(much.ladder.size(), 1U);
     EXPECT_EQ(std::count(much.messages.begin(), much.messages.end(),
                          "radar_scale was found, but for the data sheet's sake alone, whose numbers are bent by what the model lacks: not "
@@ -493,7 +499,7 @@ TEST(Unknown, shape_beside_which_a_name_is_not_needed_is_its_cause) {
     const ShapeFindings found = n.found({"accel_drift", "radar_scale"});
     ASSERT_TRUE(found.proxy && found.cause);
     EXPECT_EQ(n.names[*found.proxy].effect, "accel_drift");
-    EXPECT_EQ(found.cause->balance, "accelerometer(time)");
+    EXPECT_EQ(found.cause->balance, jump_in_the_middle);
 }
 
 } // namespace

@@ -34,11 +34,14 @@ Assessment falls(std::size_t blocks, double each, double p_value) {
     return a;
 }
 
-// 90 shapes in four fifths of the chance of a false alarm, 137 of some wheels in the last fifth; twice, for there are two tests.
+// 90 shapes in seven tenths of the chance of a false alarm, 137 of some wheels in two, 310 steps in the last; twice, for there are two
+// tests.
 TEST(Corrected, p_of_a_curve_is_that_of_its_coefficients_or_of_the_ranks_of_its_falls_times_the_number_tried) {
-    EXPECT_NEAR(corrected(curve(), falls(20, -1, 1e-6)), 2 * 90 / 0.8 * 1e-6, 1e-15);
-    EXPECT_NEAR(corrected(curve(), falls(20, 1, 0.5)), 2 * 90 / 0.8 * std::ldexp(1, -20), 1e-12);
+    EXPECT_NEAR(corrected(curve(), falls(20, -1, 1e-6)), 2 * 80 / 0.8 * 1e-6, 1e-15);
+    EXPECT_NEAR(corrected(curve(), falls(20, 1, 0.5)), 2 * 80 / 0.8 * std::ldexp(1, -20), 1e-12);
     EXPECT_NEAR(corrected(on_wheels(curve(), {1}), falls(20, -1, 1e-6)), 2 * 137 / 0.2 * 1e-6, 1e-15);
+    for (const Candidate &step : {steps_of(curve()).front(), on_wheels(steps_of(curve()).front(), {1})})
+        EXPECT_NEAR(corrected(step, falls(20, -1, 1e-6)), 2 * 310 / 0.1 * 1e-6, 1e-15);
     EXPECT_EQ(corrected(curve(), falls(20, -1, 0.5)), 1);
 }
 
@@ -48,15 +51,15 @@ TEST(Corrected, p_of_a_wave_is_that_of_its_coefficients_or_of_the_mean_of_its_fa
     wave.order = 3;
     Assessment a = falls(3, 1, 0.5);
     a.gain = 500, a.gain_error = 0.5;
-    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.5 * (1 - 1000 / std::sqrt(1e6 + 2)), 1e-9);
+    EXPECT_NEAR(corrected(wave, a), 2 * 80 / 0.8 * 0.5 * (1 - 1000 / std::sqrt(1e6 + 2)), 1e-9);
     a.p_value = 1e-9;
-    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 1e-9, 1e-18);
+    EXPECT_NEAR(corrected(wave, a), 2 * 80 / 0.8 * 1e-9, 1e-18);
     a.p_value = 0.001, a.gain = -500;
-    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.001, 1e-12); // what rises is no fall
+    EXPECT_NEAR(corrected(wave, a), 2 * 80 / 0.8 * 0.001, 1e-12); // what rises is no fall
     a.gain = 500, a.gain_error = 0;
-    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.001, 1e-12);
+    EXPECT_NEAR(corrected(wave, a), 2 * 80 / 0.8 * 0.001, 1e-12);
     a.gain_error = 0.5, a.block_gain = Eigen::VectorXd::Ones(1); // one block has no scatter
-    EXPECT_NEAR(corrected(wave, a), 2 * 90 / 0.8 * 0.001, 1e-12);
+    EXPECT_NEAR(corrected(wave, a), 2 * 80 / 0.8 * 0.001, 1e-12);
 }
 
 TEST(Kinds, of_shapes_are_lines_bumps_waves_and_curves) {
@@ -74,6 +77,27 @@ TEST(Kinds, of_shapes_are_lines_bumps_waves_and_curves) {
     EXPECT_TRUE(is_curve(shape(TermTarget::wheel_torque, Axis::wheel_speed, {0, 1, 2, 3})));
     for (const Axis axis : {Axis::direction, Axis::other_current, Axis::axle_current, Axis::side_current})
         EXPECT_TRUE(is_curve(shape(TermTarget::voltage, axis, {0, 1, 2})));
+}
+
+TEST(Kinds, of_shapes_over_time_are_sixteen_steps_evenly_apart) {
+    Candidate over_time = shape(TermTarget::wheel_friction, Axis::time, {3, 8, 20});
+    over_time.effect = "friction(time)";
+    over_time.strengths.resize(3);
+    for (int j = 0; j < 3; ++j)
+        over_time.strengths[static_cast<std::size_t>(j)].slots = {Slot{}},
+        over_time.strengths[static_cast<std::size_t>(j)].slots[0].coefficient = j;
+    const std::vector<Candidate> steps = steps_of(over_time);
+    ASSERT_EQ(steps.size(), 16U);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const Candidate &c = steps[i];
+        EXPECT_TRUE(is_step(c) && is_curve(c) && !is_straight(c) && !is_bump(c));
+        ASSERT_EQ(c.knots.size(), 2U);
+        EXPECT_NEAR(c.knots[0], 3 + static_cast<double>(i + 1) - 0.125, 1e-12);
+        EXPECT_NEAR(c.knots[1], 3 + static_cast<double>(i + 1) + 0.125, 1e-12);
+        EXPECT_EQ(c.strengths[0].slots[0].coefficient, 1); // of two values the later
+        EXPECT_EQ(c.effect, "friction(time), a step at " + std::to_string(i + 4) + " s");
+    }
+    EXPECT_FALSE(is_step(over_time));
 }
 
 TEST(Kinds, of_uneven_ground_are_its_strength_over_time_place_path_and_slip) {
@@ -156,6 +180,15 @@ TEST(Description, of_a_bump_is_nothing_at_its_ends) {
     EXPECT_EQ(u.y, (std::vector<double>{0, 3, 0}));
     EXPECT_EQ(u.low, (std::vector<double>{0, 3 - 0.98, 0}));
     EXPECT_EQ(u.high, (std::vector<double>{0, 3 + 0.98, 0}));
+}
+
+TEST(Description, of_a_step_is_nothing_before_it_and_all_of_it_behind) {
+    const Candidate c = steps_of(shape(TermTarget::wheel_friction, Axis::time, {0, 17})).front();
+    const UnknownShape u = describe(with(c, {3}, 0.5), 100);
+    EXPECT_EQ(u.x, c.knots);
+    EXPECT_EQ(u.y, (std::vector<double>{0, 3}));
+    EXPECT_EQ(u.high, (std::vector<double>{0, 3 + 0.98}));
+    EXPECT_EQ(u.expression, "0 + (3)*min(1, max(0, (t - (0.875))/0.25))");
 }
 
 TEST(Description, of_a_wave_is_one_turn_of_the_wheel_or_one_wave_of_the_path) {
@@ -432,6 +465,9 @@ TEST(Place, of_names_is_asked_for_by_what_is_sure_no_line_and_does_nearly_as_muc
     EXPECT_FALSE(may_replace(s, 100, options));
     s.p_value = 0, s.candidate.knots = {0, 1}, s.candidate.strengths.resize(2);
     ASSERT_TRUE(is_straight(s.candidate));
+    EXPECT_FALSE(may_replace(s, 100, options));
+    s.candidate.strengths.resize(1);
+    ASSERT_TRUE(is_step(s.candidate));
     EXPECT_FALSE(may_replace(s, 100, options));
 }
 

@@ -120,7 +120,7 @@ TEST(ShapeColumns, of_all_wheels_are_what_predictions_differ_by) {
     const Shaped &f = four_wheels();
     std::map<TermTarget, int> seen;
     for (const ShapeScore &s : f.scores) {
-        if (s.candidate.some_wheels || is_bump(s.candidate)) continue;
+        if (s.candidate.some_wheels || is_bump(s.candidate) || is_step(s.candidate)) continue;
         expect_columns(f, s);
         ++seen[s.candidate.target];
     }
@@ -142,7 +142,7 @@ TEST(ShapeColumns, of_some_wheels_are_those_of_each_wheel_and_axle) {
     const unsigned electric = stage_torque | stage_voltage;
     for (const ShapeScore &s : f.scores) {
         const Candidate &c = s.candidate;
-        if (c.some_wheels || is_bump(c)) continue;
+        if (c.some_wheels || is_bump(c) || is_step(c)) continue;
         const bool of_motors = (c.touched & electric) != 0 && (c.touched & ~electric) == 0 && !c.varies_between_wheels,
                    line_of_the_ground = c.touched == stage_motion && is_straight(c);
         EXPECT_EQ(groups[c.effect], of_motors || line_of_the_ground ? 6 : 0) << c.effect; // four wheels, two axles
@@ -191,6 +191,45 @@ TEST(ShapeColumns, of_a_bump_are_hats_at_the_knots_of_its_curve_and_between_them
         EXPECT_EQ((seen[{at, 1}]), 1) << at;
         EXPECT_EQ((seen[{at, 2}]), at > 1 && at + 1 < last ? 1 : 0) << at;
     }
+}
+
+// Where it explains most: of each target on all wheels, of what each motor has for itself on each wheel and axle too.
+TEST(ShapeColumns, of_steps_are_what_predictions_differ_by) {
+    const Shaped &f = four_wheels();
+    std::map<TermTarget, std::size_t> of_all, of_some;
+    for (const ShapeScore &s : f.scores) {
+        if (!is_step(s.candidate)) continue;
+        expect_columns(f, s);
+        ++(s.candidate.some_wheels ? of_some : of_all)[s.candidate.target];
+    }
+    using T = TermTarget;
+    EXPECT_EQ(of_all, (std::map<T, std::size_t>{{T::wheel_friction, 1},
+                                                {T::rolling, 1},
+                                                {T::voltage, 1},
+                                                {T::soil_strength, 1},
+                                                {T::motor_constant, 1},
+                                                {T::resistance, 1},
+                                                {T::accel, 1}}));
+    EXPECT_EQ(of_some, (std::map<T, std::size_t>{{T::wheel_friction, 6}, {T::voltage, 6}, {T::motor_constant, 6}, {T::resistance, 6}}));
+}
+
+// One of the sixteen, and not the first that comes.
+TEST(ShapeScores, of_steps_are_those_of_the_one_that_explains_most) {
+    const Shaped &f = four_wheels();
+    const auto step = std::find_if(f.scores.begin(), f.scores.end(), [](const ShapeScore &s) {
+        return is_step(s.candidate) && !s.candidate.some_wheels && s.candidate.target == TermTarget::wheel_friction;
+    });
+    const ShapeScore *over_time = f.find("friction(time)");
+    ASSERT_TRUE(step != f.scores.end() && over_time != nullptr);
+    Problem problem = *f.problem;
+    ShapeColumns columns(problem);
+    int better = 0;
+    for (const Candidate &c : steps_of(over_time->candidate)) {
+        const Assessment a = f.screen->assess(columns.of_steps({c}), Eigen::VectorXd::Zero(1), false);
+        EXPECT_LE(a.gain, step->assessment.gain * (1 + 1e-9));
+        better += a.gain > step->assessment.gain * (1 - 1e-9) ? 1 : 0;
+    }
+    EXPECT_EQ(better, 1);
 }
 
 TEST(ShapeScores, are_sorted_by_gain_with_their_corrected_p_and_the_fall_of_a_balance_where_they_are_very_sure) {

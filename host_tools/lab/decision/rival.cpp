@@ -151,8 +151,7 @@ std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::str
         const HeldOut by_shape = sharp(shaped, less, c.touched, scatter);
         const Fall fall = fall_between(left, by_shape, weight), lead = fall_between(by_name, by_shape, weight),
                    noise_lead = fall_between(by_name, by_shape, noise);
-        const bool better = is_sure_fall(lead) && fall.sum > notably_more * own.sum &&
-                            is_worth_a_word(fall_by(s, shaped, less, left, scatter), scatter.share);
+        const bool better = is_sure_fall(lead) && fall.sum > notably_more * own.sum;
         const bool as_well = is_sure_fall(fall) && lead.sum > -lead.error && -noise_lead.sum < errors_ahead * noise_lead.error;
         if (!better && !as_well) continue;
         if (!better && is_same_change(law, screen.projected(s.columns.whole() * shaped.theta.tail(s.columns.cols())))) continue;

@@ -13,11 +13,14 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_uneven = 0.06; // share of the error: a grip that varies by 6 % over 0.2 m gave up to 0.047 (plant on gravel, clean)
-constexpr double left_to_explain = 0.01;     // of the error: assumed
-constexpr double place_beside_a_shape = 2.0; // of what was named: assumed
-constexpr double some_wheels_share = 0.2;    // of the chance of a false alarm, spent on shapes of one wheel or axle
-constexpr double some_wheels_tried = 137;    // electric shapes, and straight lines of the ground, x wheels and axles
-constexpr double shapes_tried = 90;          // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
+constexpr double left_to_explain = 0.01;               // of the error: assumed
+constexpr double place_beside_a_shape = 2.0;           // of what was named: assumed
+constexpr double some_wheels_share = 0.2;              // of the chance of a false alarm, spent on shapes of one wheel or axle
+constexpr double some_wheels_tried = 137;              // electric shapes, and straight lines of the ground, x wheels and axles
+constexpr double steps_share = 0.1, steps_tried = 310; // beside that chance; ten a target are no near copies, x targets, wheels and axles
+constexpr int steps = 16;
+constexpr double step_length = 0.25; // of what they are apart
+constexpr double shapes_tried = 80;  // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
 } // namespace
 
@@ -29,13 +32,31 @@ double corrected(const Candidate &c, const Assessment &a) {
         const double blocks = static_cast<double>(a.block_gain.size()), t = a.gain_error > 0 ? a.gain / a.gain_error : 0;
         if (t > 0 && blocks > 1) falls = 0.5 * f_tail(t * t, 1, blocks - 1);
     }
-    const double tried = c.some_wheels ? some_wheels_tried / some_wheels_share : shapes_tried / (1 - some_wheels_share);
+    const double tried = is_step(c)      ? steps_tried / steps_share
+                         : c.some_wheels ? some_wheels_tried / some_wheels_share
+                                         : shapes_tried / (1 - some_wheels_share);
     return std::min(1.0, 2 * tried * std::min(a.p_value, falls));
 }
 
-bool is_straight(const Candidate &c) { return c.knots.size() == 2; }
+bool is_straight(const Candidate &c) { return c.knots.size() == 2 && c.strengths.size() == 2; }
 
-bool is_bump(const Candidate &c) { return c.strengths.size() == 1; }
+bool is_bump(const Candidate &c) { return c.knots.size() == 3 && c.strengths.size() == 1; }
+
+bool is_step(const Candidate &c) { return c.knots.size() == 2 && c.strengths.size() == 1; }
+
+std::vector<Candidate> steps_of(const Candidate &over_time) {
+    const double first = over_time.knots.front(), apart = (over_time.knots.back() - first) / (steps + 1);
+    std::vector<Candidate> list;
+    for (int i = 1; i <= steps; ++i) {
+        Candidate c = over_time;
+        const double at = first + i * apart;
+        c.effect += ", a step at " + std::to_string(std::lround(at)) + " s";
+        c.knots = {at - 0.5 * step_length * apart, at + 0.5 * step_length * apart};
+        c.strengths = {over_time.strengths[1]}; // of its two knots the later
+        list.push_back(std::move(c));
+    }
+    return list;
+}
 
 std::vector<std::vector<int>> wheel_groups(const Physics &physics, bool motors) {
     std::vector<std::vector<int>> groups;
@@ -91,6 +112,7 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
     std::vector<double> error(s.assessment.standard_error.begin(), s.assessment.standard_error.end());
     for (Eigen::Index j = 0; j < s.assessment.strength.size(); ++j) y.push_back(s.assessment.strength[j]);
     if (is_bump(s.candidate)) y = {0, y[0], 0}, error = {0, error[0], 0};
+    if (is_step(s.candidate)) y = {0, y[0]}, error = {0, error[0]};
     u.expression = shape_expression(s.candidate, y);
     if (s.candidate.order > 0) {
         for (int i = 0; i <= 36; ++i) { // a turn of the wheel, or one wave
@@ -145,7 +167,7 @@ Assessment effect_given_shape(const Problem &less, const Eigen::MatrixXd &effect
 
 bool is_curve(const Candidate &shape) {
     return shape.order == 0 && !shape.varies_between_wheels &&
-           (shape.knots.size() > 3 || is_straight(shape) || is_bump(shape) || shape.axis == Axis::direction ||
+           (shape.knots.size() > 3 || is_straight(shape) || is_bump(shape) || is_step(shape) || shape.axis == Axis::direction ||
             shape.axis == Axis::other_current || shape.axis == Axis::axle_current || shape.axis == Axis::side_current);
 }
 
@@ -201,7 +223,8 @@ bool takes_their_place(std::size_t names, double gain, double named_gain, double
 }
 
 bool may_replace(const ShapeScore &shape, double named_gain, const DiagnoseOptions &options) {
-    return shape.p_value < options.shape_p_limit && !is_straight(shape.candidate) && shape.assessment.gain > place_of_several * named_gain;
+    return shape.p_value < options.shape_p_limit && !is_straight(shape.candidate) && !is_step(shape.candidate) &&
+           shape.assessment.gain > place_of_several * named_gain;
 }
 
 bool gives_way(const std::vector<std::size_t> &replaced, const std::vector<CandidateResult> &accepted, double shape_gain) {
@@ -235,8 +258,9 @@ const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std:
         sharp.assessment.block_gain.array() -=
             smoothed / static_cast<double>(std::max<Eigen::Index>(1, sharp.assessment.block_gain.size()));
         if (sharp.assessment.gain < s.assessment.gain && (!material(sharp) || !repeats(sharp))) continue;
-        // of shapes that do nearly as well, the one with the fewest coefficients
-        if (best != nullptr && !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
+        // of shapes that do nearly as well, the one with the fewest coefficients; but a step is most of any curve over time
+        if (best != nullptr && (is_step(s.candidate) ||
+                                !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())))
             continue;
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;

@@ -33,6 +33,10 @@ bool is_straight(const Candidate &shape);
 // One value between two that are nothing: a resonance. What a curve of many values says of it is less sure.
 bool is_bump(const Candidate &shape);
 
+// One value from a time on: something broke, came loose or was loaded. The steps of a shape over time are evenly apart in it.
+bool is_step(const Candidate &shape);
+std::vector<Candidate> steps_of(const Candidate &over_time);
+
 // Every ground's strength wanders along the way: that alone is not worth a word. Nor is it over slip, which grows where the ground is weak:
 // at a steady pull the one follows from the other.
 bool uneven(const Candidate &shape);

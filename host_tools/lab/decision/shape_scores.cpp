@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace traction::lab {
 
@@ -25,6 +26,25 @@ class StackedTerm : public Term {
   private:
     std::vector<std::shared_ptr<Term>> part_;
     std::size_t count_ = 0;
+};
+
+// Steps over time, one beside the other.
+class StepsTerm : public Term {
+  public:
+    StepsTerm(std::vector<double> begin, double length) : begin_(std::move(begin)), length_(length) {}
+    double value(const Signals &signals, const double *c) const override {
+        double sum = 0;
+        for (std::size_t i = 0; i < begin_.size(); ++i) sum += c[i] * part(signals.t, i);
+        return sum;
+    }
+    void weights(const Signals &signals, std::size_t count, double *weight) const override {
+        for (std::size_t i = 0; i < count; ++i) weight[i] = part(signals.t, i);
+    }
+
+  private:
+    double part(double t, std::size_t i) const { return std::clamp((t - begin_[i]) / length_, 0.0, 1.0); }
+    std::vector<double> begin_;
+    double length_;
 };
 
 } // namespace
@@ -78,6 +98,28 @@ std::vector<Eigen::MatrixXd> ShapeColumns::of_waves(const std::vector<Candidate>
     return list;
 }
 
+Eigen::MatrixXd ShapeColumns::of_steps(const std::vector<Candidate> &steps) {
+    const Candidate &one = steps.front();
+    const bool electric = (one.touched & (stage_torque | stage_voltage)) != 0 && (one.touched & (stage_motion | stage_sensors)) == 0;
+    const bool moves = one.touched == stage_motion && one.target != TermTarget::body_force;
+    const std::size_t most = electric ? steps.size() : most_shapes;
+    Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(steps.size()));
+    for (std::size_t first = 0; first < steps.size(); first += most) {
+        const std::size_t count = std::min(most, steps.size() - first);
+        auto part = columns.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+        std::vector<double> begin;
+        for (std::size_t i = 0; i < count; ++i) begin.push_back(steps[first + i].knots[0]);
+        const StepsTerm term(begin, one.knots[1] - one.knots[0]);
+        if (plain_ && moves)
+            part = problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(one.target), term, count);
+        else if (plain_ && electric && !physics_.unsigned_current)
+            part = problem_.row_scale.asDiagonal() * problem_.forward().shaped_electric(physics_, electric_unit(one.target), term, count);
+        else
+            for (std::size_t i = 0; i < count; ++i) part.col(static_cast<Eigen::Index>(i)) = of(steps[first + i]);
+    }
+    return columns;
+}
+
 const UnitResponse &ShapeColumns::unit(TermTarget target) {
     auto found = units_.find(target);
     if (found == units_.end())
@@ -103,21 +145,28 @@ ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Scre
     return s;
 }
 
+bool is_of_each_motor(const Candidate &shape) {
+    const unsigned electric = stage_torque | stage_voltage;
+    return (shape.touched & electric) != 0 && (shape.touched & ~electric) == 0;
+}
+
+Eigen::MatrixXd rows_of(const std::vector<int> &wheels, const Dataset &data, const Eigen::MatrixXd &columns) {
+    Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+    Eigen::Index first = 0;
+    for (const Balance &b : data.balance) {
+        const auto n = static_cast<Eigen::Index>(b.measured.size());
+        if (std::find(wheels.begin(), wheels.end(), b.wheel) != wheels.end()) part.middleRows(first, n) = columns.middleRows(first, n);
+        first += n;
+    }
+    return part;
+}
+
 // A shape of torque or voltage moves the rows of each wheel for itself: on some wheels it has the same columns there and nothing elsewhere.
 void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
                         const Eigen::MatrixXd &columns, const Dataset *keep) {
-    const unsigned electric = stage_torque | stage_voltage;
-    if ((shape.touched & electric) == 0 || (shape.touched & ~electric) != 0 || shape.varies_between_wheels) return;
-    for (const std::vector<int> &group : wheel_groups(problem.physics(), true)) {
-        Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
-        Eigen::Index first = 0;
-        for (const Balance &b : problem.data().balance) {
-            const auto n = static_cast<Eigen::Index>(b.measured.size());
-            if (std::find(group.begin(), group.end(), b.wheel) != group.end()) part.middleRows(first, n) = columns.middleRows(first, n);
-            first += n;
-        }
-        list.push_back(scored(on_wheels(shape, group), part, screen, keep));
-    }
+    if (!is_of_each_motor(shape) || shape.varies_between_wheels) return;
+    for (const std::vector<int> &group : wheel_groups(problem.physics(), true))
+        list.push_back(scored(on_wheels(shape, group), rows_of(group, problem.data(), columns), screen, keep));
 }
 
 // One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.
@@ -131,6 +180,28 @@ void add_moving_on_some_wheels(std::vector<ShapeScore> &list, const Problem &pro
         for (const int i : group) part += each[static_cast<std::size_t>(i)];
         list.push_back(scored(on_wheels(shape, group), part, screen, keep));
     }
+}
+
+// Something that changes at once: on all wheels, each and each axle, where it explains most.
+void add_steps(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape, ShapeColumns &columns,
+               const Dataset *keep) {
+    const std::vector<Candidate> steps = steps_of(shape);
+    const Eigen::MatrixXd C = columns.of_steps(steps);
+    const auto add_best = [&](const std::vector<int> &group) {
+        const Eigen::MatrixXd own = group.empty() ? C : rows_of(group, problem.data(), C);
+        std::optional<ShapeScore> best;
+        Eigen::Index at = 0;
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            const auto j = static_cast<Eigen::Index>(i);
+            ShapeScore s = scored(group.empty() ? steps[i] : on_wheels(steps[i], group), own.col(j), screen, nullptr);
+            if (!best || s.assessment.gain > best->assessment.gain) best = std::move(s), at = j;
+        }
+        if (keep != nullptr) best->columns = SparseJacobian(*keep, own.col(at));
+        list.push_back(std::move(*best));
+    };
+    add_best({});
+    if (is_of_each_motor(shape))
+        for (const std::vector<int> &group : wheel_groups(problem.physics(), true)) add_best(group);
 }
 
 // One hat at each inner knot and between two of them, as wide as the knots are apart and half as wide: a resonance has its own place.
@@ -178,6 +249,7 @@ std::vector<ShapeScore> all_shapes(Problem &problem, const Screen &screen, bool 
         add_on_some_wheels(list, problem, screen, c, C, keep);
         add_moving_on_some_wheels(list, problem, screen, c, columns, keep);
         if (c.axis == Axis::abs_wheel_speed) add_bumps(list, screen, c, columns, keep);
+        if (c.axis == Axis::time && !is_straight(c) && !problem.data().independent_rows) add_steps(list, problem, screen, c, columns, keep);
     }
     const std::vector<Eigen::MatrixXd> of_waves = columns.of_waves(waves);
     for (std::size_t i = 0; i < waves.size(); ++i) list.push_back(scored(waves[i], of_waves[i], screen, keep));

@@ -21,6 +21,8 @@ class ShapeColumns {
     std::vector<Eigen::MatrixXd> of_each_wheel(const Candidate &shape);
     // Of waves, which come many and alike: as many as one pass holds.
     std::vector<Eigen::MatrixXd> of_waves(const std::vector<Candidate> &waves);
+    // Of steps of one target, a column each.
+    Eigen::MatrixXd of_steps(const std::vector<Candidate> &steps);
 
   private:
     const UnitResponse &unit(TermTarget target);
