@@ -100,6 +100,7 @@ TEST(Sizes, go_with_the_machine) {
     EXPECT_NEAR(of(by, "N m"), 1, 1e-12); // 2 * 4 / 8
     EXPECT_NEAR(of(by, "N m s"), 4.0 / 8, 1e-9);
     EXPECT_NEAR(of(by, "A"), 4.0 / 8, 1e-9);
+    EXPECT_NEAR(of(by, "K/W"), 8.0 / (4 * 4), 1e-9); // by stall power, U^2 / R
     EXPECT_NEAR(of(by, "ohm"), 8, 1e-9);
     EXPECT_NEAR(of(by, "V"), 4, 1e-9);
     EXPECT_NEAR(of(by, "N"), 5, 1e-9);

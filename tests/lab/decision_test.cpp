@@ -78,6 +78,18 @@ TEST(Diagnose, a_name_that_a_shape_outdoes_is_told_as_the_nearest) {
     EXPECT_TRUE(d.effects.empty()) << d.text;
 }
 
+// At the nearest of the speeds that are tried a Stribeck friction of 1.51 rad/s leaves what a curve over the wheel's speed
+// explains; at its own it leaves nothing to that.
+TEST(Diagnose, a_law_takes_its_own_speed_before_a_shape_takes_its_place) {
+    const Diagnosis d = ask_drawn(generator::draw_fleet_case(941038, "one"));
+    ASSERT_EQ(d.effects, std::vector<std::string>{"stribeck_friction"}) << d.text;
+    ASSERT_FALSE(d.accepted[0].shapes.empty());
+    EXPECT_LT(d.accepted[0].shapes[0].low, 1.51);
+    EXPECT_GT(d.accepted[0].shapes[0].high, 1.51);
+    EXPECT_LT(d.accepted[0].low[0], 0.3288);
+    EXPECT_GT(d.accepted[0].high[0], 0.3288);
+}
+
 // A slow drive, wide smoothing: a relaxation length explains ten times as much, by smoothing the encoders' scatter, which is no evidence.
 // What it kept from being fitted must have its turn when it is refused.
 TEST(Diagnose, what_is_refused_stands_in_nobodys_way) {

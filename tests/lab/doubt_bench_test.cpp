@@ -238,7 +238,9 @@ TEST(Motor, that_wears_in_is_named_with_the_time_that_it_takes) {
     EXPECT_EQ(kept.high, time.high);
     EXPECT_TRUE(kept.fixed);
     EXPECT_FALSE(std::isfinite(kept.minimum) || std::isfinite(kept.maximum));
-    EXPECT_FALSE(d.model_fit); // no longer of this model
+    ASSERT_TRUE(d.model_fit); // of this model, its time fixed where it was found
+    EXPECT_EQ(d.model_fit->parameters.size(), free_parameters(d.model, make_physics(d.model)).size());
+    EXPECT_NEAR(d.model_fit->physics().wheel[0].wear_in_time_s, time.value, 1e-9);
     ASSERT_EQ(d.ladder.size(), 2U);
     EXPECT_LT(d.ladder[1].train, 1.1);
     EXPECT_LT(d.ladder[1].heldout, 1.1);

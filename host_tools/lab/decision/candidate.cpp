@@ -57,6 +57,7 @@ class MachineScale {
             by_unit_["N m"] = KG * volt / Ra / (0.265 * 7.2 / 3.24);
             by_unit_["N m s"] = KG * KG / Ra / (0.265 * 0.265 / 3.24);
             by_unit_["A"] = volt / Ra / (7.2 / 3.24);
+            by_unit_["K/W"] = 7.2 * 7.2 / 3.24 / (volt * volt / Ra); // as warm by its own stall power
             const double slower = 7.2 / 0.265 * 0.057 / (volt / KG * radius);
             by_unit_["s/m"] = slower;
             by_unit_["s^2/m^2"] = slower * slower;

@@ -51,6 +51,7 @@ class Search {
             problem = std::move(*next);
         }
         eliminate_backward(problem);
+        refine_shapes(problem); // first: of a law at a station beside its own speed or time a shape is better than it
         if (options_.shapes) test_shapes(first, problem);
         settle_last(problem);
         reject_conflicts(d_, problem, [&](std::size_t i) {
@@ -64,7 +65,7 @@ class Search {
         if (d_.unknown) tell_as_fitted(problem);
         if (options_.shapes && !d_.unknown) face_rivals(first, problem);
         if (!d_.model_fit) settle_last(problem);
-        refine_shapes(problem);
+        if (!refined_) refine_shapes(problem);
         d_.limits = limits_of(problem);
         for (std::string &moved : moved_far(problem)) d_.messages.push_back(std::move(moved));
         conclude(d_);
@@ -349,6 +350,7 @@ class Search {
         if (d_.ladder.size() > 1) stands_at(problem);
         d_.model = std::move(without);
         d_.model_fit.reset(); // it was of the model with it
+        refined_ = false;
         refresh(problem, Screen(problem));
     }
 
@@ -488,6 +490,7 @@ class Search {
     // The variants that were tried are stations on a line: beside the strengths, their shape parameters that are numbers on a scale (not
     // kinds: an order, who shares a lead) are set free from there. Kept where the fit is no worse for it.
     void refine_shapes(Problem &last) {
+        refined_ = true;
         for (CandidateResult &a : d_.accepted) {
             const sim::Effect *effect = sim::find_effect(a.candidate.effect);
             if (effect == nullptr) continue;
@@ -521,6 +524,7 @@ class Search {
     Columns::Cache cache_;
     HeldOut held_;                           // of the model as it stands
     std::map<std::string, Earlier> earlier_; // by label
+    bool refined_ = false;                   // the shape parameters of what is accepted, beside all that is
     int done_ = 0;
 };
 
