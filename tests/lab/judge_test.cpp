@@ -241,12 +241,26 @@ TEST(Class, holds_no_one_that_did_not_pass_or_was_not_fitted) {
     other.refitted = false;
     EXPECT_TRUE(class_of(good("a"), other).empty());
     other = good("b");
-    other.p_value = 0.04; // not by the limit of names; nearly: only where it explains more
+    other.p_value = 0.04; // not by the limit of names; nearly: where it changes the log alike, or explains more
+    EXPECT_EQ(class_of(good("a"), other).size(), 1U);
+    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
     EXPECT_EQ(class_of(good("a"), other).size(), 0U);
     other.error_reduction = 200;
     EXPECT_EQ(class_of(good("a"), other).size(), 1U);
     other.p_value = 0.06;
     EXPECT_TRUE(class_of(good("a"), other).empty());
+}
+
+// Named by scales of its own: on those of the baseline nobody of its class is sure.
+TEST(Class, of_a_winner_that_the_old_scales_were_not_sure_of_holds_whom_they_do_not_think_unlikely) {
+    Trial winner = good("a"), other = good("b");
+    other.assessment.projected = Eigen::Vector3d(0.8, 0.6, 0);
+    other.p_value = 0.3;
+    EXPECT_TRUE(class_of(winner, other).empty());
+    winner.p_value = 0.1, winner.by_rows = true;
+    EXPECT_EQ(class_of(winner, other).size(), 1U);
+    other.p_value = 0.46;
+    EXPECT_TRUE(class_of(winner, other).empty());
 }
 
 TEST(Class, of_one_effect_on_two_wheels_is_a_question_on_all_or_one_is_not) {
