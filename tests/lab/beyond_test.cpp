@@ -163,10 +163,10 @@ TEST(Shapes, a_friction_that_begins_at_once_is_a_step_at_its_time) {
     EXPECT_EQ(d.kind, "unknown") << d.text;
     ASSERT_TRUE(d.unknown);
     EXPECT_EQ(d.unknown->variable, "time");
-    ASSERT_EQ(d.unknown->x.size(), 2U) << d.unknown->balance;
-    EXPECT_NEAR(0.5 * (d.unknown->x[0] + d.unknown->x[1]), 60, 4); // half of what the steps are apart
+    ASSERT_EQ(d.unknown->x.size(), 4U) << d.unknown->balance;
+    EXPECT_NEAR(0.5 * (d.unknown->x[1] + d.unknown->x[2]), 60, 4); // half of what the steps are apart
     EXPECT_EQ(d.unknown->target, "wheel_friction") << d.text;
-    EXPECT_NEAR(d.unknown->y[1], 0.04, 0.01);
+    EXPECT_NEAR(d.unknown->y[3], 0.04, 0.01);
     expect_as_fitted(d);
 }
 

@@ -185,9 +185,10 @@ TEST(Description, of_a_bump_is_nothing_at_its_ends) {
 TEST(Description, of_a_step_is_nothing_before_it_and_all_of_it_behind) {
     const Candidate c = steps_of(shape(TermTarget::wheel_friction, Axis::time, {0, 17})).front();
     const UnknownShape u = describe(with(c, {3}, 0.5), 100);
-    EXPECT_EQ(u.x, c.knots);
-    EXPECT_EQ(u.y, (std::vector<double>{0, 3}));
-    EXPECT_EQ(u.high, (std::vector<double>{0, 3 + 0.98}));
+    EXPECT_EQ(u.x, (std::vector<double>{-0.125, 0.875, 1.125, 2.125})); // from a step's way before it to one behind
+    EXPECT_EQ(u.y, (std::vector<double>{0, 0, 3, 3}));
+    EXPECT_EQ(u.low, (std::vector<double>{0, 0, 3 - 0.98, 3 - 0.98}));
+    EXPECT_EQ(u.high, (std::vector<double>{0, 0, 3 + 0.98, 3 + 0.98}));
     EXPECT_EQ(u.expression, "0 + (3)*min(1, max(0, (t - (0.875))/0.25))");
 }
 

@@ -123,8 +123,14 @@ UnknownShape describe(const ShapeScore &s, double base_error) {
         }
         return u;
     }
-    for (std::size_t j = 0; j < s.candidate.knots.size(); ++j) {
-        u.x.push_back(s.candidate.knots[j]);
+    std::vector<double> x = s.candidate.knots;
+    if (is_step(s.candidate)) { // with some of what it is before and behind
+        const double apart = (x[1] - x[0]) / step_length;
+        x = {x[0] - apart, x[0], x[1], x[1] + apart};
+        y = {0, 0, y[1], y[1]}, error = {0, 0, error[1], error[1]};
+    }
+    for (std::size_t j = 0; j < x.size(); ++j) {
+        u.x.push_back(x[j]);
         u.y.push_back(y[j]);
         u.low.push_back(y[j] - 1.96 * error[j]);
         u.high.push_back(y[j] + 1.96 * error[j]);
@@ -258,9 +264,9 @@ const ShapeScore *worth_a_word(const std::vector<ShapeScore> &scores, const std:
         sharp.assessment.block_gain.array() -=
             smoothed / static_cast<double>(std::max<Eigen::Index>(1, sharp.assessment.block_gain.size()));
         if (sharp.assessment.gain < s.assessment.gain && (!material(sharp) || !repeats(sharp))) continue;
-        // of shapes that do nearly as well, the one with the fewest coefficients; but a step is most of any curve over time
-        if (best != nullptr && (is_step(s.candidate) ||
-                                !(s.assessment.gain > 0.85 * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size())))
+        // of shapes that do nearly as well, the one with the fewest coefficients; but a step is much of any curve over time
+        const double nearly = is_step(s.candidate) ? 0.95 : 0.85;
+        if (best != nullptr && !(s.assessment.gain > nearly * best_gain && s.candidate.strengths.size() < best->candidate.strengths.size()))
             continue;
         if (best == nullptr) best_gain = s.assessment.gain;
         best = &s;
