@@ -28,6 +28,11 @@ class StackedTerm : public Term {
     std::size_t count_ = 0;
 };
 
+bool is_of_each_motor(const Candidate &shape) {
+    const unsigned electric = stage_torque | stage_voltage;
+    return (shape.touched & electric) != 0 && (shape.touched & ~electric) == 0;
+}
+
 // Steps over time, one beside the other.
 class StepsTerm : public Term {
   public:
@@ -58,10 +63,9 @@ Eigen::MatrixXd ShapeColumns::of(const Candidate &c) {
     c.prepare(at);
     const Term &term = *at.terms.back().term;
     const std::size_t count = c.strengths.size();
-    const bool electric = (c.touched & (stage_torque | stage_voltage)) != 0 && (c.touched & (stage_motion | stage_sensors)) == 0;
     if (plain_ && count <= most_shapes && c.touched == stage_motion && c.target != TermTarget::body_force)
         return problem_.row_scale.asDiagonal() * problem_.forward().shaped(physics_, unit(c.target), term, count);
-    if (plain_ && electric && !physics_.unsigned_current)
+    if (plain_ && is_of_each_motor(c) && !physics_.unsigned_current)
         return problem_.row_scale.asDiagonal() * problem_.forward().shaped_electric(physics_, electric_unit(c.target), term, count);
     Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(count));
     for (std::size_t j = 0; j < count; ++j) columns.col(static_cast<Eigen::Index>(j)) = problem_.column(at, c.strengths[j], c.step[j]);
@@ -100,7 +104,7 @@ std::vector<Eigen::MatrixXd> ShapeColumns::of_waves(const std::vector<Candidate>
 
 Eigen::MatrixXd ShapeColumns::of_steps(const std::vector<Candidate> &steps) {
     const Candidate &one = steps.front();
-    const bool electric = (one.touched & (stage_torque | stage_voltage)) != 0 && (one.touched & (stage_motion | stage_sensors)) == 0;
+    const bool electric = is_of_each_motor(one);
     const bool moves = one.touched == stage_motion && one.target != TermTarget::body_force;
     const std::size_t most = electric ? steps.size() : most_shapes;
     Eigen::MatrixXd columns(problem_.row_scale.size(), static_cast<Eigen::Index>(steps.size()));
@@ -143,11 +147,6 @@ ShapeScore scored(const Candidate &c, const Eigen::MatrixXd &columns, const Scre
     if (s.p_value < 1e-4) s.balance_fall = screen.best_balance_fall(columns, s.assessment);
     if (keep != nullptr) s.columns = SparseJacobian(*keep, columns);
     return s;
-}
-
-bool is_of_each_motor(const Candidate &shape) {
-    const unsigned electric = stage_torque | stage_voltage;
-    return (shape.touched & electric) != 0 && (shape.touched & ~electric) == 0;
 }
 
 Eigen::MatrixXd rows_of(const std::vector<int> &wheels, const Dataset &data, const Eigen::MatrixXd &columns) {
