@@ -38,6 +38,11 @@ struct Answer {
             if (a.candidate.effect == name) return &a;
         return nullptr;
     }
+    bool may_be(const std::string &name) const { // named, or of the class of a name
+        return named(name) != nullptr || std::any_of(d.classes.begin(), d.classes.end(), [&](const ConfoundedClass &c) {
+                   return std::find(c.members.begin(), c.members.end(), name) != c.members.end();
+               });
+    }
 };
 
 Answer ask(const GeneratorConfig &config) {
@@ -176,12 +181,12 @@ TEST(Rivals, a_law_that_predicts_better_than_the_shape_in_its_place_is_no_proxy)
 }
 
 // Beside a late radar the soil's change along the way has a coefficient that few blocks tell; without it 4.1 times the noise is left, with
-// it 2.7.
+// it 2.7 (with a long patch, of its class, 1.8).
 TEST(Rivals, a_law_that_takes_most_of_the_error_stays_though_its_coefficient_is_unsure) {
     const generator::BlindCase hidden = generator::draw_fleet_case(919008, "two");
     ASSERT_EQ(hidden.config.hidden.front().name, "soil_gradient");
     const Answer a = ask(hidden.config);
-    ASSERT_NE(a.named("soil_gradient"), nullptr) << a.d.text;
+    EXPECT_TRUE(a.may_be("soil_gradient")) << a.d.text;
     EXPECT_NE(a.named("radar_delay"), nullptr) << a.d.text;
     EXPECT_LT(a.d.ladder.back().heldout, 0.7 * a.d.ladder.front().heldout);
 }
