@@ -18,7 +18,7 @@ constexpr double place_beside_a_shape = 2.0;           // of what was named: ass
 constexpr double some_wheels_share = 0.2;              // of the chance of a false alarm, spent on shapes of one wheel or axle
 constexpr double some_wheels_tried = 137;              // electric shapes, and straight lines of the ground, x wheels and axles
 constexpr double steps_share = 0.1, steps_tried = 310; // beside that chance; ten a target are no near copies, x targets, wheels and axles
-constexpr int steps = 16;
+constexpr int steps_of_one = 16;
 constexpr double step_length = 0.25; // of what they are apart
 constexpr double shapes_tried = 80;  // axes x targets, straight lines, bumps, waves and periods, less those that are near copies
 
@@ -45,9 +45,9 @@ bool is_bump(const Candidate &c) { return c.knots.size() == 3 && c.strengths.siz
 bool is_step(const Candidate &c) { return c.knots.size() == 2 && c.strengths.size() == 1; }
 
 std::vector<Candidate> steps_of(const Candidate &over_time) {
-    const double first = over_time.knots.front(), apart = (over_time.knots.back() - first) / (steps + 1);
+    const double first = over_time.knots.front(), apart = (over_time.knots.back() - first) / (steps_of_one + 1);
     std::vector<Candidate> list;
-    for (int i = 1; i <= steps; ++i) {
+    for (int i = 1; i <= steps_of_one; ++i) {
         Candidate c = over_time;
         const double at = first + i * apart;
         c.effect += ", a step at " + std::to_string(std::lround(at)) + " s";
