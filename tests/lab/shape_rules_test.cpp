@@ -34,8 +34,8 @@ Assessment falls(std::size_t blocks, double each, double p_value) {
     return a;
 }
 
-// 90 shapes in seven tenths of the chance of a false alarm, 137 of some wheels in two, 310 steps in the last; twice, for there are two
-// tests.
+// 80 shapes in four fifths of the chance of a false alarm, 137 of some wheels in the last fifth, 310 steps in a tenth beside; twice, for
+// there are two tests.
 TEST(Corrected, p_of_a_curve_is_that_of_its_coefficients_or_of_the_ranks_of_its_falls_times_the_number_tried) {
     EXPECT_NEAR(corrected(curve(), falls(20, -1, 1e-6)), 2 * 80 / 0.8 * 1e-6, 1e-15);
     EXPECT_NEAR(corrected(curve(), falls(20, 1, 0.5)), 2 * 80 / 0.8 * std::ldexp(1, -20), 1e-12);
