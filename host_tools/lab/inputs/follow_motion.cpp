@@ -43,9 +43,15 @@ bool swings_as_it_turns(const std::vector<double> &narrow, const std::vector<dou
     double power = 0;
     for (double &d : swing) d = std::clamp(d, -clip, clip), power += d * d;
     if (!(power > 0)) return false;
+    std::vector<std::complex<double>> turned(swing.size(), 1), once;
+    for (const double angle : angle_rad) once.push_back(std::polar(1.0, -angle));
     for (int order = 1; order <= highest_order; ++order) {
         std::complex<double> line = 0;
-        for (std::size_t k = 0; k < swing.size(); ++k) line += swing[k] * std::polar(1.0, -order * angle_rad[k]);
+        for (std::size_t k = 0; k < swing.size(); ++k) {
+            turned[k] = {turned[k].real() * once[k].real() - turned[k].imag() * once[k].imag(),
+                         turned[k].real() * once[k].imag() + turned[k].imag() * once[k].real()};
+            line += swing[k] * turned[k];
+        }
         if (std::norm(line) > surely_a_line * power * static_cast<double>(swing.size()) / independent) return true;
     }
     return false;

@@ -211,10 +211,10 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.scatter_rad = scatter_of(angle, count_rad), input.sample_s = sample_period(*s), input.half_s = half;
         const auto smoothed = [&](double width) {
             MotionAtWidth at;
-            Smooth parabolas = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, width, 2);
-            if (width == half) mark_gaps(parabolas.distance_s, *s); // once: of any width they are the same
-            at.parabolas.angle_rad = std::move(parabolas.value), at.parabolas.speed_rad_s = std::move(parabolas.slope);
-            at.cubics.speed_rad_s = smooth_at(s->t_s, angle, data.start_s, data.step_s, data.count, width, 3).slope;
+            auto [parabola, cubic] = smooth_twice(s->t_s, angle, data.start_s, data.step_s, data.count, width);
+            if (width == half) mark_gaps(parabola.distance_s, *s); // once: of any width they are the same
+            at.parabolas.angle_rad = std::move(parabola.value), at.parabolas.speed_rad_s = std::move(parabola.slope);
+            at.cubics.speed_rad_s = std::move(cubic.slope);
             slopes_of(at.parabolas), slopes_of(at.cubics);
             return at;
         };
@@ -227,12 +227,11 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.angle_rad.assign(data.count, 0);
         input.accel_rad_s2.assign(data.count, 0);
     } else {
-        Smooth smooth = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, half, 2);
-        input.speed_rad_s = std::move(smooth.value);
-        input.accel_rad_s2 = std::move(smooth.slope);
-        mark_gaps(smooth.distance_s, *s);
+        auto [parabola, cubic] = smooth_twice(s->t_s, s->value, data.start_s, data.step_s, data.count, half);
+        input.speed_rad_s = std::move(parabola.value);
+        input.accel_rad_s2 = std::move(parabola.slope);
+        mark_gaps(parabola.distance_s, *s);
         WheelInput sharp;
-        Smooth cubic = smooth_at(s->t_s, s->value, data.start_s, data.step_s, data.count, half, 3);
         sharp.speed_rad_s = std::move(cubic.value), sharp.accel_rad_s2 = std::move(cubic.slope);
         follow_jumps(input, sharp, 0);
         input.angle_rad.assign(data.count, 0);

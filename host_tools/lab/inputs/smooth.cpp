@@ -10,8 +10,17 @@ namespace traction::lab {
 
 namespace {
 
+using Two = double __attribute__((vector_size(16)));
+
+// Sums over a window about a time, x in half widths from it and w the tricube weight: w x^i and w x^i y.
+struct Moments {
+    double s[7], r[4];
+};
+
 // Weighted least squares of a polynomial of degree <= 3 about x = 0, from its moments; degrades to a lower degree when singular.
-void solve_local(const double (&s)[7], const double (&r)[4], int degree, double &value, double &slope) {
+void solve_local(const Moments &of, int degree, double &value, double &slope) {
+    const auto &s = of.s;
+    const auto &r = of.r;
     if (degree >= 3) {
         Eigen::Matrix4d S;
         for (int i = 0; i < 4; ++i)
@@ -41,6 +50,68 @@ void solve_local(const double (&s)[7], const double (&r)[4], int degree, double 
     value = s[0] > 0 ? r[0] / s[0] : 0;
     slope = 0;
 }
+
+// The window about one time after another.
+class Sliding {
+public:
+    Sliding(const std::vector<double> &t_s, const std::vector<double> &value) : t(t_s), y(value) {}
+
+    void move_to(double time, double half_width_s) {
+        at = time, half = half_width_s;
+        while (begin > 0 && t[begin - 1] >= at - half) --begin;
+        while (begin < t.size() && t[begin] < at - half) ++begin;
+        while (end > 0 && t[end - 1] > at + half) --end;
+        while (end < t.size() && t[end] <= at + half) ++end;
+        while (near + 1 < t.size() && std::fabs(t[near + 1] - at) <= std::fabs(t[near] - at)) ++near;
+    }
+
+    void fit(int degree, double &value, double &slope) {
+        std::size_t a = begin, b = std::max(end, a);
+        double width = half;
+        for (const std::size_t need = std::min(t.size(), static_cast<std::size_t>(degree) + 3); b - a < need;) {
+            const double left = a > 0 ? at - t[a - 1] : std::numeric_limits<double>::infinity(); // few: towards the nearer side
+            const double right = b < t.size() ? t[b] - at : std::numeric_limits<double>::infinity();
+            if (left <= right)
+                --a;
+            else
+                ++b;
+            width = std::max(width, 1.05 * std::min(left, right));
+        }
+        if (a != summed_from || b != summed_to || at != summed_at || width != summed_width) sum(a, b, width);
+        solve_local(moments, degree, value, slope);
+        value += y[near];
+        slope /= width;
+    }
+
+    double distance() const { return std::fabs(t[near] - at); }
+
+private:
+    void sum(std::size_t a, std::size_t b, double width) {
+        summed_from = a, summed_to = b, summed_at = at, summed_width = width;
+        const std::size_t count = b - a;
+        x.resize(count), w.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            x[i] = (t[a + i] - at) / width;
+            const double c = 1 - std::fabs(x[i] * x[i] * x[i]);
+            w[i] = c > 0 ? c * c * c : 0;
+        }
+        const double y0 = y[near]; // removed first: keeps precision for large angles
+        Two s01{}, s23{}, s45{}, s56{}, r01{}, r23{}; // pairs of neighbours, each the one before times x
+        for (std::size_t i = 0; i < count; ++i) {
+            const Two xx{x[i], x[i]}, yy = Two{y[a + i], y[a + i]} - y0;
+            const Two w01{w[i], w[i] * x[i]}, w23 = w01 * xx * xx, w45 = w23 * xx * xx;
+            s01 += w01, s23 += w23, s45 += w45, s56 += w45 * xx;
+            r01 += w01 * yy, r23 += w23 * yy;
+        }
+        moments = {{s01[0], s01[1], s23[0], s23[1], s45[0], s45[1], s56[1]}, {r01[0], r01[1], r23[0], r23[1]}};
+    }
+
+    const std::vector<double> &t, &y;
+    double at = 0, half = 0, summed_at = 0, summed_width = 0;
+    std::size_t begin = 0, end = 0, near = 0, summed_from = 0, summed_to = 0;
+    Moments moments{};
+    std::vector<double> x, w;
+};
 
 // What is white in the samples while the wheel turns, by the covariance -sigma^2 of neighbouring deviations from the straight line
 // through a sample's neighbours; an acceleration makes that covariance positive. `speed`: its median.
@@ -76,48 +147,51 @@ double half_width_for(const std::vector<double> &t_s, const std::vector<double> 
                       std::max(half_s, widest_half_s));
 }
 
+ParabolaAndCubic smooth_twice(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s,
+                              std::size_t count, double half_width_s) {
+    ParabolaAndCubic out;
+    for (Smooth *one : {&out.parabola, &out.cubic}) {
+        one->value.resize(count), one->slope.resize(count);
+        one->distance_s.assign(count, std::numeric_limits<double>::infinity());
+    }
+    if (t_s.empty()) return out;
+    Sliding window(t_s, value);
+    for (std::size_t k = 0; k < count; ++k) {
+        window.move_to(start_s + static_cast<double>(k) * step_s, half_width_s);
+        window.fit(2, out.parabola.value[k], out.parabola.slope[k]);
+        window.fit(3, out.cubic.value[k], out.cubic.slope[k]);
+        out.parabola.distance_s[k] = out.cubic.distance_s[k] = window.distance();
+    }
+    return out;
+}
+
 Smooth smooth_at(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s, std::size_t count,
                  double half_width_s, int degree) {
     Smooth out;
     out.value.resize(count);
     out.slope.resize(count);
     out.distance_s.assign(count, std::numeric_limits<double>::infinity());
-    const std::size_t n = t_s.size(), need = std::min<std::size_t>(n, static_cast<std::size_t>(degree) + 3);
-    if (n == 0) return out;
-    std::size_t begin = 0, end = 0, near = 0;
+    if (t_s.empty()) return out;
+    Sliding window(t_s, value);
     for (std::size_t k = 0; k < count; ++k) {
-        const double t = start_s + static_cast<double>(k) * step_s;
-        while (begin < n && t_s[begin] < t - half_width_s) ++begin;
-        while (end < n && t_s[end] <= t + half_width_s) ++end;
-        while (near + 1 < n && std::fabs(t_s[near + 1] - t) <= std::fabs(t_s[near] - t)) ++near;
-        std::size_t a = std::min(begin, n), b = std::max(end, a);
-        double width = half_width_s;
-        while (b - a < need) { // few samples: widen towards the nearer side
-            const double left = a > 0 ? t - t_s[a - 1] : std::numeric_limits<double>::infinity();
-            const double right = b < n ? t_s[b] - t : std::numeric_limits<double>::infinity();
-            if (left <= right)
-                --a;
-            else
-                ++b;
-            width = std::max(width, 1.05 * std::min(left, right));
-        }
-        double s[7] = {}, r[4] = {};
-        const double y0 = value[near]; // removed first: keeps precision for large angles
-        for (std::size_t i = a; i < b; ++i) {
-            const double x = (t_s[i] - t) / width;
-            const double c = 1 - std::fabs(x * x * x);
-            const double w = c > 0 ? c * c * c : 0;
-            const double y = value[i] - y0, wx = w * x, wxx = wx * x;
-            s[0] += w, s[1] += wx, s[2] += wxx, s[3] += wxx * x, s[4] += wxx * x * x, s[5] += wxx * x * x * x, s[6] += wxx * x * x * x * x;
-            r[0] += w * y, r[1] += wx * y, r[2] += wxx * y, r[3] += wxx * x * y;
-        }
-        double slope = 0;
-        solve_local(s, r, degree, out.value[k], slope);
-        out.value[k] += y0;
-        out.slope[k] = slope / width;
-        out.distance_s[k] = std::fabs(t_s[near] - t);
+        window.move_to(start_s + static_cast<double>(k) * step_s, half_width_s);
+        window.fit(degree, out.value[k], out.slope[k]);
+        out.distance_s[k] = window.distance();
     }
     return out;
+}
+
+std::vector<double> slopes_at(const std::vector<double> &t_s, const std::vector<double> &value, double start_s, double step_s,
+                              const std::vector<double> &half_width_s) {
+    std::vector<double> slope(half_width_s.size());
+    if (t_s.empty()) return slope;
+    Sliding window(t_s, value);
+    double unused = 0;
+    for (std::size_t k = 0; k < slope.size(); ++k) {
+        window.move_to(start_s + static_cast<double>(k) * step_s, half_width_s[k]);
+        window.fit(2, unused, slope[k]);
+    }
+    return slope;
 }
 
 double slope_response(double half_width_s, double omega_rad_s) {
