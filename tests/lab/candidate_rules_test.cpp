@@ -271,12 +271,14 @@ TEST(Patches, are_none_where_the_rover_hardly_went) {
     EXPECT_EQ(count(0.42, "soil_patch").size(), 1U); // a quarter of a metre is three fifths of it
     EXPECT_TRUE(count(0.41, "soil_patch").empty());
     const std::map<double, int> ten = count(10, "soil_patch"), heavy = count(10, "resistance_patch");
-    ASSERT_EQ(ten.size(), 5U);
-    EXPECT_EQ(ten.at(0.25), 24); // starts every 24th of the way, half of the last within it
-    EXPECT_EQ(ten.at(2.5), 7);   // from 0 to 7.5 m by half of 2.5
+    ASSERT_EQ(ten.size(), 6U);
+    EXPECT_EQ(ten.count(2.5 * 2.5 / 1.5), 1U); // as much longer again, and no longer than three fifths of the way
+    EXPECT_EQ(ten.at(0.25), 24);               // starts every 24th of the way, half of the last within it
+    EXPECT_EQ(ten.at(2.5), 7);                 // from 0 to 7.5 m by half of 2.5
     EXPECT_EQ(ten.at(1), 19);
-    ASSERT_EQ(heavy.size(), 3U);
+    ASSERT_EQ(heavy.size(), 4U);
     EXPECT_EQ(heavy.at(2), 9);
+    EXPECT_EQ(heavy.at(4), 4); // from 0 to 6 m
 }
 
 // Series whose values say which they are: 1000 * kind + 100 * wheel + step.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace traction::lab {
 namespace {
@@ -58,6 +59,26 @@ TEST(Optimum, a_relaxation_length_is_found_from_afar) {
     EXPECT_TRUE(added.helps) << added.text;
     EXPECT_NEAR(added.model.effects.back().parameters.at("length_m").value, 0.097, 0.02);
     EXPECT_LT(added.ladder[1].train, 0.5 * added.ladder[0].train);
+}
+
+// The error falls in steps as an edge moves: by derivatives both stayed near the place at which the patch had been tried.
+TEST(Optimum, the_edges_of_a_patch_are_found_from_the_place_it_was_tried_at) {
+    for (const auto &[effect, start, length, hidden] :
+         {std::tuple{"soil_patch", 1.7, 1.9, "soil_patch:change=-0.4,start_m=1.7,length_m=1.9"},
+          std::tuple{"resistance_patch", 2.6, 1.4, "soft_place:coefficient=0.15,start_m=2.6,length_m=1.4"}}) {
+        const Case one = log_of(Soil::sand, 416, hidden);
+        const Added added = add_effect(one.model, one.data, effect, -1, "");
+        EXPECT_TRUE(added.helps) << added.text;
+        const EffectUse &use = added.model.effects.back();
+        const Parameter &from = use.parameters.at("start_m"), &over = use.parameters.at("length_m");
+        EXPECT_TRUE(from.low <= start && start <= from.high) << effect << ' ' << from.low << " to " << from.high;
+        EXPECT_TRUE(over.low <= length && length <= over.high) << effect << ' ' << over.low << " to " << over.high;
+        EXPECT_LT(from.high - from.low, 0.4);
+        EXPECT_LT(over.high - over.low, 0.6);
+        Model there = added.model; // with the edges that are hidden
+        there.effects.back().parameters.at("start_m").value = start, there.effects.back().parameters.at("length_m").value = length;
+        EXPECT_LT(added.ladder[1].train, 1.02 * fit_model(there, one.data, "").train) << effect;
+    }
 }
 
 TEST(Optimum, what_does_not_help_is_not_said_to) {

@@ -25,13 +25,16 @@ std::vector<int> wheel_choices(const sim::Effect &effect, const Model &model) {
     return wheels;
 }
 
-// Windows along the path that the log covers: starts every half length.
-std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Motion &motion, std::initializer_list<double> lengths) {
+// Windows along the path that the log covers: starts every half length. Beyond the last of the lengths, others, each longer by as much as
+// the last one is than the one before, as long as the way is.
+std::vector<std::vector<std::pair<std::string, double>>> patch_choices(const Motion &motion, std::vector<double> lengths) {
     std::vector<std::vector<std::pair<std::string, double>>> list;
     if (motion.path_m.empty()) return {};
     const auto [low, high] = std::minmax_element(motion.path_m.begin(), motion.path_m.end());
     const double span = *high - *low;
     if (!(span > 0.3)) return {};
+    for (const double ratio = lengths.back() / lengths[lengths.size() - 2]; lengths.back() * ratio <= 0.6 * span;)
+        lengths.push_back(lengths.back() * ratio);
     for (const double length : lengths) {
         if (length > 0.6 * span) continue;
         const double step = std::max(length / 2, span / 24);

@@ -7,6 +7,7 @@
 #include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/screen.h"
 #include "manner.h"
+#include "patch_edges.h"
 #include "record.h"
 #include "rival.h"
 #include "rounds.h"
@@ -508,6 +509,10 @@ class Search {
         for (CandidateResult &a : d_.accepted) {
             const sim::Effect *effect = sim::find_effect(a.candidate.effect);
             if (effect == nullptr) continue;
+            if (is_patch(a.candidate.effect)) {
+                place(a, last);
+                continue;
+            }
             Model freed = d_.model;
             if (!free_shapes(freed, a.candidate, *effect)) continue;
             Problem problem = fitted(freed, &last);
@@ -517,9 +522,25 @@ class Search {
         }
     }
 
+    void place(CandidateResult &a, Problem &last) {
+        last.get_ready();
+        place_patch(d_.model, data_, a.candidate.effect, last);
+        const EffectUse *use = d_.model.find_effect(a.candidate.effect, -1);
+        a.shapes.clear();
+        for (auto &[key, variant] : a.candidate.variant) {
+            const Parameter &p = use->parameters.at(key);
+            variant = p.value;
+            a.shapes.push_back({key, p.unit, p.value, p.low, p.high});
+        }
+        d_.model_fit.reset();
+        last.get_ready();
+        stands_at(last);
+        refresh(last, Screen(last));
+    }
+
     void take_shapes(CandidateResult &a, Problem &problem, Model &freed) {
         const std::vector<ParameterError> errors = Screen(problem).parameter_errors();
-        take_shape_values(a, problem, errors, half_row_m(d_.model, data_));
+        take_shape_values(a, problem, errors);
         d_.model = std::move(freed);
         d_.model_fit.reset();
         fix_shapes(d_.model, a);

@@ -11,7 +11,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double reach = 4, reach_m = 1; // of a shape parameter from the station it was found at, on either side: assumed
+constexpr double reach = 4; // of a shape parameter from the station it was found at, on either side: assumed
 
 std::string one_decimal(double value) {
     char buffer[64];
@@ -127,8 +127,8 @@ void set_free(Parameter &p, const sim::EffectParameter &spec) {
     p.fixed = false;
     // a variant of the machine's own scale may lie beyond the catalogue's range, which is the reference rover's
     const double least = p.value > spec.minimum ? spec.minimum : p.value / 2, most = p.value < spec.maximum ? spec.maximum : p.value * 2;
-    p.minimum = std::max(least, spec.unit == "m" ? p.value - reach_m : p.value / reach);
-    p.maximum = std::min(most, spec.unit == "m" ? p.value + reach_m : p.value * reach);
+    p.minimum = std::max(least, p.value / reach);
+    p.maximum = std::min(most, p.value * reach);
     if (spec.unit == "rad") p.minimum = p.value - 1.6, p.maximum = p.value + 1.6;
 }
 
@@ -146,7 +146,8 @@ bool free_shapes(Model &model, const Candidate &c, const sim::Effect &effect) {
     return any;
 }
 
-void take_shape_values(CandidateResult &a, const Problem &problem, const std::vector<ParameterError> &errors, double half_row) {
+void take_shape_values(CandidateResult &a, const Problem &problem, const std::vector<ParameterError> &errors) {
+    a.shapes.clear();
     for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
         const FreeParameter &p = problem.parameters[i];
         if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel) continue;
@@ -154,8 +155,7 @@ void take_shape_values(CandidateResult &a, const Problem &problem, const std::ve
         for (auto &[key, variant] : a.candidate.variant) {
             if (key != p.key) continue;
             variant = value;
-            const double half = errors[i].half_width + (p.unit == "m" ? half_row : 0);
-            a.shapes.push_back({p.key, p.unit, value, value - half, value + half});
+            a.shapes.push_back({p.key, p.unit, value, value - errors[i].half_width, value + errors[i].half_width});
         }
     }
 }
@@ -179,14 +179,6 @@ double smoothing_loss(const Candidate &c, const Dataset &data) {
         for (const double speed : w.speed_rad_s)
             if (std::fabs(speed) > 0.5) squares += speed * speed, ++n;
     return n > 0 ? data.acceleration_loss(std::fabs(c.variant[0].second) * std::sqrt(squares / n)) : 0;
-}
-
-double half_row_m(const Model &model, const Dataset &data) {
-    double sum = 0, n = 0;
-    for (std::size_t i = 0; i < data.wheel.size(); ++i)
-        for (const double speed : data.wheel[i].speed_rad_s)
-            if (std::fabs(speed) > data.standstill_rad_s) sum += std::fabs(speed) * model.wheel[i].geometry.at("radius_m").value, ++n;
-    return n > 0 ? 0.5 * sum / n * 0.05 : 0;
 }
 
 } // namespace traction::lab

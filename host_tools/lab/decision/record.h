@@ -36,14 +36,14 @@ void conclude(Diagnosis &diagnosis);
 Model model_without(const Model &model, const Candidate &candidate);
 
 // A shape parameter that is a number on a scale (the others are kinds: an order, who shares a lead), and the range in which it is set free
-// from the station at which it was found: a factor of four or a metre to either side, a quarter of a turn and a little of an angle.
+// from the station at which it was found: a factor of four to either side, a quarter of a turn and a little of an angle.
 bool is_on_a_scale(const sim::EffectParameter &spec);
 void set_free(Parameter &parameter, const sim::EffectParameter &spec);
 
 // An accepted effect's shape parameters that are numbers on a scale, set free in the model; whether it has any.
 bool free_shapes(Model &model, const Candidate &candidate, const sim::Effect &effect);
-// Their values by the fit of that model, an edge along the way wider by `half_row`; and the model with them held there again.
-void take_shape_values(CandidateResult &accepted, const Problem &problem, const std::vector<ParameterError> &errors, double half_row);
+// Their values by the fit of that model; and the model with them held there again.
+void take_shape_values(CandidateResult &accepted, const Problem &problem, const std::vector<ParameterError> &errors);
 void fix_shapes(Model &model, const CandidateResult &accepted);
 
 // A fit whose shapes were free is kept where it leaves no more than the one at the station; both end where a search ends.
@@ -52,8 +52,5 @@ bool no_worse(double refined, double at_station);
 // A ripple's torque and what it does to the wheel's acceleration must be told apart: what the smoothing of the acceleration loses at the
 // ripple's frequency, at the mean speed of the turning wheels, is not known of its size. A share of it.
 double smoothing_loss(const Candidate &candidate, const Dataset &data);
-
-// How far the rover goes in half a row: an edge within it is not seen.
-double half_row_m(const Model &model, const Dataset &data);
 
 } // namespace traction::lab

@@ -32,8 +32,8 @@ void add_rounding(Dataset &data, std::uint64_t draw) {
             t.push_back(data.start_s - in.half_s + static_cast<double>(j) * in.sample_s);
             error.push_back(std::sqrt(12.0) * in.scatter_rad * uniform(draw, i, j));
         }
-        const std::vector<double> slope = slopes_at(
-            t, error, data.start_s, data.step_s, in.width_s.empty() ? std::vector<double>(data.count, in.half_s) : in.width_s);
+        const std::vector<double> slope =
+            slopes_at(t, error, data.start_s, data.step_s, in.width_s.empty() ? std::vector<double>(data.count, in.half_s) : in.width_s);
         for (std::size_t k = 0; k < data.count; ++k)
             if (std::fabs(in.speed_rad_s[k]) > data.standstill_rad_s) in.speed_rad_s[k] += slope[k];
     }

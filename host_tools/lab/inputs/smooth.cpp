@@ -53,7 +53,7 @@ void solve_local(const Moments &of, int degree, double &value, double &slope) {
 
 // The window about one time after another.
 class Sliding {
-public:
+  public:
     Sliding(const std::vector<double> &t_s, const std::vector<double> &value) : t(t_s), y(value) {}
 
     void move_to(double time, double half_width_s) {
@@ -85,7 +85,7 @@ public:
 
     double distance() const { return std::fabs(t[near] - at); }
 
-private:
+  private:
     void sum(std::size_t a, std::size_t b, double width) {
         summed_from = a, summed_to = b, summed_at = at, summed_width = width;
         const std::size_t count = b - a;
@@ -95,7 +95,7 @@ private:
             const double c = 1 - std::fabs(x[i] * x[i] * x[i]);
             w[i] = c > 0 ? c * c * c : 0;
         }
-        const double y0 = y[near]; // removed first: keeps precision for large angles
+        const double y0 = y[near];                    // removed first: keeps precision for large angles
         Two s01{}, s23{}, s45{}, s56{}, r01{}, r23{}; // pairs of neighbours, each the one before times x
         for (std::size_t i = 0; i < count; ++i) {
             const Two xx{x[i], x[i]}, yy = Two{y[a + i], y[a + i]} - y0;

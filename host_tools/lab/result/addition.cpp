@@ -1,5 +1,6 @@
 #include "addition.h"
 
+#include "host_tools/lab/decision/patch_edges.h"
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/screen.h"
@@ -100,8 +101,9 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
             for (std::size_t j = 0; j < c.strengths.size(); ++j)
                 columns.col(static_cast<Eigen::Index>(j)) = problem.column(at, c.strengths[j], c.step[j]);
             const Assessment a = screen.assess(columns, Eigen::VectorXd::Zero(columns.cols()), false);
-            if (a.gain <= best) continue;
-            best = a.gain;
+            const double gain = is_patch(effect) ? a.error_reduction : a.gain; // passed once it predicts no block that is left out
+            if (gain <= best) continue;
+            best = gain;
             std::vector<double> start;
             for (std::size_t j = 0; j < c.strengths.size(); ++j) {
                 double v = std::clamp(a.strength[static_cast<Eigen::Index>(j)], c.minimum[j], c.maximum[j]);
@@ -116,7 +118,9 @@ Added add_effect(const Model &model, const Dataset &data, const std::string &eff
         added.model.effects.push_back(use);
     }
     const std::string label = "+ " + effect + on_wheel(wheel);
-    const Problem before = fitted_problem(model, data), after = fitted_problem(added.model, data);
+    const Problem before = fitted_problem(model, data);
+    Problem after = fitted_problem(added.model, data);
+    if (is_patch(effect) && file.empty() && place_patch(added.model, data, effect, after)) after = fitted_problem(added.model, data);
     refuse_dead(model, added.model.effects.back(), after);
     const HeldOut left_before = held_out(before), left_after = held_out(after);
     const Fall fall = fall_between(left_before, left_after, noise_weight(before));
