@@ -203,7 +203,11 @@ bool Quality::active_at(const log::Signal &signal, double t_s) const {
     return false;
 }
 
-// A wheel that stands although driven is blocked when its motor's voltage is all spent in the winding; else its encoder is dead.
+constexpr double dead_band = 0.15; // of the largest voltage that the log holds: beyond it none is expected (assumed)
+
+// A wheel that stands although driven is blocked when its motor's voltage is all spent in the winding, or stands because its bridge passes
+// nothing on (a dead band, in which a loop's integral may rest): a small voltage, and no current, where one that turned would be braked by
+// its friction. Else its encoder is dead.
 bool Quality::electrics_agree(int index, double t0_s, double t1_s, bool &known) const {
     known = false;
     for (const Wheel &wheel : grid_.wheel) {
@@ -215,17 +219,21 @@ bool Quality::electrics_agree(int index, double t0_s, double t1_s, bool &known) 
         }
         const Fit law = fit(y, wheel.speed, wheel.current);
         if (!law.good) return false;
-        double left = 0, size = 0;
+        double left = 0, size = 0, current = 0, current_squares = 0, full = 0;
         int n = 0;
+        for (const double V : wheel.voltage)
+            if (std::isfinite(V)) full = std::max(full, std::fabs(V));
         for (std::size_t k = 0; k < y.size(); ++k) {
             if (grid_.time(k) < t0_s || grid_.time(k) > t1_s || !std::isfinite(wheel.voltage[k] + wheel.speed[k] + wheel.current[k]))
                 continue;
             left += std::fabs(wheel.voltage[k] - law.a * wheel.speed[k] - law.b * wheel.current[k]);
             size += std::fabs(wheel.voltage[k]);
+            current += wheel.current[k], current_squares += wheel.current[k] * wheel.current[k];
             ++n;
         }
         known = n > 10;
-        return known && left < std::max(0.15 * size, 4 * n * law.rms);
+        const bool no_current = current * current < 9 * current_squares; // within three standard errors of none
+        return known && (left < std::max(0.15 * size, 4 * n * law.rms) || (no_current && size < dead_band * full * n));
     }
     return false;
 }
@@ -257,8 +265,8 @@ void Quality::dead_or_stuck(const log::Signal &signal, const log::Quantity &entr
     const bool whole = length >= active - active / 20;
     const bool lively = static_cast<double>(equal - (length - 1)) < 0.2 * static_cast<double>(active - length + 1);
     bool known = false;
-    const bool is_wheel_speed = entry.object == "wheel<i>" && entry.quantity == "speed";
-    const bool agrees = is_wheel_speed && electrics_agree(log::wheel_of(signal.name), t0, t1, known);
+    const bool is_wheel_motion = entry.object == "wheel<i>" && (counted || entry.quantity == "speed");
+    const bool agrees = is_wheel_motion && electrics_agree(log::wheel_of(signal.name), t0, t1, known);
     const bool may_stand = v[longest.first] == 0 || !lively; // noise that stops on a number other than 0 needs no second witness
     if ((agrees && may_stand) || (!known && !lively && !whole)) return;
     if (whole) {

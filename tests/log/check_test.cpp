@@ -325,6 +325,25 @@ TEST(Check, names_a_dead_and_a_stuck_sensor_and_not_a_blocked_wheel) {
     EXPECT_EQ(listed(check::check(log, {}), Severity::warning), "");
 }
 
+// A loop's integral rests inside its bridge's dead band: the wheel stands for seconds at a duty that drives nothing.
+TEST(Check, names_no_wheel_that_stands_in_its_bridges_dead_band) {
+    for (const bool turns : {false, true}) {
+        log::Log log = good();
+        log::Signal &speed = at(log, "wheel0.speed_rad_s"), &current = at(log, "wheel0.current_A"), &duty = at(log, "wheel0.duty"),
+                    &count = at(log, "wheel0.encoder_count");
+        const double turned = count.value[900] - count.value[500];
+        for (std::size_t i = 500; i < speed.value.size(); ++i) {
+            if (i < 900)
+                speed.value[i] = 0, count.value[i] = count.value[500], duty.value[i] = 0.055,
+                current.value[i] = (turns ? 0.06 : 0) + (i % 3 == 0 ? 0.02 : -0.01); // what turns is braked by its friction
+            else
+                count.value[i] -= turned;
+        }
+        EXPECT_EQ(check::check(log, {}).find("stuck_sensor", "wheel0.speed_rad_s") != nullptr, turns)
+            << listed(check::check(log, {}), Severity::note);
+    }
+}
+
 TEST(Check, names_clipping_outliers_and_coarse_steps) {
     log::Log log = good();
     for (double &v : at(log, "wheel0.current_A").value) v = std::clamp(v, -0.35, 0.35);

@@ -15,7 +15,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double risen = 3.84;   // (2) of profile.h
+constexpr double risen = 3.84; // (2) of profile.h
 constexpr double two_sided = 1.96;
 constexpr int most_searches = 6; // each followed by a fit
 constexpr double least_step_m = 0.01;
@@ -163,8 +163,8 @@ Placed placed(const Model &model, const Dataset &data, const std::string &effect
     return {std::move(moved), std::move(fit)};
 }
 
-// While the patch lies a little off, the ground's numbers keep the way such that its edges look right there: it is tried at another scale of
-// the way, each with a fit.
+// While the patch lies a little off, the ground's numbers keep the way such that its edges look right there: it is tried at another scale
+// of the way, each with a fit.
 bool scale_way(Model &model, const Dataset &data, const std::string &effect, Problem &problem) {
     bool moved = false;
     const EffectUse &use = *find_use(model, effect);

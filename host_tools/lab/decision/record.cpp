@@ -1,6 +1,7 @@
 #include "record.h"
 
 #include "classes.h"
+#include "host_tools/lab/fit/ladder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +79,7 @@ void take_values(CandidateResult &a, const Problem &problem, const std::vector<P
             const FreeParameter &p = problem.parameters[i];
             if (p.owner != a.candidate.effect || p.wheel != a.candidate.wheel || p.key != a.candidate.strengths[j].key) continue;
             a.value[j] = p.base + problem.theta[static_cast<Eigen::Index>(i)];
-            const double half_width = errors[i].half_width + std::fabs(a.value[j]) * loss;
+            const double half_width = with_the_laws_own(errors[i].half_width + std::fabs(a.value[j]) * loss, a.value[j]);
             a.low[j] = a.value[j] - half_width;
             a.high[j] = a.value[j] + half_width;
         }
@@ -155,7 +156,9 @@ void take_shape_values(CandidateResult &a, const Problem &problem, const std::ve
         for (auto &[key, variant] : a.candidate.variant) {
             if (key != p.key) continue;
             variant = value;
-            a.shapes.push_back({p.key, p.unit, value, value - errors[i].half_width, value + errors[i].half_width});
+            const double half = p.unit == "rad" ? errors[i].half_width // an angle's zero is anybody's
+                                                : with_the_laws_own(errors[i].half_width, value);
+            a.shapes.push_back({p.key, p.unit, value, value - half, value + half});
         }
     }
 }

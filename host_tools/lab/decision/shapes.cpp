@@ -6,6 +6,7 @@
 #include "shape_scores.h"
 
 #include <memory>
+#include <utility>
 
 namespace traction::lab {
 
@@ -44,7 +45,7 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
         if (replaced.empty()) continue;
         const double error = sum_error(s.assessment.block_gain - (first_screen.block_error() - named_screen.block_error()));
         if (!takes_their_place(replaced.size(), s.assessment.gain, named_gain, error, findings.shape.has_value(), options)) continue;
-        findings.shape = describe(s, first_screen.heldout_error());
+        findings.beside = std::exchange(findings.shape, describe(s, first_screen.heldout_error()));
         findings.replaced = replaced, findings.gain_squares = s.assessment.gain;
         return findings;
     }

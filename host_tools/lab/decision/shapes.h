@@ -11,11 +11,11 @@
 namespace traction::lab {
 
 struct ShapeFindings {
-    std::optional<UnknownShape> shape;
-    std::vector<std::size_t> replaced; // of the named: the shape alone does better than they together
-    double gain_squares = 0;           // what it explains of the first problem's held-out error, where it replaces any
-    std::optional<std::size_t> proxy;  // of the named: not needed beside a shape that is needed beside it
-    std::optional<UnknownShape> cause; // that shape
+    std::optional<UnknownShape> shape, beside; // beside: of one that replaces, what is worth a word beside the names if they stay
+    std::vector<std::size_t> replaced;         // of the named: the shape alone does better than they together
+    double gain_squares = 0;                   // what it explains of the first problem's held-out error, where it replaces any
+    std::optional<std::size_t> proxy;          // of the named: not needed beside a shape that is needed beside it
+    std::optional<UnknownShape> cause;         // that shape
 };
 
 struct ShapeScore;

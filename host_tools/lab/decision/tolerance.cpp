@@ -108,6 +108,12 @@ bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, dou
     return scaled.sum + spared > least + scaled.error && noise.sum > -most_rise * noise.error;
 }
 
+bool is_at_a_limit(const Problem &fit) {
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+        if (fit.parameters[i].prior > 0 && fit.at_bound(i)) return true;
+    return false;
+}
+
 std::size_t newly_at_limits(const Problem &before, const Problem &with) {
     if (with.parameters.empty()) throw std::logic_error("newly_at_limits: asked of a fit that holds nothing, or that was moved away");
     std::size_t count = 0;

@@ -30,6 +30,9 @@ struct ToleranceRival {
 // deviations that the parameters keep to.
 bool tolerances_decide(const Fall &scaled, const Fall &noise, double spared, double least);
 
+// A number of the sheet stands where the fit may go no further.
+bool is_at_a_limit(const Problem &fit);
+
 // Numbers that lie six stated deviations off, their limit, in `with` and not in `before` (an effect may fix what it stands for). A name
 // that the stated tolerances alone speak for must not break one itself: from one contradiction with the sheet to another nothing is
 // explained (prior-data conflict: Evans and Moshonov 2006, Bayesian Analysis 1, 893-914). Throws a logic_error for a `with` that holds

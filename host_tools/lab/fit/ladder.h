@@ -26,6 +26,10 @@ Problem fitted_problem(const Model &model, const Dataset &data);
 // there: the one of the least cost, on the same scales; nothing where none lies below `least`.
 std::optional<Problem> from_afar(const Problem &problem, std::size_t parameter, double least);
 
+// Half of the 95 % interval of an effect's size, time or speed. No law of the catalogue is a machine's own: the same law written by another
+// hand differs from it by a few hundredths, in every block alike, so that no scatter over blocks tells. `of_data`: by the rows alone.
+double with_the_laws_own(double of_data, double value);
+
 // The optimum of fitted_problem(); writes the values with their 95 % intervals into it.
 LadderStep fit_model(Model &model, const Dataset &data, const std::string &label);
 LadderStep store_fit(Model &model, const Problem &fitted, const std::string &label); // the same of a problem at its optimum
