@@ -517,11 +517,23 @@ class Search {
                                                         alone ? first : fitted(model_without(d_.model, one.candidate), &last), options_);
             if (!rival || (rival->better && predict_surely_better({i}, rival->shape, last))) continue;
             d_.unknown = describe(rival->shape, rival->error);
-            if (rival->better)
+            if (rival->better) {
                 reject_as_nearest(i, last);
-            else
+                if (d_.accepted.empty()) tell_alone(first);
+            } else
                 d_.unknown->instead_of = one.candidate.label(), join_class(d_, i, d_.unknown->balance);
         }
+    }
+
+    // With no name left, what is told is what would have been had none been found: a rival is no step.
+    void tell_alone(const Problem &first) {
+        ShapeScores of_first;
+        const ShapeFindings findings = find_unknown(first, first, {}, options_, of_first);
+        if (!findings.shape) return;
+        const std::optional<ShapeScore> fitted = as_refitted(*findings.shape->score, first);
+        if (!fitted) return;
+        d_.unknown = describe(*fitted, 1);
+        d_.unknown->gain = findings.shape->gain;
     }
 
     void reject_as_nearest(std::size_t i, Problem &last) {
