@@ -98,17 +98,22 @@ class Patch {
 };
 
 // Way gone by the log less the way gone by the model, at the end of each row of what measures it: by a camera, else by a radar, whose
-// readings stand for the time since the one before.
-std::vector<std::pair<double, double>> strayed(const Problem &problem) {
+// readings, which know no direction, stand for the time since the one before.
+std::vector<std::pair<double, double>> strayed(const Problem &problem, const Motion &motion) {
+    const Dataset &data = problem.data();
+    const auto backwards = [&](double t) {
+        const double k = std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(motion.v_m_s.size()) - 1);
+        return motion.v_m_s[static_cast<std::size_t>(k)] < 0;
+    };
     for (const BalanceKind kind : {BalanceKind::camera_x, BalanceKind::radar}) {
         std::vector<std::pair<double, double>> list;
         double sum = 0;
         Eigen::Index row = 0;
-        for (const Balance &b : problem.data().balance) {
+        for (const Balance &b : data.balance) {
             for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) {
                 if (b.kind != kind) continue;
-                const double since = b.t1_s[r] - (r > 0 ? std::max(b.t0_s[r], b.t1_s[r - 1]) : b.t0_s[r]);
-                sum += kind == BalanceKind::radar ? problem.residual[row] * since : problem.residual[row];
+                const double since = b.t1_s[r] - (r > 0 ? std::max(b.t0_s[r], b.t1_s[r - 1]) : b.t0_s[r]), off = problem.residual[row];
+                sum += kind == BalanceKind::camera_x ? off : backwards(0.5 * (b.t0_s[r] + b.t1_s[r])) ? -off * since : off * since;
                 list.emplace_back(b.t1_s[r], sum);
             }
         }
@@ -121,7 +126,7 @@ constexpr double unmeasured = 0.02; // of the way gone, by what it may stray whe
 
 // How far the model's way has strayed where it passes this place, by its mean square over the passes [m].
 double strayed_at(const Problem &problem, const Motion &motion, double place_m) {
-    const std::vector<std::pair<double, double>> by_time = strayed(problem);
+    const std::vector<std::pair<double, double>> by_time = strayed(problem, motion);
     double squares = 0, passes = 0, way = 0;
     for (std::size_t k = 1; k < motion.path_m.size(); ++k) {
         way += std::fabs(motion.path_m[k] - motion.path_m[k - 1]);
