@@ -413,7 +413,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(ShapeCase{"stribeck_friction", "speed_rad_s", 1.4, Soil::sand, "stribeck_friction:torque_Nm=0.05,speed_rad_s=1.4"},
                     ShapeCase{"wear_in", "time_constant_s", 18, Soil::sand, "wear_in:torque_Nm=0.07,time_s=18"},
                     ShapeCase{"soil_patch", "start_m", 1.33, Soil::sand, "soil_patch:change=-0.5,start_m=1.33,length_m=1.2"},
-                    // longer than any length that is tried, so that both edges are far from where the search begins
+                    // between two lengths that are tried, 2.5 and 4.2 m, so that both edges are far from where the search begins
                     ShapeCase{"soil_patch", "length_m", 3.7, Soil::snow, "soil_patch:change=0.5,start_m=0.9,length_m=3.7"}),
     [](const testing::TestParamInfo<ShapeCase> &one) { return std::string(one.param.name) + "_" + one.param.key; });
 
