@@ -283,32 +283,6 @@ class Search {
         }
     }
 
-    // Numbers that a missing law has driven to their limits hold its size down, and it them there: from the stated numbers, and with twice
-    // the size, another valley is found. Kept is what a fit from there finds again, for so the model will be fitted by whoever has it.
-    void fit_from_the_sheet(const Trial &t, Problem &problem) const {
-        const auto from = [&](const std::vector<double> &size) {
-            Model model = d_.model;
-            model.effects.push_back(effect_of(t.candidate, size));
-            return fitted_problem(model, data_);
-        };
-        for (const double by : {1.0, 2.0}) {
-            std::vector<double> size;
-            for (std::size_t j = 0; j < t.value.size(); ++j)
-                size.push_back(std::clamp(by * t.value[j], t.candidate.strengths[j].minimum, t.candidate.strengths[j].maximum));
-            const Problem first = from(size);
-            if (!(overall_error(first) < overall_error(problem))) continue;
-            if (Problem again = from(sizes_of(t, first)); overall_error(again) < overall_error(problem)) problem = std::move(again);
-        }
-    }
-
-    // Of a fit that has the candidate last.
-    static std::vector<double> sizes_of(const Trial &t, const Problem &fit) {
-        std::vector<double> size;
-        for (std::size_t i = fit.parameters.size() - t.value.size(); i < fit.parameters.size(); ++i)
-            size.push_back(fit.parameters[i].base + fit.theta[static_cast<Eigen::Index>(i)]);
-        return size;
-    }
-
     // The whole model with the candidate, fitted anew with scales of its own: the candidate must keep its size, and the error of blocks
     // left out must fall. A data sheet that is wrong by more than it states is asked first.
     std::optional<Next> with(Trial &t, const Problem &before) {
@@ -320,7 +294,8 @@ class Search {
             there.theta = t.baseline;
             if (Problem other = fitted(model, &there); overall_error(other) < overall_error(problem)) problem = std::move(other);
         }
-        if (overall_error(problem) > strange && (is_at_a_limit(before) || is_at_a_limit(problem))) fit_from_the_sheet(t, problem);
+        if (overall_error(problem) > strange && (is_at_a_limit(before) || is_at_a_limit(problem)))
+            fit_from_the_sheet(t, d_.model, data_, problem);
         const std::vector<double> value = sizes_of(t, problem);
         t.verdict = "not_held_out";
         if ((!t.matters && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
@@ -470,13 +445,10 @@ class Search {
         }
     }
 
-    // A shape is compared with names on the scales of the model without them. Where they explain most, those are blown up by what they
-    // explain, and a shape that explains half of it looks as good: each fitted in full, in units of noise, tells.
     bool predict_surely_better(const std::vector<std::size_t> &names, const ShapeScore &shape, const Problem &last) const {
         Model without = d_.model;
         for (const std::size_t i : names) without = model_without(without, d_.accepted[i].candidate);
-        const double by_shape = held_out(with_shape(fitted(without, &last), shape)).error;
-        return held_out(last).error < names_ahead * by_shape;
+        return predicts_surely_better(last, fitted(without, &last), shape);
     }
 
     // The shape has stood against names by linear steps; told it is only where its own fit bears it, and as that has it.
@@ -495,9 +467,8 @@ class Search {
     // Share of the error that the shape takes, fitted in full where that is more: a linear step sees little of a large one.
     double taken_by_the_shape(const Problem &last) const {
         if (!d_.unknown) return 0;
-        const double error = overall_error(last);
-        if (!(error > strange) || !d_.unknown->instead_of.empty()) return d_.unknown->gain;
-        return std::max(d_.unknown->gain, 1 - overall_error(with_shape(last, *d_.unknown->score)) / error);
+        const bool large = overall_error(last) > strange && d_.unknown->instead_of.empty();
+        return std::max(d_.unknown->gain, large ? 1 - overall_error(with_shape(last, *d_.unknown->score)) / overall_error(last) : 0.0);
     }
 
     // Linear steps find a proxy; refits tell whether it is one.
@@ -519,21 +490,11 @@ class Search {
             d_.unknown = describe(rival->shape, rival->error);
             if (rival->better) {
                 reject_as_nearest(i, last);
-                if (d_.accepted.empty()) tell_alone(first);
+                if (!d_.accepted.empty()) continue;
+                if (std::optional<UnknownShape> told = told_alone(first, options_)) d_.unknown = std::move(told);
             } else
                 d_.unknown->instead_of = one.candidate.label(), join_class(d_, i, d_.unknown->balance);
         }
-    }
-
-    // With no name left, what is told is what would have been had none been found: a rival is no step.
-    void tell_alone(const Problem &first) {
-        ShapeScores of_first;
-        const ShapeFindings findings = find_unknown(first, first, {}, options_, of_first);
-        if (!findings.shape) return;
-        const std::optional<ShapeScore> fitted = as_refitted(*findings.shape->score, first);
-        if (!fitted) return;
-        d_.unknown = describe(*fitted, 1);
-        d_.unknown->gain = findings.shape->gain;
     }
 
     void reject_as_nearest(std::size_t i, Problem &last) {
@@ -583,13 +544,7 @@ class Search {
     void place(CandidateResult &a, Problem &last) {
         last.get_ready();
         place_patch(d_.model, data_, a.candidate.effect, last);
-        const EffectUse *use = d_.model.find_effect(a.candidate.effect, -1);
-        a.shapes.clear();
-        for (auto &[key, variant] : a.candidate.variant) {
-            const Parameter &p = use->parameters.at(key);
-            variant = p.value;
-            a.shapes.push_back({key, p.unit, p.value, p.low, p.high});
-        }
+        take_edges(a, d_.model);
         d_.model_fit.reset();
         last.get_ready();
         stands_at(last);
@@ -613,7 +568,6 @@ class Search {
     // number 4.4 and farther off, and none of those was there; the others left none more than 3.8 off.
     static constexpr double bent_sheet = 4;
     static constexpr double one_story = 1.02;    // of the error: a valley that the verbs share is told, though it be so much higher
-    static constexpr double names_ahead = 0.6;   // of the held-out error with a shape in their place: assumed
     static constexpr double least_ahead = 0.001; // of the held-out error: laws that do the same differ by less (assumed)
     static constexpr double sure_rows = 1e-8;    // of a corrected p: those five had 1e-5 and more; one that is there had 1e-19 (925021)
     const Dataset &data_;

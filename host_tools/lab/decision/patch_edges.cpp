@@ -1,7 +1,7 @@
 #include "patch_edges.h"
 
 #include "host_tools/lab/fit/ladder.h"
-#include "host_tools/lab/fit/normal_equations.h"
+#include "host_tools/lab/fit/profile.h"
 #include "host_tools/lab/fit/screen.h"
 
 #include <algorithm>
@@ -79,10 +79,7 @@ class Patch {
     Edges moved(int first, int last) const { return {edges[0] + first * step_, edges[1] + last * step_}; }
 
     double dispersion(const std::string &effect) const {
-        Eigen::MatrixXd normal = problem_.jacobian.transpose() * problem_.jacobian;
-        normal.diagonal() += problem_.prior_precision();
-        for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's ridge
-        const Eigen::VectorXd white = inverse_diagonal(normal);
+        const Eigen::VectorXd white = white_variances(problem_);
         const std::vector<ParameterError> errors = screen_.parameter_errors();
         for (std::size_t i = 0; i < errors.size(); ++i)
             if (problem_.parameters[i].owner == effect)

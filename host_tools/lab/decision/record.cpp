@@ -173,6 +173,16 @@ void fix_shapes(Model &model, const CandidateResult &a) {
             }
 }
 
+void take_edges(CandidateResult &a, const Model &model) {
+    const EffectUse *use = model.find_effect(a.candidate.effect, -1);
+    a.shapes.clear();
+    for (auto &[key, variant] : a.candidate.variant) {
+        const Parameter &p = use->parameters.at(key);
+        variant = p.value;
+        a.shapes.push_back({key, p.unit, p.value, p.low, p.high});
+    }
+}
+
 bool no_worse(double refined, double at_station) { return refined < 1.0005 * at_station; }
 
 double smoothing_loss(const Candidate &c, const Dataset &data) {

@@ -45,6 +45,8 @@ bool free_shapes(Model &model, const Candidate &candidate, const sim::Effect &ef
 // Their values by the fit of that model; and the model with them held there again.
 void take_shape_values(CandidateResult &accepted, const Problem &problem, const std::vector<ParameterError> &errors);
 void fix_shapes(Model &model, const CandidateResult &accepted);
+// The edges of an accepted patch as the model has them (patch_edges.h).
+void take_edges(CandidateResult &accepted, const Model &model);
 
 // A fit whose shapes were free is kept where it leaves no more than the one at the station; both end where a search ends.
 bool no_worse(double refined, double at_station);

@@ -36,4 +36,9 @@ std::optional<Rival> rival_of(const Candidate &named, const std::vector<std::str
 // better than the shape fitted in its place? `last` and `less` as above.
 bool outdoes(const Candidate &named, const Problem &last, const Problem &less, const ShapeScore &shape);
 
+// Shapes are compared with names on the scales of the model without them. Where names explain most, those are blown up by what they
+// explain, and a shape that explains half of it looks as good: does `last`, the model with names, leave three fifths or less of the
+// held-out error, in units of noise, that the shape leaves, fitted in full in `less`, the model without them?
+bool predicts_surely_better(const Problem &last, const Problem &less, const ShapeScore &shape);
+
 } // namespace traction::lab

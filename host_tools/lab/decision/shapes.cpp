@@ -2,6 +2,7 @@
 
 #include "host_tools/lab/fit/scatter.h"
 #include "host_tools/lab/fit/screen.h"
+#include "shape_refit.h"
 #include "shape_rules.h"
 #include "shape_scores.h"
 
@@ -50,6 +51,17 @@ ShapeFindings find_unknown(const Problem &first, const Problem &last, const std:
         return findings;
     }
     return findings;
+}
+
+std::optional<UnknownShape> told_alone(const Problem &first, const DiagnoseOptions &options) {
+    ShapeScores of_first;
+    const ShapeFindings findings = find_unknown(first, first, {}, options, of_first);
+    if (!findings.shape) return std::nullopt;
+    const std::optional<ShapeScore> fitted = as_refitted(*findings.shape->score, first);
+    if (!fitted) return std::nullopt;
+    UnknownShape told = describe(*fitted, 1);
+    told.gain = findings.shape->gain;
+    return told;
 }
 
 } // namespace traction::lab

@@ -25,4 +25,8 @@ using ShapeScores = std::shared_ptr<const std::vector<ShapeScore>>;
 ShapeFindings find_unknown(const Problem &first, const Problem &last, const std::vector<Candidate> &named, const DiagnoseOptions &options,
                            ShapeScores &of_first);
 
+// What is told of a model with no name, fitted in full; nothing where no shape is worth a word. Where the last name has gone to a rival it
+// is told instead: a rival is no step.
+std::optional<UnknownShape> told_alone(const Problem &first, const DiagnoseOptions &options);
+
 } // namespace traction::lab

@@ -228,6 +228,29 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen) {
         if (before[b] > 0) t.best_balance_gain = std::max(t.best_balance_gain, 1 - after[b] / before[b]);
 }
 
+std::vector<double> sizes_of(const Trial &t, const Problem &fit) {
+    std::vector<double> size;
+    for (std::size_t i = fit.parameters.size() - t.value.size(); i < fit.parameters.size(); ++i)
+        size.push_back(fit.parameters[i].base + fit.theta[static_cast<Eigen::Index>(i)]);
+    return size;
+}
+
+void fit_from_the_sheet(const Trial &t, const Model &model, const Dataset &data, Problem &problem) {
+    const auto from = [&](const std::vector<double> &size) {
+        Model with = model;
+        with.effects.push_back(effect_of(t.candidate, size));
+        return fitted_problem(with, data);
+    };
+    for (const double by : {1.0, 2.0}) {
+        std::vector<double> size;
+        for (std::size_t j = 0; j < t.value.size(); ++j)
+            size.push_back(std::clamp(by * t.value[j], t.candidate.strengths[j].minimum, t.candidate.strengths[j].maximum));
+        const Problem first = from(size);
+        if (!(overall_error(first) < overall_error(problem))) continue;
+        if (Problem again = from(sizes_of(t, first)); overall_error(again) < overall_error(problem)) problem = std::move(again);
+    }
+}
+
 void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
     t.by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
                 t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty

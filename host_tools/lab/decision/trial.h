@@ -50,6 +50,14 @@ Problem beside(const Problem &base, const Candidate &candidate);
 // Fits baseline plus candidate in full.
 void refit(Trial &trial, const Problem &base, const Screen &base_screen);
 
+// Of a fit that has the candidate last: its strengths.
+std::vector<double> sizes_of(const Trial &trial, const Problem &fit);
+
+// Numbers that a missing law has driven to their limits hold its size down, and it them there: `problem`, a fit of `model` with the
+// candidate, is replaced where one from the stated numbers, with its size or twice that, leaves less. Kept is what a fit from there finds
+// again, for so the model will be fitted by whoever has it.
+void fit_from_the_sheet(const Trial &trial, const Model &model, const Dataset &data, Problem &problem);
+
 // The fit of a model with a candidate, the soil's numbers where they stand in the fit without it, whose parameters are the first.
 Problem held_ground(const Problem &with, const Problem &before);
 

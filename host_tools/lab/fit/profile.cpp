@@ -250,6 +250,13 @@ std::vector<Eigen::Index> find_wanted(const Problem &problem, const Model &model
 
 } // namespace
 
+Eigen::VectorXd white_variances(const Problem &fitted) {
+    Eigen::MatrixXd normal = fitted.jacobian.transpose() * fitted.jacobian;
+    normal.diagonal() += fitted.prior_precision();
+    for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's ridge
+    return inverse_diagonal(normal);
+}
+
 std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data, const std::vector<std::string> &wanted) {
     if (data.balance.empty() || data.count < 3)
         throw ModelError(model.file, 0, "--profile", "the log has nothing that this model predicts",
@@ -265,10 +272,7 @@ std::vector<Profile> profile_likelihood(const Model &model, const Dataset &data,
                              name_of(best.parameters[static_cast<std::size_t>(i)]) + " changes nothing that this log holds",
                              "ask for another parameter, or drive so that it matters");
     const std::vector<ParameterError> errors = Screen(best).parameter_errors();
-    Eigen::MatrixXd normal = best.jacobian.transpose() * best.jacobian;
-    normal.diagonal() += best.prior_precision();
-    for (Eigen::Index j = 0; j < normal.rows(); ++j) normal(j, j) += 1e-9 * (1 + normal(j, j)); // the screening's ridge
-    const Eigen::VectorXd white = inverse_diagonal(normal).cwiseSqrt();
+    const Eigen::VectorXd white = white_variances(best).cwiseSqrt();
     const double best_cost = best.cost();
     best.linearise(); // cost() has moved the prediction
     std::vector<Profile> out;

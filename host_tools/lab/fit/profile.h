@@ -9,6 +9,7 @@
 
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/model/model.h"
+#include "problem.h"
 
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ struct Profile {
     std::vector<double> x, rise;                      // ascending
     std::string verdict;                              // identifiable, asymmetric, at_bound, one_sided, not_identifiable
 };
+
+// Per parameter of a fitted problem: its variance were the scaled rows white, beside the priors; the denominator of (3).
+Eigen::VectorXd white_variances(const Problem &fitted);
 
 // Fits the model and profiles the wanted parameters: "slip_sinkage", "slip_sinkage.coefficient", "motor.resistance_ohm"; none: every
 // strength of the model's effects. Throws ModelError for a name that is not free in this model, or when there is none.
