@@ -12,11 +12,14 @@ git -C "$here" diff --quiet HEAD -- || say "the clone has what is committed; thi
 
 base=${TRACTION_BARE:-$(mktemp -d)}
 system=$base/$suite
-mounted=
-leave() {
-    for place in $mounted; do umount -l "$place" 2>/dev/null || true; done
-    [ "$keep" = yes ] || [ ! -d "$system" ] || grep -q " $system/" /proc/mounts || rm -rf "$system"
+# release: what is mounted in the system, by this run or by one that was killed
+release() {
+    awk -v below="$system/" 'index($2, below) == 1 { print $2 }' /proc/mounts | sort -r | while read -r place; do umount "$place" || umount -l "$place"; done
+    ! grep -q " $system/" /proc/mounts || { say "$system has mounts that cannot be released (/proc/mounts); it is left as it is" >&2; return 1; }
 }
+# remove_system: never through a mount
+remove_system() { release && rm -rf --one-file-system "$system"; }
+leave() { if [ "$keep" = yes ]; then release; else remove_system; fi || true; }
 trap leave EXIT
 trap 'exit 130' INT TERM
 
@@ -42,23 +45,28 @@ timed() {
 # make_system: the system, this checkout cloned into it, what its apt offers
 make_system() {
     say "$suite${mirror:+ from this machine's mirror}, checkout $(git -C "$here" rev-parse --short HEAD)"
-    rm -rf "$system"
+    remove_system || die "nothing was done"
     timed debootstrap debootstrap --variant=minbase "$suite" "$system" ${mirror:+"$mirror"}
     for file in /usr/local/share/ca-certificates/*.crt /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf.d/*registry* /etc/ssl/certs/ca-certificates.crt /etc/pip.conf /etc/npmrc /root/.npmrc /root/.config/pip/pip.conf /etc/hosts /etc/resolv.conf; do
         [ -f "$file" ] || continue
         mkdir -p "$system$(dirname "$file")"
         cp -L "$file" "$system$file"
     done
-    for place in proc dev; do
-        mount --rbind "/$place" "$system/$place"
-        mount --make-rslave "$system/$place"
-        mounted="$system/$place $mounted"
-    done
+    # devices of its own: this machine's /dev seen through a bind would go with the system, should it be removed by hand
+    mount -t proc proc "$system/proc"
+    mount -t tmpfs -o mode=755 devices "$system/dev"
+    for node in null:3 zero:5 full:7 random:8 urandom:9; do mknod -m 666 "$system/dev/${node%:*}" c 1 "${node#*:}"; done
+    mknod -m 666 "$system/dev/tty" c 5 0
+    mkdir "$system/dev/pts" "$system/dev/shm"
+    mount -t devpts -o newinstance,ptmxmode=666,mode=620 devpts "$system/dev/pts"
+    mount -t tmpfs -o mode=1777 shm "$system/dev/shm"
+    ln -s pts/ptmx "$system/dev/ptmx"
+    ln -s /proc/self/fd "$system/dev/fd"
+    for stream in 0:stdin 1:stdout 2:stderr; do ln -s "/proc/self/fd/${stream%:*}" "$system/dev/${stream#*:}"; done
     if [ -n "${TRACTION_BARE_CACHE-}" ]; then
         mkdir -p "$system/root/.ccache" "$TRACTION_BARE_CACHE"
         printf 'base_dir = /root\nhash_dir = false\nsloppiness = pch_defines,time_macros\nmax_size = 5G\n' >"$TRACTION_BARE_CACHE/ccache.conf"
         mount --bind "$TRACTION_BARE_CACHE" "$system/root/.ccache"
-        mounted="$system/root/.ccache $mounted"
     fi
     git clone -q "$here" "$system/root/traction"
     if [ -d "$here/../shared" ]; then cp -r "$here/../shared" "$system/root/shared"; fi
