@@ -362,7 +362,7 @@ struct Case {
     const char *hidden;
 };
 
-// Not among them, for such logs are answered by silence still: shear_peak, resistance_patch, radar_delay (docs/lab_benchmark.md).
+// Not among them, for such logs are answered by silence still: shear_peak, resistance_patch, radar_delay (docs/lab_diary.md).
 class Law : public testing::TestWithParam<Case> {};
 
 TEST_P(Law, that_an_independent_rover_hides_is_named) {

@@ -208,7 +208,7 @@ TEST(Next, a_class_that_a_diagnosis_left_is_what_it_asks_about) {
 // other.
 TEST(Next, the_drive_it_proposes_tells_the_two_apart) {
     const Model model = sand();
-    // mesh_loss against slip_sinkage is not held: docs/lab_benchmark.md, what the laws of 54 effects miss
+    // mesh_loss against slip_sinkage is not held: docs/lab_diary.md, what the laws of 54 effects miss
     for (const auto &[one, other] : {std::pair<std::string, std::string>{"multi_pass:gain=0.4", "mass_offset_x:offset_m=-0.03"}}) {
         const std::vector<std::string> names = {one.substr(0, one.find(':')), other.substr(0, other.find(':'))};
         const NextExperiment next = next_experiment(names, model, &forward_only(), drive);

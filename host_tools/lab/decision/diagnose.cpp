@@ -564,7 +564,7 @@ class Search {
     // Times the noise, of a fit with a number at its limit, that may be in the wrong valley: assumed.
     static constexpr double strange = 2;
     static constexpr double far_off = 8; // times its noise, of a balance that is missed by far (uneven ground leaves up to six): assumed
-    // Stated deviations. Of 446 logs (docs/lab_benchmark.md, the same day, later) 25 had a name for the sheet's sake alone: five left a
+    // Stated deviations. Of 446 logs (docs/lab_diary.md, Two effects) 25 had a name for the sheet's sake alone: five left a
     // number 4.4 and farther off, and none of those was there; the others left none more than 3.8 off.
     static constexpr double bent_sheet = 4;
     static constexpr double one_story = 1.02;    // of the error: a valley that the verbs share is told, though it be so much higher

@@ -11,7 +11,7 @@ namespace traction::lab {
 namespace {
 
 constexpr double least_of_squares = 0.035; // clean logs of the fleet had up to 0.033 (strange ones whose noise is stated twice up to
-                                           // 0.066), laws that the catalogue lacks 0.048 and more (docs/lab_benchmark.md)
+                                           // 0.066), laws that the catalogue lacks 0.048 and more (docs/lab_diary.md)
 constexpr double least_of_balance = 0.15;  // as the linear step is asked for (shape_rules.cpp)
 constexpr double sure_errors = 2;
 

@@ -92,7 +92,7 @@ Problem fitted_problem(const Model &model, const Dataset &data) {
     return best;
 }
 
-// Of a size. Of 467 of the independent generators (docs/lab_benchmark.md) the rows' own intervals held 0.95 where they were wider than a
+// Of a size. Of 467 of the independent generators (docs/lab_diary.md) the rows' own intervals held 0.95 where they were wider than a
 // tenth of it, and 0.83 of the narrower ones.
 constexpr double exact_to = 0.03;
 
