@@ -370,6 +370,31 @@ TEST(Words, of_a_wrong_model_take_every_name_back) {
     EXPECT_TRUE(d.ladder.empty());
 }
 
+TEST(Words, of_a_wrong_model_tell_what_describes_the_log_as_well_where_its_number_is_right) {
+    const auto told = [](double left, double with_the_number) {
+        Diagnosis d;
+        d.ranking = {named("a"), named("b", 1)};
+        d.accepted = {named("a"), named("b", 1)};
+        d.accepted[0].value = {-0.243};
+        d.ladder = {{"baseline", 2, 4, 1}, {"+ a", 1.5, 3, 1}, {"+ b", left, 2, 1}};
+        d.stated_fit = std::make_shared<const Problem>(problem());
+        Doubt doubt;
+        doubt.error = 2, doubt.text = "Look first at the mass";
+        doubt.suspects = {{"the mass", 12, 7, "kg", with_the_number, 1.2, false}};
+        name_nothing(d, Model(), doubt);
+        EXPECT_TRUE(d.accepted.empty() && d.effects.empty());
+        return d;
+    };
+    EXPECT_NE(told(1.09, 1).text.find(
+                  "Look first at the mass. Where the mass is right as it stands, a (-0.243) and b on wheel 1 (0) would describe it too (1.09 x "
+                  "noise)."),
+              std::string::npos)
+        << told(1.09, 1).text;
+    EXPECT_EQ(told(1.09, 1).nearest, (Labels{"a", "b on wheel 1"}));
+    EXPECT_EQ(told(1.11, 1).text.find("Where the"), std::string::npos); // the number does it notably better
+    EXPECT_TRUE(told(1.11, 1).nearest.empty());
+}
+
 TEST(Class, that_lost_its_front_leaves_its_members_as_not_needed_and_its_accepted_as_names) {
     Diagnosis d;
     for (const char *name : {"a", "b", "c", "d"}) {

@@ -173,6 +173,18 @@ TEST(Words, an_effect_that_takes_little_is_said_to_explain_a_part) {
     EXPECT_FALSE(has(tell(c, d, nullptr).next, "traction next --all"));
 }
 
+TEST(Words, a_wrong_number_is_not_surely_wrong_where_an_effect_acts_as_it_does) {
+    const Comparison c;
+    Diagnosis d;
+    d.kind = "wrong_model", d.text = "Look first at the mass.";
+    EXPECT_TRUE(has(tell(c, d, nullptr).good_enough, "no effect is missing")) << tell(c, d, nullptr).good_enough;
+    EXPECT_FALSE(has(tell(c, d, nullptr).next, "traction add")) << tell(c, d, nullptr).next;
+    d.nearest = {"current_gain"};
+    EXPECT_FALSE(has(tell(c, d, nullptr).good_enough, "no effect is missing")) << tell(c, d, nullptr).good_enough;
+    EXPECT_TRUE(has(tell(c, d, nullptr).good_enough, "or an effect is missing that acts as it does")) << tell(c, d, nullptr).good_enough;
+    EXPECT_TRUE(has(tell(c, d, nullptr).next, "traction add")) << tell(c, d, nullptr).next;
+}
+
 TEST(Words, windows_end_with_the_log) {
     const Dataset data = make_dataset(sand(), generated("", 3));
     const double end = data.time(data.count - 1);

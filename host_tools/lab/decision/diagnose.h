@@ -82,7 +82,8 @@ struct Diagnosis {
     std::optional<UnknownShape> unknown;
     std::string kind; // named class partial unknown nothing wrong_model
     std::vector<std::string> effects;
-    std::vector<std::string> nearest; // of the catalogue to the unknown shape, whose proxies they were: not the cause
+    std::vector<std::string> nearest; // of the catalogue to the unknown shape, whose proxies they were: not the cause; of a wrong model
+                                      // what describes the log as well as its number does
     std::string text;
     std::vector<LadderStep> ladder;
     Model model;               // with the accepted effects, refitted

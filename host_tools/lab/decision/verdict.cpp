@@ -47,7 +47,31 @@ std::string verdict_text(const Diagnosis &d) {
     return text;
 }
 
+namespace {
+
+// Where one of the model's numbers and what was named describe the log about as well, what is named is told for who has checked the number.
+constexpr double as_well = 1.1;
+
+std::string if_the_numbers_are_right(const Diagnosis &d, const Doubt &doubt) {
+    if (d.accepted.empty() || d.ladder.empty() || doubt.suspects.empty() || !(d.ladder.back().train < as_well * doubt.suspects.front().error)) return "";
+    std::string text = " Where " + doubt.suspects.front().quantity + " is right as it stands, ";
+    char size[60];
+    for (std::size_t i = 0; i < d.accepted.size(); ++i) {
+        const CandidateResult &a = d.accepted[i];
+        std::snprintf(size, sizeof size, " (%.3g)", a.value.empty() ? 0.0 : a.value.front());
+        text += (i == 0 ? "" : " and ") + a.candidate.label() + size;
+    }
+    std::snprintf(size, sizeof size, " would describe it too (%.3g x noise).", d.ladder.back().train);
+    return text + size;
+}
+
+} // namespace
+
 void name_nothing(Diagnosis &d, const Model &stated, const Doubt &doubt) {
+    const std::string otherwise = if_the_numbers_are_right(d, doubt);
+    std::vector<std::string> nearest;
+    if (!otherwise.empty())
+        for (const CandidateResult &a : d.accepted) nearest.push_back(a.candidate.label());
     for (CandidateResult &r : d.ranking)
         if (r.verdict == "named" || r.verdict == "class" || r.verdict == "nearest") r.verdict = "wrong_model", r.class_index.reset();
     if (d.ladder.size() > 1) d.ladder.resize(1);
@@ -56,10 +80,11 @@ void name_nothing(Diagnosis &d, const Model &stated, const Doubt &doubt) {
     d.model = stated;
     d.model_fit = d.stated_fit;
     d.kind = "wrong_model";
+    d.nearest = std::move(nearest);
     char buffer[200];
     std::snprintf(buffer, sizeof buffer, "This model does not describe this log: its error is %.3g x noise, and no effect is named. ",
                   doubt.error);
-    d.text = buffer + doubt.text + ".";
+    d.text = buffer + doubt.text + "." + otherwise;
 }
 
 } // namespace traction::lab

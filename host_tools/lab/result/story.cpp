@@ -68,7 +68,9 @@ double explained(const Diagnosis &d) {
 
 std::string good_enough(const Comparison &c, const Diagnosis &d) {
     if (d.kind == "wrong_model")
-        return "No, and no effect is missing that would mend it: a number of the model itself is wrong. " + farthest_words(c);
+        return (d.nearest.empty() ? "No, and no effect is missing that would mend it: a number of the model itself is wrong. "
+                                  : "No: a number of the model itself is wrong, or an effect is missing that acts as it does. ") +
+               farthest_words(c);
     if (!d.accepted.empty())
         return "No. " + farthest_words(c) + " With what was found, " + times(c.left_after.error) + " times the sensor noise is left" +
                (c.left_after.error < close_to_noise ? ": close to the noise, good enough for this log." : ".");
@@ -120,7 +122,9 @@ std::string how_sure(const Comparison &c, const Diagnosis &d) {
 }
 
 std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperiment *next) {
-    if (d.kind == "wrong_model") return "Check the data sheet's number that is named above, then compare again.";
+    if (d.kind == "wrong_model")
+        return std::string("Check the data sheet's number that is named above, then compare again") +
+               (d.nearest.empty() ? "." : "; where it is right, traction add what would describe the log too.");
     std::string text;
     if (next != nullptr && !next->title.empty()) {
         append(text, "Drive this, it tells them apart: %s", next->title.c_str());
