@@ -83,10 +83,27 @@ void place_words(bool quiet, bool result_on_stdout) {
     if (nowhere >= 0) close(nowhere);
 }
 
-// The files of a verb's output options: they can be written, are all different, and nobody else writes them while the verb works.
+// The files that a verb reads, each with how it was given.
+std::vector<std::pair<std::string, std::string>> files_read(const Verb &verb) {
+    std::vector<std::pair<std::string, std::string>> files;
+    for (const Option &option : verb.options) {
+        if (option.kind != Kind::input && option.kind != Kind::scenario && option.kind != Kind::model && option.kind != Kind::rover &&
+            option.kind != Kind::log)
+            continue;
+        const std::string given_as = option.argument.empty() ? option.name : option.argument;
+        if (std::vector<std::string> *const *paths = std::get_if<std::vector<std::string> *>(&option.into))
+            for (const std::string &one : **paths) files.emplace_back(one, given_as);
+        if (std::string *const *path = std::get_if<std::string *>(&option.into)) files.emplace_back(**path, given_as);
+    }
+    return files;
+}
+
+// The files of a verb's output options: they can be written, are all different, none is a file that is read, whatever name or link leads
+// there, and nobody else writes them while the verb works.
 std::vector<log::Claim> claim_outputs(const Parsed &parsed) {
     std::vector<log::Claim> claims;
     std::vector<std::pair<std::string, std::string>> targets = {}; // file, option
+    const std::vector<std::pair<std::string, std::string>> read = files_read(*parsed.verb);
     const auto claim = [&](const std::string &option, const std::string &path) {
         if (path.empty()) return;
         const log::Claim &made = claims.emplace_back(path);
@@ -94,6 +111,11 @@ std::vector<log::Claim> claim_outputs(const Parsed &parsed) {
         for (const auto &[other, name] : targets)
             if (!target.empty() && other == target) throw UsageError(option + " and " + name + " name the same file, " + path);
         targets.emplace_back(target, option);
+        std::error_code none; // what is not there is no file that is read
+        for (const auto &[file, given_as] : read)
+            if (!target.empty() && std::filesystem::equivalent(target, file, none))
+                throw UsageError(option + " names a file that is read, " + path + " (" + given_as +
+                                 "): give another name, and that one stays as it is");
     };
     for (const Option &option : parsed.verb->options)
         if (option.kind == Kind::output) claim(option.name, *std::get<std::string *>(option.into));

@@ -264,6 +264,8 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
             report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed),
                                batch ? with_seed(arguments.seal, seed) : arguments.seal);
         simulated_s += static_cast<double>(result.ticks) / 100;
+        for (const auto &[part, stood] : result.parts)
+            std::printf("%s stood already and is as it was; what this run had: traction recover %s --out NEW\n", stood.c_str(), part.c_str());
         outcome.json["runs"].push_back(summary(result, seed));
     });
     auto &runs = outcome.json["runs"];

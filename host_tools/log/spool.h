@@ -72,6 +72,9 @@ class Spool {
     // What there is goes to the part now, where a log grows slowly. Nothing without a path. Throws FileError.
     void put_by();
 
+    // The part's name; empty before something went to it, and without a path.
+    const std::string &part() const { return rows_ ? rows_->part() : scratch_.part(); }
+
     // The columns that hold something, as a log in memory; the spool is empty after it. Only without a path.
     Log take();
     // The columns that hold something, as a log under the path: CSV (write_csv's bytes), or ULog (write_ulog's) where it ends in .ulg.

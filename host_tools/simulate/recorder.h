@@ -38,6 +38,8 @@ class Recorder {
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
     void write_radar(const std::map<std::string, std::string> &header); // where it has a path
+    const std::string &part() const { return spool_.part(); }           // log::Spool's
+    const std::string &radar_part() const { return radar_spool_->part(); } // where it has a path
 
   private:
     std::size_t column(const std::string &name, log::Unit unit, bool absent_is_zero = false);
@@ -86,6 +88,7 @@ class TruthRecorder {
     void add(const sim::Truth &truth);
     void begin(const std::map<std::string, std::string> &header) { spool_.begin(header); } // log::Spool's
     void put_by() { spool_.put_by(); }
+    const std::string &part() const { return spool_.part(); } // log::Spool's
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
 

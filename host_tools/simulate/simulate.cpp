@@ -11,8 +11,10 @@
 #include "host_tools/rover/rover.h"
 
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <system_error>
 
 namespace traction {
 
@@ -121,19 +123,36 @@ class Session : public Link {
         result.interrupted = interrupted_;
         for (log::Log *log : {&result.log, &result.truth})
             if (interrupted_) log->header["ended"] = "interrupted";
-        recorder_.write_radar(result.log.header);
-        if (!options_.log_path.empty())
-            recorder_.write(result.log.header);
-        else if (options_.record)
+        if (!options_.radar_path.empty()) {
+            if (!stays(options_.radar_path, recorder_, &Recorder::radar_part, result)) recorder_.write_radar(result.log.header);
+        }
+        if (!options_.log_path.empty()) {
+            if (!stays(options_.log_path, recorder_, &Recorder::part, result)) recorder_.write(result.log.header);
+        } else if (options_.record) {
             result.log.signals = recorder_.take().signals;
-        if (!options_.truth_path.empty())
-            truth_.write(result.truth.header);
-        else if (options_.truth)
+        }
+        if (!options_.truth_path.empty()) {
+            if (!stays(options_.truth_path, truth_, &TruthRecorder::part, result)) truth_.write(result.truth.header);
+        } else if (options_.truth) {
             result.truth.signals = truth_.take().signals;
-        if (frames_) frames_->keep();
+        }
+        if (frames_ && !stands(options_.frames_path)) frames_->keep();
     }
 
   private:
+    // A file is there, and this run is no whole one.
+    bool stands(const std::string &path) const {
+        std::error_code none;
+        return interrupted_ && std::filesystem::is_regular_file(path, none);
+    }
+    // An interrupted run takes no other's place: where a file stands it stays, and what the run had is kept as its part.
+    template <typename Of>
+    bool stays(const std::string &path, Of &recorder, const std::string &(Of::*part)() const, SimulationResult &result) const {
+        if (!stands(path)) return false;
+        recorder.put_by();
+        if (const std::string &name = (recorder.*part)(); !name.empty()) result.parts.emplace_back(name, path);
+        return true;
+    }
     bool records() const { return options_.record || !options_.log_path.empty(); }
     const SimulateOptions &options_;
     const hal::SimHal &world_;

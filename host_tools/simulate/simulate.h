@@ -13,6 +13,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace traction {
@@ -42,6 +43,7 @@ struct SimulationResult {
     std::uint64_t hide_seed = 0;
     hal_result_t ended_by = HAL_END; // HAL_END: the scenario's duration; negative: a device was lost
     bool interrupted = false;        // by SimulateOptions::stopped
+    std::vector<std::pair<std::string, std::string>> parts; // of a run that was interrupted: LOG.part, LOG, which stood already and stays
     std::uint64_t ticks = 0;
     std::uint32_t faults = 0;       // fault_t bits that the firmware has latched
     self_test_result_t self_test{}; // all zero unless asked for

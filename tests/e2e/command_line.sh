@@ -31,6 +31,9 @@ gives() {
 }
 
 # mistyped
+cp "$root/models/rover_sand.toml" a.toml
+cp "$root/models/rover_sand.toml" a.csv # is not read: what is wrong is the command line
+ln -s a.toml link.toml
 says 2 "no verb 'simulte'; did you mean 'simulate'?" simulte
 says 2 "no option --ot; did you mean '--out'?" simulate cruise --ot x.csv
 says 2 "no option --lgo; did you mean '--log'?" compare --lgo x
@@ -45,6 +48,16 @@ says 2 "is given twice" check a.csv --log b.csv
 says 2 "one argument too many" effects backlash torque_ripple
 says 2 "name the same file" simulate cruise --out same.csv --truth ./same.csv
 says 2 "name the same file" simulate cruise --out same.csv --radar same.csv
+for out in "--out a.toml" "--json ./a.toml" "--out link.toml"; do
+    # shellcheck disable=SC2086 # two words
+    says 2 "names a file that is read" fit --model a.toml --log a.csv $out
+done
+says 2 "names a file that is read" convert a.csv --out a.csv
+says 2 "names a file that is read" simulate a.toml --out a.toml
+says 2 "names a file that is read" recover a.csv --out a.csv
+says 2 "names a file that is read" add backlash --model a.toml --log a.csv --out a.toml
+cmp -s a.toml "$root/models/rover_sand.toml" || bad "a refused command line changed a file"
+rm a.toml a.csv link.toml
 says 2 "give one of default, paper; did you mean 'paper'?" simulate cruise --firmware papr
 says 2 "give a verb" # nothing at all
 [ -e same.csv ] && bad "a refused command line made a file"
@@ -204,6 +217,20 @@ grep -q '^# ended: interrupted$' long.csv || bad "the log does not say that it w
 gives 0 '"interrupted"' check long.csv --json -
 [ "$(ls -A | grep long | tr '\n' ' ')" = "long.csv long.toml long_truth.csv " ] || bad "a stopped run leaves $(ls -A | grep long)"
 [ "$(head -n 100 long.csv | grep '^t_s' | tr -cd , | wc -c)" -eq "$(tail -n 1 long.csv | tr -cd , | wc -c)" ] || bad "the last row is cut"
+# and takes no place of a log that stood already: the run is kept as its part
+cp long.csv stood.csv
+cp long_truth.csv stood_truth.csv
+code=0
+"$cli" simulate long.toml --out long.csv --truth long_truth.csv >stopped.txt 2>&1 &
+sleep 1
+kill -TERM $!
+wait $! || code=$?
+[ $code -eq 143 ] || bad "a run stopped by SIGTERM exits $code, beside a log"
+cmp -s stood.csv long.csv && cmp -s stood_truth.csv long_truth.csv || bad "a run that was stopped replaces a log"
+grep -q 'long.csv stood already and is as it was; what this run had: traction recover long.csv.part' stopped.txt || bad "not told where the run went: $(cat stopped.txt)"
+gives 0 "ended: interrupted" recover long.csv.part --out anew.csv
+gives 0 '"interrupted"' check anew.csv --json -
+rm -f long.csv.part long_truth.csv.part anew.csv stood.csv stood_truth.csv stopped.txt
 # 1000 s with log and truth, and of the radar's samples alone, in 100 MB of address space
 sed 's/^duration_s = .*/duration_s = 1000/' "$root/scenarios/cruise.toml" >long.toml
 (ulimit -v 100000 && "$cli" simulate long.toml --quiet --out long.csv --truth long_truth.csv) || bad "memory grows with the run"
