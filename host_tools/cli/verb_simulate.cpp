@@ -258,28 +258,34 @@ void run_simulate(const SimulateArguments &arguments, Outcome &outcome) {
     const StopSignal stop;
     options.stopped = [] { return StopSignal::asked() != 0; };
     double simulated_s = 0;
+    bool as_parts = false; // of a run that was stopped
     const auto own = [&](std::uint64_t seed) { return options_of(arguments, options, seed, first, batch); };
     simulate_batch(scenario, own, first, last, arguments.jobs, [&](std::uint64_t seed, SimulationResult &&result) {
         if (!arguments.seal.empty())
             report::write_text(sim::seal_text(result.hidden, scenario.name, result.hide_seed),
                                batch ? with_seed(arguments.seal, seed) : arguments.seal);
         simulated_s += static_cast<double>(result.ticks) / 100;
-        for (const auto &[part, stood] : result.parts)
-            std::printf("%s stood already and is as it was; what this run had: traction recover %s --out NEW\n", stood.c_str(), part.c_str());
+        for (const auto &[part, stood] : result.parts) {
+            const auto beside = std::filesystem::path(stood).parent_path() / std::filesystem::path(part).filename(); // as it was given
+            std::printf("%s stood already and is as it was; what this run had: traction recover '%s' --out NEW\n", stood.c_str(),
+                        (std::filesystem::exists(beside) ? beside.string() : part).c_str());
+        }
+        as_parts = as_parts || !result.parts.empty();
         outcome.json["runs"].push_back(summary(result, seed));
     });
     auto &runs = outcome.json["runs"];
     std::sort(runs.begin(), runs.end(), [](const auto &a, const auto &b) { return a["seed"] < b["seed"]; });
     const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::printf("%s: %ld run%s, %.1f s simulated in %.2f s (%.0f x real time)%s%s\n", scenario.name.c_str(), count, count == 1 ? "" : "s",
-                simulated_s, spent_s, simulated_s / spent_s, arguments.out.empty() ? "" : ", log in ", arguments.out.c_str());
+                simulated_s, spent_s, simulated_s / spent_s, arguments.out.empty() || as_parts ? "" : ", log in ",
+                as_parts ? "" : arguments.out.c_str());
     outcome.json["spent_s"] = spent_s;
     if (arguments.out.empty() && arguments.truth.empty() && arguments.radar.empty() && arguments.frames.empty())
         std::printf("the log was not kept; --out LOG keeps it\n");
     tell_faults(outcome);
     if (const int signal = StopSignal::asked(); signal != 0) {
-        std::printf("stopped by a signal with %zu of %ld run%s begun; what was written is whole, and says `ended: interrupted`\n",
-                    runs.size(), count, count == 1 ? "" : "s");
+        std::printf("stopped by a signal with %zu of %ld run%s begun%s\n", runs.size(), count, count == 1 ? "" : "s",
+                    as_parts ? "" : "; what was written is whole, and says `ended: interrupted`");
         outcome.exit_code = 128 + signal;
     }
 }

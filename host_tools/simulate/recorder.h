@@ -37,8 +37,8 @@ class Recorder {
     void put_by();
     log::Log take() { return spool_.take(); }
     void write(const std::map<std::string, std::string> &header) { spool_.write(header); }
-    void write_radar(const std::map<std::string, std::string> &header); // where it has a path
-    const std::string &part() const { return spool_.part(); }           // log::Spool's
+    void write_radar(const std::map<std::string, std::string> &header);    // where it has a path
+    const std::string &part() const { return spool_.part(); }              // log::Spool's
     const std::string &radar_part() const { return radar_spool_->part(); } // where it has a path
 
   private:

@@ -41,8 +41,8 @@ struct SimulationResult {
     log::Log truth;                        // empty unless asked for
     std::vector<sim::ActiveEffect> hidden; // what was drawn; goes to the seal and nowhere else
     std::uint64_t hide_seed = 0;
-    hal_result_t ended_by = HAL_END; // HAL_END: the scenario's duration; negative: a device was lost
-    bool interrupted = false;        // by SimulateOptions::stopped
+    hal_result_t ended_by = HAL_END;                        // HAL_END: the scenario's duration; negative: a device was lost
+    bool interrupted = false;                               // by SimulateOptions::stopped
     std::vector<std::pair<std::string, std::string>> parts; // of a run that was interrupted: LOG.part, LOG, which stood already and stays
     std::uint64_t ticks = 0;
     std::uint32_t faults = 0;       // fault_t bits that the firmware has latched

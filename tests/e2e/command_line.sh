@@ -227,7 +227,7 @@ kill -TERM $!
 wait $! || code=$?
 [ $code -eq 143 ] || bad "a run stopped by SIGTERM exits $code, beside a log"
 cmp -s stood.csv long.csv && cmp -s stood_truth.csv long_truth.csv || bad "a run that was stopped replaces a log"
-grep -q 'long.csv stood already and is as it was; what this run had: traction recover long.csv.part' stopped.txt || bad "not told where the run went: $(cat stopped.txt)"
+grep -q 'long.csv stood already and is as it was; what this run had: traction recover .long.csv.part. --out NEW' stopped.txt || bad "not told where the run went: $(cat stopped.txt)"
 gives 0 "ended: interrupted" recover long.csv.part --out anew.csv
 gives 0 '"interrupted"' check anew.csv --json -
 rm -f long.csv.part long_truth.csv.part anew.csv stood.csv stood_truth.csv stopped.txt

@@ -385,10 +385,11 @@ TEST(Words, of_a_wrong_model_tell_what_describes_the_log_as_well_where_its_numbe
         EXPECT_TRUE(d.accepted.empty() && d.effects.empty());
         return d;
     };
-    EXPECT_NE(told(1.09, 1).text.find(
-                  "Look first at the mass. Where the mass is right as it stands, a (-0.243) and b on wheel 1 (0) would describe it too (1.09 x "
-                  "noise)."),
-              std::string::npos)
+    EXPECT_NE(
+        told(1.09, 1).text.find(
+            "Look first at the mass. Where the mass is right as it stands, a (-0.243) and b on wheel 1 (0) would describe it too (1.09 x "
+            "noise)."),
+        std::string::npos)
         << told(1.09, 1).text;
     EXPECT_EQ(told(1.09, 1).nearest, (Labels{"a", "b on wheel 1"}));
     EXPECT_EQ(told(1.11, 1).text.find("Where the"), std::string::npos); // the number does it notably better

@@ -53,7 +53,9 @@ namespace {
 constexpr double as_well = 1.1;
 
 std::string if_the_numbers_are_right(const Diagnosis &d, const Doubt &doubt) {
-    if (d.accepted.empty() || d.ladder.empty() || doubt.suspects.empty() || !(d.ladder.back().train < as_well * doubt.suspects.front().error)) return "";
+    if (d.accepted.empty() || d.ladder.empty() || doubt.suspects.empty() ||
+        !(d.ladder.back().train < as_well * doubt.suspects.front().error))
+        return "";
     std::string text = " Where " + doubt.suspects.front().quantity + " is right as it stands, ";
     char size[60];
     for (std::size_t i = 0; i < d.accepted.size(); ++i) {
