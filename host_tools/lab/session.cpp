@@ -39,6 +39,13 @@ void keep_asked(log::Log &log, const std::string &file, const Request &request) 
     keep_part(log, request.from_s, request.to_s);
 }
 
+// One drive given twice counts as two: intervals halve, and it is said to be judged by what it was fitted to.
+void refuse_twice(const std::vector<log::Log> &runs, const log::Log &log, const std::string &file, const char *option) {
+    for (const log::Log &run : runs)
+        if (same_drive(run, log))
+            throw ModelError(file, 0, option, "holds the same samples as " + run.source, "give another drive, or leave it out");
+}
+
 } // namespace
 
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,
@@ -68,9 +75,18 @@ Session open_session(const Request &request, Model model) {
                          "is given " + std::to_string(maps.size()) + " times for " + std::to_string(files.size()) + " logs",
                          "give one map for all logs, or one for each in the order of the logs");
     const auto map_of = [&](std::size_t i) { return maps.empty() ? std::string() : maps[maps.size() == 1 ? 0 : i]; };
-    for (std::size_t i = 0; i < files.size(); ++i)
-        session.runs.push_back(checked_log(request, files[i], map_of(i), session.model, told, despite)),
-            session.runs.back().source = files[i];
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        log::Log run = checked_log(request, files[i], map_of(i), session.model, told, despite);
+        run.source = files[i];
+        refuse_twice(session.runs, run, files[i], "--log");
+        session.runs.push_back(std::move(run));
+    }
+    if (!request.validate.empty() && !files.empty()) {
+        std::vector<std::string> again, anyway; // told where they are judged
+        for (const std::string &file : request.validate)
+            refuse_twice(session.runs, checked_log(request, file, request.map_of_validation(), session.model, again, anyway), file,
+                         "--validate");
+    }
     const JoinedRuns joined = join_runs(session.runs);
     const log::Log &log = joined.log;
     begin_runs(session.model, session.runs, joined.start_s);
@@ -78,7 +94,10 @@ Session open_session(const Request &request, Model model) {
         if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1")
             session.model.unsigned_current = true;
     std::optional<log::Log> repeat;
-    if (!request.repeat.empty()) repeat = checked_log(request, request.repeat, map_of(0), session.model, told, despite);
+    if (!request.repeat.empty()) {
+        repeat = checked_log(request, request.repeat, map_of(0), session.model, told, despite);
+        refuse_twice(session.runs, *repeat, request.repeat, "--repeat");
+    }
     const auto data = [&] { return make_dataset(session.model, log, repeat ? &*repeat : nullptr); };
     session.data = data();
     if (drifts_sideways(session.model, session.data)) {

@@ -70,6 +70,15 @@ says 4 "no_scenario.toml" simulate no_scenario.toml
 says 4 "no_rover: cannot be read: No such file or directory" simulate cruise --believes no_rover
 says 4 "no/such/run.csv: cannot be written: No such file" simulate cruise --out no/such/run.csv
 
+# one drive given twice is no second one
+gives 0 "log in drive.csv" simulate cruise --out drive.csv --for 8
+cp drive.csv copy.csv
+for option in "--log copy.csv" "--validate copy.csv" "--repeat drive.csv"; do
+    # shellcheck disable=SC2086 # two words
+    says 3 "holds the same samples as drive.csv" fit --model rover_sand --log drive.csv $option
+done
+rm drive.csv copy.csv
+
 # the radar's samples apart
 gives 0 "log in few.csv" simulate cruise --out few.csv --radar radar.csv --for 4
 gives 0 "1 run, 4.0 s" simulate cruise --seed 9 --radar radar9.csv --for 4

@@ -46,6 +46,11 @@ double first_time(const log::Log &log) {
     return std::isfinite(first) ? first : 0;
 }
 
+bool same_drive(const log::Log &one, const log::Log &other) {
+    return std::equal(one.signals.begin(), one.signals.end(), other.signals.begin(), other.signals.end(),
+                      [](const log::Signal &x, const log::Signal &y) { return x.name == y.name && x.t_s == y.t_s && x.value == y.value; });
+}
+
 JoinedRuns join_runs(const std::vector<log::Log> &runs) {
     JoinedRuns out;
     if (runs.empty()) return out;

@@ -19,6 +19,9 @@ struct JoinedRuns {
 
 double first_time(const log::Log &log); // of its samples [s]; 0 where there is none
 
+// They hold the same samples, whatever their files are called: one drive, given twice.
+bool same_drive(const log::Log &one, const log::Log &other);
+
 // Signals that only some runs have stay empty in the others. One run is returned as it is.
 JoinedRuns join_runs(const std::vector<log::Log> &runs);
 
