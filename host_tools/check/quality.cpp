@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace traction::check {
 
@@ -55,6 +56,7 @@ class Quality {
 };
 
 void Quality::repairs() {
+    std::map<std::pair<std::string, std::size_t>, std::pair<std::size_t, std::size_t>> told; // cause, count: its finding, further signals
     for (const log::Repair &repair : repairs_) {
         if (repair.id == "not_finite") {
             const log::Signal *signal = log_.find(repair.signal);
@@ -64,6 +66,13 @@ void Quality::repairs() {
                 repair.text + say(" (%.1f %% of the column)", 100 * share),
                 "find out why the sensor gave no number, and leave such cells empty", share);
         } else if (one_of(repair.id, {"unsorted", "duplicate_time", "time_not_finite", "cut_last_line", "out_of_range"})) {
+            if (one_of(repair.id, {"unsorted", "duplicate_time"})) { // one clock has many columns
+                const auto [seen, fresh] = told.try_emplace({repair.id, repair.count}, findings_.size(), 0);
+                if (!fresh) {
+                    ++seen->second.second;
+                    continue;
+                }
+            }
             add(repair.id.c_str(), Severity::warning, repair.signal, repair.text, "mend the recording, so that nothing has to be guessed",
                 static_cast<double>(repair.count));
         } else {
@@ -71,6 +80,8 @@ void Quality::repairs() {
                 static_cast<double>(repair.count));
         }
     }
+    for (const auto &[cause, finding] : told)
+        if (finding.second > 0) findings_[finding.first].text += say("; so have %zu other signals", finding.second);
     if (const auto ended = log_.header.find("ended"); ended != log_.header.end() && ended->second == "interrupted")
         add("interrupted", Severity::note, "", say("the run was stopped after %.1f s, before its end", log_.duration_s()),
             "nothing to do if what is there is enough", log_.duration_s());
@@ -410,8 +421,14 @@ void Quality::run() {
     }
     const bool endless = !trials && grid_.count == 0 && log_.duration_s() > 50000; // [s] more than half a day, in one drive
     if (!trials && (fastest >= 2 || endless) && std::isfinite(fastest)) {
-        add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.4g s: the times look like milliseconds", fastest),
-            "divide the times by 1000 (map: time.scale = 0.001)", fastest);
+        // the unit in which a rover's samples are half a second apart at most
+        const char *unit = fastest < 500 ? "milliseconds" : fastest < 5e5 ? "microseconds" : "nanoseconds";
+        const char *scale = fastest < 500 ? "0.001" : fastest < 5e5 ? "1e-6" : "1e-9";
+        add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.4g s: the times look like %s", fastest, unit),
+            say("give the times in seconds (map: time.scale = %s)", scale), fastest);
+    } else if (!trials && fastest < 1e-5) { // [s]: no rover's converter is as fast
+        add("time_unit", Severity::error, "t_s", say("the fastest signal comes every %.3g s: the times are no seconds", fastest),
+            "give the times in seconds (map: time.scale)", fastest);
     } else if (most < (trials ? 4U : 50U) || (!trials && log_.duration_s() < 2.5)) { // the lab's least number of rows, its shortest block
         add("short", Severity::error, "",
             say("the log lasts %.3g s and has %zu sample(s) of its fastest signal: nothing can be learnt from it", log_.duration_s(), most),

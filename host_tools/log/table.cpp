@@ -369,8 +369,13 @@ void refuse_what_is_no_text(std::string_view text, const std::string &file) {
     for (const auto &one : known)
         if (text.substr(0, one.begins.size()) == one.begins)
             throw LogError(file, 1, 0, "this is " + std::string(one.is), std::string(one.mend));
-    if (text.substr(0, 4).find('\0') != std::string_view::npos)
-        throw LogError(file, 1, 0, "this is not a text file", "export the log as CSV");
+    const std::string_view first = text.substr(0, 4096);
+    const auto is_no_text = [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 && std::string_view("\t\n\v\f\r").find(c) == std::string_view::npos;
+    };
+    if (std::any_of(first.begin(), first.end(), is_no_text)) throw LogError(file, 1, 0, "this is not a text file", "export the log as CSV");
+    if (first.find('\r') != std::string_view::npos && text.find('\n') == std::string_view::npos)
+        throw LogError(file, 1, 0, "its lines end with CR alone", "give them LF (tr '\\r' '\\n')");
 }
 
 Table TableReader::read() {
@@ -408,6 +413,9 @@ Table TableReader::read() {
     if (!names_taken)
         throw LogError(file_, line_number_, 0, "there is no row of names and no data",
                        "put 't_s,<object>.<quantity>_<unit>,...' above the data");
+    if (rows_ == 0 && bad_times_ == 0)
+        throw LogError(file_, table_.names_line, 0, "below the row of names there is no row of data",
+                       "check the recording, or name another file");
     if (table_.has_format == false && dialect_.native) {
         note("no_format", "", 1, 1, "there is no line '# format: traction-log 1', read as that");
     }

@@ -430,12 +430,29 @@ TEST(Check, passes_on_what_the_reader_mended) {
     EXPECT_NEAR(report.find("not_finite")->value, 0.3, 1e-12); // 300 of 1000
 }
 
-TEST(Check, names_times_in_milliseconds_and_a_log_without_anything_known) {
-    log::Log log = good();
-    for (log::Signal &signal : log.signals) {
-        for (double &t : signal.t_s) t *= 1000;
+TEST(Check, tells_a_clock_that_stands_still_once_and_not_for_each_column) {
+    std::string text = "t_s,wheel0.speed_rad_s,wheel1.speed_rad_s,wheel2.speed_rad_s\n";
+    for (int i = 0; i < 400; ++i) text.append(i < 300 ? std::to_string(0.01 * i) : "2.99").append(",1,2,3\n");
+    const File file("stands.csv", text);
+    const check::Report report = check::check_file(file.path());
+    std::size_t told = 0;
+    for (const check::Finding &finding : report.findings) told += finding.id == "duplicate_time" ? 1 : 0;
+    EXPECT_EQ(told, 1U);
+    ASSERT_NE(report.find("duplicate_time"), nullptr);
+    EXPECT_NE(report.find("duplicate_time")->text.find("so have 2 other signals"), std::string::npos)
+        << report.find("duplicate_time")->text;
+}
+
+TEST(Check, names_times_in_another_unit_by_it_and_a_log_without_anything_known) {
+    for (const auto &[times, unit] : {std::pair(1e3, "milliseconds"), {1e6, "microseconds"}, {1e9, "nanoseconds"}, {1e-6, "no seconds"}}) {
+        log::Log log = good();
+        for (log::Signal &signal : log.signals) {
+            for (double &t : signal.t_s) t *= times;
+        }
+        const check::Report report = check::check(log, {});
+        ASSERT_NE(report.find("time_unit"), nullptr) << unit;
+        EXPECT_NE(report.find("time_unit")->text.find(unit), std::string::npos) << report.find("time_unit")->text;
     }
-    EXPECT_NE(check::check(log, {}).find("time_unit"), nullptr);
     EXPECT_NE(check::check(log::Log{{}, {{"a", {0, 1}, {1, 2}}}, {}, ""}, {}).find("nothing_to_use"), nullptr);
     EXPECT_FALSE(check::check(log::Log{}, {}).passed());
 }

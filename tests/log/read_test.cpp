@@ -87,11 +87,16 @@ TEST(Read, a_folder_is_refused) { EXPECT_THROW(read_csv("/"), FileError); }
 TEST(Read, an_empty_file_is_refused) {
     EXPECT_EQ(refusal(""), "log.csv: the file is empty; to mend: check the recording, or name another file");
     EXPECT_HAS(refusal("# format: traction-log 1\n"), "there is no row of names and no data");
+    EXPECT_EQ(refusal("# format: traction-log 1\nt_s,wheel0.speed_rad_s\n\n"),
+              "log.csv, line 2: below the row of names there is no row of data; to mend: check the recording, or name another file");
 }
 
 TEST(Read, a_binary_file_is_refused_by_what_it_is) {
     using namespace std::string_literals;
     EXPECT_HAS(refusal("\x01\x02\x00\x03"s), "this is not a text file");
+    EXPECT_HAS(refusal("\xD4\xC7, \x12\x16\n1,2\n"), "this is not a text file");
+    EXPECT_HAS(refusal("t_s,wheel0.speed_rad_s\n0,\0\n"s), "this is not a text file");
+    EXPECT_HAS(refusal("t_s,wheel0.speed_rad_s\r0,1\r"), "its lines end with CR alone");
     EXPECT_HAS(refusal("PK\x03\x04"), "this is a zip archive or a spreadsheet; to mend: unpack it, or export the sheet as CSV");
     EXPECT_HAS(refusal("\xFF\xFEt\0_\0s\0"s), "this is text in UTF-16; to mend: save it as UTF-8");
     EXPECT_HAS(refusal("\xFE\xFF\0t\0_\0s"s), "this is text in UTF-16; to mend: save it as UTF-8");
