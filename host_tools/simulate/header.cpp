@@ -59,8 +59,8 @@ void write_header(const sim::Scenario &scenario, std::uint64_t seed, log::Log &l
     log.header["quantum.imu.gyro_z_rad_s"] = number(scale.gyro_rad_s);
     log.header["noise.camera.x_m"] = log.header["noise.camera.y_m"] = number(sensors.camera.noise_m);
     log.header["noise.camera.yaw_rad"] = number(sensors.camera.noise_rad);
-    // the small sensors average over a tick (sim/sensors/analog.h)
-    for (const char *signal : {"wheel.current_A", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s"})
+    // the small sensors average over a tick (sim/sensors/analog.h), and a speed is the difference of two counts
+    for (const char *signal : {"wheel.current_A", "wheel.speed_rad_s", "battery.voltage_V", "imu.accel_x_m_s2", "imu.gyro_z_rad_s"})
         log.header[std::string("window.") + signal] = "0.01";
     // a value of the firmware's Doppler stage: floor and share of the speed (docs/performance.md), mean over its window
     const bool paper = scenario.firmware.config == "paper";

@@ -106,6 +106,20 @@ TEST(Inputs, a_current_that_is_the_mean_of_its_tick_stands_for_the_middle_of_it)
     EXPECT_NEAR(instant.t1_s[same] - mean.t1_s[last], 0.005, 1e-9);
 }
 
+TEST(Inputs, a_speed_that_is_the_mean_of_its_period_stands_for_the_middle_of_it) {
+    log::Log log = motor(0);
+    log::Signal &speed = log.signals[0];
+    speed.name = "wheel0.speed_rad_s";
+    for (std::size_t i = 0; i < speed.value.size(); ++i) speed.value[i] = 2 + 3 * (speed.t_s[i] - 0.02); // of a ramp, the mean of 0.04 s
+    const auto ramp = [&] {
+        const Dataset data = make_dataset(bench(), log);
+        return data.wheel[0].speed_rad_s[100] - (2 + 3 * data.time(100));
+    };
+    EXPECT_NEAR(ramp(), -0.06, 1e-9);
+    log.header["window.wheel.speed_rad_s"] = "0.04";
+    EXPECT_NEAR(ramp(), 0, 1e-9);
+}
+
 TEST(Inputs, a_late_command_meets_the_supply_of_its_own_time) {
     const Dataset data = make_dataset(bench(), motor(0));
     const WheelInput &w = data.wheel[0];

@@ -191,6 +191,12 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.speed_rad_s = input.accel_rad_s2 = input.angle_rad;
         return;
     }
+    log::Signal in_the_middle;
+    if (const double back = 0.5 * window_of(*s); scale == 0 && back > 0) { // a mean over a window ending at its time
+        in_the_middle = *s;
+        for (double &t : in_the_middle.t_s) t -= back;
+        s = &in_the_middle;
+    }
     double half = data.independent_rows ? 0.1 * data.step_s : std::max(0.055, 2.6 * sample_period(*s));
     const double narrowest = half;
     data.smoothing_half_s = half;
