@@ -1,6 +1,8 @@
 #include "map.h"
 #include "vocabulary.h"
 
+#include "host_tools/suggest/suggest.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -197,7 +199,11 @@ MapSignal read_signal(const std::string &path, const toml::table &table, std::si
         keys.fail("window_s of '" + signal.name + "' is not above 0", "write the span of time to fit the slope over, e.g. 0.1");
     signal.drop_repeats = keys.flag("drop_repeats");
     signal.noise = keys.number("noise");
+    if (signal.noise && !(*signal.noise > 0))
+        keys.fail("noise of '" + signal.name + "' is not above 0", "write its standard deviation in the signal's unit, or leave it out");
     signal.quantum = keys.number("quantum");
+    if (signal.quantum && !(*signal.quantum > 0))
+        keys.fail("quantum of '" + signal.name + "' is not above 0", "write the sensor's step in the signal's unit, or leave it out");
     signal.missing = keys.numbers("missing");
     keys.none_unknown();
     return signal;
@@ -239,6 +245,44 @@ void read_filters(const std::string &path, const toml::node &node, Map &map) {
     }
 }
 
+// Of a header entry "<what>.<signal>": what it must be (docs/log_format.md), and that it is not mistyped.
+void check_entry(const std::string &path, std::size_t line, const std::string &key, const std::string &value) {
+    const std::size_t dot = key.find('.');
+    if (dot == std::string::npos) return;
+    static const std::vector<std::string> amounts = {"noise", "quantum", "window", "bias"},
+                                          all = {"noise", "quantum", "window", "bias", "unsigned", "constant", "firmware", "rover"};
+    const std::string what = key.substr(0, dot);
+    if (std::find(amounts.begin(), amounts.end(), what) != amounts.end()) {
+        double number = 0;
+        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+        if (error != std::errc() || end != value.data() + value.size() || !(number > 0) || !std::isfinite(number))
+            throw LogError(path, line, 0, "header entry '" + key + "' is '" + value + "', no number above 0",
+                           "write it in the signal's unit");
+    } else if (std::find(all.begin(), all.end(), what) == all.end()) {
+        if (const std::string *meant = nearest(what, all, 2); meant != nullptr)
+            throw LogError(path, line, 0, "header entry '" + key + "' means nothing here", "write '" + *meant + key.substr(dot) + "'");
+    }
+}
+
+// What is said of a signal that this map does not make would count for nothing.
+void check_signals(const std::string &path, const Map &map) {
+    for (const auto &[key, value] : map.header) {
+        const std::size_t dot = key.find('.');
+        const std::string what = key.substr(0, dot);
+        if (what != "noise" && what != "quantum" && what != "window" && what != "bias" && what != "unsigned" && what != "constant")
+            continue;
+        const std::string of = key.substr(dot + 1);
+        if (of.ends_with(".relative")) continue; // beside a noise that is told
+        const auto is_meant = [&](const MapSignal &signal) {
+            return signal.name == of ||
+                   (of.starts_with("wheel.") && signal.name.starts_with("wheel") && signal.name.ends_with(of.substr(5)));
+        };
+        if (std::none_of(map.signals.begin(), map.signals.end(), is_meant))
+            throw LogError(path, 0, 0, "header entry '" + key + "' speaks of a signal that no [[signal]] makes",
+                           "take it out, or correct its name");
+    }
+}
+
 void read_header(const std::string &path, const toml::table &table, Map &map) {
     for (const auto &[key, node] : table) {
         std::string value;
@@ -251,6 +295,7 @@ void read_header(const std::string &path, const toml::table &table, Map &map) {
             throw LogError(path, line_of(node), 0, "header entry '" + std::string(key.str()) + "' is neither text nor number",
                            "write a text in quotes or a number");
         }
+        check_entry(path, line_of(node), std::string(key.str()), value);
         map.header[std::string(key.str())] = value;
     }
 }
@@ -327,6 +372,7 @@ Map read_map(const std::string &path) {
         if (signal.is_unsigned) map.header["unsigned." + key] = "1";
         if (signal.value) map.header["constant." + key] = "1";
     }
+    if (map.join.line == 0) check_signals(path, map); // another file of the drive may bring more
     return map;
 }
 
