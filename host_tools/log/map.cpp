@@ -264,21 +264,20 @@ void check_entry(const std::string &path, std::size_t line, const std::string &k
     }
 }
 
-// What is said of a signal that this map does not make would count for nothing.
+// What is said of a wheel that this map does not make, or of what is no signal at all, would count for nothing.
 void check_signals(const std::string &path, const Map &map) {
     for (const auto &[key, value] : map.header) {
         const std::size_t dot = key.find('.');
         const std::string what = key.substr(0, dot);
         if (what != "noise" && what != "quantum" && what != "window" && what != "bias" && what != "unsigned" && what != "constant")
             continue;
-        const std::string of = key.substr(dot + 1);
-        if (of.ends_with(".relative")) continue; // beside a noise that is told
-        const auto is_meant = [&](const MapSignal &signal) {
-            return signal.name == of ||
-                   (of.starts_with("wheel.") && signal.name.starts_with("wheel") && signal.name.ends_with(of.substr(5)));
-        };
-        if (std::none_of(map.signals.begin(), map.signals.end(), is_meant))
-            throw LogError(path, 0, 0, "header entry '" + key + "' speaks of a signal that no [[signal]] makes",
+        std::string of = key.substr(dot + 1);
+        if (of.ends_with(".relative")) of.resize(of.rfind('.'));
+        const bool any_wheel = of.starts_with("wheel."), one_wheel = !any_wheel && of.starts_with("wheel");
+        const auto is_meant = [&](const MapSignal &signal) { return signal.name == of; };
+        if (find_quantity(any_wheel ? "wheel0" + of.substr(5) : of) == nullptr ||
+            (one_wheel && std::none_of(map.signals.begin(), map.signals.end(), is_meant)))
+            throw LogError(path, 0, 0, "header entry '" + key + "' speaks of a signal that there is not",
                            "take it out, or correct its name");
     }
 }

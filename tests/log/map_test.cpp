@@ -227,12 +227,14 @@ TEST(Map, what_the_header_says_of_a_signal_is_a_number_of_one_that_is_there_and_
     EXPECT_HAS(with("\"noise.wheel0.current_A\" = \"abc\"\n"), "line 9: header entry 'noise.wheel0.current_A' is 'abc', no number above 0");
     EXPECT_HAS(with("\"noise.wheel0.current_A\" = -3\n"), "no number above 0");
     EXPECT_HAS(with("\"window.wheel.current_A\" = 0\n"), "no number above 0");
-    EXPECT_HAS(with("\"noise.wheel9.current_A\" = 0.1\n"), "speaks of a signal that no [[signal]] makes");
+    EXPECT_HAS(with("\"noise.wheel9.current_A\" = 0.1\n"), "speaks of a signal that there is not");
+    EXPECT_HAS(with("\"noise.wheel.curent_A\" = 0.1\n"), "speaks of a signal that there is not");
     EXPECT_HAS(with("\"nois.wheel0.current_A\" = 0.1\n"), "write 'noise.wheel0.current_A'");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nnoise = 0")), "noise of 'camera.x_m' is not above 0");
     EXPECT_HAS(refusal(top + signal("camera.x_m", "column = \"a\"\nquantum = -1")), "quantum of 'camera.x_m' is not above 0");
     const Log log = through(top + signal("wheel0.current_A", "column = \"a\"") +
-                                "[header]\n\"noise.wheel0.current_A\" = 0.1\n\"window.wheel.current_A\" = \"0.01\"\n\"my.note\" = \"x\"\n",
+                                "[header]\n\"noise.wheel0.current_A\" = 0.1\n\"window.wheel.current_A\" = "
+                                "\"0.01\"\n\"window.radar.speed_m_s\" = 0.5\n\"my.note\" = \"x\"\n",
                             "time_ms,a\n0,1\n10,1\n");
     EXPECT_EQ(log.header.at("window.wheel.current_A"), "0.01");
     EXPECT_EQ(log.header.at("my.note"), "x");
