@@ -244,9 +244,25 @@ TEST(Next, names_kinds_without_numbers_where_the_plant_cannot_stand_in) {
     EXPECT_NE(text.find("no numbers"), std::string::npos) << text;
     EXPECT_NE(text.find("there and back"), std::string::npos) << text;
     EXPECT_FALSE(next_json(next)["questions"][0].contains("d_before"));
+    EXPECT_EQ(text.find("three wheels"), std::string::npos) << text; // it has three
     for (const char *file : {"models/cmu_wheel.toml", "models/robotino_unloaded.toml"})
         EXPECT_NE(cannot_drive(read_model(file)), "") << file;
     EXPECT_EQ(cannot_drive(sand()), "");
+}
+
+// A rover of 300 kg is beyond what the plant drives: what a diagnosis found must not go with the proposal.
+TEST(Next, a_plant_that_refuses_the_machine_takes_the_numbers_and_nothing_else) {
+    const auto refuses = [](const std::string &scenario) -> log::Log {
+        throw std::runtime_error(scenario.find("mass_kg = 300") != std::string::npos ? "rover.mass_kg = 300: out of range"
+                                                                                     : "another reason");
+    };
+    Model heavy = sand();
+    heavy.rover.at("mass_kg").value = 300;
+    const NextExperiment next = next_experiment({"grade", "rolling_resistance"}, heavy, nullptr, refuses);
+    EXPECT_FALSE(next.predicted);
+    EXPECT_EQ(next.why_not, "rover.mass_kg = 300: out of range");
+    ASSERT_EQ(next.questions.size(), 1U);
+    EXPECT_NE(next_text(next).find("300: out of range)"), std::string::npos) << next_text(next);
 }
 
 TEST(Next, refuses_what_is_no_candidate) {

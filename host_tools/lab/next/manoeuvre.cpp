@@ -179,7 +179,9 @@ const std::vector<Manoeuvre> &manoeuvres_of(const Model &model) {
         std::erase_if(list, [](const Manoeuvre &m) { return m.each_wheel; });
         return list;
     }();
-    return model.couples() ? of_sides : manoeuvres();
+    const bool four =
+        model.wheel.size() == 4 && std::all_of(model.wheel.begin(), model.wheel.end(), [](const WheelSpec &w) { return w.driven; });
+    return model.couples() || !four ? of_sides : manoeuvres();
 }
 
 namespace {

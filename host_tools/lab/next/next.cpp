@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stdexcept>
 
 namespace traction::lab {
 
@@ -130,10 +131,23 @@ Model in_one_run(Model model) {
     return model;
 }
 
+// The plant that was lent refuses this machine.
+struct CannotDrive : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+log::Log driven(const std::string &scenario, const DriveScenario &drive) {
+    try {
+        return drive(scenario);
+    } catch (const std::runtime_error &error) { // its own limits: what was found does not depend on them
+        throw CannotDrive(error.what());
+    }
+}
+
 // Fisher information of a drive of this scenario.
 Eigen::MatrixXd information_of(const Plan &plan, const std::string &scenario, const DriveScenario &drive) {
     const Model base = in_one_run(plan.base);
-    Dataset trial = make_dataset(base, drive(scenario));
+    Dataset trial = make_dataset(base, driven(scenario, drive));
     if (plan.data != nullptr) { // sensors that this rover's log lacks will be lacking again, and be as noisy
         std::erase_if(trial.balance, [&](const Balance &b) {
             return std::none_of(plan.data->balance.begin(), plan.data->balance.end(), [&](const Balance &a) { return a.name == b.name; });
@@ -301,20 +315,26 @@ Choice choose(const Table &table) {
     return best;
 }
 
-NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
+NextExperiment questions_of(const Plan &plan) {
     NextExperiment next;
     for (const Asked &a : plan.asked) {
         Question q;
         for (const int m : a.members) q.members.push_back(plan.candidates[static_cast<std::size_t>(m)].candidate.label());
         next.questions.push_back(q);
     }
-    if (plan.asked.empty()) return next;
-    next.why_not = cannot_drive(plan.base);
-    next.predicted = next.why_not.empty();
-    if (!next.predicted) {
-        name_kinds(plan, next);
-        return next;
-    }
+    return next;
+}
+
+NextExperiment kinds_alone(const Plan &plan, const std::string &why_not) {
+    NextExperiment next = questions_of(plan);
+    next.why_not = why_not;
+    name_kinds(plan, next);
+    return next;
+}
+
+NextExperiment predict(Plan plan, const Model &best, const DriveScenario &drive) {
+    NextExperiment next = questions_of(plan);
+    next.predicted = true;
     Table table{plan, {}, {}, {}, {}, {}};
     condition_on_log(plan, best, table.log, table.precision);
     for (const Manoeuvre &m : manoeuvres_of(plan.base)) {
@@ -338,6 +358,16 @@ NextExperiment solve(Plan plan, const Model &best, const DriveScenario &drive) {
     }
     conclude(table, after, next);
     return next;
+}
+
+NextExperiment solve(const Plan &plan, const Model &best, const DriveScenario &drive) {
+    if (plan.asked.empty()) return {};
+    if (const std::string why = cannot_drive(plan.base); !why.empty()) return kinds_alone(plan, why);
+    try {
+        return predict(plan, best, drive);
+    } catch (const CannotDrive &refused) {
+        return kinds_alone(plan, refused.what());
+    }
 }
 
 } // namespace
