@@ -107,15 +107,18 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         state->beyond = !doppler.beyond ? 0 : state->beyond + (state->beyond < BEYOND_VALUES ? 1 : 0);
         state->doppler_m_s = doppler.speed_m_s;
     }
+    const float rim_m_s = rim_hint_m_s(config, sense);
+    // a quiet window like no echo counts where wheels turn: near zero it is half a noise and half a turn
+    const bool counts = !doppler.strange || fixed_greater(fabsf(rim_m_s), 0.75f * config->ground_speed.slow_m_s);
     const ground_speed_input_t input = {
         .accel_x_m_s2 = sense->level_m_s2,
         .doppler_m_s = doppler.speed_m_s,
         .doppler_late_s = doppler.fresh ? (float)doppler.late_samples * config->doppler.per_sample_s : 0.0f,
-        .wheel_m_s = rim_hint_m_s(config, sense),
+        .wheel_m_s = rim_m_s,
         .slowest_m_s = wheels.slowest_m_s,
         .wheels_part = wheels.part,
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
-        .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt,
+        .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt && counts,
         .doppler_quiet = doppler.quiet,
         .doppler_dead = doppler.dead,
         .busy = state->heard.busy || state->heard.fresh,

@@ -666,7 +666,7 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
         const bool off_rate = state->owed_q8 > OWED_MAX || state->owed_q8 < -OWED_MAX;
         state->relief -= state->relief > 0 ? 1 : 0;
         state->relief_masked = state->relief_masked && state->relief > 0;
-        out.spoilt = out.strange || out.rest || made > MADE_MAX || railed > RAILED_MAX || off_rate;
+        out.spoilt = (out.strange && !out.quiet) || out.rest || made > MADE_MAX || railed > RAILED_MAX || off_rate;
         out.relieved = out.relieved && !out.spoilt && !out.quiet;
         out.late_samples = state->late_samples + (count > 0 ? count : 0);
         state->due = state->halved || config->beam->line || config->method == DOPPLER_ARGMAX ? 0 : LINE_DUE;

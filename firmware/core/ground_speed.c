@@ -22,8 +22,8 @@ void ground_speed_reset(const ground_speed_config_t *config, ground_speed_state_
 
 enum {
     PUSH_TICKS = 100,
-    UNFELT_VALUES = 40
-}; // a window and the loud values after it; five seconds, in which a line is learnt (doppler_line.h)
+    UNFELT_VALUES = 900
+}; // a window and the loud values after it; two minutes, in which most lines are learnt (doppler_line.h): one that wavers is never
 
 enum { SILENT_TICKS = 25 }; // two values missed: what was loud before tells nothing of now
 
@@ -207,6 +207,10 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
     } else if (state->waits > 1) {
         state->waits = 1;
         ground_speed_watch_held(config, state);
+        state->cover.on = false;
+        state->cover.stopped = false;
+        state->cover.judged = false;
+        state->slide.bias_m_s2[state->slide.newest] = state->bias_m_s2;
         if (state->other_alive) {
             ground_speed_update_other(config, state);
         } else if (state->refused == 0) {
@@ -229,6 +233,7 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
         ground_speed_correct(config, &track, -track.speed_m_s, 0.0f, config->standing_noise_m2_s2);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
+        ground_speed_watch_rest(state);
         state->accepted = true; // rest is known: a first value is gated as any
         state->waits = 0;
         state->agile_left = 0;
@@ -279,7 +284,11 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
 {
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     state->lean_q8 = input->lean_q8;
-    const bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
+    bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
+    if (fresh && input->doppler_quiet) {
+        ground_speed_judge_quiet(config, state, fixed_finite(input->wheel_m_s));
+        fresh = !state->cover.on;
+    }
     const bool stood = state->standstill;
     const bool rest = fixed_greater(config->still_m_s, fabsf(fixed_finite(input->wheel_m_s))) &&
                       fixed_greater(config->rest_m_s, fabsf(state->rest_mean_m_s)); // (24)

@@ -56,8 +56,8 @@
 // jump. (18): wheels whose rim has stayed with the radar's value for half a second (12 % and 2 cm/s slower, 6 % and 1 cm/s faster), and
 // never parted from it within the last three, roll: their sign is a witness of exp(3/2) per value, and asks twice as soon.
 //   |V(t) - V(t - 1 s) - b 1 s| > slow/2                                                (19)
-// What stood and is loud a second later was pushed, and felt it; else the values are a lamp's or a creep's remains, and for five seconds,
-// in which a line is learnt, it stands on. Less than half of it is the noise of a second, and what the bias lags (assumed).
+// What stood and is loud a second later was pushed, and felt it; else the values are a lamp's, a fan's or a creep's remains, and for two
+// minutes, in which a line is learnt, it stands on. Less than half of it is the noise of a second, and what the bias lags (assumed).
 //   |R w| < slow,  d < slow,  d < |m| + 0.05 m/s,  |R w - R w'| < 0.05 m/s:  v = R w + n,  var n = 4 (0.015 m/s + |R w|/5)^2  (20)
 // m: mean of R w; eight times a second, R w' the time before: wheels that spin up pass through such speeds. Where the radar's band-pass is
 // deaf, wheels that creep as slowly are the better witness of speed and sign: their slip is a share of little. Each tells the same again,
@@ -101,8 +101,8 @@
 // which X has left out while the body follows it. Not where the estimate runs against the wheels: then one of both is wrong by more than
 // X.
 //   |d - d'| > slow/2                                                                 (32)  d' the loud value before
-// What changes so fast from one value to the next while (19) has felt nothing is not the body: grass in the wind, a person's feet. The five
-// seconds of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.
+// What changes so fast from one value to the next while (19) has felt nothing is not the body: grass in the wind, a person's feet. The two
+// minutes of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.
 // (33): where it stands and its wheels part it turns on the spot, on a slope through gravity's share. It rests, so X is the bias's error
 // and is followed as in (23), whatever the radar says of it: a hum that it hears meanwhile is loud.
 // (34): a second track whose sign is surely the best's, against the wheels', is no other sign: it is dropped, and the wheels may ask.
@@ -111,6 +111,12 @@
 // (36): where (7) wins with the best's own sign while the other lives, the other stays: a bias that jumps is the best's excuse, and costs
 // it 12 of the odds. (37): a value that leaves the mean of (18) and is still as close to the rim as (18) asks has not parted from it: what
 // sets off with its wheels is read too fast at first, and too slow while it speeds up.
+//   e = v_r + V(t) - V(t_r) - b_r (t - t_r);  |R w| > slow,  e sign(R w) > |R w|/2      (38)
+// r: the oldest of the values that (15) keeps, or the end of the last rest, whichever is newer, within 3 s. An echo that falls silent while
+// the wheels turn is of a body that has stopped, or of a radar that sees nothing any more: covered, in water, out of order. A stop is felt:
+// by the speed that was known last and what the accelerometer has felt since, with the bias of then, the body still goes where (38) holds,
+// and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold it stands, whatever (13) has made of it.
+// Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -216,9 +222,21 @@ typedef struct {
     float alike_m_s[SLIDE_VALUES];
     float sign[SLIDE_VALUES];           // of the best track in the middle of its window
     float tau_s[SLIDE_VALUES];          // of (3), when it came
+    float bias_m_s2[SLIDE_VALUES];      // that it left
     uint32_t ticks, came[SLIDE_VALUES]; // a count of ticks, and where it stood then
     int32_t q20[SLIDE_VALUES];          // V in its window's middle
 } ground_speed_slide_t;
+
+// Of (38): what a quiet echo stands for.
+typedef struct {
+    bool on;      // the radar is covered: no value
+    bool stopped; // the body was felt to stop
+    bool judged;  // and which it is stands until a loud value, or slow wheels
+    bool rested;  // the end of the last rest is known
+    uint32_t rest_ended;
+    int32_t rest_q20;
+    float rest_bias_m_s2, bias_m_s2; // then; of the speed that was known last
+} ground_speed_cover_t;
 
 // A track that moves on at Doppler values alone.
 typedef struct {
@@ -288,6 +306,7 @@ typedef struct {
     bool heard;    // a Doppler value has come since the reset
     bool accepted; // and one has corrected
     ground_speed_slide_t slide;
+    ground_speed_cover_t cover;
     ground_speed_side_t other; // the other sign, (9)
     bool other_alive;
     float odds;                                           // 2 ln of the odds against it

@@ -3,6 +3,7 @@
 //   ground_speed.c        a tick: what is done when, standing, the wheels' witness, the standard deviation
 //   ground_speed_track.c  one track [v, b]: prediction (2), correction, bounds; V and what a window remembers (3); noise (6)
 //   ground_speed_value.c  a Doppler value on the best track: (1), (3), (4), (5), (8), (11); a quiet one
+//   ground_speed_cover.c  whether a quiet echo tells of a stop or of a radar that sees nothing, (38)
 //   ground_speed_sign.c   the other sign, (9)
 //   ground_speed_held.c   a sign that is sure as long as the radar hears no turn, (17)
 //   ground_speed_slide.c  a turn through zero that the last values tell of, (15)
@@ -84,6 +85,13 @@ ground_speed_track_t ground_speed_told(const ground_speed_config_t *config, cons
 void ground_speed_update_paper(const ground_speed_config_t *config, ground_speed_state_t *state, float doppler_m_s, float wheel_m_s);
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
+
+// --- ground_speed_cover.c
+
+// At every quiet value, before it counts: (38).
+void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s);
+// In every tick of a rest.
+void ground_speed_watch_rest(ground_speed_state_t *state);
 
 // --- ground_speed_sign.c
 

@@ -195,6 +195,24 @@ std::vector<Row> rows() {
         add("lost", "front end dead from 5 s", dead, 5.5);
         dead.radar_dead = [](double) { return true; }, dead.speed = [](double t) { return ramp(t, 1, 1.5, 0, 0.3); }, dead.settle_s = 1;
         add("lost", "front end dead, start", dead, 2);
+        for (const double v : {0.1, 0.3, 0.8}) { // a lens cap, mud, water: the front end's noise is all that is left
+            Case covered;
+            covered.duration_s = 30, covered.speed = constant(v), covered.echo_share = [](double t) { return t < 5 ? 1.0 : 0.0; };
+            add("lost", "radar covered from 5 s at " + std::to_string(v).substr(0, 3), covered);
+            Case closed;
+            closed.closed = true, closed.duration_s = 30, closed.command_m_s = v, closed.echo_share = covered.echo_share;
+            add("lost", "the same, closed loop", closed);
+        }
+        for (const double decel : {0.7, 1.5, 3.4})
+            for (const double slope : {0.0, 5.0, -5.0}) { // it bogs down, and its wheels turn on
+                Case bogged;
+                bogged.speed = [decel](double t) { return t < 8 ? 0.3 : std::max(0.0, 0.3 - decel * (t - 8)); };
+                bogged.wheel = [](double) { return 0.32; };
+                bogged.slope = [slope, deg](double) { return slope * deg; };
+                char name[64];
+                std::snprintf(name, sizeof name, "bogs down at %.1f m/s2, %+.0f deg", decel, slope);
+                add("lost", name, bogged);
+            }
         Case missed;
         missed.missed_share = 0.02;
         add("lost", "2 % of the ticks missed", missed, 20);

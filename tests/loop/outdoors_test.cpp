@@ -329,6 +329,18 @@ TEST(Outdoors, lost_samples_are_known_to_the_window) { // 7.8 cm/s, NEES 20
     }
 }
 
+// Before (38) of ground_speed.h: a speed of 0 +- 3 cm/s six seconds later, and 0.97 m/s driven for 0.3 commanded.
+TEST(Outdoors, a_covered_radar_is_no_stop_and_no_loop_runs_away_by_it) {
+    Case now;
+    now.duration_s = 25, now.echo_share = [](double t) { return t < 5 ? 1.0 : 0.0; };
+    expect_right_or_aware(now);
+    now.closed = true, now.settle_s = 3;
+    const outdoors::Score score = worst_of(now);
+    EXPECT_NEAR(score.last_true, 0.3, 0.2);
+    EXPECT_LE(score.nees, 2);
+    EXPECT_EQ(score.wrong_sign_s, 0);
+}
+
 TEST(Outdoors, a_speed_beyond_the_radars_band_is_said_within_half_a_second) { // 184 cm/s, NEES 1300, no fault
     for (const double v : {2.0, 3.0}) {
         Case now;
