@@ -115,7 +115,7 @@
 // r: the oldest of the values that (15) keeps, or the end of the last rest, whichever is newer, within 3 s. An echo that falls silent while
 // the wheels turn is of a body that has stopped, or of a radar that sees nothing any more: covered, in water, out of order. A stop is felt:
 // by the speed that was known last and what the accelerometer has felt since, with the bias of then, the body still goes where (38) holds,
-// and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold it stands, whatever (13) has made of it.
+// and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever (13) has made of it.
 // Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H

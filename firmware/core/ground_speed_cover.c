@@ -58,8 +58,8 @@ void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_
     const float gap_m_s = along - least_m_s;
     const bool sure = fixed_greater(ground_speed_square(gap_m_s), from.ticks * state->speed_noise_m2_s2);
     state->cover.on = sure && fixed_greater(gap_m_s, 0.0f);
-    state->cover.stopped = sure && !state->cover.on;
-    state->cover.judged = state->cover.on || (state->cover.stopped && from.value); // the first quiet value after a loud one tells best
+    state->cover.stopped = sure && !state->cover.on && from.value; // after a rest a window is half of it still
+    state->cover.judged = state->cover.on || state->cover.stopped; // the first quiet value after a loud one tells best
     state->cover.bias_m_s2 = from.bias_m_s2;
 }
 

@@ -160,7 +160,7 @@ TEST(GroundSpeedCover, is_told_by_half_of_the_rims_speed_from_the_oldest_value_o
         ground_speed_step(&ours(), &state, &input);
         EXPECT_EQ(state.cover.on, is) << k << " wheel " << wheel << " e " << e << " known " << known << " value " << value;
         EXPECT_EQ(state.heard, !is); // what is covered is no value
-        EXPECT_EQ(state.cover.stopped, std::fabs(wheel) > slow && known && gap < -std::sqrt(noise2)) << k;
+        EXPECT_EQ(state.cover.stopped, std::fabs(wheel) > slow && known && value && gap < -std::sqrt(noise2)) << k;
         (is ? on : off) += 1;
         unknown += known ? 0 : 1, of_rest += known && !value ? 1 : 0, slowed += echo_slowed ? 1 : 0;
     }
