@@ -207,10 +207,7 @@ static void step_ours(const ground_speed_config_t *config, ground_speed_state_t 
     } else if (state->waits > 1) {
         state->waits = 1;
         ground_speed_watch_held(config, state);
-        state->cover.on = false;
-        state->cover.stopped = false;
-        state->cover.judged = false;
-        state->slide.bias_m_s2[state->slide.newest] = state->bias_m_s2;
+        ground_speed_watch_cover(state);
         if (state->other_alive) {
             ground_speed_update_other(config, state);
         } else if (state->refused == 0) {

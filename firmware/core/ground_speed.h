@@ -114,9 +114,9 @@
 //   e = v_r + V(t) - V(t_r) - b_r (t - t_r);  |R w| > slow,  e sign(R w) > |R w|/2      (38)
 // r: the oldest of the values that (15) keeps, or the end of the last rest, whichever is newer, within 3 s. An echo that falls silent while
 // the wheels turn is of a body that has stopped, or of a radar that sees nothing any more: covered, in water, out of order. A stop is felt:
-// by the speed that was known last and what the accelerometer has felt since, with the bias of then, the body still goes where (38) holds,
-// and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever (13) has made of it.
-// Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv.
+// by the speed that was known last and what the accelerometer has felt since, with the bias of before, the body still goes where (38)
+// holds, and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever
+// (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -222,10 +222,12 @@ typedef struct {
     float alike_m_s[SLIDE_VALUES];
     float sign[SLIDE_VALUES];           // of the best track in the middle of its window
     float tau_s[SLIDE_VALUES];          // of (3), when it came
-    float bias_m_s2[SLIDE_VALUES];      // that it left
+    float bias_m_s2[SLIDE_VALUES];      // before its window, nearly
     uint32_t ticks, came[SLIDE_VALUES]; // a count of ticks, and where it stood then
     int32_t q20[SLIDE_VALUES];          // V in its window's middle
 } ground_speed_slide_t;
+
+enum { GROUND_SPEED_BEFORE = 3 };
 
 // Of (38): what a quiet echo stands for.
 typedef struct {
@@ -235,7 +237,8 @@ typedef struct {
     bool rested;  // the end of the last rest is known
     uint32_t rest_ended;
     int32_t rest_q20;
-    float rest_bias_m_s2, bias_m_s2; // then; of the speed that was known last
+    float rest_bias_m_s2, bias_m_s2;        // then; of the speed that was known last
+    float before_m_s2[GROUND_SPEED_BEFORE]; // that the last values left: within a window (13) may have made a slope of a stop
 } ground_speed_cover_t;
 
 // A track that moves on at Doppler values alone.

@@ -20,13 +20,18 @@ typedef struct {
 static known_t known_last(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
     const float since_rest = (float)(int32_t)(state->slide.ticks - state->cover.rest_ended);
-    known_t out = {state->cover.rest_q20, 0.0f, state->cover.rest_bias_m_s2, state->cover.rested ? since_rest : ticks_known, config->speed_max_m_s, false};
+    known_t out = {state->cover.rest_q20, 0.0f, state->cover.rest_bias_m_s2, state->cover.rested ? since_rest : ticks_known,
+                   config->speed_max_m_s, false};
     if (state->slide.held > 0) {
         const int32_t at = (state->slide.newest + SLIDE_VALUES - state->slide.held + 1) % SLIDE_VALUES;
         const float since = (float)(int32_t)(state->slide.ticks - state->slide.came[at]) + state->slide.tau_s[at] * config->per_tick_1_s;
         if (fixed_greater(out.ticks, since)) {
-            const known_t value = {state->slide.q20[at], state->slide.sign[at] * state->slide.heard_m_s[at], state->slide.bias_m_s2[at], since,
-                                   state->slide.heard_m_s[state->slide.newest], true};
+            const known_t value = {state->slide.q20[at],
+                                   state->slide.sign[at] * state->slide.heard_m_s[at],
+                                   state->slide.bias_m_s2[at],
+                                   since,
+                                   state->slide.heard_m_s[state->slide.newest],
+                                   true};
             out = value;
         }
     }
@@ -63,10 +68,25 @@ void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_
     state->cover.bias_m_s2 = from.bias_m_s2;
 }
 
+void ground_speed_watch_cover(ground_speed_state_t *state)
+{
+    state->cover.on = false;
+    state->cover.stopped = false;
+    state->cover.judged = false;
+    state->slide.bias_m_s2[state->slide.newest] = state->cover.before_m_s2[GROUND_SPEED_BEFORE - 1];
+    for (int32_t i = GROUND_SPEED_BEFORE - 1; i > 0; i--) {
+        state->cover.before_m_s2[i] = state->cover.before_m_s2[i - 1];
+    }
+    state->cover.before_m_s2[0] = state->bias_m_s2;
+}
+
 void ground_speed_watch_rest(ground_speed_state_t *state)
 {
     state->cover.rested = true;
     state->cover.rest_ended = state->slide.ticks;
     state->cover.rest_q20 = state->integral_q20[state->head];
     state->cover.rest_bias_m_s2 = state->bias_m_s2;
+    for (int32_t i = 0; i < GROUND_SPEED_BEFORE; i++) {
+        state->cover.before_m_s2[i] = state->bias_m_s2;
+    }
 }

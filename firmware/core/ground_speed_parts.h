@@ -90,6 +90,8 @@ void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed
 
 // At every quiet value, before it counts: (38).
 void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s);
+// At every loud value, a tick later.
+void ground_speed_watch_cover(ground_speed_state_t *state);
 // In every tick of a rest.
 void ground_speed_watch_rest(ground_speed_state_t *state);
 

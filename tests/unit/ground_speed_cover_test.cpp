@@ -140,9 +140,10 @@ TEST(GroundSpeedCover, is_told_by_half_of_the_rims_speed_from_the_oldest_value_o
         const double ago = value ? value_ago : rest_ago;
         const bool known = value || (state.cover.rested && rest_ago < 300);
         const double V = state.integral_q20[17];
-        const double e = value ? static_cast<double>(state.slide.sign[oldest] * state.slide.heard_m_s[oldest]) +
-                                     (V - state.slide.q20[oldest]) / 1048576 - 0.01 * ago * static_cast<double>(state.slide.bias_m_s2[oldest])
-                               : (V - state.cover.rest_q20) / 1048576 - 0.01 * ago * static_cast<double>(state.cover.rest_bias_m_s2);
+        const double e = value
+                             ? static_cast<double>(state.slide.sign[oldest] * state.slide.heard_m_s[oldest]) +
+                                   (V - state.slide.q20[oldest]) / 1048576 - 0.01 * ago * static_cast<double>(state.slide.bias_m_s2[oldest])
+                             : (V - state.cover.rest_q20) / 1048576 - 0.01 * ago * static_cast<double>(state.cover.rest_bias_m_s2);
         const double along = (wheel < 0 ? -1 : 1) * (known ? e : static_cast<double>(state.speed_m_s));
         const bool echo_slowed = known && value && newest < std::fabs(wheel) / 2;
         const double least = (echo_slowed ? 0.75 : 0.5) * std::fabs(wheel);
