@@ -29,6 +29,7 @@ class Motion {
     void heading();
     void ground();
     void yaw();
+    void gyro_turns_as_far();
     void accel();
     bool straight(std::size_t k) const; // the wheels agree, so the body moves along its heading
     double radius_from(const std::vector<double> &speed, double &alike, double &middle) const;
@@ -277,6 +278,26 @@ void Motion::ground() {
     }
 }
 
+// Turns of a second each, by the gyro and by the camera's heading, less the gyro's offset: what they differ by is a scale. Slower than the
+// noise of either, faster than a gyro drifts.
+void Motion::gyro_turns_as_far() {
+    constexpr double least = 0.03; // [1] a calibrated gyro is within a hundredth
+    const auto second = static_cast<std::size_t>(std::lround(1 / step_s));
+    const std::vector<double> rate = smooth(grid_.gyro, 5); // as the camera's
+    std::vector<double> gyro, camera;
+    for (std::size_t k = 0; k + second <= grid_.count; k += second) {
+        double by_gyro = 0, by_camera = 0;
+        for (std::size_t i = k; i < k + second; ++i) by_gyro += rate[i] * step_s, by_camera += grid_.camera_yaw_rate[i] * step_s;
+        gyro.push_back(by_gyro), camera.push_back(by_camera);
+    }
+    const Fit line = fit(gyro, camera, std::vector<double>(gyro.size(), 1.0));
+    if (!line.good || gyro.size() < 20 || !(line.rms < 0.2 * line.y_rms)) return;
+    const double off = std::fabs(line.a - 1);
+    if (off > least && off > 2 * line.error_a)
+        add("scale", Severity::warning, "imu.gyro_z_rad_s", say("the gyro turns %.3g times as far as the camera's heading", line.a),
+            "calibrate the gyro, or the camera's heading: the lab would take it for another sensor's error", line.a);
+}
+
 void Motion::yaw() {
     if (grid_.gyro.empty()) return;
     const double fastest = std::max(std::fabs(quantile(grid_.gyro, 0.01)), std::fabs(quantile(grid_.gyro, 0.99)));
@@ -321,6 +342,8 @@ void Motion::yaw() {
                 const bool gross = line.a < 0.5 || line.a > 2;
                 add("scale", gross ? Severity::error : Severity::warning, "imu.gyro_z_rad_s",
                     say("the gyro reads %.3g times the camera's yaw rate", line.a), "calibrate the gyro", line.a);
+            } else {
+                gyro_turns_as_far();
             }
             if (line.a > 0 && with_wheels < -0.9) { // on a steep side slope, gravity alone was seen to reach -0.8
                 add("swapped_wheels", Severity::error, "wheel.speed_rad_s",

@@ -430,6 +430,20 @@ TEST(Check, passes_on_what_the_reader_mended) {
     EXPECT_NEAR(report.find("not_finite")->value, 0.3, 1e-12); // 300 of 1000
 }
 
+TEST(Check, a_gyro_that_turns_farther_than_the_cameras_heading_is_told_by_how_much) {
+    EXPECT_EQ(check::check(good(), {}).find("scale"), nullptr);
+    for (const double scale : {1.06, 0.94}) {
+        log::Log log = good();
+        for (log::Signal &signal : log.signals)
+            if (signal.name == "imu.gyro_z_rad_s")
+                for (double &w : signal.value) w = scale * w + 0.01; // an offset is none
+        const check::Report report = check::check(log, {});
+        ASSERT_NE(report.find("scale", "imu.gyro_z_rad_s"), nullptr) << scale;
+        EXPECT_NEAR(report.find("scale", "imu.gyro_z_rad_s")->value, scale, 0.01);
+        EXPECT_EQ(report.find("scale")->severity, Severity::warning);
+    }
+}
+
 TEST(Check, tells_a_clock_that_stands_still_once_and_not_for_each_column) {
     std::string text = "t_s,wheel0.speed_rad_s,wheel1.speed_rad_s,wheel2.speed_rad_s\n";
     for (int i = 0; i < 400; ++i) text.append(i < 300 ? std::to_string(0.01 * i) : "2.99").append(",1,2,3\n");
