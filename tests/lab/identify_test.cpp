@@ -56,10 +56,12 @@ TEST(MovedFar, is_told_of_what_the_fit_took_beyond_three_stated_deviations) {
     FreeParameter other = own;
     other.wheel = 1;
     EXPECT_TRUE(moved_far(at({stated, unstated}, {0.29, 5})).empty());
-    const std::vector<std::string> told = moved_far(at({stated, unstated}, {-0.31, 5}));
+    const std::vector<Moved> told = moved_far(at({stated, unstated}, {-0.31, 5}));
     ASSERT_EQ(told.size(), 1U);
-    EXPECT_EQ(told[0], "the fit takes motor.x from 1 to 0.69 N, 3.1 of its stated deviations: the model file is wrong there, or something "
-                       "that acts alike is missing");
+    EXPECT_EQ(told[0].parameter, "motor.x");
+    EXPECT_EQ(told[0].text,
+              "the fit takes motor.x from 1 to 0.69 N, 3.1 of its stated deviations: the model file is wrong there, or something "
+              "that acts alike is missing");
     EXPECT_TRUE(moved_far(at({stated}, {0.6})).empty()); // that is told as a limit
     // the mean of two wheels: 0.1 and 0.15/sqrt(2) of deviation make 0.146; 0.3 and 0.2 of 1 are 3.4 of it, 0.3 and 0.1 are 2.7
     EXPECT_EQ(moved_far(at({stated, own, other}, {0.3, 0.2, 0.2})).size(), 1U);

@@ -209,6 +209,18 @@ TEST(Conclusion, is_of_the_kind_that_names_classes_and_shapes_make) {
     EXPECT_EQ(kind(true, true, true), "partial");
 }
 
+TEST(Conclusion, what_was_refused_in_one_round_and_named_in_a_later_one_is_named) {
+    Diagnosis d;
+    d.ranking = {named("a"), named("b")};
+    d.ranking[0].verdict = "nearest", d.ranking[1].verdict = "not_needed";
+    d.nearest = {"a"};
+    d.accepted = {named("a")};
+    conclude(d);
+    EXPECT_EQ(d.ranking[0].verdict, "named");
+    EXPECT_EQ(d.ranking[1].verdict, "not_needed");
+    EXPECT_TRUE(d.nearest.empty());
+}
+
 TEST(Conclusion, knows_what_was_seen_and_that_where_nothing_is_found_nothing_is_needed) {
     Diagnosis d;
     d.not_excited = {{"a", "why"}, {"b", "why"}};

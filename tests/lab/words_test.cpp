@@ -173,6 +173,21 @@ TEST(Words, an_effect_that_takes_little_is_said_to_explain_a_part) {
     EXPECT_FALSE(has(tell(c, d, nullptr).next, "traction next --all"));
 }
 
+TEST(Words, a_model_whose_numbers_the_fit_took_far_is_not_called_good) {
+    Comparison c;
+    c.error = 3, c.adjusted = 1.1;
+    Diagnosis d;
+    d.kind = "nothing";
+    EXPECT_TRUE(has(tell(c, d, nullptr).good_enough, "Yes, for this log")) << tell(c, d, nullptr).good_enough;
+    EXPECT_TRUE(has(tell(c, d, nullptr).next, "use the model")) << tell(c, d, nullptr).next;
+    d.moved = {"motor.coulomb_Nm"};
+    const Story story = tell(c, d, nullptr);
+    EXPECT_TRUE(has(story.good_enough, "Only with motor.coulomb_Nm far from what is stated")) << story.good_enough;
+    EXPECT_FALSE(has(story.next, "use the model")) << story.next;
+    EXPECT_TRUE(has(story.next, "Check motor.coulomb_Nm")) << story.next;
+    EXPECT_FALSE(has(story.headline, "nothing is missing")) << story.headline;
+}
+
 TEST(Words, a_wrong_number_is_not_surely_wrong_where_an_effect_acts_as_it_does) {
     const Comparison c;
     Diagnosis d;

@@ -86,8 +86,9 @@ struct Diagnosis {
                                       // what describes the log as well as its number does
     std::string text;
     std::vector<LadderStep> ladder;
-    Model model;               // with the accepted effects, refitted
-    std::vector<Limit> limits; // at which parameters of the final model stand
+    Model model;                    // with the accepted effects, refitted
+    std::vector<Limit> limits;      // at which parameters of the final model stand
+    std::vector<std::string> moved; // of its numbers, far from what is stated (moved_far): the messages say how far
     std::vector<std::string> messages;
     // fitted_problem() of the stated model and of `model`, on the data that were diagnosed and while these live: for who asks the same
     // again. Null where the search did not come by.

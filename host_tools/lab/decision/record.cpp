@@ -108,7 +108,12 @@ void conclude(Diagnosis &d) {
     if (d.accepted.empty() && !d.unknown)
         for (CandidateResult &r : d.ranking)
             if (r.verdict == "not_needed") r.verdict = "not_held_out";
-    for (const CandidateResult &a : d.accepted) d.effects.push_back(a.candidate.label());
+    for (const CandidateResult &a : d.accepted) {
+        d.effects.push_back(a.candidate.label());
+        for (CandidateResult &r : d.ranking) // refused in an earlier round, and named in a later one
+            if (r.candidate.label() == a.candidate.label() && r.verdict == "nearest") r.verdict = "named";
+        std::erase(d.nearest, a.candidate.label());
+    }
     if (d.accepted.empty())
         d.kind = d.unknown ? "unknown" : "nothing";
     else

@@ -127,10 +127,10 @@ double furthest_of_sheet(const Problem &problem) {
     return most;
 }
 
-std::vector<std::string> moved_far(const Problem &problem) {
+std::vector<Moved> moved_far(const Problem &problem) {
     constexpr double far = 3; // stated deviations
     const std::vector<Limit> limits = limits_of(problem);
-    std::vector<std::string> list;
+    std::vector<Moved> list;
     for (const Mean &mean : means_of_sheet(problem)) {
         const double away = deviations_of(mean);
         const bool told = std::any_of(limits.begin(), limits.end(), [&](const Limit &l) { return l.parameter == mean.name; });
@@ -141,7 +141,7 @@ std::vector<std::string> moved_far(const Problem &problem) {
                       "that acts alike is missing",
                       mean.name.c_str(), mean.stated, mean.value, mean.unit == "1" ? "" : " ", mean.unit == "1" ? "" : mean.unit.c_str(),
                       away);
-        list.emplace_back(text);
+        list.push_back({mean.name, text});
     }
     return list;
 }

@@ -40,7 +40,10 @@ std::vector<Limit> limits_of(const Problem &problem);
 std::string limit_text(const Limit &limit);
 // Parameters but the sensors' (of what wheels share and differ in, the mean) that stand at no limit and yet more than three of their
 // priors' deviations from the model's value, a sentence each.
-std::vector<std::string> moved_far(const Problem &problem);
+struct Moved {
+    std::string parameter, text;
+};
+std::vector<Moved> moved_far(const Problem &problem);
 // Of the same, those at a limit with them: the most of its prior's deviations that one stands from the model's value.
 double furthest_of_sheet(const Problem &problem);
 

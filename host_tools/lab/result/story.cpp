@@ -75,6 +75,9 @@ std::string good_enough(const Comparison &c, const Diagnosis &d) {
         return "No. " + farthest_words(c) + " With what was found, " + times(c.left_after.error) + " times the sensor noise is left" +
                (c.left_after.error < close_to_noise ? ": close to the noise, good enough for this log." : ".");
     if (d.unknown) return "No. " + farthest_words(c);
+    if (c.adjusted < close_to_noise && !d.moved.empty())
+        return "Only with " + joined(d.moved, " and ") +
+               " far from what is stated (notes): so fitted, what is left is close to the noise of the sensors.";
     if (c.adjusted < close_to_noise) return "Yes, for this log: what is left is close to the noise of the sensors.";
     return "Not known: the error is more than noise, and nothing that was tried explains it. " + farthest_words(c);
 }
@@ -145,6 +148,8 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
                    d.not_excited.size());
         return text;
     }
+    if (c.adjusted < close_to_noise && !d.moved.empty())
+        return "Check " + joined(d.moved, " and ") + " on the machine: where it is as stated, something that acts alike is missing.";
     if (c.adjusted < close_to_noise) return "Nothing: use the model.";
     if (d.not_excited.empty()) return "Look at where the model fails, and try a law of your own: traction add --effect-file.";
     return "Drive what this log lacks: traction next --all proposes the drive for what it could not show.";
@@ -168,8 +173,10 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
     else if (d.unknown)
         story.headline += ". No effect of the catalogue explains it: it depends on " + d.unknown->variable + ".";
     else
-        story.headline += c.adjusted < close_to_noise ? ". That is close to the noise: nothing is missing that this log could show."
-                                                      : ". Nothing found that explains it. " + story.next;
+        story.headline += c.adjusted < close_to_noise && !d.moved.empty()
+                              ? ". That is close to the noise, with " + joined(d.moved, " and ") + " far from what is stated."
+                          : c.adjusted < close_to_noise ? ". That is close to the noise: nothing is missing that this log could show."
+                                                        : ". Nothing found that explains it. " + story.next;
     return story;
 }
 
