@@ -332,7 +332,7 @@ NextExperiment kinds_alone(const Plan &plan, const std::string &why_not) {
     return next;
 }
 
-NextExperiment predict(Plan plan, const Model &best, const DriveScenario &drive) {
+NextExperiment with_numbers(Plan plan, const Model &best, const DriveScenario &drive) {
     NextExperiment next = questions_of(plan);
     next.predicted = true;
     Table table{plan, {}, {}, {}, {}, {}};
@@ -364,7 +364,7 @@ NextExperiment solve(const Plan &plan, const Model &best, const DriveScenario &d
     if (plan.asked.empty()) return {};
     if (const std::string why = cannot_drive(plan.base); !why.empty()) return kinds_alone(plan, why);
     try {
-        return predict(plan, best, drive);
+        return with_numbers(plan, best, drive);
     } catch (const CannotDrive &refused) {
         return kinds_alone(plan, refused.what());
     }
