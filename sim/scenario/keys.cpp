@@ -18,7 +18,7 @@ std::string build_message(const std::string &file, std::size_t line, const std::
     if (line > 0) text += ':' + std::to_string(line);
     text += ": ";
     if (!key.empty()) text += key;
-    if (!value.empty()) text += " = " + value;
+    if (!value.empty()) text += (key.empty() ? "" : " = ") + value;
     if (!key.empty() || !value.empty()) text += ": ";
     return text + what_is_wrong + "; " + mend;
 }
