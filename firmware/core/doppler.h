@@ -129,7 +129,7 @@ typedef struct {
     bool rest;            // no more is heard than a line that was taken off may leave
     bool strange;         // no speed's spectrum fits: interference, or no ground
     bool relieved;        // what came before told of an interfering line as strong as the echo, which is taken off from here on
-    bool spoilt;          // strange, a rest, or too many samples were lost, or stood at a rail: the speed means nothing
+    bool spoilt;          // strange and not quiet, a rest, or too many samples were lost, or stood at a rail: the speed means nothing
     float speed_m_s;      // magnitude
     float misfit;         // share of the speed that may be wrong because no spectrum fits [1]
     float trust;          // by how much its variance exceeds that of a calm echo without noise [1], 1 or more

@@ -282,7 +282,7 @@ ground_speed_output_t ground_speed_step(const ground_speed_config_t *config, gro
     const float accel = input->accel_valid ? fixed_clamp(fixed_finite(input->accel_x_m_s2), -100.0f, 100.0f) : state->bias_m_s2;
     state->lean_q8 = input->lean_q8;
     bool fresh = input->doppler_fresh && fixed_is_finite(input->doppler_m_s);
-    if (fresh && input->doppler_quiet) {
+    if (fresh && input->doppler_quiet && config->method != GROUND_SPEED_PAPER) {
         ground_speed_judge_quiet(config, state, fixed_finite(input->wheel_m_s));
         fresh = !state->cover.on;
     }

@@ -111,12 +111,13 @@
 // (36): where (7) wins with the best's own sign while the other lives, the other stays: a bias that jumps is the best's excuse, and costs
 // it 12 of the odds. (37): a value that leaves the mean of (18) and is still as close to the rim as (18) asks has not parted from it: what
 // sets off with its wheels is read too fast at first, and too slow while it speeds up.
-//   e = v_r + V(t) - V(t_r) - b_r (t - t_r);  |R w| > slow,  e sign(R w) > |R w|/2      (38)
+//   e = v_r + V(t) - V(t_r) - b_r (t - t_r);  |R w| > 0.6 slow,  e sign(R w) > |R w|/2      (38)
 // r: the oldest of the values that (15) keeps, or the end of the last rest, whichever is newer, within 3 s. An echo that falls silent while
 // the wheels turn is of a body that has stopped, or of a radar that sees nothing any more: covered, in water, out of order. A stop is felt:
 // by the speed that was known last and what the accelerometer has felt since, with the bias of before, the body still goes where (38)
 // holds, and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever
-// (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv.
+// (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv, and an echo that
+// has become slow itself asks for 3/4 |R w|. Later than 3 s the estimate stands for e.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 

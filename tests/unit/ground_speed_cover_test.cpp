@@ -100,6 +100,19 @@ TEST(GroundSpeedCover, wheels_that_spin_up_under_a_body_that_feels_nothing_drive
     }
 }
 
+TEST(GroundSpeedCover, is_no_part_of_the_papers_method) {
+    ground_speed_config_t paper = ours();
+    paper.method = GROUND_SPEED_PAPER;
+    Rover rover = Rover::rolling(0.4);
+    ground_speed_input_t input{};
+    input.wheel_m_s = 0.4f, input.accel_valid = input.doppler_fresh = input.doppler_quiet = true, input.elapsed_ticks = 1;
+    ground_speed_state_t ours_state = rover.state, papers = rover.state;
+    ground_speed_step(&ours(), &ours_state, &input);
+    ground_speed_step(&paper, &papers, &input);
+    EXPECT_TRUE(ours_state.cover.on);
+    EXPECT_FALSE(papers.cover.on);
+}
+
 // By the words of (38), of states made by hand.
 TEST(GroundSpeedCover, is_told_by_half_of_the_rims_speed_from_the_oldest_value_or_the_last_rest) {
     int on = 0, off = 0, unknown = 0, of_rest = 0, slowed = 0;
