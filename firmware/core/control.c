@@ -91,6 +91,12 @@ static wheels_t compare_wheels(const control_config_t *config, const sense_outpu
     return out;
 }
 
+// A quiet window like no echo counts where wheels turn: near zero it is half a noise and half a turn.
+static bool turns(const control_config_t *config, float rim_m_s)
+{
+    return fixed_greater(fabsf(rim_m_s), 0.75f * config->ground_speed.slow_m_s);
+}
+
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
                                             const sensor_frame_t *frame, trace_t *trace)
 {
@@ -108,8 +114,6 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         state->doppler_m_s = doppler.speed_m_s;
     }
     const float rim_m_s = rim_hint_m_s(config, sense);
-    // a quiet window like no echo counts where wheels turn: near zero it is half a noise and half a turn
-    const bool counts = !doppler.strange || fixed_greater(fabsf(rim_m_s), 0.75f * config->ground_speed.slow_m_s);
     const ground_speed_input_t input = {
         .accel_x_m_s2 = sense->level_m_s2,
         .doppler_m_s = doppler.speed_m_s,
@@ -118,7 +122,7 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
         .slowest_m_s = wheels.slowest_m_s,
         .wheels_part = wheels.part,
         .accel_valid = (sense->usable & FRAME_ACCEL) != 0u,
-        .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt && counts,
+        .doppler_fresh = doppler.fresh && !doppler.beyond && !doppler.spoilt && (!doppler.strange || turns(config, rim_m_s)),
         .doppler_quiet = doppler.quiet,
         .doppler_dead = doppler.dead,
         .busy = state->heard.busy || state->heard.fresh,
