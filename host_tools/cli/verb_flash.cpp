@@ -112,11 +112,8 @@ flash::Summary look(const FlashArguments &a, const std::string &bytes) {
 void image(const FlashArguments &a, Outcome &outcome) {
     if (a.package.empty()) throw UsageError("--image needs the package that goes into it; --pack OUT makes one");
     if (a.key.empty()) throw UsageError("--image needs the key that the board will obey; give --key FILE (the public half is enough)");
-    for (const std::string &in : {a.package, a.key, a.rover}) {
-        std::error_code none;
-        if (!in.empty() && std::filesystem::equivalent(in, a.image, none))
-            throw UsageError("--image " + a.image + " would replace what goes into it");
-    }
+    if (std::error_code none; std::filesystem::equivalent(a.key, a.image, none))
+        throw UsageError("--image " + a.image + " would replace what goes into it");
     const flash::PublicKey key = flash::read_public(a.key);
     const std::string bytes = flash::bytes_of(a.package);
     const flash::Summary summary = flash::look(a.package, bytes, &key);

@@ -110,7 +110,7 @@ refused 3 'the image is for armel' p.tar --key key.pub --system system
 mkdir -p system/opt/traction
 refused 3 'has slots already' p.tar --key key.pub --architecture "$machine" --system system
 run 2 "$traction" flash p.tar --image p.tar --key key.pub --architecture "$machine"
-says 'would replace what goes into it'
+says 'names a file that is read'
 run 4 image /nowhere/no.img
 run 4 image /dev/full
 echo kept >kept.img
