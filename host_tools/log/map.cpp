@@ -245,32 +245,38 @@ void read_filters(const std::string &path, const toml::node &node, Map &map) {
     }
 }
 
-// Of a header entry "<what>.<signal>": what it must be (docs/log_format.md), and that it is not mistyped.
+// What a header entry "<what>.<signal>" says of a signal (docs/log_format.md): an amount in its unit, or a mark.
+const std::vector<std::string> amounts = {"noise", "quantum", "window", "bias"}, marks = {"unsigned", "constant"};
+
+bool is_one_of(const std::vector<std::string> &list, const std::string &word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+// An amount is a number above 0, and the first word of an entry is not mistyped.
 void check_entry(const std::string &path, std::size_t line, const std::string &key, const std::string &value) {
     const std::size_t dot = key.find('.');
     if (dot == std::string::npos) return;
-    static const std::vector<std::string> amounts = {"noise", "quantum", "window", "bias"},
-                                          all = {"noise", "quantum", "window", "bias", "unsigned", "constant", "firmware", "rover"};
     const std::string what = key.substr(0, dot);
-    if (std::find(amounts.begin(), amounts.end(), what) != amounts.end()) {
+    if (is_one_of(amounts, what)) {
         double number = 0;
         const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
         if (error != std::errc() || end != value.data() + value.size() || !(number > 0) || !std::isfinite(number))
             throw LogError(path, line, 0, "header entry '" + key + "' is '" + value + "', no number above 0",
                            "write it in the signal's unit");
-    } else if (std::find(all.begin(), all.end(), what) == all.end()) {
-        if (const std::string *meant = nearest(what, all, 2); meant != nullptr)
-            throw LogError(path, line, 0, "header entry '" + key + "' means nothing here", "write '" + *meant + key.substr(dot) + "'");
+        return;
     }
+    std::vector<std::string> known = {"firmware", "rover"};
+    known.insert(known.end(), amounts.begin(), amounts.end()), known.insert(known.end(), marks.begin(), marks.end());
+    if (is_one_of(known, what)) return;
+    if (const std::string *meant = nearest(what, known, 2); meant != nullptr)
+        throw LogError(path, line, 0, "header entry '" + key + "' means nothing here", "write '" + *meant + key.substr(dot) + "'");
 }
 
 // What is said of a wheel that this map does not make, or of what is no signal at all, would count for nothing.
 void check_signals(const std::string &path, const Map &map) {
     for (const auto &[key, value] : map.header) {
         const std::size_t dot = key.find('.');
-        const std::string what = key.substr(0, dot);
-        if (what != "noise" && what != "quantum" && what != "window" && what != "bias" && what != "unsigned" && what != "constant")
-            continue;
+        if (dot == std::string::npos || (!is_one_of(amounts, key.substr(0, dot)) && !is_one_of(marks, key.substr(0, dot)))) continue;
         std::string of = key.substr(dot + 1);
         if (of.ends_with(".relative")) of.resize(of.rfind('.'));
         const bool any_wheel = of.starts_with("wheel."), one_wheel = !any_wheel && of.starts_with("wheel");

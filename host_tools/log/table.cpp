@@ -94,7 +94,7 @@ class TableReader {
     bool crlf_ = false, decimal_comma_ = false;
     std::size_t decimal_commas_ = 0, decimal_comma_line_ = 0, blank_lines_ = 0, blank_line_ = 0, pending_blank_ = 0,
                 pending_blank_line_ = 0;
-    std::size_t trailing_ = 0, bad_times_ = 0, bad_time_line_ = 0, rows_ = 0, samples_ = 0;
+    std::size_t trailing_ = 0, bad_times_ = 0, bad_time_line_ = 0, rows_ = 0, data_lines_ = 0, samples_ = 0;
     char separator_ = ',';
     std::vector<Field> fields_;
     std::size_t time_index_ = 0, fine_index_ = 0;
@@ -306,6 +306,7 @@ void TableReader::take_cell(Column &column, double t_s) {
 }
 
 void TableReader::take_row() {
+    ++data_lines_;
     split();
     if (!complete_) {
         note("cut_last_line", "", 1, line_number_,
@@ -413,7 +414,7 @@ Table TableReader::read() {
     if (!names_taken)
         throw LogError(file_, line_number_, 0, "there is no row of names and no data",
                        "put 't_s,<object>.<quantity>_<unit>,...' above the data");
-    if (rows_ == 0 && bad_times_ == 0)
+    if (data_lines_ == 0)
         throw LogError(file_, table_.names_line, 0, "below the row of names there is no row of data",
                        "check the recording, or name another file");
     if (table_.has_format == false && dialect_.native) {

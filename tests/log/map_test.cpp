@@ -240,6 +240,12 @@ TEST(Map, what_the_header_says_of_a_signal_is_a_number_of_one_that_is_there_and_
     EXPECT_EQ(log.header.at("my.note"), "x");
 }
 
+TEST(Map, a_filter_that_keeps_no_row_is_no_file_without_rows) {
+    const Log log =
+        through(top + "[[where]]\ncolumn = \"a\"\nmin = 5\n" + signal("camera.x_m", "column = \"a\""), "time_ms,a\n0,1\n10,2\n");
+    EXPECT_TRUE(log.find("camera.x_m")->value.empty());
+}
+
 TEST(Map, a_missing_map_is_a_file_error) { EXPECT_THROW(read_csv("any.csv", "/nonexistent.toml"), FileError); }
 
 TEST(MeasuredData, robotino_runs_are_read_and_the_camera_moves_as_commanded) {

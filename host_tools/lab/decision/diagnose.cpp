@@ -68,8 +68,7 @@ class Search {
         if (!d_.model_fit) settle_last(problem);
         if (!refined_) refine_shapes(problem);
         d_.limits = limits_of(problem);
-        for (Moved &moved : moved_far(problem))
-            d_.messages.push_back(std::move(moved.text)), d_.moved.push_back(std::move(moved.parameter));
+        tell_moved(d_, problem);
         conclude(d_);
         if (const std::optional<Doubt> d = doubt(stated_, data_, first, problem, d_.accepted.size(), taken_by_the_shape(problem)))
             name_nothing(d_, stated_, *d);

@@ -1,6 +1,7 @@
 #include "record.h"
 
 #include "classes.h"
+#include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/ladder.h"
 
 #include <algorithm>
@@ -119,6 +120,10 @@ void conclude(Diagnosis &d) {
     else
         d.kind = d.unknown && d.unknown->instead_of.empty() ? "partial" : !d.classes.empty() ? "class" : "named";
     d.text = verdict_text(d);
+}
+
+void tell_moved(Diagnosis &d, const Problem &fitted) {
+    for (Moved &one : moved_far(fitted)) d.messages.push_back(std::move(one.text)), d.moved.push_back(std::move(one.parameter));
 }
 
 Model model_without(const Model &model, const Candidate &one) {

@@ -33,6 +33,9 @@ bool was_seen(const Diagnosis &diagnosis, const std::string &effect);
 // Kind, names and text of what was found.
 void conclude(Diagnosis &diagnosis);
 
+// `moved`, and a message for each, of the final fit.
+void tell_moved(Diagnosis &diagnosis, const Problem &fitted);
+
 Model model_without(const Model &model, const Candidate &candidate);
 
 // A shape parameter that is a number on a scale (the others are kinds: an order, who shares a lead), and the range in which it is set free
