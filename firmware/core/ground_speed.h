@@ -238,7 +238,7 @@ typedef struct {
     bool rested;  // the end of the last rest is known
     uint32_t rest_ended;
     int32_t rest_q20;
-    float rest_bias_m_s2, bias_m_s2;        // then; of the speed that was known last
+    float rest_bias_m_s2;                   // then
     float before_m_s2[GROUND_SPEED_BEFORE]; // that the last values left: within a window (13) may have made a slope of a stop
 } ground_speed_cover_t;
 

@@ -65,7 +65,6 @@ void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_
     state->cover.on = sure && fixed_greater(gap_m_s, 0.0f);
     state->cover.stopped = sure && !state->cover.on && from.value; // after a rest a window is half of it still
     state->cover.judged = state->cover.on || state->cover.stopped; // the first quiet value after a loud one tells best
-    state->cover.bias_m_s2 = from.bias_m_s2;
 }
 
 void ground_speed_watch_cover(ground_speed_state_t *state)

@@ -218,18 +218,15 @@ void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed
     ground_speed_track_t track = ground_speed_best_of(state);
     const float middle = track.speed_m_s + window.tau_s * track.bias_m_s2 - window.change_m_s;
     const float spread = ground_speed_spread_of(&track, window.tau_s) + config->quiet_noise_m2_s2;
-    const bool fits = middle * middle <= config->gate_sigma * config->gate_sigma * spread;        // else a fade of the echo
-    const bool alone = !fixed_greater(config->still_m_s, 0.0f) && state->quiet >= QUIET_BELIEVED; // no wheels that would know better
-    if (!fits && state->cover.stopped) {                                                          // (38)
-        track.bias_m_s2 = state->cover.bias_m_s2;
-        state->rolls_ticks = 0;
-    }
-    if (!fits && (alone || state->cover.stopped)) {
+    const bool fits = middle * middle <= config->gate_sigma * config->gate_sigma * spread; // else a fade of the echo
+    // no wheels that would know better, or a body that was felt to stop, (38)
+    const bool sure = (!fixed_greater(config->still_m_s, 0.0f) && state->quiet >= QUIET_BELIEVED) || state->cover.stopped;
+    if (!fits && sure) {
         track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
         track.p_vb = 0.0f;
         track.p_bb = ground_speed_square(config->bias_start_m_s2);
     }
-    if (fits || alone || state->cover.stopped) {
+    if (fits || sure) {
         ground_speed_correct(config, &track, -middle, window.tau_s, config->quiet_noise_m2_s2);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
