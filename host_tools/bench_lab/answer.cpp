@@ -1,9 +1,7 @@
 #include "answer.h"
 
-#include "host_tools/lab/creeps.h"
 #include "host_tools/lab/decision/diagnose.h"
-#include "host_tools/lab/forward/make_dataset.h"
-#include "host_tools/lab/sideways.h"
+#include "host_tools/lab/session.h"
 #include "sim/physics/effects/catalogue.h"
 
 #include <algorithm>
@@ -46,19 +44,13 @@ json ask_lab(const std::string &log_file, const std::string &model_file, const s
     using clock = std::chrono::steady_clock;
     const auto since = [](clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); };
     const auto start = clock::now();
-    lab::Model model = lab::read_model(model_file);
-    const log::Log log = log::read_csv(log_file, map_file);
+    lab::Session session; // as open_session has it, but for the gate
+    session.model = lab::read_model(model_file);
+    session.runs = {log::read_csv(log_file, map_file)};
     const double read_s = since(start);
-    lab::Dataset data = lab::make_dataset(model, log);
-    if (lab::drifts_sideways(model, data)) { // as open_session does
-        model.motion = lab::BodyMotion::planar;
-        data = lab::make_dataset(model, log);
-    }
-    if (lab::creeps(model, data)) {
-        lab::ask_for_reversal(model);
-        data = lab::make_dataset(model, log);
-    }
-    const lab::Diagnosis found = lab::diagnose(model, data, lab::DiagnoseOptions{});
+    lab::ask_the_log(session);
+    const lab::Diagnosed diagnosed = lab::diagnose_session(session, lab::DiagnoseOptions{});
+    const lab::Diagnosis &found = diagnosed.diagnosis;
 
     json answer = {{"schema", "traction.lab/1"}, {"verb", "diagnose"},      {"candidates", json::array()},
                    {"classes", json::array()},   {"ladder", json::array()}, {"messages", found.messages}};

@@ -91,7 +91,7 @@ std::string soil_of(const std::string &log_file) {
 
 void make_independent(const CampaignOptions &options, const std::string &seed, SealedLog &one) {
     std::vector<std::string> command = {options.lab_generate, "--seed", seed, "--seal", one.seal, "--out", one.log};
-    if (options.generator == "fleet" || options.generator == "strange")
+    if (draws_its_own(options.generator))
         command.push_back("--" + options.generator);
     else
         command.insert(command.end(), {"--blind", "--duration", number_word(options.duration_s)});

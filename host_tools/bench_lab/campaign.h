@@ -10,19 +10,23 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace traction::bench_lab {
+
+// A generator that draws length, sensors and habits by the seed.
+inline bool draws_its_own(std::string_view generator) { return generator == "fleet" || generator == "strange" || generator == "bent"; }
 
 struct CampaignOptions {
     int logs = 250;
     int jobs = 2;
     std::uint64_t seed = 1000; // of the first log; the others follow
     double duration_s = 120;
-    std::string generator =
-        "independent";    // wheels alike; "apart": each drawn for itself; "fleet": sizes, sensors, plans; "strange": and habits; "plant"
-    std::string category; // clean, one, two, outside: that alone; empty: as they are drawn
-    std::string folder;   // logs, seals and answers are kept here
+    std::string generator = "independent"; // wheels alike; "apart": each drawn for itself; "fleet": sizes, sensors, plans; "strange": and
+                                           // habits; "bent": the fleet on grounds of other curves; "plant"
+    std::string category;       // clean, one, two, outside: that alone; empty: as they are drawn
+    std::string folder;         // logs, seals and answers are kept here
     std::string lab_generate;   // the generator's program
     std::string traction;       // this program, for the plant
     std::string scenario;       // the plant's drive

@@ -125,10 +125,21 @@ void Quality::rate(const log::Signal &signal) {
             say("'%s' lacks %.0f %% of its samples (one every %.4g s expected)", signal.name.c_str(), 100 * rate.missing, rate.median_s),
             "look for an overloaded logger or a bad link; record again", rate.missing);
     } else if (rate.jitter > 0.3 && !said) {
-        add("jitter", Severity::warning, signal.name,
-            say("the time from sample to sample of '%s' varies by +-%.0f %% around %.4g s", signal.name.c_str(), 100 * rate.jitter,
-                rate.median_s),
-            "stamp samples where they are measured, not where they are written", rate.jitter);
+        const std::size_t beside = static_cast<std::size_t>(std::count_if(rates_.begin(), rates_.end(), [&](const Rate &other) {
+            return other.samples == rate.samples && other.jitter == rate.jitter && other.median_s == rate.median_s;
+        }));
+        const auto told =
+            std::find_if(findings_.begin(), findings_.end(), [&](const Finding &f) { return f.id == "jitter" && f.value == rate.jitter; });
+        const bool same_rows = beside > 0 && told != findings_.end(); // one clock, told once
+        const std::string first = same_rows ? told->signal : signal.name,
+                          others = same_rows ? " and of " + std::to_string(beside) + " others beside it" : "";
+        const std::string text = say("the time from sample to sample of '%s'%s varies by +-%.0f %% around %.4g s", first.c_str(),
+                                     others.c_str(), 100 * rate.jitter, rate.median_s);
+        if (same_rows)
+            told->text = text;
+        else
+            add("jitter", Severity::warning, signal.name, text, "stamp samples where they are measured, not where they are written",
+                rate.jitter);
     }
     rates_.push_back(rate);
 }

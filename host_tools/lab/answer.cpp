@@ -103,10 +103,12 @@ Answer compare_answer(const Session &session, bool fitted, bool details) {
     return answer;
 }
 
-Answer diagnose_answer(const Session &session, const Request &request, const AnswerOptions &options, bool apply) {
+Answer diagnose_answer(const Session &opened, const Request &request, const AnswerOptions &options, bool apply) {
     DiagnoseOptions how;
     how.progress = options.progress;
-    Diagnosis diagnosis = diagnose(session.model, session.data, how);
+    Diagnosed diagnosed = diagnose_session(opened, how);
+    const Session &session = diagnosed.anew ? *diagnosed.anew : opened;
+    Diagnosis diagnosis = std::move(diagnosed.diagnosis);
     Answer answer;
     Comparison comparison = compare(session.model, session.data, false, diagnosis.stated_fit.get());
     if (!diagnosis.accepted.empty()) show_after(comparison, diagnosis.model, session.data, diagnosis.model_fit.get());
@@ -142,8 +144,11 @@ Answer diagnose_answer(const Session &session, const Request &request, const Ans
     return answer;
 }
 
-Answer add_answer(const Session &session, const Request &request, const std::string &effect, int wheel, const std::string &effect_file) {
-    const Added added = add_effect(session.model, session.data, effect, wheel, effect_file);
+Answer add_answer(const Session &opened, const Request &request, const std::string &effect, int wheel, const std::string &effect_file) {
+    Added added = add_effect(opened.model, opened.data, effect, wheel, effect_file);
+    const std::optional<Session> anew = asked_anew(opened, added.model);
+    const Session &session = anew ? *anew : opened;
+    if (anew) added = add_effect(session.model, session.data, effect, wheel, effect_file);
     Answer answer;
     answer.kind = added.helps ? "named" : "nothing";
     answer.model = added.model;
@@ -199,12 +204,15 @@ NextAnswer next_answer(const Session *session, const Model &model, const std::ve
                        const AnswerOptions &options) {
     NextAnswer answer;
     NextExperiment next;
+    Diagnosed diagnosed;
     if (effects.empty() && session == nullptr)
         throw ModelError(model.file, 0, "effects", "are not given, and there is no log either", "give a log, or effects, or both");
     if (effects.empty()) {
         DiagnoseOptions how;
         how.progress = options.progress;
-        next = next_experiment(diagnose(session->model, session->data, how), session->model, session->data, all, options.drive);
+        diagnosed = diagnose_session(*session, how);
+        if (diagnosed.anew) session = &*diagnosed.anew;
+        next = next_experiment(diagnosed.diagnosis, session->model, session->data, all, options.drive);
     } else {
         next = next_experiment(effects, model, session != nullptr ? &session->data : nullptr, options.drive);
     }

@@ -1,11 +1,14 @@
 #include "session.h"
 
+#include "bends.h"
 #include "creeps.h"
 #include "gate.h"
 #include "sideways.h"
 
+#include "host_tools/lab/decision/shape_rules.h"
 #include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/inputs/begin_runs.h"
+#include "host_tools/lab/inputs/inputs.h"
 #include "host_tools/lab/inputs/join_runs.h"
 #include "host_tools/lab/inputs/long_log.h"
 #include "host_tools/lab/model/model_reader.h"
@@ -46,7 +49,94 @@ void refuse_twice(const std::vector<log::Log> &runs, const log::Log &log, const 
             throw ModelError(file, 0, option, "holds the same samples as " + run.source, "give another drive, or leave it out");
 }
 
+// What a motor's losses and inertia would be is told as an effect where the model has none of them.
+std::string taken_as_zero(const Model &model) {
+    std::string keys;
+    for (const char *key : {"inertia_kg_m2", "viscous_Nms", "coulomb_Nm"}) {
+        const auto states_it = [&](const WheelSpec &w) {
+            const auto stated = w.motor.find(key);
+            return stated != w.motor.end() && (stated->second.given || stated->second.value != 0);
+        };
+        if (std::none_of(model.wheel.begin(), model.wheel.end(), states_it))
+            keys += (keys.empty() ? "motor." : ", motor.") + std::string(key);
+    }
+    const bool has_motors = std::any_of(model.wheel.begin(), model.wheel.end(),
+                                        [](const WheelSpec &w) { return w.driven && parameter(w.motor, "torque_constant_Nm_A") > 0; });
+    return keys.empty() || !has_motors
+               ? ""
+               : "the model does not state " + keys + ": taken as 0 and not fitted, what they do would be told as an effect";
+}
+
+// Of all runs, with what was told of them.
+Dataset data_of(const Session &session, const JoinedRuns &joined) {
+    Dataset data = make_dataset(session.model, joined.log, session.repeat ? &*session.repeat : nullptr);
+    if (session.runs.size() > 1) {
+        data.run_start_s = joined.start_s;
+        data.duration_s = 0;
+        data.log_file.clear();
+        for (const log::Log &run : session.runs) {
+            data.duration_s += run.duration_s();
+            data.log_file += (data.log_file.empty() ? "" : " + ") + run.source.substr(run.source.find_last_of('/') + 1);
+        }
+    }
+    data.messages.insert(data.messages.end(), session.told.begin(), session.told.end());
+    data.despite = session.despite;
+    return data;
+}
+
+void tell(Session &session, const std::string &sentence) {
+    session.told.push_back(sentence);
+    session.data.messages.push_back(sentence);
+}
+
+void follow_sideways(Session &session, const JoinedRuns &joined) {
+    session.model.motion = BodyMotion::planar;
+    session.told.push_back(followed_sideways);
+    session.data = data_of(session, joined);
+}
+
+void bend(Session &session) { // no row of the data depends on it
+    ask_for_curve(session.model);
+    tell(session, curve_is_asked);
+}
+
 } // namespace
+
+void ask_the_log(Session &session) {
+    const JoinedRuns joined = join_runs(session.runs);
+    session.told.insert(session.told.begin(), joined.log.repairs.begin(), joined.log.repairs.end());
+    session.data = data_of(session, joined);
+    if (drifts_sideways(session.model, session.data)) follow_sideways(session, joined);
+    if (creeps(session.model, session.data)) {
+        ask_for_reversal(session.model);
+        session.told.push_back(reversal_is_asked);
+        session.data = data_of(session, joined);
+    }
+    if (bends_otherwise(session.model, session.data)) bend(session);
+}
+
+std::optional<Session> asked_anew(const Session &session, const Model &found, double shape_over_slip) {
+    const bool drifts = drifts_sideways(found, session.data);
+    Session anew = session;
+    Model with = found;
+    if (drifts) {
+        follow_sideways(anew, join_runs(anew.runs));
+        with.motion = BodyMotion::planar;
+    }
+    const bool bends = bends_otherwise(with, anew.data, shape_over_slip);
+    if (bends) bend(anew);
+    return drifts || bends ? std::optional<Session>(std::move(anew)) : std::nullopt;
+}
+
+Diagnosed diagnose_session(const Session &session, const DiagnoseOptions &how) {
+    Diagnosed out;
+    out.diagnosis = diagnose(session.model, session.data, how);
+    const std::optional<UnknownShape> &shape = out.diagnosis.unknown;
+    const bool over_slip = shape && shape->variable == axis_name(Axis::slip) && shape->score && !shape->score->candidate.some_wheels;
+    out.anew = asked_anew(session, out.diagnosis.model, over_slip ? shape->gain : 0);
+    if (out.anew) out.diagnosis = diagnose(out.anew->model, out.anew->data, how);
+    return out;
+}
 
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,
                      std::vector<std::string> &told, std::vector<std::string> &despite) {
@@ -67,7 +157,7 @@ Session open_session(const Request &request) { return open_session(request, read
 Session open_session(const Request &request, Model model) {
     Session session;
     session.model = std::move(model);
-    std::vector<std::string> told, despite, files = request.logs, maps = request.maps;
+    std::vector<std::string> told, files = request.logs, maps = request.maps;
     if (!request.log.empty()) files.insert(files.begin(), request.log);
     if (!request.map.empty()) maps.insert(maps.begin(), request.map);
     if (maps.size() > 1 && maps.size() != files.size())
@@ -76,7 +166,7 @@ Session open_session(const Request &request, Model model) {
                          "give one map for all logs, or one for each in the order of the logs");
     const auto map_of = [&](std::size_t i) { return maps.empty() ? std::string() : maps[maps.size() == 1 ? 0 : i]; };
     for (std::size_t i = 0; i < files.size(); ++i) {
-        log::Log run = checked_log(request, files[i], map_of(i), session.model, told, despite);
+        log::Log run = checked_log(request, files[i], map_of(i), session.model, told, session.despite);
         run.source = files[i];
         refuse_twice(session.runs, run, files[i], "--log");
         session.runs.push_back(std::move(run));
@@ -87,40 +177,18 @@ Session open_session(const Request &request, Model model) {
             refuse_twice(session.runs, checked_log(request, file, request.map_of_validation(), session.model, again, anyway), file,
                          "--validate");
     }
-    const JoinedRuns joined = join_runs(session.runs);
-    const log::Log &log = joined.log;
-    begin_runs(session.model, session.runs, joined.start_s);
-    for (const auto &[key, value] : log.header) // a map that says so makes the model's currents magnitudes
-        if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1")
-            session.model.unsigned_current = true;
-    std::optional<log::Log> repeat;
+    begin_runs(session.model, session.runs, join_runs(session.runs).start_s);
+    for (const log::Log &run : session.runs)
+        for (const auto &[key, value] : run.header) // a map that says so makes the model's currents magnitudes
+            if (key.find("unsigned.wheel") == 0 && key.find("current") != std::string::npos && value == "1")
+                session.model.unsigned_current = true;
     if (!request.repeat.empty()) {
-        repeat = checked_log(request, request.repeat, map_of(0), session.model, told, despite);
-        refuse_twice(session.runs, *repeat, request.repeat, "--repeat");
+        session.repeat = checked_log(request, request.repeat, map_of(0), session.model, told, session.despite);
+        refuse_twice(session.runs, *session.repeat, request.repeat, "--repeat");
     }
-    const auto data = [&] { return make_dataset(session.model, log, repeat ? &*repeat : nullptr); };
-    session.data = data();
-    if (drifts_sideways(session.model, session.data)) {
-        session.model.motion = BodyMotion::planar;
-        session.data = data();
-        told.push_back(followed_sideways);
-    }
-    if (creeps(session.model, session.data)) {
-        ask_for_reversal(session.model);
-        session.data = data();
-        told.push_back(reversal_is_asked);
-    }
-    if (session.runs.size() > 1) {
-        session.data.run_start_s = joined.start_s;
-        session.data.duration_s = 0;
-        for (const log::Log &run : session.runs) session.data.duration_s += run.duration_s();
-        session.data.log_file.clear();
-        for (const std::string &file : files)
-            session.data.log_file += (session.data.log_file.empty() ? "" : " + ") + file.substr(file.find_last_of('/') + 1);
-    }
-    for (const std::string &repair : log.repairs) session.data.messages.push_back(repair);
-    session.data.messages.insert(session.data.messages.end(), told.begin(), told.end());
-    session.data.despite = despite;
+    if (const std::string zero = taken_as_zero(session.model); !zero.empty()) told.push_back(zero);
+    session.told = std::move(told);
+    ask_the_log(session);
     return session;
 }
 

@@ -1,11 +1,13 @@
 // session.h - what every verb of the lab does first: read the model, the logs (each through its map) and the repeat run, through the gate.
 #pragma once
 
+#include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/inputs/dataset.h"
 #include "host_tools/lab/model/model.h"
 #include "host_tools/log/read.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +27,10 @@ struct Request {
 
 struct Session {
     Model model;
-    Dataset data;               // of all runs, one after the other (join_runs.h)
-    std::vector<log::Log> runs; // as read, through map and gate
+    Dataset data;                           // of all runs, one after the other (join_runs.h)
+    std::vector<log::Log> runs;             // as read, through map and gate
+    std::optional<log::Log> repeat;         // a second run of the same drive
+    std::vector<std::string> told, despite; // of reading and opening, which the data's messages end with; errors overridden
 };
 
 // Every log has passed the gate, or was let through despite an error: data.despite and data.messages say so. Throws ModelError,
@@ -35,6 +39,22 @@ Session open_session(const Request &request);
 
 // The same with a model that was read already; request.model is for messages.
 Session open_session(const Request &request, Model model);
+
+// Makes the data of the session's runs, and asks them what the model need not say: whether the machine is followed sideways (sideways.h),
+// over which speed resistance reverses (creeps.h), whether the ground is of the law's curve (bends.h).
+void ask_the_log(Session &session);
+
+// The same asked again with what was found, `found`: before an effect is known that turns the machine in its bends, as mass off its middle
+// does, or that hides the ground's curve, the log may not tell. Nothing where it is answered as before.
+// shape_over_slip: as bends_otherwise() has it.
+std::optional<Session> asked_anew(const Session &session, const Model &found, double shape_over_slip = 0);
+
+// What a session's log shows, and the session that it was found by in the end, where that was asked anew.
+struct Diagnosed {
+    std::optional<Session> anew;
+    Diagnosis diagnosis; // refers to that session's data
+};
+Diagnosed diagnose_session(const Session &session, const DiagnoseOptions &how);
 
 // One log, the part that is asked for, through the gate. `told`: warnings and what was overridden; `despite`: ids overridden.
 log::Log checked_log(const Request &request, const std::string &file, const std::string &map, const Model &model,

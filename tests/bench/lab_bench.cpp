@@ -1,6 +1,7 @@
 // lab_bench - a blind campaign of the lab on sealed logs: made, answered, the seals opened, the table. Run by `traction bench lab`.
 //
-// Usage: lab_bench --traction PROGRAM [--logs N] [--jobs N] [--seed N] [--duration S] [--generator independent|apart|fleet|strange|plant]
+// Usage: lab_bench --traction PROGRAM [--logs N] [--jobs N] [--seed N] [--duration S] [--generator
+// independent|apart|fleet|strange|bent|plant]
 //                  [--category clean|one|two|outside] [--keep FOLDER] [--time] [--peers] [--json FILE]
 //        lab_bench --traction PROGRAM --row [--seed N ...]: one log, its row (host_tools/bench_lab/row.h) as a line on standard output
 //        lab_bench --judge FILE [--logs N --seed N ...] [--json FILE]: the table of such rows, a line each; the options are the campaign's
@@ -91,7 +92,7 @@ bool make_folder(bench_lab::CampaignOptions &options) {
 // `logs`: how many the table has, of options.logs.
 void print_table(const bench_lab::CampaignOptions &options, std::size_t logs, const bench_lab::Score &score) {
     char length[32] = "60 to 300"; // these draw their own
-    if (options.generator != "fleet" && options.generator != "strange") std::snprintf(length, sizeof length, "%g", options.duration_s);
+    if (!bench_lab::draws_its_own(options.generator)) std::snprintf(length, sizeof length, "%g", options.duration_s);
     const std::string of = logs == static_cast<std::size_t>(options.logs) ? "" : " of " + std::to_string(options.logs);
     std::printf("%zu%s sealed logs, generator: %s%s%s, %s s each, seeds %lu to %lu\n\n%s", logs, of.c_str(), options.generator.c_str(),
                 options.category.empty() ? "" : ", category: ", options.category.c_str(), length, static_cast<unsigned long>(options.seed),

@@ -18,7 +18,7 @@ def options():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/host", help="folder of the built programs")
     parser.add_argument("--program", help="another traction, such as one before a change")
-    parser.add_argument("--generator", default="fleet", choices=["apart", "fleet", "strange"])
+    parser.add_argument("--generator", default="fleet", choices=["apart", "fleet", "strange", "bent"])
     parser.add_argument("--category", default="clean", choices=["clean", "one", "two", "outside"])
     parser.add_argument("--runs", type=int, default=2)
     parser.add_argument("--seeds", type=int, nargs=2, required=True, metavar=("FIRST", "LAST"))

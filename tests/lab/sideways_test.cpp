@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 namespace traction::lab {
@@ -86,6 +87,22 @@ TEST(Sideways, TheSessionSaysSoAndItsModelKeepsIt) {
     EXPECT_TRUE(std::any_of(session.data.balance.begin(), session.data.balance.end(), [](const Balance &b) {
         return b.kind == BalanceKind::camera_y;
     })) << "the camera's sideways rows come with it";
+}
+
+TEST(Sideways, WhatIsFoundIsAskedForIt) { // not the session's own model
+    Session held;
+    held.model = sand(), held.runs = {bends()};
+    held.data = make_dataset(held.model, bends());
+    held.data.messages = held.told = held.despite = {"kept"};
+    const std::optional<Session> anew = asked_anew(held, held.model);
+    ASSERT_TRUE(anew);
+    EXPECT_EQ(anew->model.motion, BodyMotion::planar);
+    EXPECT_EQ(std::count(anew->data.messages.begin(), anew->data.messages.end(), followed_sideways), 1);
+    EXPECT_EQ(std::count(anew->data.messages.begin(), anew->data.messages.end(), "kept"), 1);
+    EXPECT_EQ(anew->data.despite, held.despite);
+    Model found = held.model;
+    found.motion = BodyMotion::planar;
+    EXPECT_FALSE(asked_anew(held, found)) << "it is followed already";
 }
 
 } // namespace

@@ -68,6 +68,70 @@ TEST(WheelStep, slip_across_comes_over_the_relaxation_length_and_goes_at_rest) {
     EXPECT_NEAR(side, -aside_m_s / speed_m_s * std::exp(-0.6), 0.1 * aside_m_s / speed_m_s); // 4 s at r over the length: 0.15 / s
 }
 
+// (6) of wheel_laws.h by hand: stiffness and strength stay the law's, and between them the curve bends; by each wheel and by four at once.
+TEST(WheelStep, the_knee_of_a_grounds_curve_bends_and_its_ends_do_not) {
+    for (const SoilLaw soil : {SoilLaw::janosi, SoilLaw::burckhardt})
+        for (const double curve : {-0.4, 0.0, 0.3}) {
+            const auto share = [&](double x) { // of the strength
+                return grip_of<double>(soil, 1.0, 0.2, curve, 0.2 * x, 0.0, 0.0, false).traction;
+            };
+            const auto law = [&](double x) { return soil == SoilLaw::burckhardt ? 1 - std::exp(-x) : 1 - (1 - std::exp(-x)) / x; };
+            for (const double x : {0.05, 0.5, 1.0, 2.0, 4.0})
+                EXPECT_NEAR(share(x), law(x) * (1 + curve * x * x * std::exp(-x)), 1e-12) << x;
+            EXPECT_NEAR(share(0.01) / law(0.01), 1, 1e-4);
+            EXPECT_NEAR(share(20) / law(20), 1, 1e-6);
+            EXPECT_GT(share(0.5), share(0.25)) << "a pull that grows with slip";
+        }
+    Dataset data = rolling(0, 3);
+    for (WheelInput &w : data.wheel) std::fill(w.speed_rad_s.begin(), w.speed_rad_s.end(), 1.3 * speed_m_s / radius_m);
+    Model model = sliding("sand");
+    model.motion = BodyMotion::longitudinal;
+    Physics plain = make_physics(model);
+    for (WheelPhysics &w : plain.wheel) w.relaxation = 0;
+    Physics bent = plain;
+    for (WheelPhysics &w : bent.wheel) w.curve = 0.4;
+    const auto pulls = [&](const Physics &physics, bool at_once) {
+        WheelStep step(data, physics);
+        step.prepare(1, speed_m_s, 0, 0, 0);
+        if (at_once) step.forces({speed_m_s, 0, 0}, nullptr);
+        std::vector<double> out;
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (!at_once) step.force(i, {speed_m_s, 0, 0});
+            out.push_back(step.state(i).traction);
+        }
+        return out;
+    };
+    for (const bool at_once : {false, true}) {
+        const std::vector<double> a = pulls(plain, at_once), b = pulls(bent, at_once);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const WheelPhysics &w = plain.wheel[i];
+            const double rim = rolling_radius(w) * 1.3 * speed_m_s / radius_m, x = (rim - speed_m_s) / rim / w.sc;
+            EXPECT_NEAR(b[i] / a[i], 1 + 0.4 * x * x * std::exp(-x), 1e-9) << i << at_once;
+        }
+    }
+}
+
+// Of a mass to one side the wheels there carry more and, at the same slip, pull more: just as much as turns nothing about that mass.
+TEST(WheelStep, a_mass_to_one_side_is_not_turned_by_wheels_that_slip_alike) {
+    Dataset data = rolling(0, 3);
+    for (WheelInput &w : data.wheel) std::fill(w.speed_rad_s.begin(), w.speed_rad_s.end(), 1.2 * speed_m_s / radius_m);
+    Model model = sliding("sand");
+    model.motion = BodyMotion::longitudinal;
+    Physics physics = make_physics(model);
+    physics.body.offset_y_m = 0.03;
+    for (WheelPhysics &w : physics.wheel) w.relaxation = 0, w.adhesion = 0; // all of the pull goes by the load
+    WheelStep step(data, physics);
+    step.prepare(1, speed_m_s, 0, 0, 0);
+    std::array<Eigen::Vector3d, most_wheels> each;
+    const Eigen::Vector3d at_once = step.forces({speed_m_s, 0, 0}, &each);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < 4; ++i) sum += step.force(i, {speed_m_s, 0, 0});
+    EXPECT_GT(at_once[0], 1);
+    EXPECT_NEAR(at_once[2], 0, 1e-12 * at_once[0]);
+    EXPECT_NEAR(sum[2], 0, 1e-12 * at_once[0]);
+    EXPECT_GT(step.state(0).load, 1.3 * step.state(1).load) << "0 and 2 are to the left";
+}
+
 TEST(Lane, exp_is_the_exponential_and_ends_where_a_double_would) {
     std::mt19937_64 random(20261125);
     std::uniform_real_distribution<double> any(-700, 700), small(-2, 2);

@@ -7,6 +7,7 @@
 #include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/screen.h"
 #include "manner.h"
+#include "odd_wheel.h"
 #include "patch_edges.h"
 #include "record.h"
 #include "rival.h"
@@ -65,6 +66,7 @@ class Search {
         drop_beside_bent_sheet(problem);
         if (d_.unknown) tell_as_fitted(problem);
         if (options_.shapes && !d_.unknown) face_rivals(first, problem);
+        tell_odd_wheel(problem);
         if (!d_.model_fit) settle_last(problem);
         if (!refined_) refine_shapes(problem);
         d_.limits = limits_of(problem);
@@ -497,11 +499,24 @@ class Search {
         }
     }
 
-    void reject_as_nearest(std::size_t i, Problem &last) {
+    // What stays wrong with one wheel is told, and no name on that wheel stands for it.
+    void tell_odd_wheel(Problem &last) {
+        const std::optional<OddWheel> odd = odd_wheel(last);
+        if (!odd) return;
+        d_.messages.push_back(odd_wheel_words(*odd));
+        for (std::size_t i = d_.accepted.size(); i-- > 0;) {
+            const Candidate &one = d_.accepted[i].candidate;
+            if (one.wheel == odd->wheel && !explains_wheel(excess_of(*odd, fitted(model_without(d_.model, one), &last)), odd->excess()))
+                reject_as_nearest(i, last, "leaves most of that");
+        }
+        if (!d_.unknown || !d_.unknown->instead_of.empty()) d_.unknown = what_acts_on(*odd, last);
+    }
+
+    void reject_as_nearest(std::size_t i, Problem &last, const std::string &why = "") {
         const CandidateResult one = d_.accepted[i];
         Model without = model_without(d_.model, one.candidate);
-        d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " + d_.unknown->balance +
-                              " alone explains as much: not named");
+        d_.messages.push_back(one.candidate.label() + " of the catalogue comes near, but " +
+                              (why.empty() ? d_.unknown->balance + " alone explains as much" : why) + ": not named");
         for (CandidateResult &r : d_.ranking)
             if (r.candidate.label() == one.candidate.label() || (one.class_index && r.class_index == one.class_index))
                 r.verdict = "nearest";

@@ -35,6 +35,7 @@ constexpr Key keys[] = {
     {"soil", "mu", &W::mu, nullptr, stage_motion},
     {"soil", "adhesion_N", &W::adhesion, nullptr, stage_motion},
     {"soil", "shear_slip", &W::sc, nullptr, stage_motion},
+    {"soil", "shear_curve", &W::curve, nullptr, stage_motion},
     {"soil", "rolling_coefficient", &W::crr, nullptr, stage_motion},
     {"soil", "lateral_coefficient", &W::lateral, nullptr, stage_motion},
     {"soil", "lateral_grip", &W::grip, nullptr, stage_motion},

@@ -24,6 +24,7 @@ struct WheelPhysics : sim::WheelEffects {
     double KG = 0, ke = 0, Ra = 0, J = 0, b = 0, t0 = 0;
     double adhesion = 0, mu = 0, sc = 0, crr = 0, lateral = 0, grip = 0,
            relaxation = 0; // grip: 1 where the soil holds sideways as it holds lengthways
+    double curve = 0;      // (6) of wheel_laws.h
     double reversal = 0;   // speed over which rolling resistance reverses (creeps.h); 0: below what the drive shows
     double current_offset0 = 0;
 };

@@ -5,6 +5,7 @@
 //   g = m + r r^4/(m^4 + r^4),  m = max(|R w|, |v|),  r = 15 mm/s: at rest it is worn off (assumed)                       (5)
 //   sy = (sy' - h vy) / (1 + h g),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
 //   Ft / Fm = 1 - (1 - exp(-x)) / x, x = |s| / sc   (20) janosi;  1 - exp(-x)  (21) burckhardt                             (3)
+//   Ft / Fm times 1 + c x^2 exp(-x)                         a ground whose knee is not the law's, stiffness and strength the law's  (6)
 #pragma once
 
 #include "host_tools/lab/model/model.h"
@@ -88,10 +89,10 @@ template <typename T> inline T side_slip(const T &rim, const T &v, const T &vy, 
     return -vy / law::larger(law::larger(law::magnitude(rim), law::magnitude(v)), least_m_s);
 }
 
-// (3) over x, for x > 0; constant below 1e-4, where the quotient would lose digits and the curve is straight.
-template <typename T> inline T traction_slope(SoilLaw soil, const T &size) {
-    const T x = law::larger(size, 1e-4), per_x = 1 / x, risen = 1 - law::falling(x);
-    return soil == SoilLaw::burckhardt ? T(risen * per_x) : T((1 - risen * per_x) * per_x);
+// (3) with (6) over x, for x > 0; constant below 1e-4, where the quotient would lose digits and the curve is straight.
+template <typename T> inline T traction_slope(SoilLaw soil, const T &size, const T &curve) {
+    const T x = law::larger(size, 1e-4), per_x = 1 / x, falling = law::falling(x), risen = 1 - falling;
+    return (soil == SoilLaw::burckhardt ? T(risen * per_x) : T((1 - risen * per_x) * per_x)) * (1 + curve * x * x * falling);
 }
 
 // What a wheel pulls along its heading and across it at slips s, sy. Combined slip S = |(s, sy)|, (Ft, Fy) = f(S)/S (Fm s, Fym sy) inside
@@ -99,9 +100,10 @@ template <typename T> inline T traction_slope(SoilLaw soil, const T &size) {
 // presumed, and `share` is the part of it that slides: S = |(s, share sy)|.
 template <typename T> struct Grip { T traction, side; };
 template <typename T>
-inline Grip<T> grip_of(SoilLaw soil, const T &Fm, const T &sc, const T &slip, const T &side_slip, const T &share, bool followed) {
+inline Grip<T> grip_of(SoilLaw soil, const T &Fm, const T &sc, const T &curve, const T &slip, const T &side_slip, const T &share,
+                       bool followed) {
     const T across = share * side_slip, side = followed ? side_slip : across;
-    const T grip = T(law::by(Fm, sc)) * traction_slope(soil, T(law::by(T(law::root(T(slip * slip + side * side))), sc)));
+    const T grip = T(law::by(Fm, sc)) * traction_slope(soil, T(law::by(T(law::root(T(slip * slip + side * side))), sc)), curve);
     return {T(grip * slip), T(grip * across)};
 }
 

@@ -50,6 +50,7 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         feels_path_ = feels_path_ || sim::needs_any(w, sim::needs_path);
         s.x = sideways_ ? sim::law::mass_offset_m(w.x, b.offset_x_m) : w.x;
         s.y = sideways_ ? sim::law::mass_offset_m(w.y, b.offset_y_m) : w.y;
+        s.arm_m = sim::law::mass_offset_m(w.y, b.offset_y_m);
         s.c = std::cos(w.heading);
         s.s = std::sin(w.heading);
         s.radius = rolling_radius(w);
@@ -97,8 +98,8 @@ void WheelStep::gather() {
         const State &s = state_[i];
         Four &four = four_[i / 4];
         const std::size_t at = i % 4;
-        four.c.set(at, s.c), four.s.set(at, s.s), four.x.set(at, s.x), four.y.set(at, s.y);
-        four.grip.set(at, w.grip);
+        four.c.set(at, s.c), four.s.set(at, s.s), four.x.set(at, s.x), four.y.set(at, s.y), four.arm_m.set(at, s.arm_m);
+        four.grip.set(at, w.grip), four.curve.set(at, w.curve);
         for (std::size_t field = 0; field < sim::WheelEffects::all().size(); ++field)
             (four.effects.*sim::WheelEffectsOf<Lane>::all()[field]).set(at, w.*sim::WheelEffects::all()[field]);
         four.per_speed_m.set(at, s.radius * s.gain);
@@ -186,7 +187,7 @@ void WheelStep::contact_of(Four &f, const Lane &v, const Lane &side_v) const {
     Lane Fm = f.Fm;
     if (b.sliding_loss_s_m != 0) Fm = sim::strength_sliding<law::Library>(Fm, b, Lane(f.rim - v));
     if (b.shear_peak != 0) Fm = sim::strength_slipping<Lane>(Fm, b, f.slip, Lane(1 / f.per_sc)); // else four divisions for nothing
-    const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.slip, f.side_slip, f.grip, sideways_);
+    const auto [traction, side] = grip_of(p_.soil_law, Fm, f.per_sc, f.curve, f.slip, f.side_slip, f.grip, sideways_);
     f.traction = traction, f.side = side;
     const Lane resist = f.load * resistance(Lane(f.resistance + f.resistance_here), f.effects, b, f.slip, v);
     f.rolling = resist * (reverses_ ? reversing(v, f.reversal) : soft_sign(v, resist_speed_m_s));
@@ -202,7 +203,7 @@ Eigen::Vector3d WheelStep::plain_forces(const Eigen::Vector3d &q, Each *each) {
         const Lane scrub = sim::law::lateral_scrub_N(f.lateral, f.load);
         if (sideways_) f.side -= scrub * soft_sign(side_v, drift_speed_m_s);
         const Lane forward = f.traction - f.rolling, fx = forward * f.c - f.side * f.s, fy = forward * f.s + f.side * f.c;
-        Lane moment = f.x * fy - f.y * fx;
+        Lane moment = f.x * fy - f.arm_m * fx;
         if (!sideways_) moment -= scrub * f.x * soft_sign(Lane(f.x * q[2]), scrub_speed_m_s);
         for (std::size_t i = 4 * g; i < std::min(n_, 4 * g + 4); ++i) {
             const std::size_t at = i % 4;
@@ -244,7 +245,7 @@ Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     const double along = vx * s.c + vy * s.s, across = -vx * s.s + vy * s.c;
     const double forward = pull(i, along, q[0], across);
     const double fx = forward * s.c - s.side * s.s, fy = forward * s.s + s.side * s.c;
-    double moment = s.x * fy - s.y * fx;
+    double moment = s.x * fy - s.arm_m * fx;
     const double most_scrub = sim::law::lateral_scrub_N(s.lateral, s.load);
     if (p_.motion == BodyMotion::longitudinal) { // vy = 0: skid steer turns about its middle
         moment -= most_scrub * s.x * soft_sign(s.x * q[2], scrub_speed_m_s);
@@ -252,7 +253,7 @@ Eigen::Vector3d WheelStep::force(std::size_t i, const Eigen::Vector3d &q) {
     }
     if (sideways_ && p_.grips_sideways[i]) {
         const double scrub = -most_scrub * soft_sign(across, drift_speed_m_s);
-        return {fx - scrub * s.s, fy + scrub * s.c, moment + scrub * (s.x * s.c + s.y * s.s)};
+        return {fx - scrub * s.s, fy + scrub * s.c, moment + scrub * (s.x * s.c + s.arm_m * s.s)};
     }
     return {fx, fy, moment};
 }
@@ -287,7 +288,7 @@ double WheelStep::pull(std::size_t i, double v, double body_v, double side_v) {
     double Fm = sim::strength_sliding<law::Library>(s.Fm, b, s.rim - v), sc = s.sc, extra = 0, extra_rolling = 0;
     if (motion_terms_) terms(i, v, body_v, Fm, sc, extra, extra_rolling);
     Fm = sim::strength_slipping<double>(Fm, b, s.slip, sc);
-    const auto [traction, side] = grip_of(p_.soil_law, Fm, sc, s.slip, s.side_slip, p_.wheel[i].grip, sideways_);
+    const auto [traction, side] = grip_of(p_.soil_law, Fm, sc, p_.wheel[i].curve, s.slip, s.side_slip, p_.wheel[i].grip, sideways_);
     s.traction = traction, s.side = side;
     if (p_.wheel[i].play_rad > 0) s.traction *= contact(i, v);
     const double resist = s.load * resistance<double>(s.rolling_coefficient + s.resistance_here, p_.wheel[i], b, s.slip, v) + extra_rolling;

@@ -48,6 +48,7 @@ class WheelStep {
 
     struct State {
         double x = 0, y = 0; // place from the centre of mass (longitudinal motion: from the middle)
+        double arm_m = 0;    // to the left of the centre of mass: about it forces turn the body, however that moves
         double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, lag_1_m = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0,
                load_per_side = 0, load_per_twist = 0;
         double mu = 0, adhesion = 0, rolling_coefficient = 0, lateral = 0; // of the ground it stands on
@@ -74,10 +75,10 @@ class WheelStep {
   private:
     // Four wheels side by side; where there are fewer, the last carry nothing.
     struct Four {
-        Lane c = Lane(1.0), s = Lane(0.0), x = Lane(0.0), y = Lane(0.0), grip = Lane(0.0), resistance = Lane(0.0),
+        Lane c = Lane(1.0), s = Lane(0.0), x = Lane(0.0), y = Lane(0.0), arm_m = Lane(0.0), grip = Lane(0.0), resistance = Lane(0.0),
              resistance_here = Lane(0.0), lateral = Lane(0.0);
         sim::WheelEffectsOf<Lane> effects;
-        Lane per_sc = Lane(1.0), lag_1_m = Lane(0.0), slip_before = Lane(0.0), side_slip_before = Lane(0.0);
+        Lane per_sc = Lane(1.0), curve = Lane(0.0), lag_1_m = Lane(0.0), slip_before = Lane(0.0), side_slip_before = Lane(0.0);
         Lane per_speed_m = Lane(0.0), adhesion = Lane(0.0), mu = Lane(0.0), load_0 = Lane(0.0), load_per_accel = Lane(0.0),
              load_per_side = Lane(0.0), load_per_twist = Lane(0.0), reversal = Lane(1.0);
         Lane rim = Lane(0.0), load = Lane(0.0), Fm = Lane(0.0);

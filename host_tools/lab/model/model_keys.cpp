@@ -32,6 +32,7 @@ constexpr ModelKey soil[] = {
     {"mu", "1", 0, 0, 5, 0.2, 0},
     {"adhesion_N", "N", 0, 0, 1e5, 0, 0},
     {"shear_slip", "1", 0.1, 1e-4, 10, 0.15, 0},
+    {"shear_curve", "1", 0, -0.6, 0.6, 0, 0},
     {"rolling_coefficient", "1", 0, -0.2, 2, 0, 0.005},
     {"lateral_coefficient", "1", 0, 0, 3, 0.3, 0},
     {"lateral_grip", "1", 0.5, 0, 1.5, 0, 0.5},

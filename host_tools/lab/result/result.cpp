@@ -265,6 +265,7 @@ void put_diagnosis(json &out, const Diagnosis &d) {
         out["unknown"] = {{"variable", u.variable}, {"balance", u.balance}, {"acts_on", u.target},       {"gain", finite(u.gain)},
                           {"x", series(u.x)},       {"y", series(u.y)},     {"low", series(u.low)},      {"high", series(u.high)},
                           {"unit_x", u.unit_x},     {"unit_y", u.unit_y},   {"expression", u.expression}};
+        if (u.at_a_guess) out["unknown"]["at_a_guess"] = true;
         if (!u.instead_of.empty()) out["unknown"]["instead_of"] = u.instead_of;
     }
     out["verdict"] = {{"kind", d.kind}, {"effects", d.effects}, {"nearest", d.nearest}, {"text", d.text}};

@@ -82,7 +82,7 @@ std::string good_enough(const Comparison &c, const Diagnosis &d) {
     return "Not known: the error is more than noise, and nothing that was tried explains it. " + farthest_words(c);
 }
 
-std::string missing(const Diagnosis &d) {
+std::string missing(const Comparison &c, const Diagnosis &d) {
     if (d.kind == "wrong_model") return d.text;
     std::string text;
     for (const CandidateResult &a : d.accepted) text += (text.empty() ? "" : " And ") + titled(a.candidate) + ": " + size_of(a) + ".";
@@ -91,7 +91,8 @@ std::string missing(const Diagnosis &d) {
         text += (text.empty() ? "" : " ") + std::string("Something that is in no catalogue: ") + d.unknown->balance +
                 ", which depends on " + d.unknown->variable + ".";
     if (!d.nearest.empty()) text += " Nearest in the catalogue, and not named: " + joined(d.nearest, ", ") + ".";
-    return text.empty() ? "Nothing that this log can show." : text;
+    if (!text.empty()) return text;
+    return c.adjusted < close_to_noise ? "Nothing that this log can show." : "Nothing that was tried: what is left has another cause.";
 }
 
 // Where the error of all signals together hardly falls, what speaks for the effect: the signal that gains most, or the data sheet.
@@ -117,6 +118,9 @@ std::string how_sure(const Comparison &c, const Diagnosis &d) {
         return text + (d.classes.empty() ? "The brackets hold" : "If it is the first that is named, the brackets hold") +
                " the true size in 95 of 100 cases.";
     }
+    if (d.unknown && d.unknown->at_a_guess)
+        return "Sure that one wheel is unlike the others (notes); that it depends on " + d.unknown->variable +
+               " is the best of what was tried.";
     if (d.unknown) return "Sure that it depends on " + d.unknown->variable + "; the curve is a description, not a law.";
     if (!d.not_excited.empty())
         append(text, "%zu effects could not have been seen in this log, even at three times the size that matters. ", d.not_excited.size());
@@ -159,7 +163,7 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
 
 Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) {
     Story story;
-    story.good_enough = good_enough(c, d), story.missing = missing(d), story.sure = how_sure(c, d);
+    story.good_enough = good_enough(c, d), story.missing = missing(c, d), story.sure = how_sure(c, d);
     story.where = worst_regime_words(c);
     story.left = d.kind == "wrong_model" ? "" : left_words(remainder(c, d), settled(d)) + ".";
     story.next = what_next(c, d, next);
@@ -171,7 +175,8 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
                           ((d.unknown && d.unknown->instead_of.empty()) || explained(d) < most_of_it ? "a part of it. " : "it. ") +
                           story.left;
     else if (d.unknown)
-        story.headline += ". No effect of the catalogue explains it: it depends on " + d.unknown->variable + ".";
+        story.headline += ". No effect of the catalogue explains it: it depends on " + d.unknown->variable +
+                          (d.unknown->at_a_guess ? ", at a guess." : ".");
     else
         story.headline += c.adjusted < close_to_noise && !d.moved.empty()
                               ? ". That is close to the noise, with " + joined(d.moved, " and ") + " far from what is stated."

@@ -30,7 +30,7 @@ from .spec import Spec, read_table, wrong
 from .store import Store
 
 GENERATORS = {
-    "lab_bench": ("independent", "apart", "fleet", "strange", "plant"),
+    "lab_bench": ("independent", "apart", "fleet", "strange", "bent", "plant"),
     "round_trip": ("independent", "apart", "plant"),
 }
 CATEGORIES = ("clean", "one", "two", "outside")
@@ -217,7 +217,7 @@ class LabSpec:
 
     @property
     def duration_s(self) -> float:
-        """Of a log; fleet and strange draw their own."""
+        """Of a log; fleet, strange and bent draw their own."""
         return float(self.table.get("duration_s", 120))
 
     @property

@@ -255,6 +255,7 @@ log::Log generate(const GeneratorConfig &config) {
     Random ground(place, 12), plan_random(place, 13), clock(place, 16);
     const double tick_s = config.habits.tick_s;
     Machine machine = machine_of(config);
+    machine.knee = config.knee;
     machine.battery_ohm *= config.habits.soft;
     if (config.habits.sag > 0) machine.battery_sag_1_s = config.habits.sag / config.duration_s;
     World world(machine, hidden, ground);
@@ -374,6 +375,12 @@ BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category) {
         config.hidden.push_back({"grade", -1, {{"slope_rad", random.sign() * random.log_uniform(0.02, 0.12)}, {"direction_rad", 0}}});
     else if (blind.category == "two")
         config.hidden.push_back(draw_setting(false, random, config.hidden.front().name, true, config.size));
+    return blind;
+}
+
+BlindCase draw_bent_case(std::uint64_t seed, const std::string &category) {
+    BlindCase blind = draw_fleet_case(seed, category);
+    blind.config.knee = static_cast<Knee>(1 + Random(seed, 43).below(3));
     return blind;
 }
 

@@ -38,6 +38,7 @@ struct GeneratorConfig {
     Size size = Size::small;
     SensorChain chain;
     Habits habits;
+    Knee knee = Knee::stated;
     int run = 0;                // another drive of the same machine: other plan, place and noise
     std::string drive = "full"; // see make_plan
     double duration_s = 120;
@@ -81,6 +82,9 @@ BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category = "");
 // The fleet with habits of its own: other plans (turns alone, a long halt, to and fro), loops of 5 to 20 ms, noise of half to twice what is
 // stated, a log that begins while driving, a battery that sags, sensors that are not there. No rule of the lab was made on these.
 BlindCase draw_strange_case(std::uint64_t seed, const std::string &category = "");
+
+// The fleet on grounds whose curve over slip is none of the laws that a sheet can name (Knee).
+BlindCase draw_bent_case(std::uint64_t seed, const std::string &category = "");
 std::string name_of(Size size);
 Size size_of(const std::string &name); // throws std::invalid_argument
 

@@ -5,15 +5,20 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace {
 
 using namespace traction;
 using namespace traction::generator;
+
+const std::map<std::string, Knee> knees = {
+    {"stated", Knee::stated}, {"tanh", Knee::tanh}, {"hyperbola", Knee::hyperbola}, {"magic", Knee::magic}};
 
 nlohmann::json seal_of(const BlindCase &blind) {
     nlohmann::json seal = {{"schema", "traction.seal/1"}, {"category", blind.category}, {"soil", name_of(blind.config.soil)},
@@ -34,18 +39,20 @@ nlohmann::json seal_of(const BlindCase &blind) {
     seal["habits"] = {{"tick_s", habits.tick_s}, {"noise", habits.noise}, {"begin_s", habits.begin_s}, {"sag", habits.sag},
                       {"soft", habits.soft},     {"gyro", habits.gyro},   {"accel", habits.accel},     {"battery", blind.config.battery}};
     const Machine m = machine_of(blind.config);
-    seal["machine"] = {{"mass_kg", m.mass},
-                       {"radius_m", m.radius},
-                       {"torque_constant_Nm_A", m.KG},
-                       {"resistance_ohm", m.Ra},
-                       {"inertia_kg_m2", m.J},
-                       {"viscous_Nms", m.viscous},
-                       {"coulomb_Nm", m.coulomb},
-                       {"mu", m.mu},
-                       {"shear_slip", m.sc},
-                       {"rolling_coefficient", m.rolling},
-                       {"grip_noise", m.grip_noise},
-                       {"grip_length_m", m.grip_length}};
+    seal["machine"] = {
+        {"mass_kg", m.mass},
+        {"radius_m", m.radius},
+        {"torque_constant_Nm_A", m.KG},
+        {"resistance_ohm", m.Ra},
+        {"inertia_kg_m2", m.J},
+        {"viscous_Nms", m.viscous},
+        {"coulomb_Nm", m.coulomb},
+        {"knee", std::find_if(knees.begin(), knees.end(), [&](const auto &k) { return k.second == blind.config.knee; })->first},
+        {"mu", m.mu},
+        {"shear_slip", m.sc},
+        {"rolling_coefficient", m.rolling},
+        {"grip_noise", m.grip_noise},
+        {"grip_length_m", m.grip_length}};
     if (blind.config.apart)
         seal["machine"]["each"] = {{"torque_constant", m.KG_each},
                                    {"resistance", m.Ra_each},
@@ -88,7 +95,7 @@ int run(int argc, char **argv) {
     std::string soil = "sand", out, seal, model, map, size = "small", category;
     int runs = 1;
     std::vector<std::string> effects;
-    bool is_blind = false, is_fleet = false, is_strange = false, list = false;
+    bool is_blind = false, is_fleet = false, is_strange = false, is_bent = false, list = false;
     app.add_option("--soil", soil, "sand, gravel, concrete, loam or snow");
     app.add_option("--size", size, "small (2.9 kg), medium (12 kg) or large (60 kg)");
     app.add_option("--effect", effects, "NAME:param=value[,param=value][,wheel=i]; may be given again");
@@ -119,6 +126,9 @@ int run(int argc, char **argv) {
     app.add_flag("--blind", is_blind, "draw soil and what is hidden by the seed");
     app.add_flag("--fleet", is_fleet, "draw size, soil, sensors, plan, length and what is hidden by the seed");
     app.add_flag("--strange", is_strange, "as --fleet, and habits of another workshop: plans, rates, noise, battery, what is logged");
+    app.add_flag("--bent", is_bent, "as --fleet, on grounds whose curve over slip no sheet names");
+    app.add_option("--knee", blind.config.knee, "of the ground's curve over slip: stated, tanh, hyperbola or magic")
+        ->transform(CLI::CheckedTransformer(knees));
     app.add_option("--category", category, "with --blind or --fleet: clean, one, two or outside instead of drawing it")
         ->check(CLI::IsMember({"clean", "one", "two", "outside"}));
     app.add_option("--map", map, "write the map of a foreign log here (default: OUT.map.toml)");
@@ -138,9 +148,11 @@ int run(int argc, char **argv) {
          : sensor == "gyro"    ? c.habits.gyro
                                : c.habits.accel) = false;
     }
-    if (is_fleet || is_strange) {
+    if (is_fleet || is_strange || is_bent) {
         const GeneratorConfig asked = blind.config;
-        blind = is_strange ? draw_strange_case(asked.seed, category) : draw_fleet_case(asked.seed, category);
+        blind = is_strange ? draw_strange_case(asked.seed, category)
+                : is_bent  ? draw_bent_case(asked.seed, category)
+                           : draw_fleet_case(asked.seed, category);
         blind.config.noise_seed = asked.noise_seed, blind.config.run = asked.run;
     } else if (is_blind) {
         const GeneratorConfig asked = blind.config;

@@ -165,6 +165,17 @@ World::World(const Machine &machine, const Hidden &hidden, Random &random)
 
 double World::shear(double s) const {
     const double k = m_.sc * (1 + h_.shear), a = std::fabs(s) / k;
+    const double rise = m_.soil == Soil::concrete ? a : a / 2; // as steep as the stated law is
+    switch (m_.knee) {
+    case Knee::tanh:
+        return std::tanh(rise);
+    case Knee::hyperbola:
+        return rise / (1 + rise);
+    case Knee::magic:
+        return std::sin(1.25 * std::atan(rise / 1.25));
+    case Knee::stated:
+        break;
+    }
     if (m_.soil == Soil::concrete) return 1 - std::exp(-a);
     return a < 1e-4 ? a / 2 : 1 - (1 - std::exp(-a)) / a;
 }

@@ -22,6 +22,9 @@ namespace traction::generator {
 
 enum class Soil { sand, gravel, concrete, loam, snow };
 enum class Size { small, medium, large }; // 2.9, 12, 60 kg
+// How the ground goes from its stiffness to its strength: as (20), (21) of the sheet say, or by another curve that begins as steeply, of
+// y = tanh x; x / (1 + x); sin(1.25 atan(x / 1.25)), Pacejka's with C = 1.25 and D = 1.
+enum class Knee { stated, tanh, hyperbola, magic };
 
 // One machine: table I and (17)-(21) of docs/sources.md, then spread by `draw` as real machines are.
 struct Machine {
@@ -35,6 +38,7 @@ struct Machine {
     double tooth_stiffness = 80, tooth_damping = 0.05;      // [N m/rad, N m s] behind the play, assumed
     double current_noise_A = 0.015, current_step_A = 0.002; // of the motor's bridge: about 1 % of the stall current
     Soil soil = Soil::sand;
+    Knee knee = Knee::stated;
     double mu = 0, sc = 0, rolling = 0;
     double grip_noise = 0, grip_length = 0.2; // random field, relative rms and correlation length [m]
     // each wheel's share of the value above; 1 where all wheels are alike
