@@ -25,12 +25,12 @@ struct CampaignOptions {
     double duration_s = 120;
     std::string generator = "independent"; // wheels alike; "apart": each drawn for itself; "fleet": sizes, sensors, plans; "strange": and
                                            // habits; "bent": the fleet on grounds of other curves; "plant"
-    std::string category;       // clean, one, two, outside: that alone; empty: as they are drawn
-    std::string folder;         // logs, seals and answers are kept here
-    std::string lab_generate;   // the generator's program
-    std::string traction;       // this program, for the plant
-    std::string scenario;       // the plant's drive
-    std::function<void()> step; // one log made, or one answered
+    std::string category;                  // clean, one, two, outside: that alone; empty: as they are drawn
+    std::string folder;                    // logs, seals and answers are kept here
+    std::string lab_generate;              // the generator's program
+    std::string traction;                  // this program, for the plant
+    std::string scenario;                  // the plant's drive
+    std::function<void()> step;            // one log made, or one answered
 };
 
 struct SealedLog {

@@ -13,10 +13,10 @@ namespace traction::lab {
 namespace {
 
 constexpr const char *curve_key = "shear_curve";
-constexpr double deviation = 0.3;                      // of the curve: tanh x, as steep as (20), is 0.37 from it, and 0.2 from (21)
-constexpr double least_fall = 0.015, large_fall = 0.1; // of the squares; assumed, as what follows (bends.h)
-constexpr double sure = 2.5, sure_of_much = 1;         // half widths of the 95 % interval
-constexpr double part_of_the_shape = 0.5;              // of what a shape over slip gains: assumed
+constexpr double deviation = 0.3;                     // of the curve: tanh x, as steep as (20), is 0.37 from it, and 0.2 from (21)
+constexpr double asks_from = 0.015, large_fall = 0.1; // of the squares; assumed, as what follows (bends.h)
+constexpr double certain = 2.5, sure_of_much = 1;     // half widths of the 95 % interval
+constexpr double part_of_the_shape = 0.5;             // of what a shape over slip gains: assumed
 
 bool states_it(const WheelSpec &wheel) {
     const auto stated = wheel.soil.find(curve_key);
@@ -53,14 +53,14 @@ bool bends_otherwise(const Model &model, const Dataset &data, double shape_over_
     afresh.fit({}); // the law's place may be a valley of its own
     if (overall_error(afresh) < overall_error(other)) other = std::move(afresh);
     const Eigen::VectorXd weight = noise_weight(law);
-    const double least = shape_over_slip > 0 ? part_of_the_shape * shape_over_slip : least_fall;
+    const double least = shape_over_slip > 0 ? part_of_the_shape * shape_over_slip : asks_from;
     const auto fall_of = [&](const HeldOut &before, const HeldOut &after) { // share of the squares, where it is sure
         const Fall fall = fall_between(before, after, weight);
         return fall.sure() ? fall.sum / before.residual.cwiseAbs2().dot(weight) : 0;
     };
     if (!(fall_of(as_fitted(law), as_fitted(other)) > least)) return false;
     const double fall = fall_of(held_out(law), held_out(other));
-    return fall > least && (shape_over_slip > 0 || certainty(other) > (fall > large_fall ? sure_of_much : sure));
+    return fall > least && (shape_over_slip > 0 || certainty(other) > (fall > large_fall ? sure_of_much : certain));
 }
 
 void ask_for_curve(Model &model) {

@@ -91,6 +91,24 @@ TEST(Sizes, of_a_speed_go_with_the_top_speed) {
     EXPECT_NEAR(faster.back(), 40, 1e-9);
 }
 
+// A motor that could pull ten times the machine: a friction matters by what the weight asks for, and its range is the motor's.
+TEST(Sizes, of_interest_go_with_the_weight_where_the_motor_is_strong) {
+    Machine m;
+    m.times("resistance_ohm", 0.1), m.times("mass_kg", 2); // stall torque 10 times table I's, weight times radius 2 times
+    for (const Candidate &c : catalogue_candidates(m.model, m.data, m.motion)) {
+        const sim::EffectParameter &spec = strength_of(c.effect);
+        if (spec.unit != "N m" && spec.unit != "N m s" && spec.unit != "N m s^2") continue;
+        EXPECT_NEAR(c.of_interest[0] / spec.of_interest, 2, 1e-9) << c.label(); // as fast as table I's
+        EXPECT_NEAR(c.maximum[0] / spec.maximum, 10, 1e-9) << c.label();
+    }
+    m.times("torque_constant_Nm_A", 2); // half as fast: damping matters twice as much, twice as much of it is by the motor 40 / 2
+    for (const Candidate &c : catalogue_candidates(m.model, m.data, m.motion)) {
+        const sim::EffectParameter &spec = strength_of(c.effect);
+        if (spec.unit != "N m s") continue;
+        EXPECT_NEAR(c.of_interest[0] / spec.of_interest, 4, 1e-9) << c.label();
+    }
+}
+
 // By what a motor can: stall torque K U / R, damping K^2 / R, stall current U / R, speed U / K, and a rover's weight and half diagonal.
 TEST(Sizes, go_with_the_machine) {
     Machine m;

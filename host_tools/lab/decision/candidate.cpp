@@ -68,6 +68,9 @@ class MachineScale {
             by_unit_["s/rad"] = 7.2 / 0.265 / (volt / KG);
             by_unit_["N m s^2"] = KG * KG * KG / Ra / volt / (0.265 * 0.265 * 0.265 / 3.24 / 7.2);
             if (weight > 0) by_unit_["N s^2/m^2"] = weight / (2.88 * 9.81) * slower * slower;
+            // a strong motor on a light machine: what matters is what the machine's weight asks of it
+            const double load = weight * radius / (2.88 * 9.81 * 0.057), faster = by_unit_["rad/s"];
+            if (load > 0) of_interest_ = {{"N m", load}, {"N m s", load / faster}, {"N m s^2", load / (faster * faster)}};
         }
         if (Ra > 0) by_unit_["ohm"] = Ra / 3.24;
         if (volt > 0) by_unit_["V"] = volt / 7.2;
@@ -78,12 +81,14 @@ class MachineScale {
         const auto found = by_unit_.find(std::string(p.unit));
         if (found == by_unit_.end() || (found->second > 0.67 && found->second < 1.5)) return;
         const double factor = std::clamp(found->second, 0.01, 1000.0);
-        for (double *x : {&p.minimum, &p.maximum, &p.of_interest}) *x *= factor;
+        for (double *x : {&p.minimum, &p.maximum}) *x *= factor;
         for (double &x : p.variants) x *= factor;
+        const auto asked = of_interest_.find(std::string(p.unit));
+        p.of_interest *= asked == of_interest_.end() ? factor : std::clamp(asked->second, 0.01, factor);
     }
 
   private:
-    std::map<std::string, double> by_unit_;
+    std::map<std::string, double> by_unit_, of_interest_; // the latter: where it is less than by the motor
 };
 
 // Combinations of the shape parameters' variants, those of a speed in the machine's own.

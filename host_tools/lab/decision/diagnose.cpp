@@ -124,6 +124,7 @@ class Search {
         std::vector<Trial> trials = screened(problem, screen);
         const double base_error = screen.heldout_error();
         for (Trial &t : trials) judge(t, screen.explainable(), options_);
+        ask_those_that_explain_more(trials, screen.explainable(), options_);
         const Refit refit_one = [&](Trial &t) { return refit_and_judge(t, problem, screen); };
         refit_likely(trials, options_.refits, refit_one);
         if (may_restart && restart_from_refit(trials, problem)) {
@@ -300,7 +301,8 @@ class Search {
             fit_from_the_sheet(t, d_.model, data_, problem);
         const std::vector<double> value = sizes_of(t, problem);
         t.verdict = "not_held_out";
-        if ((!t.matters && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
+        if ((!t.matters && !t.explains_more && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value)))
+            return std::nullopt;
         if (const std::optional<std::string> only_with = conflict(problem, t.candidate)) {
             t.verdict = "conflict";
             note_conflict(d_, t.candidate.label(), *only_with);
@@ -348,7 +350,7 @@ class Search {
             Columns::Cache cache;
             Columns columns(problem, cache);
             Trial t = screen_candidate(one.candidate, screen, columns);
-            t.start = one.value;
+            t.start = one.value, t.explains_more = one.matters;
             refit(t, problem, screen);
             judge(t, screen.explainable(), options_);
             const auto predicts = [&] { return predicts_better(problem, last); };

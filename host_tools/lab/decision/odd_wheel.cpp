@@ -94,7 +94,8 @@ UnknownShape what_acts_on(const OddWheel &wheel, const Problem &fitted) {
 
 std::string odd_wheel_words(const OddWheel &wheel) {
     char text[200];
-    std::snprintf(text, sizeof text, "wheel %d alone is missed by far: its current by the %s of its motor is off by %.3g times its noise, the others' by %.3g",
+    std::snprintf(text, sizeof text,
+                  "wheel %d alone is missed by far: its current by the %s of its motor is off by %.3g times its noise, the others' by %.3g",
                   wheel.wheel, wheel.electric ? "voltage" : "torque", wheel.error, wheel.others);
     return text;
 }
