@@ -152,6 +152,22 @@ TEST(ShapeColumns, of_some_wheels_are_those_of_each_wheel_and_axle) {
 }
 
 // Two wheels would hold a curve's columns of each in one pass; of what moves the body it is lines alone that are tried on one wheel.
+// What acts on one wheel turns the machine: over the yaw rate no wheel has a shape of its own, all of them and an axle have.
+TEST(ShapeColumns, over_the_yaw_rate_are_of_no_single_wheel) {
+    hand_made::FourWheels turning;
+    for (std::size_t k = 0; k < turning.data.count; ++k) turning.data.yaw_rate_rad_s[k] = std::sin(0.8 * turning.data.time(k));
+    Problem problem(turning.data, make_physics(turning.model), free_parameters(turning.model, make_physics(turning.model)));
+    problem.gauss_newton(2);
+    std::size_t of_all = 0, of_axles = 0;
+    for (const ShapeScore &s : all_shapes(problem, Screen(problem))) {
+        if (s.candidate.axis != Axis::yaw_rate) continue;
+        EXPECT_NE(s.candidate.on.size(), 1U) << s.candidate.effect;
+        of_all += s.candidate.on.empty(), of_axles += s.candidate.on.size() == 2;
+    }
+    EXPECT_GT(of_all, 0U);
+    EXPECT_GT(of_axles, 0U);
+}
+
 TEST(ShapeColumns, of_one_wheel_that_move_the_body_are_of_lines_alone) {
     hand_made::FourWheels two;
     two.model.wheel.resize(2), two.data.wheel.resize(2);

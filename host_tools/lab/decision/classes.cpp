@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace traction::lab {
 
@@ -36,17 +35,6 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
         if (explains_more || (by_priors && less < 2 * error) || (less < (by_priors ? 0.5 : 0.1) * w.gain && alike)) members.push_back(i);
     }
     return members;
-}
-
-void ask_those_that_explain_more(std::vector<Trial> &trials, double explainable, const DiagnoseOptions &options) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Trial &t : trials)
-        if (t.verdict == "passes") least = std::min(least, t.gain);
-    for (Trial &small : trials) {
-        if (small.verdict != "too_small" || !(small.gain > least)) continue;
-        small.explains_more = true;
-        judge(small, explainable, options);
-    }
 }
 
 void remove_class(Diagnosis &d, const std::string &label) {

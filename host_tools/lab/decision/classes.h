@@ -16,10 +16,6 @@ std::vector<std::size_t> confounded(const std::vector<Trial> &trials, std::size_
                                     const DiagnoseOptions &options);
 
 // Takes out the class that the label stands for, if there is one; those behind it move up.
-// What is too small to be of interest, and explains more than what passes, is asked all the same: else a name would be told that another
-// law, of less interest, has the better right to.
-void ask_those_that_explain_more(std::vector<Trial> &trials, double explainable, const DiagnoseOptions &options);
-
 void remove_class(Diagnosis &d, const std::string &label);
 
 // What was accepted beside a name is no alternative to it.

@@ -124,7 +124,6 @@ class Search {
         std::vector<Trial> trials = screened(problem, screen);
         const double base_error = screen.heldout_error();
         for (Trial &t : trials) judge(t, screen.explainable(), options_);
-        ask_those_that_explain_more(trials, screen.explainable(), options_);
         const Refit refit_one = [&](Trial &t) { return refit_and_judge(t, problem, screen); };
         refit_likely(trials, options_.refits, refit_one);
         if (may_restart && restart_from_refit(trials, problem)) {
@@ -301,7 +300,7 @@ class Search {
             fit_from_the_sheet(t, d_.model, data_, problem);
         const std::vector<double> value = sizes_of(t, problem);
         t.verdict = "not_held_out";
-        if ((!t.matters && !t.explains_more && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value)))
+        if ((!t.matters && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value)))
             return std::nullopt;
         if (const std::optional<std::string> only_with = conflict(problem, t.candidate)) {
             t.verdict = "conflict";
@@ -350,7 +349,7 @@ class Search {
             Columns::Cache cache;
             Columns columns(problem, cache);
             Trial t = screen_candidate(one.candidate, screen, columns);
-            t.start = one.value, t.explains_more = one.matters;
+            t.start = one.value;
             refit(t, problem, screen);
             judge(t, screen.explainable(), options_);
             const auto predicts = [&] { return predicts_better(problem, last); };
@@ -511,7 +510,8 @@ class Search {
             if (one.wheel == odd->wheel && !explains_wheel(excess_of(*odd, fitted(model_without(d_.model, one), &last)), odd->excess()))
                 reject_as_nearest(i, last, "leaves most of that");
         }
-        if (!d_.unknown || !d_.unknown->instead_of.empty()) d_.unknown = what_acts_on(*odd, last);
+        const bool of_it = d_.unknown && d_.unknown->instead_of.empty() && d_.unknown->score && d_.unknown->score->candidate.on == std::vector<int>{odd->wheel};
+        if (!of_it) d_.unknown = what_acts_on(*odd, last);
     }
 
     void reject_as_nearest(std::size_t i, Problem &last, const std::string &why = "") {

@@ -48,7 +48,7 @@ struct CandidateResult {
     double detectability = 0; // d' of the estimate
     std::string verdict;      // named class nearest not_needed not_held_out strains_sheet not_significant too_small beyond_range conflict
                               // wrong_sign not_excited
-    bool matters = false;     // it takes most of what is not noise, or more than one of interest does
+    bool matters = false;     // it takes most of what is not noise
     std::optional<double> sheet_alone; // of a name for which the rows alone do not speak: squared stated deviations that it spares
     std::optional<int> class_index;
     std::vector<std::pair<std::pair<double, double>, double>> evidence; // window, share of the gain

@@ -164,8 +164,11 @@ Eigen::MatrixXd rows_of(const std::vector<int> &wheels, const Dataset &data, con
 void add_on_some_wheels(std::vector<ShapeScore> &list, const Problem &problem, const Screen &screen, const Candidate &shape,
                         const Eigen::MatrixXd &columns, const Dataset *keep) {
     if (!is_of_each_motor(shape) || shape.varies_between_wheels) return;
-    for (const std::vector<int> &group : wheel_groups(problem.physics(), true))
+    for (const std::vector<int> &group : wheel_groups(problem.physics(), true)) {
+        // what acts on one wheel turns the machine: in a straight drive the yaw rate tells of it better than its cause does
+        if (shape.axis == Axis::yaw_rate && group.size() == 1) continue;
         list.push_back(scored(on_wheels(shape, group), rows_of(group, problem.data(), columns), screen, keep));
+    }
 }
 
 // One that moves the body: a straight line alone (what is constant is one too), or the passes become too many.

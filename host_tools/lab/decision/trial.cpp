@@ -260,7 +260,7 @@ void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
         t.verdict = "wrong_sign";
-    else if (!t.matters && !t.explains_more && !large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
+    else if (!t.matters && !large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
         t.verdict = "too_small";
     else if (t.refitted && beyond_range(t.candidate, t.value))
         t.verdict = "beyond_range";
@@ -285,7 +285,7 @@ CandidateResult result_of(const Trial &t, double base_error, const Screen &scree
     r.p_value = t.p_value;
     r.verdict = t.verdict;
     r.sheet_alone = t.sheet_alone;
-    r.matters = t.matters || t.explains_more;
+    r.matters = t.matters;
     if (const sim::Effect *effect = sim::find_effect(t.candidate.effect)) r.explains = std::string(effect->signature);
     std::vector<std::pair<double, std::size_t>> order;
     double positive = 0;

@@ -29,7 +29,6 @@ struct Trial {
     Eigen::VectorXd start_change;                 // of the baseline's parameters there
     std::string verdict;
     bool refitted = false;
-    bool explains_more = false;        // than one of interest does: of interest too, whatever its size
     bool matters = false;              // it takes most of what is not noise: of interest, whatever its size
     bool by_rows = false;              // the rows alone speak for it, whatever the stated tolerances gain (judge)
     std::optional<double> sheet_alone; // of a name for which the rows alone do not speak: squared stated deviations that it spares

@@ -229,7 +229,7 @@ void World::rate(const Vector &s, Vector &d) {
                          state.load;
         const double net = state.force - Q * soft_sign(vw, 0.008);
         force += net;
-        moment -= side[i] * m_.half_track * net;
+        moment -= (side[i] * m_.half_track - h_.offset_y) * net; // about the centre of mass, though it be off the middle
         const double lateral = along[i] * m_.half_base * r;
         moment -= h_.scrub * state.load * along[i] * m_.half_base * soft_sign(lateral, 0.006);
         const double wm = backlash_ ? s[motor_at_ + k] : w;
