@@ -7,9 +7,11 @@
 //   on less                                                        no current where one must flow          (3)
 //   |dw| > T KG V/(Ra J)                             more than stall torque does to a free wheel in a tick (4)
 //
-// A speed that jumps by more than (4) is believed if (1) jumps by at least half as much. Otherwise the wheel's speed is its last one and
-// what (1) has changed since, until the encoder agrees again; constant errors of Ra, ke and V cancel there. Where no motor
-// drives there is no (1), and a jump is held for a few ticks. (2) and (3) look at one wheel a
+// A speed that jumps by more than (4) is believed if (1) jumps by at least half as much, in this tick or in this one and the last, or to
+// within (4) and a |Ra dI|/ke. An encoder tells its tick's mean and a current the tick's end, so all that lies between the last speed and
+// what (1) makes of it is as good. Otherwise the wheel's speed is its last one and what (1) has changed since, until the encoder agrees
+// again; constant errors of ke and V cancel there, and Ra's as long as the current does not change. Where no motor drives there is no (1),
+// and a jump is held for a few ticks. (2) and (3) look at one wheel a
 // tick and name it when all looks of 0.3 s agree. r0, a, b cover a winding 95 K warm (37 % of Ra), a magnet as warm and a divider (10 %
 // each), and a bridge that loses 1.6 V of 7.2 by drop and dead time; derived here. What they cost: an encoder that loses less than about a
 // third of its pulses is not seen.
@@ -41,14 +43,20 @@ typedef struct {
 } circuit_config_t; // constant while running
 
 typedef struct {
+    float speed_rad_s[WHEEL_COUNT]; // used in it
+    float current_A[WHEEL_COUNT];   // at its end
+    float duty[WHEEL_COUNT];        // that acted in it
+    float supply_V;
+    bool driven;  // the bridges drove or braked in it
+} circuit_past_t; // a tick
+
+typedef struct {
     uint32_t refused;                    // bit i: the speed of wheel i is the circuit's
     uint32_t refused_ticks[WHEEL_COUNT]; // for so long
-    float speed_rad_s[WHEEL_COUNT];      // used in the last tick
     float circuit_V[WHEEL_COUNT];        // duty V - Ra I while refused
-    float current_A[WHEEL_COUNT];        // of the last tick
-    float duty[WHEEL_COUNT];             // that acted in it
-    float supply_V;
-    bool driven; // the bridges drove or braked in it
+    float refused_A[WHEEL_COUNT];        // I when it was believed last
+    circuit_past_t past[2];              // the last two ticks
+    uint32_t newest;                     // its lowest bit: which of them is the last one
     uint32_t turn;
     uint8_t contradict_looks[WHEEL_COUNT], open_looks[WHEEL_COUNT];
 } circuit_state_t; // zeroed = reset

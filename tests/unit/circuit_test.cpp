@@ -139,6 +139,35 @@ TEST_F(Circuit, a_jammed_wheel_is_believed) {
     EXPECT_EQ(trace.faults & FAULT_ENCODER_CIRCUIT, 0u);
 }
 
+// It may stop at any moment of a tick: the encoder tells the tick's mean and the current its end, of a winding that may be warm and behind
+// leads that a stalled motor draws down. Four that stop at once are a wall, not four broken encoders.
+TEST_F(Circuit, wheels_that_jam_at_any_moment_of_a_tick_are_believed) {
+    for (const unsigned mask : {1u, 3u, 15u}) {
+        for (const double warm : {1.0, 1.3}) {
+            for (const double V : {supply_V, 0.93 * supply_V}) {
+                for (int tenth = 0; tenth <= 10; ++tenth) {
+                    SetUp();
+                    frame.tick = 0, trace = {}, Ra_true = warm * Ra, V_true = supply_V;
+                    for (double &speed : speed_rad_s) speed = 5;
+                    run(200);
+                    ASSERT_EQ(trace.faults, 0u);
+                    V_true = V;
+                    for (int i = 0; i < WHEEL_COUNT; ++i) {
+                        if ((mask >> i & 1u) == 0) continue;
+                        angle_rad[i] += 0.1 * tenth * speed_rad_s[i] * 0.01;
+                        speed_rad_s[i] = 0;
+                    }
+                    run(3);
+                    for (const wheel_trace_t &wheel : trace.wheel)
+                        EXPECT_FALSE(wheel.encoder_refused) << mask << ' ' << warm << ' ' << tenth;
+                    run(60);
+                    EXPECT_EQ(trace.faults & FAULT_ENCODER_CIRCUIT, 0u) << mask << ' ' << warm << ' ' << tenth;
+                }
+            }
+        }
+    }
+}
+
 // Level hard ground, the least that a driving motor draws: the other wheels drag the dead one, 1 % slower.
 TEST_F(Circuit, an_open_winding_is_named_and_the_rover_drives_on) {
     for (int tick = 0; tick < 200; ++tick) {
@@ -247,7 +276,7 @@ TEST_F(Circuit, any_number_is_accepted) {
             for (int i = 0; i < WHEEL_COUNT; ++i) {
                 sense.speed_rad_s[i] = b;
                 sense.current_A[i] = a;
-                circuit.speed_rad_s[i] = a;
+                circuit.past[0].speed_rad_s[i] = circuit.past[1].speed_rad_s[i] = a;
                 circuit.circuit_V[i] = b;
             }
             sense.battery_V = b;
@@ -268,16 +297,24 @@ struct CircuitModel {
     struct Wheel {
         bool refused = false;
         int refused_ticks = 0, contradicts = 0, opens = 0;
-        double speed = 0, left_V = 0, current = 0, duty = 0;
+        double left_V = 0, from_A = 0;
+        double speed[2] = {}, current[2] = {}, duty[2] = {}; // of the last tick, and of the one before
     } wheel[WHEEL_COUNT];
-    double supply_V = 0;
-    bool driven = false;
+    double supply_V[2] = {};
+    bool driven[2] = {};
     int turn = 0;
     double margin = 1; // how near the nearest decision was to its limit, as a share
 
     bool beyond(double a, double b) {
         margin = std::fmin(margin, std::fabs(a - b) / (std::fabs(a) + std::fabs(b) + 1e-9));
         return a > b;
+    }
+
+    // Between the last speed and what the circuit makes of it an encoder's mean over a tick may lie anywhere.
+    bool believes(double said, double old, double expected, double through_A, double jump) {
+        const double off = std::fmax(std::fmax(std::fmin(old, expected) - said, said - std::fmax(old, expected)), 0);
+        const bool explained = beyond(std::fabs(said - old) / 2, off);                  // at least half of it
+        return explained || !beyond(off, jump + 0.35 * Ra * std::fabs(through_A) / ke); // (4), and the winding's resistance
     }
 };
 
@@ -287,7 +324,7 @@ TEST(CircuitSteps, any_measurements_are_judged_by_the_four_equations) {
     uint64_t seed = 5;
     const auto next = [&](unsigned n) { return static_cast<int>(((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 33) % n); };
     const auto between = [&](double low, double high) { return low + (high - low) * next(1000000) / 1e6; };
-    int refused = 0, believed = 0, held = 0, contradicted = 0, long_refused = 0, broken = 0, without = 0;
+    int refused = 0, believed = 0, held = 0, contradicted = 0, long_refused = 0, broken = 0, without = 0, late = 0;
     for (int drive = 0; drive < 120; ++drive) {
         CircuitModel model;
         circuit_state_t state = {};
@@ -326,23 +363,28 @@ TEST(CircuitSteps, any_measurements_are_judged_by_the_four_equations) {
                 auto &wheel = model.wheel[i];
                 const uint32_t bit = 1u << static_cast<unsigned>(i);
                 const double says = static_cast<double>(was.speed_rad_s[i]), current = static_cast<double>(was.current_A[i]);
-                const double old = wheel.speed, now_V = static_cast<double>(duty[i]) * static_cast<double>(was.battery_V) - Ra * current;
-                const double then_V = wheel.duty * model.supply_V - Ra * wheel.current;
+                const double old = wheel.speed[0], now_V = static_cast<double>(duty[i]) * static_cast<double>(was.battery_V) - Ra * current;
+                const auto left_V = [&](int ago) { return wheel.duty[ago] * model.supply_V[ago] - Ra * wheel.current[ago]; };
                 speed[i] = says;
                 if (((was.jumped & bit) != 0 || wheel.refused) && (was.usable & bit) != 0) {
-                    if (driven && model.driven && (was.usable & FRAME_CURRENT_0 << static_cast<unsigned>(i)) != 0) {
-                        const double expected = old + (now_V - (wheel.refused ? wheel.left_V : then_V)) / ke;       // (1)
-                        const bool explained = model.beyond(std::fabs(says - old) / 2, std::fabs(says - expected)); // at least half of it
-                        const bool possible = !model.beyond(std::fabs(says - expected), static_cast<double>(config.jump_rad_s)); // (4)
-                        wheel.refused = !explained && !possible;
+                    if (driven && model.driven[0] && (was.usable & FRAME_CURRENT_0 << static_cast<unsigned>(i)) != 0) {
+                        const double from_A = wheel.refused ? wheel.from_A : wheel.current[0],
+                                     jump = static_cast<double>(config.jump_rad_s);
+                        const double expected = old + (now_V - (wheel.refused ? wheel.left_V : left_V(0))) / ke; // (1)
+                        const bool one = model.believes(says, old, expected, current - from_A, jump);
+                        const bool two = !one && !wheel.refused && model.driven[1] &&
+                                         model.believes(says, wheel.speed[1], wheel.speed[1] + (now_V - left_V(1)) / ke,
+                                                        current - wheel.current[1], jump);
+                        late += two ? 1 : 0;
+                        wheel.refused = !one && !two;
                         (wheel.refused ? refused : believed) += 1;
                         wheel.refused_ticks = wheel.refused ? wheel.refused_ticks + 1 : 0;
-                        if (wheel.refused) wheel.left_V = now_V, speed[i] = expected;
+                        if (wheel.refused) wheel.left_V = now_V, wheel.from_A = from_A, speed[i] = expected;
                     } else { // nothing to judge by: for three ticks at most
                         const bool back = !model.beyond(std::fabs(says - old), static_cast<double>(config.jump_rad_s));
                         wheel.refused = !back && wheel.refused_ticks < 3;
                         wheel.refused_ticks = wheel.refused ? wheel.refused_ticks + 1 : 0;
-                        if (wheel.refused) wheel.left_V = then_V, speed[i] = old, held++;
+                        if (wheel.refused) wheel.left_V = left_V(0), wheel.from_A = wheel.current[0], speed[i] = old, held++;
                     }
                 }
                 speed[i] = wheel.refused && speed[i] != says ? std::clamp(speed[i], -60.0, 60.0) : speed[i];
@@ -357,7 +399,7 @@ TEST(CircuitSteps, any_measurements_are_judged_by_the_four_equations) {
                 const double current = static_cast<double>(was.current_A[i]), mine = std::fabs(across(i)), emf = std::fabs(ke * speed[i]);
                 const uint32_t needed = FRAME_BATTERY | FRAME_ENCODER_0 << u | FRAME_CURRENT_0 << u;
                 bool opens = false, contradicts = false;
-                if ((was.usable & needed) == needed && driven && model.driven) {
+                if ((was.usable & needed) == needed && driven && model.driven[0]) {
                     bool others = false;
                     for (int other = 0; other < WHEEL_COUNT; ++other)
                         others = others || (other != i && (was.usable & FRAME_CURRENT_0 << static_cast<unsigned>(other)) != 0 &&
@@ -384,16 +426,19 @@ TEST(CircuitSteps, any_measurements_are_judged_by_the_four_equations) {
             for (int i = 0; i < WHEEL_COUNT; ++i) {
                 auto &wheel = model.wheel[i];
                 ASSERT_NEAR(sense.speed_rad_s[i], speed[i], 1e-3) << drive << ' ' << k << ' ' << i;
-                wheel.speed = static_cast<double>(sense.speed_rad_s[i]);
-                wheel.current = static_cast<double>(was.current_A[i]);
-                wheel.duty = static_cast<double>(duty[i]);
+                wheel.speed[1] = wheel.speed[0], wheel.current[1] = wheel.current[0], wheel.duty[1] = wheel.duty[0];
+                wheel.speed[0] = static_cast<double>(sense.speed_rad_s[i]);
+                wheel.current[0] = static_cast<double>(was.current_A[i]);
+                wheel.duty[0] = static_cast<double>(duty[i]);
             }
-            model.supply_V = static_cast<double>(was.battery_V);
-            model.driven = driven;
+            model.supply_V[1] = model.supply_V[0], model.driven[1] = model.driven[0];
+            model.supply_V[0] = static_cast<double>(was.battery_V);
+            model.driven[0] = driven;
         }
     }
-    EXPECT_GT(std::min({refused, believed, held, contradicted, long_refused, broken, without}), 20)
-        << refused << ' ' << believed << ' ' << held << ' ' << contradicted << ' ' << long_refused << ' ' << broken << ' ' << without;
+    EXPECT_GT(std::min({refused, believed, held, contradicted, long_refused, broken, without, late}), 20)
+        << refused << ' ' << believed << ' ' << held << ' ' << contradicted << ' ' << long_refused << ' ' << broken << ' ' << without << ' '
+        << late;
 }
 
 } // namespace
