@@ -169,6 +169,10 @@ enum {
     LINE_SIDE = 4,
     LINE_SWAY_Q8 = 90,
     LINE_ABOVE_Q8 = 512,
+    LINE_LEAP_Q8 = 1024,
+    LINE_LEAPS_ON_Q8 = 128,
+    SWAY_LEAPT_Q8 = 256,
+    STEADY_BELOW_Q8 = 1024,
     LEVEL_SHARE = 8,
     SWAY_START_Q8 = 512,
     LINE_DUE = 5,
@@ -184,12 +188,21 @@ static int32_t log2_q8(uint64_t power)
     return exponent * 256 + (int32_t)(mantissa & 255u);
 }
 
+static uint64_t power_of(int32_t log2_q8)
+{
+    const int32_t exponent = log2_q8 >> 8;
+    const uint64_t mantissa = (uint64_t)(256 + (log2_q8 & 255));
+    return exponent >= 8 ? mantissa << ((uint32_t)(exponent - 8) & 63u) : mantissa >> ((uint32_t)(8 - exponent) & 63u);
+}
+
 static bool is_line(const doppler_state_t *state, int32_t k) { return (state->line[(uint32_t)k / 32u] >> ((uint32_t)k % 32u) & 1u) != 0u; }
 
 enum { REST = 5, LOOK_LEAST_S = 3 }; // ticks that the filter has after a value; a scatterer is in the beam for less time than that
 enum { LINE_REST_BITS = 3 };         // a line's rest: 9 dB below it, as its first fit may leave (outdoors_test)
 enum { TONE_ASIDE = 2 };             // bins by which a line may lie beside the one that is looked at, doppler_line.h
-enum { RELIEF_VALUES = 6 };          // a window that is rid of the line wholly has come by then
+// An echo of YOUNG_FROM bins and more is as wide as a line's ring; the search inside the echo has its blocks by YOUNG_SAMPLES.
+enum { YOUNG_FROM = 16, YOUNG_SAMPLES = (DOPPLER_LINE_BLOCKS + 4) * DOPPLER_LINE_BLOCK };
+enum { RELIEF_VALUES = 6, RELIEF_MIXED = 2 }; // a window that is rid of the line wholly has come by then; above that, with hops of 64, not
 
 static bool any_line(const doppler_state_t *state) { return (state->line[0] | state->line[1] | state->line[2] | state->line[3]) != 0u; }
 
@@ -212,15 +225,20 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
     const int32_t end = beam->first_bin + beam->bins;
     int32_t loudest = LINE_FROM - LINE_SIDE;
     int32_t most = INT32_MIN;
+    int32_t steadiest = LINE_FROM;
+    const bool known_long = state->leveled && state->tone.next >= YOUNG_SAMPLES; // before, a level may be that of a fade
     for (int32_t k = LINE_FROM - LINE_SIDE; k < end; k++) {
         const int32_t level = log2_q8(state->power[k]);
-        const int32_t away = level - (state->leveled ? state->level_q8[k] : level);
-        const int32_t sway = state->leveled ? state->sway_q8[k] : SWAY_START_Q8;
+        const int32_t rises = level - (state->leveled ? state->level_q8[k] : level);
+        const bool leapt = state->sway_q8[k] == SWAY_LEAPT_Q8;
+        const bool leaps = known_long && rises > (leapt ? LINE_LEAPS_ON_Q8 : LINE_LEAP_Q8);
+        const int32_t away = leaps ? 0 : rises;
+        const int32_t sway = !state->leveled ? SWAY_START_Q8 : leaps ? SWAY_LEAPT_Q8 : state->sway_q8[k];
         const int32_t mean = level - away + away / LEVEL_SHARE;
         loudest = mean > most ? k : loudest;
         most = mean > most ? mean : most;
         state->level_q8[k] = (int16_t)mean;
-        state->sway_q8[k] = (int16_t)(sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
+        state->sway_q8[k] = (int16_t)(leaps ? sway : sway + ((away < 0 ? -away : away) - sway) / LEVEL_SHARE);
     }
     state->leveled = true;
     const bool known = any_line(state);
@@ -228,8 +246,12 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
         state->line[i] = 0;
     }
     for (int32_t k = LINE_FROM; k < end - LINE_SIDE; k++) {
-        const int32_t above = state->level_q8[k] - LINE_ABOVE_Q8;
-        if (state->sway_q8[k] < LINE_SWAY_Q8 && above > state->level_q8[k - LINE_SIDE] && above > state->level_q8[k + LINE_SIDE]) {
+        steadiest = state->sway_q8[k] < state->sway_q8[steadiest] ? k : steadiest;
+        const int32_t at = state->level_q8[k];
+        const int32_t above = at - LINE_ABOVE_Q8;
+        const bool apart = above > state->level_q8[k - LINE_SIDE] && above > state->level_q8[k + LINE_SIDE];
+        const bool peak = at >= state->level_q8[k - 1] && at > state->level_q8[k + 1] && at > most - STEADY_BELOW_Q8;
+        if (state->sway_q8[k] < LINE_SWAY_Q8 && (apart || (peak && !beam->from_peak))) {
             state->line[(uint32_t)k / 32u] |= 1u << ((uint32_t)k % 32u);
         }
     }
@@ -237,9 +259,11 @@ static void watch_lines(const doppler_template_t *beam, doppler_state_t *state)
     // Of a narrow beam an echo at constant speed is as narrow as a line; at the band's edge the line may be one that lies beyond. A place
     // that was the loudest is no longer looked at: what is heard there is the skirt of an echo that is slower now.
     if (!beam->from_peak) {
-        const bool inside = loudest >= TONE_FROM && loudest < end - TONE_ASIDE;
+        const bool steady = state->sway_q8[steadiest] < LINE_SWAY_Q8 && state->level_q8[steadiest] > most - STEADY_BELOW_Q8;
+        const int32_t looked = steady ? steadiest : loudest;
+        const bool inside = (steady || loudest >= TONE_FROM) && looked < end - TONE_ASIDE;
         const bool long_enough = beam->sample_rate_Hz * (float)LOOK_LEAST_S <= (float)(DOPPLER_LINE_BLOCKS * DOPPLER_LINE_BLOCK);
-        doppler_line_suggest(&state->tone, inside && long_enough ? (uint32_t)loudest : 0u);
+        doppler_line_suggest(&state->tone, inside && long_enough ? (uint32_t)looked : 0u);
     }
 }
 
@@ -282,9 +306,10 @@ static const uint64_t *without_lines(const doppler_template_t *beam, const doppl
     }
     for (int32_t k = LINE_FROM; k < beam->first_bin + beam->bins - LINE_SIDE; k++) {
         if (is_line(state, k)) {
-            const uint64_t beside = copy[k - 3] / 2u + state->power[k + 3] / 2u; // below, a line next to this one is gone already
-            for (int32_t j = k - 2; j <= k + 2; j++) {
-                copy[j] = beside;
+            const int32_t below = log2_q8(copy[k - 3]); // there, a line next to this one is gone already
+            const int32_t step = (log2_q8(state->power[k + 3]) - below) / 6;
+            for (int32_t j = 1; j <= 5; j++) {
+                copy[k - 3 + j] = power_of(below + step * j);
             }
         }
     }
@@ -320,9 +345,6 @@ static bool is_rest(const doppler_state_t *state, uint64_t energy)
 }
 
 enum { OUTSIDE_LINES = 3, LINE_NEAR = 2, LINE_RING = 8, LINE_FAR_TIMES = 8, LINE_RING_SHARE = 16, RING_SPREAD = 13 };
-
-// An echo of YOUNG_FROM bins and more is as wide as a line's ring; the search inside the echo has its blocks by YOUNG_SAMPLES.
-enum { YOUNG_FROM = 16, YOUNG_SAMPLES = (DOPPLER_LINE_BLOCKS + 4) * DOPPLER_LINE_BLOCK };
 
 // The line at `peak` taken out of the powers [from, FFT_BINS), if it is one: its ring, the bins beside its five, is no louder than the
 // others but for a sixteenth of the line and three standard deviations of noise; a fast echo is as wide as it is fast. `sum` and `bins` are
@@ -439,7 +461,8 @@ static void measure(const doppler_config_t *config, doppler_state_t *state, dopp
     out->relieved = state->relief > 0 && (state->relief_masked || line_power(&state->tone) > energy / 2u);
     const bool edge = top && !out->quiet && !out->rest && outside.in > 3u * outside.noise;
     out->beyond = outside.beyond || (edge && !lines);
-    out->rest = out->rest || (edge && lines);
+    const bool mixed = state->relief > RELIEF_MIXED && !state->relief_masked && line_power(&state->tone) > energy / 8u;
+    out->rest = out->rest || (edge && lines) || (mixed && !out->quiet);
     state->weigh_outside = state->weigh_outside || edge;
     state->outside_lines = lines && state->weigh_outside;
     if (outside.known && !out->quiet && outside.in > outside.noise) {
@@ -697,7 +720,9 @@ doppler_output_t doppler_step(const doppler_config_t *config, doppler_state_t *s
     } else if (idle && state->full && config->method == DOPPLER_LIKELIHOOD && clean(config, state)) {
         const bool known = state->tone.found;
         (void)doppler_line_think(&state->tone);
-        state->relief = state->tone.found && !known ? RELIEF_VALUES : state->relief;
+        const bool found = state->tone.found && !known;
+        state->relief = found ? RELIEF_VALUES : state->relief;
+        state->relief_masked = state->relief_masked && !found;
     }
     out.dead = state->dead_blocks >= DEAD_BLOCKS;
     return out;

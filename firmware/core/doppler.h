@@ -10,9 +10,13 @@
 // a stated one. Powers are reduced to 15 bits, their sum to 16: J is exact in 32 bits. Until 256 samples have come, 128 of them, each taken
 // twice (a window of half the length, whose speed reads half), and then 192 with their mirror image make two early values (ours alone). An
 // interfering line is told from an echo, whose power in a bin is exponential and sways by 1.4 bits on the mean, by its constancy:
-//   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4      (3)
-// A line inside the echo, where it sways with it, is told by its phase and taken off the samples (doppler_line.h).
-// The five bins around a line are replaced by their neighbours' mean. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
+//   l = log2 P[k];  m += (l - m)/8;  s += (|l - m| - s)/8;  line: s < 0.35 bits, and m 2 bits above that of bins k - 4 and k + 4,
+//   or above that of its neighbours and within 4 bits of the loudest                                                              (3)
+// No echo of constant speed is as steady in a bin (none of 38000 values of Gaussian echoes of 0.3 to 1 m/s had s < 0.35 in any). What leaps
+// up by 4 bits under way, and on by half a bit, begins anew, with s = 1: a hum that begins. The steadiest bin of those is looked at for a
+// line's phase before the loudest. A line inside the echo, where it sways with it, is told by its phase and taken off the samples
+// (doppler_line.h); windows in which that has begun tell nothing. The five bins around a line are laid straight in l between those beside
+// them: an echo's edge falls by many bits in five bins. What no speed's spectrum fits, sum_k P/S_v > 2.5 of what it should
 // be, is no ground's echo and is refused; from 0.8 on it is trusted less (measured with tests/bench/outdoors_bench: calm echoes 0.1 to
 // 0.9).
 #ifndef TRACTION_FIRMWARE_CORE_DOPPLER_H

@@ -140,7 +140,7 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                                                     : low.step(high.step(share * now.echo_count * echo->at(way, z)));
                 const double own = dead ? 0.3 : now.scatterers ? 0 : white; // noise of the converter
                 const double count = 512 + now.offset_count + own * noise.normal() +
-                                     (dead ? 0 : heard + now.tone_count * std::sin(2 * pi * now.tone_Hz * t));
+                                     (dead ? 0 : heard + (t < now.tone_from_s ? 0 : now.tone_count * std::sin(2 * pi * now.tone_Hz * t)));
                 ++sequence;
                 const bool lost = luck.uniform() < now.lost_share;
                 if (!lost && !(now.radar_silent && now.radar_silent(t))) {

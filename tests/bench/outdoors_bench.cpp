@@ -148,6 +148,18 @@ std::vector<Row> rows() {
             add("noise", "the same, a tenth of its power", now);
         }
     }
+    for (const double share : {1.41, 0.42}) { // it begins under way, at the echo's edge
+        for (const double v : {0.45, 0.55, 0.6, 0.65, 0.7, 0.75}) {
+            Case now;
+            now.tone_Hz = 50.02, now.tone_count = now.echo_count * share, now.tone_from_s = 6, now.speed = constant(v);
+            char name[64];
+            std::snprintf(name, sizeof name, "50 Hz of %.2f begins at %.2f", share, v);
+            add("noise", name, now);
+        }
+        Case now;
+        now.tone_Hz = 37, now.tone_count = now.echo_count * share, now.tone_from_s = 6, now.speed = constant(0.5);
+        add("noise", "37 Hz of " + std::to_string(share).substr(0, 4) + " begins at 0.5", now);
+    }
     for (const double tone : {50.1, 60.2, 83.4, 100.0, 119.9, 150.0}) { // a rover that stands beside a lamp, and sets off
         for (const double share : {1.41, 0.1}) {
             Case now;

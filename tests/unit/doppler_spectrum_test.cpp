@@ -262,9 +262,17 @@ TEST(DopplerSpectrum, a_known_line_within_the_band_is_left_out) {
     const doppler_config_t config = rover_config_default().doppler;
     for (const int bin : {8, 12, 20, 31, 32, 40}) {
         Powers powers = echo(60, 2e4, 0), plain = powers;
-        for (int j = -2; j <= 2; j++)
-            plain[static_cast<std::size_t>(bin + j)] =
-                (plain[static_cast<std::size_t>(bin - 3)] + plain[static_cast<std::size_t>(bin + 3)]) / 2;
+        // straight in log2 from bin - 3 to bin + 3, in steps of 1/256 bit, a mantissa as a straight line
+        const auto level_q8 = [&plain](int k) {
+            int exponent = 0;
+            const double mantissa = 2 * std::frexp(std::floor(plain[static_cast<std::size_t>(k)] * unit), &exponent);
+            return 256 * (exponent - 1) + static_cast<int>(256 * (mantissa - 1));
+        };
+        const int below = level_q8(bin - 3), step = (level_q8(bin + 3) - below) / 6;
+        for (int j = 1; j <= 5; j++) {
+            const int level = below + j * step;
+            plain[static_cast<std::size_t>(bin - 3 + j)] = std::ldexp(1 + level % 256 / 256.0, level / 256) / unit;
+        }
         add_line(powers, bin, 3e6);
         doppler_state_t state = with(powers);
         state.line[bin / 32] = 1u << (bin % 32);
@@ -274,6 +282,35 @@ TEST(DopplerSpectrum, a_known_line_within_the_band_is_left_out) {
         EXPECT_EQ(without.misfit, expected.misfit) << bin;
         EXPECT_NE(hear(powers).speed_m_s, expected.speed_m_s) << bin; // it would have been heard
     }
+}
+
+// A line that begins beside a louder echo, at its steep edge: its steadiness tells it within 14 values, its place is looked at instead of
+// the loudest bin's, and no bin of the echo is called one for an hour of values before.
+TEST(DopplerSpectrum, what_is_steadier_than_any_echo_is_a_line_beside_one) {
+    const doppler_config_t config = rover_config_default().doppler;
+    doppler_state_t state = {};
+    state.tone.next = 3000; // under way for six seconds
+    std::uint64_t seed = 11;
+    const auto exponential = [&seed] {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        return -std::log((static_cast<double>(seed >> 33) + 0.5) / 2147483648.0);
+    };
+    const auto look = [&](double line) {
+        for (int k = 0; k < FFT_BINS; k++) {
+            const double mean = k >= 15 && k <= 22 ? 4000 : k == 23 ? 500 : k == 24 ? 60 : 8;
+            const double share = k == 25 ? 1 : k == 24 || k == 26 ? 0.25 : 0;
+            state.power[k] = static_cast<std::uint64_t>((mean * exponential() + line * share) * unit);
+        }
+        state.due = 1;
+        doppler_step(&config, &state, nullptr, 0);
+    };
+    for (int values = 0; values < 3600 * 8; values++) {
+        look(0);
+        ASSERT_EQ(state.line[0] | state.line[1] | state.line[2] | state.line[3], 0u) << values;
+    }
+    for (int values = 0; values < 14; values++) look(2500);
+    EXPECT_EQ(state.line[0], 1u << 25); // 4 bins below, the echo is louder
+    EXPECT_EQ(state.tone.bin, 25u);
 }
 
 // What lines leave is a relief if they held more than half of what the other bins do, five bins a line: 3 lines > all.
