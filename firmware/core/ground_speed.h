@@ -118,6 +118,11 @@
 // holds, and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever
 // (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv, and an echo that
 // has become slow itself asks for 3/4 |R w|. Later than 3 s the estimate stands for e.
+//   |v'| < 0.12 m/s,  t_13 < 0.35 s,  no gyros                                        (39)  v': the accelerometer's word beside (13)
+// A body that a wall or soft ground stops at once is to (13) a slope that begins. Its echo falls silent, so a window in which it stopped
+// hears the part in which it moved, as fast as ever: where (39) holds, values tell nothing between the two words. If what was felt is over,
+// as of a slope it is not (8 ticks within 0.5 m/s^2 of the bias before), the odds for the wheels are 2 at most. And from (13) to the first
+// value std is at least half of what the wheels' word has taken away: nothing has told yet.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -293,6 +298,7 @@ typedef struct {
     float asked_m_s;                         // R w' of (20)
     int32_t rolls_ticks;                     // for which (13) still holds the wheels' word, and until it may begin again
     int32_t rolls_wait;
+    float rolled_m_s; // what its word has taken away since it began, while no value has told
     int32_t refused;
     float held_sign, held_level_m_s; // of (17): 0 where no sign is sure; the mean of the last values
     int32_t held_values;             // for which it was the same

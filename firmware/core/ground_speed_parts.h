@@ -143,6 +143,8 @@ void ground_speed_weigh_wheels(const ground_speed_config_t *config, ground_speed
 float ground_speed_told_by_wheels(const ground_speed_config_t *config, const ground_speed_state_t *state, float least_m_s);
 // (21)
 bool ground_speed_body_departs(const ground_speed_state_t *state);
+// While (13) holds the wheels' word: what the body felt beside it is over.
+bool ground_speed_force_is_over(const ground_speed_config_t *config, const ground_speed_state_t *state);
 void ground_speed_watch_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input);
 // (23), where the wheels roll or creep.
 void ground_speed_follow_wheels(const ground_speed_config_t *config, ground_speed_state_t *state, bool creep);

@@ -170,7 +170,17 @@ static float doubt_of(float odds)
 static const float most_told = 12.0f; // [1] of one value about a sign: no single value decides (assumed)
 static const float scatters = 1.5f;   // [1] f of (26), assumed
 
+static const float stop_odds = 2.0f; // 2 ln of the odds against a stop, assumed
+
+enum { ROLLS_OLD_TICKS = 25 }; // of (39): 35 of the 60 that (13) lasts, a window and 0.1 s
+
 enum { ANSWERED_VALUES = 12 }; // of (27), and then those of any question
+
+// (39)
+static bool stopped_within(const ground_speed_config_t *config, const ground_speed_state_t *state, const ground_speed_track_t *other)
+{
+    return state->rolls_ticks > ROLLS_OLD_TICKS && state->lean_q8 == 0 && fixed_greater(config->slow_m_s, fabsf(other->speed_m_s));
+}
 
 // The other sign sees the value one tick later, in a tick that has time.
 void ground_speed_update_other(const ground_speed_config_t *config, ground_speed_state_t *state)
@@ -179,14 +189,19 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const float force = ground_speed_force_odds(config, state);
     const bool sure = fabsf(expected.told) >= config->sign_sure;
     const float sign = !sure ? -state->value_sign : expected.middle_m_s < 0.0f ? -1.0f : 1.0f;
-    const float cost = see(config, state, &state->other, &expected, sign);
+    const bool moot_value = stopped_within(config, state, &state->other.at);
+    const float cost = moot_value ? state->value_cost : see(config, state, &state->other, &expected, sign);
     const int32_t with = with_wheels(config, state, state->value_m_s, state->value_wheel_m_s);
-    if (state->rolls && with < 0 && fixed_greater(state->odds, config->against_odds)) {
+    if (!moot_value && state->rolls && with < 0 && fixed_greater(state->odds, config->against_odds)) {
         state->odds = config->against_odds; // (18) asks anew
     }
-    state->odds += fixed_clamp(cost - state->value_cost, -most_told, most_told) +
-                   (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) * (float)with +
-                   config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
+    const float told = fixed_clamp(cost - state->value_cost, -most_told, most_told) +
+                       (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) * (float)with +
+                       config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
+    state->odds += moot_value ? 0.0f : told;
+    if (moot_value && fixed_greater(state->odds, stop_odds) && ground_speed_force_is_over(config, state)) {
+        state->odds = stop_odds;
+    }
     const bool won = state->odds < 0.0f;
     if (won) {
         const ground_speed_track_t best = ground_speed_best_of(state);

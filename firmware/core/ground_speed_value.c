@@ -225,6 +225,7 @@ void ground_speed_update_quiet(const ground_speed_config_t *config, ground_speed
         track.p_vv = 1.0f; // [m^2/s^2] nothing is known any more
         track.p_vb = 0.0f;
         track.p_bb = ground_speed_square(config->bias_start_m_s2);
+        state->rolls_ticks = 0; // no slope began
     }
     if (fits || sure) {
         ground_speed_correct(config, &track, -middle, window.tau_s, config->quiet_noise_m2_s2);

@@ -31,6 +31,14 @@ static float force_now(const ground_speed_config_t *config, const ground_speed_s
     return (float)fixed_wrap_difference(now, then) * (config->per_tick_1_s / (1048576.0f * FORCE_TICKS));
 }
 
+static const float back_m_s2 = 0.5f; // assumed: 3 deg
+
+// (39)
+bool ground_speed_force_is_over(const ground_speed_config_t *config, const ground_speed_state_t *state)
+{
+    return fixed_greater(back_m_s2, fabsf(force_now(config, state) - state->other.at.bias_m_s2));
+}
+
 // (21): X is what the body did beside the wheels, not what the wheels did.
 bool ground_speed_body_departs(const ground_speed_state_t *state)
 {
@@ -69,6 +77,17 @@ void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_
 // Variance of X over the last quarter of a second: of a body that sways on its wheels, not of a slope that begins.
 static float sway_m2_s2(const ground_speed_state_t *state) { return state->apart_m2_s2 - ground_speed_square(state->apart_mean_m_s); }
 
+static const float untold_share = 0.5f; // [1] of the way between both words, while nothing has told: assumed
+
+// Until a value comes after (13), the claim covers half of what the wheels' word has taken away by now.
+static void claim_untold(ground_speed_state_t *state, float more_m_s)
+{
+    state->rolled_m_s += more_m_s;
+    const float claim_m_s = untold_share * fabsf(state->rolled_m_s);
+    state->doubt_m2_s2 = ground_speed_square(claim_m_s);
+    state->std_m_s = fixed_greater(claim_m_s, state->std_m_s) ? claim_m_s : state->std_m_s;
+}
+
 // (13): the best track rolls from here on, what the accelerometer alone would have is the other one.
 static void begin_rolling(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
@@ -80,6 +99,8 @@ static void begin_rolling(const ground_speed_config_t *config, ground_speed_stat
     best.p_vv += 0.25f * ground_speed_square(state->apart_m_s); // what (10) has forgotten of it, up to its half
     ground_speed_hold(config, &best);
     ground_speed_keep_best(state, &best);
+    state->rolled_m_s = 0.0f;
+    claim_untold(state, state->apart_m_s);
     state->apart_m_s = 0.0f;
     state->rolls_ticks = ROLL_TICKS;
     ground_speed_forget_agile(state);
@@ -88,6 +109,9 @@ static void begin_rolling(const ground_speed_config_t *config, ground_speed_stat
 // The wheels' change of speed is the body's; what the accelerometer feels beside it is bias.
 static void roll(const ground_speed_config_t *config, ground_speed_state_t *state, float ticks)
 {
+    if (state->other_alive && fixed_bits(state->odds) == fixed_bits(config->roll_odds)) {
+        claim_untold(state, state->apart_m_s);
+    }
     state->speed_m_s -= state->apart_m_s;
     state->bias_m_s2 += config->roll_share * config->per_tick_1_s * state->apart_m_s;
     state->p_vv += ticks * config->roll_noise_m2_s2;

@@ -359,13 +359,13 @@ TEST(Outdoors, what_is_like_no_echo_turns_no_stop_and_go_round) {
 // that (13) took for a slope was used.
 TEST(Outdoors, a_rover_that_bogs_down_is_seen_to_stand_while_its_wheels_turn) {
     for (const bool scatterers : {false, true})
-        for (const double decel_m_s2 : {0.7, 1.5}) {
+        for (const double decel_m_s2 : {0.7, 1.5, 3.4}) {
             Case now;
             now.scatterers = scatterers;
             now.speed = [decel_m_s2](double t) { return t < 8 ? 0.3 : std::fmax(0, 0.3 - decel_m_s2 * (t - 8)); };
             now.wheel = [](double) { return 0.32; };
             const outdoors::Score score = worst_of(now, 8);
-            EXPECT_LE(score.rmse, 0.1) << decel_m_s2 << scatterers;
+            EXPECT_LE(score.rmse, decel_m_s2 > 2 ? 0.05 : 0.1) << decel_m_s2 << scatterers; // at 3.4: 5.4 cm/s, NEES 4 to 6 before (39)
             EXPECT_LE(score.nees, 2) << decel_m_s2 << scatterers;
         }
 }
