@@ -123,6 +123,8 @@
 // hears the part in which it moved, as fast as ever: where (39) holds, values tell nothing between the two words. If what was felt is over,
 // as of a slope it is not (8 ticks within 0.5 m/s^2 of the bias before), the odds for the wheels are 2 at most. And from (13) to the first
 // value std is at least half of what the wheels' word has taken away: nothing has told yet.
+// (40): where (7) wins and neither (10) nor (21) tells of a body that departs, wheels and accelerometer agree that nothing has happened: a
+// line may have begun. The claim holds what the speed leapt by, and 0.85 of it a value later.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -325,6 +327,7 @@ typedef struct {
     ground_speed_side_t agile;                            // (7)
     float agile_sum;                                      // of (7)
     int32_t agile_left;                                   // values until it starts anew
+    float jolt_m_s;                                       // of (40)
     int32_t waits;                                        // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
     float value_heard_m_s, value_accel_m_s2, value_trust; // the value as it came, the raw acceleration in its window
     float value_m_s, value_noise_m2_s2;

@@ -75,8 +75,11 @@ void ground_speed_forget_agile(ground_speed_state_t *state)
     state->agile_left = 0;
 }
 
+static const float jolt_left = 0.85f; // [1] a value later, assumed: half of it after half a second
+
 void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed_state_t *state)
 {
+    state->jolt_m_s *= jolt_left;
     if (state->agile_left <= 0) {
         start_agile(config, state);
         return;
@@ -126,6 +129,7 @@ void ground_speed_update_agile(const ground_speed_config_t *config, ground_speed
         state->agile_left = 0;
         state->refused = 0;
         state->one_sided = 0.0f;
+        state->jolt_m_s = apart ? 0.0f : fabsf(state->speed_m_s - before.speed_m_s); // (40)
     } else if (state->agile_sum > 0.0f && state->agile_left == 0) {
         state->agile_left = 1; // not while it is about to win
     }
