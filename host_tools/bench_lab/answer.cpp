@@ -1,6 +1,7 @@
 #include "answer.h"
 
 #include "host_tools/lab/decision/diagnose.h"
+#include "host_tools/lab/forward/make_dataset.h"
 #include "host_tools/lab/session.h"
 #include "sim/physics/effects/catalogue.h"
 

@@ -50,10 +50,20 @@ TEST(OddWheel, is_told_from_the_ratio_on_that_no_ground_reaches) {
         ASSERT_TRUE(odd) << c.electric;
         EXPECT_EQ(odd->wheel, 2);
         EXPECT_EQ(odd->electric, c.electric);
-        EXPECT_NEAR(odd->error, std::sqrt(1 + c.beyond * c.beyond / 8), 0.2 * odd->error); // 60 rows of a balance
+        EXPECT_NEAR(odd->error, std::sqrt(1 + c.beyond * c.beyond / 8), 0.2 * odd->error); // 120 rows of a balance
         EXPECT_NEAR(odd->others, 1, 0.2);
         EXPECT_NEAR(excess_of(*odd, fitted), odd->excess(), 1e-9);
     }
+}
+
+// A current that meets its converter's rail now and then: one row of a hundred tells nothing, however far it is off.
+TEST(OddWheel, a_few_rows_make_none) {
+    FourWheels clipped;
+    disturb(clipped, 1, true, [](std::size_t r) { return r == 40 ? 60.0 : 0.0; });
+    ASSERT_GE(clipped.data.balance[5].measured.size(), 100U);
+    EXPECT_FALSE(odd_wheel(fit_of(clipped)));
+    disturb(clipped, 1, true, [](std::size_t r) { return r % 20 == 10 ? 60.0 : 0.0; });
+    EXPECT_TRUE(odd_wheel(fit_of(clipped)));
 }
 
 TEST(OddWheel, the_farther_beyond_its_limit_is_told) {

@@ -300,8 +300,7 @@ class Search {
             fit_from_the_sheet(t, d_.model, data_, problem);
         const std::vector<double> value = sizes_of(t, problem);
         t.verdict = "not_held_out";
-        if ((!t.matters && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value)))
-            return std::nullopt;
+        if ((!t.matters && !large_enough(t.candidate, value)) || (!t.at_least && beyond_range(t.candidate, value))) return std::nullopt;
         if (const std::optional<std::string> only_with = conflict(problem, t.candidate)) {
             t.verdict = "conflict";
             note_conflict(d_, t.candidate.label(), *only_with);
@@ -510,7 +509,8 @@ class Search {
             if (one.wheel == odd->wheel && !explains_wheel(excess_of(*odd, fitted(model_without(d_.model, one), &last)), odd->excess()))
                 reject_as_nearest(i, last, "leaves most of that");
         }
-        const bool of_it = d_.unknown && d_.unknown->instead_of.empty() && d_.unknown->score && d_.unknown->score->candidate.on == std::vector<int>{odd->wheel};
+        const bool of_it = d_.unknown && d_.unknown->instead_of.empty() && d_.unknown->score &&
+                           d_.unknown->score->candidate.on == std::vector<int>{odd->wheel};
         if (!of_it) d_.unknown = what_acts_on(*odd, last);
     }
 

@@ -4,14 +4,17 @@
 #include "shape_rules.h"
 #include "shape_scores.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace traction::lab {
 
 namespace {
 
 constexpr double odd_by_voltage = 1.25, odd_by_torque = 2; // (1)
+constexpr double few_rows = 0.01;                          // a current that meets its converter's rail is no fault of the wheel: assumed
 constexpr double most_left = 0.5;                          // of a wheel's excess, with its cause in the model: assumed
 
 // Error of each wheel's currents by one of their balances, in noises; 0 where it has none.
@@ -20,10 +23,13 @@ std::vector<double> errors_of(const Problem &fitted, BalanceKind kind) {
     const Eigen::VectorXd noise = fitted.noise_rows();
     Eigen::Index row = 0;
     for (const Balance &b : fitted.data().balance) {
-        double squares = 0;
-        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) squares += std::pow(fitted.residual[row] / noise[row], 2);
-        if (b.kind == kind && b.wheel >= 0 && static_cast<std::size_t>(b.wheel) < out.size() && !b.measured.empty())
-            out[static_cast<std::size_t>(b.wheel)] = std::sqrt(squares / static_cast<double>(b.measured.size()));
+        std::vector<double> squares;
+        for (std::size_t r = 0; r < b.measured.size(); ++r, ++row) squares.push_back(std::pow(fitted.residual[row] / noise[row], 2));
+        if (b.kind != kind || b.wheel < 0 || static_cast<std::size_t>(b.wheel) >= out.size() || squares.empty()) continue;
+        const std::size_t kept = squares.size() - static_cast<std::size_t>(few_rows * static_cast<double>(squares.size()));
+        std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept - 1), squares.end());
+        out[static_cast<std::size_t>(b.wheel)] = std::sqrt(
+            std::accumulate(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept), 0.0) / static_cast<double>(kept));
     }
     return out;
 }

@@ -1,6 +1,7 @@
 // odd_wheel.h - one wheel that the model misses by far more than the others: something is wrong with it, be there a law for it or not.
 //
-//   e_w / median(e of the other wheels) > 1.25 by voltage, 2 by torque,  e^2 = mean((residual / noise)^2) of the wheel's currents (1)
+//   e_w / median(e of the other wheels) > 1.25 by voltage, 2 by torque,                                                    (1)
+//   e^2 = mean((residual / noise)^2) of the wheel's currents, but for the largest hundredth
 //
 // Ground and smoothing leave wheels alike: of 355 clean logs of five generators the largest ratio was 1.06 by voltage, 1.84 by torque. A
 // fault that shows in few rows (a dead band, a loose hub) is no shape that all rows bear, and is seen here.
