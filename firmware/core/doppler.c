@@ -191,7 +191,7 @@ static int32_t log2_q8(uint64_t power)
 static uint64_t power_of(int32_t log2_q8)
 {
     const int32_t exponent = log2_q8 >> 8;
-    const uint64_t mantissa = (uint64_t)(256 + (log2_q8 & 255));
+    const uint64_t mantissa = (uint64_t)256u + ((uint32_t)log2_q8 & 255u);
     return exponent >= 8 ? mantissa << ((uint32_t)(exponent - 8) & 63u) : mantissa >> ((uint32_t)(8 - exponent) & 63u);
 }
 
