@@ -89,6 +89,24 @@ TEST(Sideways, TheSessionSaysSoAndItsModelKeepsIt) {
     })) << "the camera's sideways rows come with it";
 }
 
+TEST(Session, WhatAModelDoesNotStateIsTold) { // a motor's losses and inertia are 0 then, and what they do is an effect
+    Request request;
+    request.model = "models/rover_sand.toml", request.log = "bends.csv";
+    request.read = [](const std::string &, const std::string &, std::vector<log::Repair> &) { return bends(); };
+    const auto told = [&](const Model &model) {
+        std::string found;
+        for (const std::string &m : open_session(request, model).data.messages)
+            if (m.find("does not state") != std::string::npos) found += m;
+        return found;
+    };
+    Model model = sand();
+    EXPECT_EQ(told(model), "");
+    for (WheelSpec &w : model.wheel) w.motor.at("coulomb_Nm") = {};
+    EXPECT_NE(told(model).find("motor.coulomb_Nm:"), std::string::npos) << told(model);
+    for (WheelSpec &w : model.wheel) w.motor.at("viscous_Nms") = {};
+    EXPECT_NE(told(model).find("motor.viscous_Nms, motor.coulomb_Nm:"), std::string::npos) << told(model);
+}
+
 TEST(Sideways, WhatIsFoundIsAskedForIt) { // not the session's own model
     Session held;
     held.model = sand(), held.runs = {bends()};

@@ -274,6 +274,33 @@ TEST(Check, names_samples_that_are_missing) {
     EXPECT_NE(check::check(log, {}).find("samples_missing", "wheel0.speed_rad_s"), nullptr);
 }
 
+// One clock is told once, with how many signals have it; another clock by itself.
+TEST(Check, names_a_clock_that_jitters_once) {
+    log::Log log = good();
+    const auto shake = [](log::Signal &signal, double share) {
+        for (std::size_t k = 1; k + 1 < signal.t_s.size(); ++k)
+            signal.t_s[k] += share * 0.01 * (k % 3 == 0 ? 1.0 : k % 3 == 1 ? -1.0 : 0.0);
+    };
+    std::size_t shaken = 0;
+    for (log::Signal &signal : log.signals) {
+        const double period_s = signal.t_s.size() > 1 ? signal.t_s[1] - signal.t_s[0] : 0;
+        if (std::fabs(period_s - 0.01) > 1e-6) continue;
+        shake(signal, signal.name == "imu.accel_x_m_s2" ? 0.3 : 0.4);
+        shaken += signal.name != "imu.accel_x_m_s2";
+    }
+    ASSERT_GT(shaken, 8U);
+    const check::Report report = check::check(log, {});
+    std::vector<const check::Finding *> told;
+    for (const check::Finding &f : report.findings)
+        if (f.id == "jitter") told.push_back(&f);
+    ASSERT_EQ(told.size(), 2U) << listed(report, Severity::note);
+    for (const check::Finding *f : told) {
+        const bool alone = f->signal == "imu.accel_x_m_s2";
+        EXPECT_EQ(f->text.find("others beside it") == std::string::npos, alone) << f->text;
+        EXPECT_EQ(f->text.find("and of " + std::to_string(shaken - 1) + " others") == std::string::npos, alone) << f->text;
+    }
+}
+
 TEST(Check, names_a_gap_and_a_clock_that_jumps) {
     log::Log log = good();
     thin(log, "", [](double t) { return t > 7 && t < 9; });
