@@ -134,7 +134,8 @@ Diagnosed diagnose_session(const Session &session, const DiagnoseOptions &how) {
     const std::optional<UnknownShape> &shape = out.diagnosis.unknown;
     const bool over_slip = shape && shape->variable == axis_name(Axis::slip) && shape->score && !shape->score->candidate.some_wheels;
     if (out.diagnosis.accepted.empty() && !over_slip) return out; // the session was asked with as much
-    out.anew = asked_anew(session, out.diagnosis.model, over_slip ? shape->gain : 0);
+    std::optional<Session> anew = asked_anew(session, out.diagnosis.model, over_slip ? shape->gain : 0);
+    if (anew) out.anew = std::make_unique<const Session>(std::move(*anew));
     if (out.anew) out.diagnosis = diagnose(out.anew->model, out.anew->data, how);
     return out;
 }

@@ -7,6 +7,7 @@
 #include "host_tools/log/read.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,8 +52,8 @@ std::optional<Session> asked_anew(const Session &session, const Model &found, do
 
 // What a session's log shows, and the session that it was found by in the end, where that was asked anew.
 struct Diagnosed {
-    std::optional<Session> anew;
-    Diagnosis diagnosis; // refers to that session's data
+    std::unique_ptr<const Session> anew; // stays where it is
+    Diagnosis diagnosis;                 // refers to that session's data
 };
 Diagnosed diagnose_session(const Session &session, const DiagnoseOptions &how);
 
