@@ -3,6 +3,8 @@
 
 #include "host_tools/lab/decision/odd_wheel.h"
 #include "host_tools/lab/fit/ladder.h"
+#include "host_tools/lab/result/compare.h"
+#include "host_tools/lab/result/story.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,6 +94,22 @@ TEST(OddWheel, a_diagnosis_tells_it) {
     EXPECT_NE(d.unknown->balance.find("wheel 2"), std::string::npos) << d.unknown->balance;
     EXPECT_TRUE(std::any_of(d.messages.begin(), d.messages.end(),
                             [](const std::string &m) { return m.find("wheel 2 alone is missed by far") != std::string::npos; }));
+    const Story story = tell(compare(rover.model, rover.data, false), d, nullptr);
+    EXPECT_NE(story.sure.find("one wheel is unlike the others"), std::string::npos) << story.sure; // of the curve it is not
+    EXPECT_EQ(story.next.find("Look at that wheel first"), 0U) << story.next;                      // and no law is written from it
+}
+
+// "Nothing that this log can show" is said of a log that is explained, not of one that is not.
+TEST(OddWheel, where_nothing_is_found_in_what_is_left_that_is_said) {
+    FourWheels sound, all;
+    for (int i = 0; i < 4; ++i) disturb(all, i, false, at_times(20)), disturb(all, i, true, at_times(20));
+    const auto missing = [](const FourWheels &rover) {
+        const Diagnosis d = diagnose(rover.model, rover.data, {});
+        EXPECT_EQ(d.kind, "nothing") << d.text;
+        return tell(compare(rover.model, rover.data, false), d, nullptr).missing;
+    };
+    EXPECT_EQ(missing(sound), "Nothing that this log can show.");
+    EXPECT_EQ(missing(all), "Nothing that was tried: what is left has another cause.");
 }
 
 // A name that takes a small part of what is wrong with its wheel does not stand for it.

@@ -111,6 +111,35 @@ TEST(WheelStep, the_knee_of_a_grounds_curve_bends_and_its_ends_do_not) {
     }
 }
 
+// Grounds that are of neither law, over four of their own slips: with (6) and a stiffness and strength of its own each law meets them
+// within a hundredth of the strength; without, (20) is three off from tanh.
+TEST(WheelStep, a_bent_law_meets_other_grounds) {
+    const auto tanh = [](double x) { return std::tanh(x); };
+    const auto hyperbola = [](double x) { return x / (1 + x); };
+    const auto magic = [](double x) { return std::sin(1.25 * std::atan(x / 1.25)); };
+    struct Case {
+        SoilLaw law;
+        double (*ground)(double);
+        double strength, slip, curve;
+    };
+    const auto miss = [](const Case &c, double strength, double slip, double curve) {
+        double sum = 0;
+        for (int i = 0; i < 80; ++i) {
+            const double x = 4 * (i + 0.5) / 80;
+            sum += std::pow(grip_of<double>(c.law, strength, slip, curve, x, 0.0, 0.0, false).traction - c.ground(x), 2);
+        }
+        return std::sqrt(sum / 80);
+    };
+    for (const Case &c : {Case{SoilLaw::burckhardt, tanh, 0.967, 0.787, 0.174},
+                          {SoilLaw::burckhardt, hyperbola, 0.873, 1.010, -0.215},
+                          {SoilLaw::burckhardt, magic, 0.977, 0.805, 0.138},
+                          {SoilLaw::janosi, tanh, 1.153, 0.537, 0.394},
+                          {SoilLaw::janosi, hyperbola, 0.898, 0.470, -0.105},
+                          {SoilLaw::janosi, magic, 1.159, 0.537, 0.340}})
+        EXPECT_LT(miss(c, c.strength, c.slip, c.curve), 0.01) << c.curve;
+    EXPECT_NEAR(miss({SoilLaw::janosi, tanh, 0, 0, 0}, 1.154, 0.385, 0), 0.03, 0.005);
+}
+
 // Of a mass to one side the wheels there carry more and, at the same slip, pull more: just as much as turns nothing about that mass.
 TEST(WheelStep, a_mass_to_one_side_is_not_turned_by_wheels_that_slip_alike) {
     Dataset data = rolling(0, 3);

@@ -270,7 +270,7 @@ TEST(Outdoors, a_line_that_begins_at_the_echos_edge_is_told_by_its_steadiness) {
         EXPECT_LE(worst_of(now, 6).nees, 2) << scatterers; // 3.2 and 3.7 before (40)
         now.tone_Hz = 37, now.tone_count = now.echo_count * 1.41, now.speed = [](double) { return 0.5; };
         const outdoors::Score score = worst_of(now, 6);
-        EXPECT_LE(score.rmse, 0.05) << scatterers; // what it takes to learn it
+        EXPECT_LE(score.rmse, 0.05) << scatterers; // while it is learnt; the goal of 4 cm/s is missed (docs/performance.md)
         EXPECT_LE(score.wrong_sign_s, 0.5) << scatterers;
     }
 }

@@ -3,8 +3,8 @@
 //   e_w / median(e of the other wheels) > 1.25 by voltage, 2 by torque,                                                    (1)
 //   e^2 = mean((residual / noise)^2) of the wheel's currents, but for the largest hundredth
 //
-// Ground and smoothing leave wheels alike: of 355 clean logs of five generators the largest ratio was 1.06 by voltage, 1.84 by torque. A
-// fault that shows in few rows (a dead band, a loose hub) is no shape that all rows bear, and is seen here.
+// Ground and smoothing leave wheels alike: of 355 clean logs the largest ratio, by all rows, was 1.06 by voltage, 1.84 by torque
+// (docs/lab_method.md). A fault that shows in few rows (a dead band, a loose hub) is no shape that all rows bear, and is seen here.
 #pragma once
 
 #include "diagnose.h"

@@ -139,6 +139,8 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
         return text + ".";
     }
     if (!d.classes.empty()) return "To separate them: " + d.classes.front().separate_by + " (traction next works out the drive).";
+    if (d.unknown && d.unknown->at_a_guess)
+        return "Look at that wheel first: its motor and bridge, its gear and hub, its encoder and current sensor. Then drive it again.";
     if (d.unknown)
         return "Write the law as an effect of your own, from the expression below, and add it: traction add --effect-file. Then judge it "
                "on another log (--validate).";
