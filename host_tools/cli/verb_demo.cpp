@@ -120,11 +120,14 @@ void demo(const DemoRequest &request, Outcome &outcome) {
     std::printf("   log: %s; the truth is sealed in %s\n\n", log_file.c_str(), (folder / "sealed.json").string().c_str());
 
     std::printf("2. Compare the baseline model with the log.\n");
-    const lab::Session session = lab::open_session({.model = model_file, .log = log_file, .map = "", .repeat = ""});
-    lab::Comparison comparison = lab::compare(session.model, session.data, false);
+    const lab::Session opened = lab::open_session({.model = model_file, .log = log_file, .map = "", .repeat = ""});
+    lab::Comparison comparison = lab::compare(opened.model, opened.data, false);
     print(lab::comparison_text(comparison, request.details) + "\n3. Diagnose: what is missing?\n");
     std::fflush(stdout);
-    const lab::Diagnosis diagnosis = lab::diagnose(session.model, session.data, {});
+    const lab::Diagnosed diagnosed = lab::diagnose_session(opened, {});
+    const lab::Diagnosis &diagnosis = diagnosed.diagnosis;
+    const lab::Session &session = diagnosed.anew ? *diagnosed.anew : opened;
+    if (diagnosed.anew) comparison = lab::compare(session.model, session.data, false);
     if (!diagnosis.accepted.empty()) lab::show_after(comparison, diagnosis.model, session.data);
     std::optional<lab::NextExperiment> next;
     if (!diagnosis.classes.empty()) next = lab::next_experiment(diagnosis, session.model, session.data, false, simulated_rover());
