@@ -29,6 +29,7 @@ void apply_sensor_effects(std::span<const ActiveEffect> effects, SensorConfig &c
     config.accel.drift_s = law::accel_drift(config.accel.drift_s, b.accel_drift_m_s3, 1); // per second
     config.accel.delay_s = law::accel_delay_s(config.accel.delay_s, b.accel_delay_s);
     config.accel.lag_s = law::accel_lag_s(config.accel.lag_s, b.accel_lag_s);
+    config.gyro.gain *= law::gyro_scale(1, b.gyro_scale);
     config.gyro.delay_s = law::gyro_delay_s(config.gyro.delay_s, b.gyro_delay_s);
     config.radar_delay_s = law::radar_delay_s(config.radar_delay_s, b.radar_delay_s);
     config.battery.gain *= law::voltage_gain(1, b.voltage_gain);
@@ -123,6 +124,8 @@ void Sensors::step(const Truth &truth) {
     if (step_s > 0) {
         const double rate = (truth.v_body_m_s[0] - last_.ahead_m_s) / step_s;
         accel_m_s2_ += (rate - accel_m_s2_) * std::min(1.0, step_s / accel_smoothing_s);
+        yaw_accel_rad_s2_ +=
+            ((truth.rate_body_rad_s[2] - last_.yaw_rate_rad_s) / step_s - yaw_accel_rad_s2_) * std::min(1.0, step_s / accel_smoothing_s);
         lagged_m_s2_ += (accel_m_s2_ - lagged_m_s2_) * std::min(1.0, step_s / law::accel_tilt_lag_s);
     }
     const Vibration shake = vibration(truth);
@@ -130,9 +133,10 @@ void Sensors::step(const Truth &truth) {
     for (std::size_t i = 0; i < wheel_count; i++) current_[i].add(truth.wheel[i].current_A, step_s);
     battery_.add(truth.battery_voltage_V);
     // a nose that nods down by p turns -g p into the axis
-    accel_.add(law::accel_tilt(truth.specific_force_m_s2[0], gravity_m_s2, config_.effects.body.accel_tilt_rad_s2_m, lagged_m_s2_) -
-                   gravity_m_s2 * shake.pitch_rad,
-               step_s);
+    const BodyEffects &b = config_.effects.body;
+    const double felt =
+        law::accel_place(truth.specific_force_m_s2[0], b.accel_ahead_m, b.accel_left_m, truth.rate_body_rad_s[2], yaw_accel_rad_s2_);
+    accel_.add(law::accel_tilt(felt, gravity_m_s2, b.accel_tilt_rad_s2_m, lagged_m_s2_) - gravity_m_s2 * shake.pitch_rad, step_s);
     accel_y_.add(truth.specific_force_m_s2[1]);
     accel_z_.add(truth.specific_force_m_s2[2] + shake.lift_m_s2);
     gyro_x_.add(truth.rate_body_rad_s[0]);

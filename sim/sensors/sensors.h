@@ -81,7 +81,7 @@ class Sensors {
     AnalogSensor accel_y_, accel_z_, gyro_x_, gyro_y_;
     Measurements pending_;
     struct Last { // of the truth, what the next step and the tick's end ask for
-        double t_s, path_m, ahead_m_s, up_m_s;
+        double t_s, path_m, ahead_m_s, up_m_s, yaw_rate_rad_s;
         std::array<double, wheel_count> motor_angle_rad;
     };
     static Last last_of(const Truth &truth) {
@@ -89,6 +89,7 @@ class Sensors {
                 truth.path_m,
                 truth.v_body_m_s[0],
                 truth.v_body_m_s[2],
+                truth.rate_body_rad_s[2],
                 {truth.wheel[0].motor_angle_rad, truth.wheel[1].motor_angle_rad, truth.wheel[2].motor_angle_rad,
                  truth.wheel[3].motor_angle_rad}};
     }
@@ -99,6 +100,7 @@ class Sensors {
     std::int64_t radar_samples_ = 1; // the sample at t = 0 belongs to no tick
     double accel_m_s2_ = 0;          // along x, smoothed over 10 ms
     double lagged_m_s2_ = 0;         // the same as the suspension follows it
+    double yaw_accel_rad_s2_ = 0;    // smoothed over 10 ms
 };
 
 } // namespace traction::sim

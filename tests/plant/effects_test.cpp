@@ -185,6 +185,8 @@ TEST(Laws, sensors) {
     EXPECT_NEAR(law::accel_drift(0.5, 0.003, 100), 0.8, rounding);
     EXPECT_NEAR(law::accel_tilt(0.5, 9.81, 0.01, 0.4), 0.53924, rounding);
     EXPECT_NEAR(law::accel_scale(1.01, 0.1), 1.11, rounding);
+    EXPECT_NEAR(law::accel_place(0.5, 0.1, -0.2, 2, 1.5), 0.4, rounding); // 0.5 - 0.1 * 4 + 0.2 * 1.5
+    EXPECT_NEAR(law::gyro_scale(1.01, -0.05), 0.96, rounding);
     EXPECT_NEAR(law::radar_scale(1.01, -0.08), 0.93, rounding);
     EXPECT_NEAR(law::radar_pitch(0.1, -2), 0.8, rounding);
     EXPECT_NEAR(law::current_gain(1, 0.12), 1.12, rounding);

@@ -80,6 +80,18 @@ std::vector<Measurements> start(const ActiveEffect &active) {
     return out;
 }
 
+// The rover of start(): r = 0.3 (t - 0.5), so that 0.2 m ahead feels -0.2 r^2 and 0.1 m to the left -0.1 * 0.3.
+TEST(SensorEffects, an_accelerometer_off_the_centre_feels_the_turn_and_a_gyro_is_scaled) {
+    const auto plain = start(effect("accel_bias", 0)), scaled = start(effect("gyro_scale", 0.1));
+    const auto ahead = start({find_effect("accel_place"), -1, {0.2, 0}}), left = start({find_effect("accel_place"), -1, {0, 0.1}});
+    const std::size_t i = plain.size() - 1;
+    const double r = 0.3 * (static_cast<double>(i + 1) * 0.01 - 0.5 - 0.0045); // a sample is the mean of its 10 ms
+    ASSERT_GT(r, 0.29);
+    EXPECT_NEAR(ahead[i].accel_m_s2[0] - plain[i].accel_m_s2[0], -0.2 * r * r, 1e-4);
+    EXPECT_NEAR(left[i].accel_m_s2[0] - plain[i].accel_m_s2[0], -0.03, 1e-4);
+    EXPECT_NEAR(scaled[i].gyro_rad_s[2] - plain[i].gyro_rad_s[2], 0.1 * r, 1e-4);
+}
+
 TEST(SensorEffects, a_late_sensor_says_what_a_prompt_one_said_its_delay_before) {
     const auto prompt = start(effect("accel_bias", 0));
     const auto accel = start(effect("accel_delay", 0.12)), gyro = start(effect("gyro_delay", 0.12)),

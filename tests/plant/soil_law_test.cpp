@@ -214,6 +214,8 @@ TEST(catalogue, holds_every_effect_of_the_contract_once_with_sane_ranges) {
                               "accel_tilt",
                               "accel_delay",
                               "accel_lag",
+                              "accel_place",
+                              "gyro_scale",
                               "gyro_delay",
                               "radar_delay",
                               "radar_scale",

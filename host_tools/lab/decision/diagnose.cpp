@@ -7,6 +7,7 @@
 #include "host_tools/lab/fit/identify.h"
 #include "host_tools/lab/fit/screen.h"
 #include "manner.h"
+#include "moves_together.h"
 #include "odd_wheel.h"
 #include "patch_edges.h"
 #include "record.h"
@@ -67,6 +68,7 @@ class Search {
         if (d_.unknown) tell_as_fitted(problem);
         if (options_.shapes && !d_.unknown) face_rivals(first, problem);
         tell_odd_wheel(problem);
+        tell_what_moves_all(problem);
         if (!d_.model_fit) settle_last(problem);
         if (!refined_) refine_shapes(problem);
         d_.limits = limits_of(problem);
@@ -469,7 +471,7 @@ class Search {
     // Share of the error that the shape takes, fitted in full where that is more: a linear step sees little of a large one.
     double taken_by_the_shape(const Problem &last) const {
         if (!d_.unknown) return 0;
-        const bool large = overall_error(last) > strange && d_.unknown->instead_of.empty();
+        const bool large = overall_error(last) > strange && d_.unknown->instead_of.empty() && d_.unknown->score;
         return std::max(d_.unknown->gain, large ? 1 - overall_error(with_shape(last, *d_.unknown->score)) / overall_error(last) : 0.0);
     }
 
@@ -512,6 +514,16 @@ class Search {
         const bool of_it = d_.unknown && d_.unknown->instead_of.empty() && d_.unknown->score &&
                            d_.unknown->score->candidate.on == std::vector<int>{odd->wheel};
         if (!of_it) d_.unknown = what_acts_on(*odd, last);
+    }
+
+    // A shape that leaves most of what moves all wheels is not its cause.
+    void tell_what_moves_all(Problem &last) {
+        if (d_.unknown && (d_.unknown->at_a_guess || !d_.unknown->instead_of.empty())) return;
+        last.get_ready();
+        const std::optional<Together> together = moves_together(last);
+        if (!together || (d_.unknown && taken_by_the_shape(last) > little_of_it)) return;
+        d_.messages.push_back(together_words(*together));
+        d_.unknown = shape_of(*together);
     }
 
     void reject_as_nearest(std::size_t i, Problem &last, const std::string &why = "") {
@@ -584,6 +596,7 @@ class Search {
     // Stated deviations. Of 446 logs (docs/lab_diary.md, Two effects) 25 had a name for the sheet's sake alone: five left a
     // number 4.4 and farther off, and none of those was there; the others left none more than 3.8 off.
     static constexpr double bent_sheet = 4;
+    static constexpr double little_of_it = 0.2;  // of the error: a shape that takes no more does not explain what moves all (assumed)
     static constexpr double one_story = 1.02;    // of the error: a valley that the verbs share is told, though it be so much higher
     static constexpr double least_ahead = 0.001; // of the held-out error: laws that do the same differ by less (assumed)
     static constexpr double sure_rows = 1e-8;    // of a corrected p: those five had 1e-5 and more; one that is there had 1e-19 (925021)

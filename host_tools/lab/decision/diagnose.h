@@ -67,6 +67,7 @@ struct UnknownShape {
     std::string instead_of; // the name that explains no more than it: this log cannot tell them apart. Empty: what no name explains
     double gain = 0;
     bool at_a_guess = false; // that something acts on its wheel is sure (odd_wheel.h), the curve is the best of what was tried
+    bool of_body = false;    // that something moves the body is sure (moves_together.h); no curve
     std::vector<double> x, y, low, high;
     std::shared_ptr<const ShapeScore> score; // as it was found, for its fit in full (shape_refit.h)
 };

@@ -422,13 +422,21 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
         double delay = 0;
         if (kind == BalanceKind::accel) {
             delay = sim::law::accel_delay_s(b.accel_delay0, b.accel_delay_s);
+            const double ahead_m = b.accel_ahead0 + b.accel_ahead_m, left_m = b.accel_left0 + b.accel_left_m;
+            const auto thrown = [&](double a, std::size_t k) {
+                if (ahead_m == 0 && left_m == 0) return a;
+                const std::vector<double> &r = motion.yaw_rate_rad_s;
+                const std::size_t from = k > 0 ? k - 1 : k, to = std::min(k + 1, d.count - 1);
+                const double rate = (r[to] - r[from]) / (static_cast<double>(to - from) * d.step_s);
+                return sim::law::accel_place(a, ahead_m, left_m, r[k], rate);
+            };
             double lagged = 0, before = 0;
             const double share = 1 - std::exp(-d.step_s / sim::law::accel_tilt_lag_s);
             for (std::size_t k = 0; k < d.count; ++k) {
                 const double a = motion.accel_m_s2[k];
                 lagged += share * (0.5 * (a + before) - lagged);
                 before = a;
-                const double tilted = sim::law::accel_tilt(a, b.gravity, b.accel_tilt_rad_s2_m, lagged);
+                const double tilted = sim::law::accel_tilt(thrown(a, k), b.gravity, b.accel_tilt_rad_s2_m, lagged);
                 const double read = tilted * sim::law::accel_scale(1, b.accel_scale) + offset(k, &RunPhysics::accel_bias, b.accel_bias0);
                 x[k] = sim::law::accel_drift(sim::law::accel_bias(read, b.accel_bias_m_s2), b.accel_drift_m_s3, d.time(k)) +
                        factor(TermTarget::accel, k) - 1;
@@ -448,7 +456,9 @@ void Forward::sensors(const Physics &physics, const Motion &motion, Eigen::Vecto
             for (std::size_t k = 0; k < d.count; ++k) x[k] = source[k] * scale * factor(TermTarget::camera, k);
         } else if (kind == BalanceKind::yaw_rate) {
             delay = sim::law::gyro_delay_s(0, b.gyro_delay_s);
-            for (std::size_t k = 0; k < d.count; ++k) x[k] = motion.yaw_rate_rad_s[k] + offset(k, &RunPhysics::gyro_bias, b.gyro_bias);
+            for (std::size_t k = 0; k < d.count; ++k)
+                x[k] = motion.yaw_rate_rad_s[k] * sim::law::gyro_scale(1 + b.gyro_scale0, b.gyro_scale) +
+                       offset(k, &RunPhysics::gyro_bias, b.gyro_bias);
         } else if (kind == BalanceKind::force) {
             const Motion::Wheel &w = motion.wheel[static_cast<std::size_t>(d.balance[i].wheel)];
             for (std::size_t k = 0; k < d.count; ++k) x[k] = w.traction_N[k] - w.rolling_N[k];

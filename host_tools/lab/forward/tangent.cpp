@@ -16,6 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
+// s' of (2) of wheel_laws.h at step k of a known series of slips.
+double memory_at(const std::vector<double> &slip, std::size_t k) {
+    return k == 0 ? 0 : remembered(k, slip[k - 1], k < 2 ? 0 : slip[k - 2]);
+}
+
 // What the moved parameters alone change at a step of the known motion: the body's rate, the traction of wheels first to last - 1.
 class Moved {
   public:
@@ -26,7 +31,7 @@ class Moved {
         step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) // who does not lag has no use for it
-            if (step_.lags(i)) step_.remember(i, k == 0 ? 0 : known_.wheel[i].slip[k - 1], k == 0 ? 0 : known_.wheel[i].side_slip[k - 1]);
+            if (step_.lags(i)) step_.remember(i, memory_at(known_.wheel[i].slip, k), memory_at(known_.wheel[i].side_slip, k));
         Vector3d force = Vector3d::Zero();
         if (first_ == 0 && last_ == p_.wheel.size())
             force = step_.forces(q, nullptr);
@@ -101,9 +106,12 @@ class Follower {
         Vector3d right = k < 2 ? q_ : Vector3d((4 * q_ - before_) / 3);
         if (!freedom_.yaw) right[2] = 0;
         Vector3d by_slip = Vector3d::Zero();
-        for (std::size_t i = 0; i < wheels; ++i)
-            if (change_.step().lags(i))
-                by_slip += known_.wheel[i].force_by_slip[k] * slip_[i] + known_.wheel[i].force_by_side[k] * side_[i];
+        std::array<double, most_wheels> slip{}, side{}; // of the memory
+        for (std::size_t i = 0; i < wheels; ++i) {
+            if (!change_.step().lags(i)) continue;
+            slip[i] = remembered(k, slip_[i], slip_before_[i]), side[i] = remembered(k, side_[i], side_before_[i]);
+            by_slip += known_.wheel[i].force_by_slip[k] * slip[i] + known_.wheel[i].force_by_side[k] * side[i];
+        }
         by_slip = by_slip.cwiseProduct(
             Vector3d(1 / moved_.body.mass, freedom_.vy ? 1 / moved_.body.mass : 0, freedom_.yaw ? 1 / moved_.body.yaw_inertia : 0));
         const Vector3d next =
@@ -113,9 +121,10 @@ class Follower {
             m_.wheel[i].traction_N[k] = w.traction_N[k] + change_.traction_change(i, k) + w.traction_by_speed[k].dot(next) +
                                         w.traction_by_accel[k] * accel_ + w.traction_by_path[k] * path_;
             if (!change_.step().lags(i)) continue;
-            m_.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip_[i] + w.traction_by_side[k] * side_[i];
-            slip_[i] = change_.slip_change(i, k) + w.slip_by_speed[k].dot(next) + w.slip_by_slip[k] * slip_[i];
-            side_[i] = change_.side_change(i, k) + w.side_by_speed[k].dot(next) + w.side_by_side[k] * side_[i];
+            m_.wheel[i].traction_N[k] += w.traction_by_slip[k] * slip[i] + w.traction_by_side[k] * side[i];
+            slip_before_[i] = slip_[i], side_before_[i] = side_[i];
+            slip_[i] = change_.slip_change(i, k) + w.slip_by_speed[k].dot(next) + w.slip_by_slip[k] * slip[i];
+            side_[i] = change_.side_change(i, k) + w.side_by_speed[k].dot(next) + w.side_by_side[k] * side[i];
         }
         before_ = q_;
         q_ = next;
@@ -137,7 +146,7 @@ class Follower {
     Motion &m_;
     Vector3d q_ = Vector3d::Zero(), before_ = q_; // of the change, as are the next
     double accel_ = 0, path_ = 0;
-    std::array<double, most_wheels> slip_{}, side_{};
+    std::array<double, most_wheels> slip_{}, side_{}, slip_before_{}, side_before_{};
 };
 
 constexpr std::size_t steps_at_once = 64; // of the known motion: some 40 kB, which stay near while every follower goes through them
@@ -185,7 +194,7 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
         step.remember_twist(k == 0 ? 0 : known.twist_N[j]);
         step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j], k == 0 ? 0 : known.away_m[j]);
         for (std::size_t i = 0; i < base.wheel.size(); ++i) {
-            step.remember(i, k == 0 ? 0 : known.wheel[i].slip[j], k == 0 ? 0 : known.wheel[i].side_slip[j]);
+            step.remember(i, memory_at(known.wheel[i].slip, k), memory_at(known.wheel[i].side_slip, k));
             unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) /
                                     size);
             unit.traction[i].push_back((step.state(i).traction - known.wheel[i].traction_N[k]) / size);

@@ -69,6 +69,8 @@ template <std::size_t groups> class Shapes {
         for (Lane3 *x : {&q_, &before_}) x->fill(Lanes(0.0));
         slip_.fill(Lanes(0.0));
         side_.fill(Lanes(0.0));
+        slip_before_.fill(Lanes(0.0));
+        side_before_.fill(Lanes(0.0));
     }
 
     // share: of this step, wheel by wheel.
@@ -84,7 +86,9 @@ template <std::size_t groups> class Shapes {
             for (std::size_t c = 0; c < 3; ++c) {
                 const auto at = static_cast<Eigen::Index>(c);
                 force[c] += unit_.force[i][k][at] * f[i];
-                if (lags_[i]) force[c] += known_.wheel[i].force_by_slip[k][at] * slip_[i] + known_.wheel[i].force_by_side[k][at] * side_[i];
+                if (lags_[i])
+                    force[c] += known_.wheel[i].force_by_slip[k][at] * remembered(k, slip_[i], slip_before_[i]) +
+                                known_.wheel[i].force_by_side[k][at] * remembered(k, side_[i], side_before_[i]);
             }
         }
         if (freedom_.observed && k >= data_.yaw_late) { // the gyro, on the change
@@ -115,9 +119,11 @@ template <std::size_t groups> class Shapes {
         Lanes traction = w.traction_N[k] + unit_.traction[i][k] * f + w.traction_by_accel[k] * accel_ + w.traction_by_path[k] * path_;
         for (std::size_t c = 0; c < 3; ++c) traction += w.traction_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
         if (lags_[i]) {
-            traction += w.traction_by_slip[k] * slip_[i] + w.traction_by_side[k] * side_[i];
-            slip_[i] *= w.slip_by_slip[k];
-            side_[i] *= w.side_by_side[k];
+            const Lanes slip = remembered(k, slip_[i], slip_before_[i]), side = remembered(k, side_[i], side_before_[i]);
+            traction += w.traction_by_slip[k] * slip + w.traction_by_side[k] * side;
+            slip_before_[i] = slip_[i], side_before_[i] = side_[i];
+            slip_[i] = w.slip_by_slip[k] * slip;
+            side_[i] = w.side_by_side[k] * side;
             for (std::size_t c = 0; c < 3; ++c) {
                 slip_[i] += w.slip_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
                 side_[i] += w.side_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
@@ -151,7 +157,7 @@ template <std::size_t groups> class Shapes {
     std::array<bool, most_wheels> lags_{};
     Lane3 q_, before_; // changes, as are the next
     Lanes accel_ = Lanes(0.0), path_ = Lanes(0.0);
-    std::array<Lanes, most_wheels> slip_, side_;
+    std::array<Lanes, most_wheels> slip_, side_, slip_before_, side_before_;
 };
 
 template <std::size_t groups> struct Pass {

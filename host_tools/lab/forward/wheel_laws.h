@@ -1,7 +1,8 @@
 // wheel_laws.h - what the ground does to a wheel at a given slip and speed, for one wheel (double) or four side by side (Lane).
 //
 //   s = (R w - v) / max(|R w|, |v|)                 slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest        (1)
-//   s = (s' + h (R w - v)) / (1 + h g)              where it lags, h = step over relaxation length                        (2)
+//   s = (s' + h (R w - v)) / (1 + h g)              where it lags, by BDF2 as the body is: s' = (4 s_1 - s_2)/3, h = 2/3 of   (2)
+//                                                    the step over the relaxation length; the first two steps s_1 and all of it
 //   g = m + r r^4/(m^4 + r^4),  m = max(|R w|, |v|),  r = 15 mm/s: at rest it is worn off (assumed)                       (5)
 //   sy = (sy' - h vy) / (1 + h g),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
 //   Ft / Fm = 1 - (1 - exp(-x)) / x, x = |s| / sc   (20) janosi;  1 - exp(-x)  (21) burckhardt                             (3)
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace traction::lab {
 
@@ -73,6 +75,13 @@ template <typename T> inline T wears_m_s(const T &rim, const T &v) {
     constexpr double rest_m_s = 0.015, rest_4 = rest_m_s * rest_m_s * rest_m_s * rest_m_s;
     const T faster = law::larger(law::magnitude(rim), law::magnitude(v)), square = faster * faster;
     return faster + rest_m_s * rest_4 / (square * square + rest_4);
+}
+
+// Of (2): the share of a step k that is implicit, and s' of the last slip and the one before. Backward Euler damps what swings at omega by
+// omega^2 step/4, as much as the slip's forgetting does at 0.3 m/s: a relaxation length was told up to a third too long.
+inline double implicit_share(std::size_t k) { return k < 2 ? 1.0 : 2.0 / 3; }
+template <typename T> inline T remembered(std::size_t k, const T &last, const T &before) {
+    return k < 2 ? last : T((4 * last - before) / 3);
 }
 
 // (2); h_1_m: 0 where it does not lag.

@@ -118,7 +118,8 @@ void WheelStep::gather() {
 
 void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first,
                         std::size_t last) {
-    t_ = data_.time(k);
+    t_ = data_.time(k), k_ = k;
+    if (lags_ && share_ != implicit_share(k)) lag_by(implicit_share(k));
     if (grounds_)
         if (const RunPhysics *run = run_at(p_, t_); run != run_) stand_on(run);
     path_ = path_m;
@@ -131,6 +132,15 @@ void WheelStep::prepare(std::size_t k, double v_before, double accel_before, dou
         return;
     }
     for (std::size_t i = first; i < std::min(last, n_); ++i) prepare_wheel(i, k, v_before);
+}
+
+void WheelStep::lag_by(double share) {
+    share_ = share;
+    for (std::size_t i = 0; i < n_; ++i) {
+        State &s = state_[i];
+        s.lag_1_m = s.sigma > 0 ? share * data_.step_s / s.sigma : 0;
+        four_[i / 4].lag_1_m.set(i % 4, s.lag_1_m);
+    }
 }
 
 // Of the ground under wheel i, relative.
@@ -355,7 +365,11 @@ Eigen::Vector2d WheelStep::grade_accel() const {
 
 void WheelStep::commit() {
     if (play_ || lags_)
-        for (std::size_t i = 0; i < n_; ++i) remember(i, state_[i].slip, state_[i].side_slip), state_[i].play_before = state_[i].play;
+        for (std::size_t i = 0; i < n_; ++i) {
+            State &s = state_[i];
+            remember(i, remembered(k_ + 1, s.slip, s.last_slip), remembered(k_ + 1, s.side_slip, s.last_side_slip));
+            s.last_slip = s.slip, s.last_side_slip = s.side_slip, s.play_before = s.play;
+        }
     if (!p_.halves) return;
     twist_ = 0;
     for (std::size_t i = 0; i < n_; ++i) twist_ += 0.5 * soft_sign(p_.wheel[i].y, 1e-6) * (state_[i].traction - state_[i].rolling);

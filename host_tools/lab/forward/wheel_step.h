@@ -37,6 +37,7 @@ class WheelStep {
     double body_force(double v) const;   // along the velocity: drag, tether, the user's
     Eigen::Vector2d grade_accel() const; // of the slope: forward, left
     void commit();                       // the step is found: slip and play become the next step's memory
+    // s' of (2) of wheel_laws.h, along and across.
     void remember(std::size_t i, double slip, double side_slip) {
         state_[i].slip_before = slip, four_[i / 4].slip_before.set(i % 4, slip);
         state_[i].side_slip_before = side_slip, four_[i / 4].side_slip_before.set(i % 4, side_slip);
@@ -53,7 +54,8 @@ class WheelStep {
                load_per_side = 0, load_per_twist = 0;
         double mu = 0, adhesion = 0, rolling_coefficient = 0, lateral = 0; // of the ground it stands on
         double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1, resistance_here = 0;
-        double slip_before = 0, side_slip_before = 0, play_before = 0;
+        double slip_before = 0, side_slip_before = 0, play_before = 0; // of slips: s' of (2) of wheel_laws.h
+        double last_slip = 0, last_side_slip = 0;                      // as the last step left them
         double v = 0, side_v = 0, slip = 0, side_slip = 0, play = 0, traction = 0, rolling = 0, side = 0;
         bool free = false; // its rim is as fast as it moves over the ground
     };
@@ -101,6 +103,7 @@ class WheelStep {
     double contact(std::size_t i, double v);
     void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
     double load(std::size_t i) const; // without a measured load
+    void lag_by(double share);        // of the step, the implicit part
     void loads();
     void followers();
 
@@ -109,6 +112,8 @@ class WheelStep {
     std::size_t n_;
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
+    std::size_t k_ = 0;
+    double share_ = 1;
     double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, side_accel_ = 0, twist_ = 0, yaw_ = 0, yaw_rate_ = 0;
     std::array<Four, most_wheels / 4> four_;
     bool sideways_ = false;           // the body moves sideways as the forces have it, on wheels that grip

@@ -111,7 +111,8 @@ std::vector<Manoeuvre> make_manoeuvres() {
         Drive("push and brake by duty", {"backlash", "bridge_dead_time", "actuation_delay", "accel_scale"})
             .duty(12, "{ amplitude = 0.6, period_s = 2.0 }")
             .made(),
-        Drive("turns on the spot and on the move", {"lateral_scrub", "wheel_radius", "mass_offset_y"})
+        Drive("turns on the spot and on the move",
+              {"lateral_scrub", "wheel_radius", "mass_offset_y", "gyro_scale", "gyro_delay", "accel_place"})
             .speed(6, "0.2", "0.8")
             .speed(6, "0.2", "-0.8")
             .speed(6, "0.0", "0.9")

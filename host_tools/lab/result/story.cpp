@@ -118,6 +118,10 @@ std::string how_sure(const Comparison &c, const Diagnosis &d) {
         return text + (d.classes.empty() ? "The brackets hold" : "If it is the first that is named, the brackets hold") +
                " the true size in 95 of 100 cases.";
     }
+    if (d.unknown && d.unknown->of_body)
+        return std::string("Sure that something acts on the rover as a whole (notes); ") +
+               (d.unknown->at_a_guess ? "nothing that was tried tells what it depends on."
+                                      : "that it depends on " + d.unknown->variable + " is the best of what was tried.");
     if (d.unknown && d.unknown->at_a_guess)
         return "Sure that one wheel is unlike the others (notes); that it depends on " + d.unknown->variable +
                " is the best of what was tried.";
@@ -139,6 +143,10 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
         return text + ".";
     }
     if (!d.classes.empty()) return "To separate them: " + d.classes.front().separate_by + " (traction next works out the drive).";
+    if (d.unknown && d.unknown->of_body)
+        return "Look for what acts on the rover itself: a slope or waves of the floor, a cable, wind, something that swings on it, a load "
+               "that "
+               "came or went. Then drive it again without.";
     if (d.unknown && d.unknown->at_a_guess)
         return "Look at that wheel first: its motor and bridge, its gear and hub, its encoder and current sensor. Then drive it again.";
     if (d.unknown)

@@ -117,7 +117,10 @@ std::string diagnosis_text(const Diagnosis &d, bool details) {
                             d.unknown->variable + ": " + d.unknown->expression,
                         2);
     else if (d.unknown)
-        text += wrapped("unexplained: " + d.unknown->target + " depends on " + d.unknown->variable + ": " + d.unknown->expression, 2);
+        text += wrapped(d.unknown->expression == "0"
+                            ? "unexplained: " + d.unknown->balance + "; it depends on " + d.unknown->variable
+                            : "unexplained: " + d.unknown->target + " depends on " + d.unknown->variable + ": " + d.unknown->expression,
+                        2);
     if (!d.not_excited.empty()) {
         std::string list;
         for (const auto &[effect, why] : d.not_excited) list += " " + effect;

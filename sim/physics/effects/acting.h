@@ -50,6 +50,7 @@ struct BodyEffects {
     double squared_resistance_s2_m2 = 0, drag_Ns2_m2 = 0, shear_peak = 0;
     double heavy_resistance = 0, heavy_start_m = 0, heavy_length_m = 1;
     double accel_delay_s = 0, accel_lag_s = 0, gyro_delay_s = 0, radar_delay_s = 0, current_delay_s = 0;
+    double accel_ahead_m = 0, accel_left_m = 0, gyro_scale = 0;
 };
 
 // Switches an effect on: on wheel `wheel`, or with -1 on all of them and the body. Strengths add to what is there, shapes replace it.

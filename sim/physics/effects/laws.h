@@ -130,6 +130,11 @@ inline double accel_tilt(double a, double gravity_m_s2, double compliance_rad_s2
     return a + gravity_m_s2 * compliance_rad_s2_m * lagged_a;
 }
 inline double accel_scale(double scale, double change) { return scale + change; } // scale: 1, or the part that is known
+// Of a sensor that far ahead of the point whose acceleration a is, and to its left: turning throws it outwards.
+inline double accel_place(double a, double ahead_m, double left_m, double yaw_rate_rad_s, double yaw_accel_rad_s2) {
+    return a - ahead_m * yaw_rate_rad_s * yaw_rate_rad_s - left_m * yaw_accel_rad_s2;
+}
+inline double gyro_scale(double scale, double change) { return scale + change; }
 inline double radar_scale(double scale, double change) { return scale + change; }
 inline double radar_pitch(double coefficient_s2_m, double accel_m_s2) { return 1 + coefficient_s2_m * accel_m_s2; } // a factor of the speed
 inline double current_gain(double gain, double change) { return gain + change; }

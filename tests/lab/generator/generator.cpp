@@ -37,7 +37,9 @@ class Recorder {
         current_now_ = aged(currents_, current, h_.current_delay);
         yaw_rate_now_ = aged(yaw_rates_, world.yaw_rate(), h_.gyro_delay);
         for (std::size_t i = 0; i < wheels; ++i) current_sum_[i] += current_now_[i];
-        accel_sum_ += felt(world.specific_force);
+        accel_sum_ += felt(world.specific_force - h_.accel_ahead * world.yaw_rate() * world.yaw_rate() -
+                           h_.accel_left * (world.yaw_rate() - yaw_rate_before_) / h_s);
+        yaw_rate_before_ = world.yaw_rate();
         battery_sum_ += world.battery;
         for (int k = 0; k < wheels; ++k) seen_[at(k)] += h_s * world.motor_speed(k) * (1 - h_.missed[at(k)]);
         leaned_ += h_s / 0.1 * (world.accel - leaned_);
@@ -71,7 +73,7 @@ class Recorder {
         const double felt = accel_sum_ / n * (1 + h_.accel_scale) + h_.accel_bias + h_.accel_drift * world.t + tilt + accel_offset_ +
                             scale_ * accel_noise * noise_.normal();
         if (c_.habits.accel) put("imu.accel_x_m_s2", stamp_, felt);
-        const double turned = yaw_rate_now_ + gyro_offset_ + scale_ * gyro_noise * noise_.normal();
+        const double turned = yaw_rate_now_ * (1 + h_.gyro_scale) + gyro_offset_ + scale_ * gyro_noise * noise_.normal();
         if (c_.habits.gyro) put("imu.gyro_z_rad_s", stamp_, turned);
         battery_now_ = battery_sum_ / n * (1 + h_.voltage_gain) + scale_ * battery_noise_V * noise_.normal();
         if (c_.battery) put("battery.voltage_V", stamp_, battery_now_);
@@ -158,7 +160,7 @@ class Recorder {
     double next_radar_ = 0, next_camera_ = 0;
     PerWheel current_sum_{}, seen_{}, count_{};
     double stamp_ = 0, filtered_ = 0, smoothed_ = 0; // time that the log writes; states of the accelerometer's filters
-    double yaw_rate_now_ = 0;
+    double yaw_rate_now_ = 0, yaw_rate_before_ = 0;
     PerWheel current_now_{};
     std::deque<double> radar_, radar_parts_, waiting_, speeds_, yaw_rates_;
     std::deque<PerWheel> currents_;
@@ -298,14 +300,14 @@ log::Log generate(const GeneratorConfig &config) {
 namespace {
 
 // The first sets know neither the newer kinds nor single wheels outside the catalogue: their draws stay as they were.
-Setting draw_setting(bool outside, Random &random, const std::string &not_this, bool fleet = false, Size size = Size::small) {
+Setting draw_setting(bool outside, Random &random, const std::string &not_this, Sets sets = Sets::all, Size size = Size::small) {
     std::vector<const Kind *> pool;
     for (const Kind &kind : kinds())
-        if (kind.outside == outside && kind.name != not_this && (fleet || kind.first_sets)) pool.push_back(&kind);
+        if (kind.outside == outside && kind.name != not_this && kind.drawn <= sets) pool.push_back(&kind);
     const Kind &kind = *pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))];
     Setting setting;
     setting.name = kind.name;
-    if (kind.per_wheel() && (fleet || !outside) && random.uniform() < 0.5) setting.wheel = random.below(wheels);
+    if (kind.per_wheel() && (sets != Sets::all || !outside) && random.uniform() < 0.5) setting.wheel = random.below(wheels);
     for (const KindParameter &parameter : kind.parameters) {
         double value = 0;
         if (parameter.strength)
@@ -341,7 +343,9 @@ BlindCase draw_case(std::uint64_t seed, double duration_s, const std::string &wa
     return blind;
 }
 
-BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category) {
+namespace {
+
+BlindCase draw_machine(std::uint64_t seed, const std::string &category, Sets sets) {
     Random random(seed, 31);
     BlindCase blind;
     GeneratorConfig &config = blind.config;
@@ -370,16 +374,20 @@ BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category) {
     const std::string drawn = what < 0.15 ? "clean" : what < 0.65 ? "one" : what < 0.8 ? "two" : "outside";
     blind.category = category.empty() ? drawn : category;
     if (blind.category == "clean") return blind;
-    config.hidden.push_back(draw_setting(blind.category == "outside", random, "", true, config.size));
+    config.hidden.push_back(draw_setting(blind.category == "outside", random, "", sets, config.size));
     if (config.drive == "slopes" && blind.category == "two" && config.hidden.front().name != "grade")
         config.hidden.push_back({"grade", -1, {{"slope_rad", random.sign() * random.log_uniform(0.02, 0.12)}, {"direction_rad", 0}}});
     else if (blind.category == "two")
-        config.hidden.push_back(draw_setting(false, random, config.hidden.front().name, true, config.size));
+        config.hidden.push_back(draw_setting(false, random, config.hidden.front().name, sets, config.size));
     return blind;
 }
 
+} // namespace
+
+BlindCase draw_fleet_case(std::uint64_t seed, const std::string &category) { return draw_machine(seed, category, Sets::fleet); }
+
 BlindCase draw_bent_case(std::uint64_t seed, const std::string &category) {
-    BlindCase blind = draw_fleet_case(seed, category);
+    BlindCase blind = draw_machine(seed, category, Sets::bent);
     blind.config.knee = static_cast<Knee>(1 + Random(seed, 43).below(3));
     return blind;
 }

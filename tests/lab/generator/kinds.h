@@ -28,13 +28,15 @@ struct Hidden {
     double accel_bias = 0, accel_drift = 0, accel_scale = 0, accel_tilt = 0, radar_scale = 0, radar_pitch = 0;
     double voltage_gain = 0, camera_delay = 0, camera_scale = 0, actuation_delay = 0;
     double accel_delay = 0, accel_lag = 0, gyro_delay = 0, radar_delay = 0, current_delay = 0;
+    double accel_ahead = 0, accel_left = 0, gyro_scale = 0;
     // outside the catalogue, on wheels
     PerWheel friction_squared{}, dead_band{}, hysteresis{}, torque_limit{}, friction_drift{}, reverse_friction{}, resonance{};
     PerWheel resonance_speed{5, 5, 5, 5}, friction_step{}, friction_step_time{60, 60, 60, 60}, wear_in{}, wear_in_time{30, 30, 30, 30};
-    PerWheel tooth{}, speed_loss{}, gain_drift{};
+    PerWheel tooth{}, speed_loss{}, gain_drift{}, tyre_loss{};
     // outside the catalogue, of the machine and its ground
     double hysteresis_angle = 0.3, place_wave = 0, place_length = 0.6, turn_resistance = 0, coupling = 0, grip_speed = 0, grip_drift = 0;
     double water = 0, rolling_squared = 0, shear_peak = 0, mud = 0, mud_start = 0, mud_length = 1;
+    double swing = 0, swing_Hz = 1, gusts = 0, waves = 0, wave_length = 2, dropped = 0, dropped_time = 60;
 };
 
 struct KindParameter {
@@ -47,12 +49,15 @@ struct KindParameter {
     std::vector<double> choices = {}; // shape parameters drawn from a list
 };
 
+// The sets in which a kind is drawn: a set that was drawn once keeps its draws.
+enum class Sets { all, fleet, bent };
+
 struct Kind {
     std::string_view name;
     bool outside = false;
     std::string_view variable; // outside the catalogue: what the residual really depends on; several accepted, by '|'
     std::vector<KindParameter> parameters;
-    bool first_sets = true;    // drawn in the first blind sets too; false: in the sets of the fleet alone
+    Sets drawn = Sets::all;
     std::string_view law = {}; // outside: the catalogue's name for this law where it has learnt it since; several, by '|'
     bool per_wheel() const { return parameters.front().per_wheel != nullptr; }
 };

@@ -159,6 +159,9 @@ World::World(const Machine &machine, const Hidden &hidden, Random &random)
     state_ = Vector::Zero(size);
     battery = m_.battery_V;
     for (std::size_t i = 0; i < wheels; ++i) radius_[i] = m_.radius * m_.radius_each[i] * (1 + h_.radius_change[i]);
+    if (h_.gusts > 0)
+        for (int k = 1; k <= 40; ++k)
+            weather_.push_back({2 * std::numbers::pi * 0.01 * k * random.uniform(0.9, 1.1), random.uniform(0, 2 * std::numbers::pi)});
     delayed_.assign(static_cast<std::size_t>(std::lround(h_.actuation_delay / h_s)), PerWheel{});
     set_loads();
 }
@@ -208,6 +211,17 @@ double World::muddy(std::size_t i) const {
     return h_.mud != 0 && place >= h_.mud_start && place < h_.mud_start + h_.mud_length ? h_.mud : 0;
 }
 
+// What pushes the body along its heading, but for the ground [N].
+double World::pushed() const {
+    double gust = 0; // standard deviation 1
+    for (const GustWave &wave : weather_)
+        gust += std::sqrt(2.0 / static_cast<double>(weather_.size())) * std::cos(wave.rate * t + wave.phase);
+    return h_.swing * std::sin(2 * std::numbers::pi * h_.swing_Hz * t) + h_.gusts * gust;
+}
+
+// Rise of an uneven floor along the travelled path [rad].
+double World::waves() const { return h_.waves * std::sin(2 * std::numbers::pi * path / h_.wave_length); }
+
 void World::rate(const Vector &s, Vector &d) {
     const double v = s[0], r = s[1];
     double force = 0, moment = 0;
@@ -249,19 +263,19 @@ void World::rate(const Vector &s, Vector &d) {
             d[gear_at_ + k] = wm - w;
         }
     }
-    const double uphill = std::sin(h_.slope) * std::cos(yaw - h_.slope_direction) * m_.gravity;
+    const double uphill = (std::sin(h_.slope) * std::cos(yaw - h_.slope_direction) + std::sin(waves())) * m_.gravity;
     const double away = std::hypot(x, y);
     const double rope = away > 1e-6 ? h_.tether * (x * std::cos(yaw) + y * std::sin(yaw)) : 0; // along the heading
-    force -= rope + (h_.drag + h_.water * v * v) * soft_sign(v, 0.008);
-    specific_force = force / m_.mass;
+    force += pushed() - rope - (h_.drag + h_.water * v * v) * soft_sign(v, 0.008);
+    specific_force = force / mass();
     d[0] = specific_force - uphill;
     d[1] = moment / m_.yaw_inertia;
 }
 
 void World::set_loads() {
-    const double each = m_.mass * m_.gravity / 4, base = 2 * m_.half_base, track = 2 * m_.half_track;
+    const double each = mass() * m_.gravity / 4, base = 2 * m_.half_base, track = 2 * m_.half_track;
     for (std::size_t i = 0; i < wheels; ++i) {
-        double load = each - along[i] * m_.mass * accel * h_.height / (2 * base);
+        double load = each - along[i] * mass() * accel * h_.height / (2 * base);
         load += 2 * each * along[i] * h_.offset_x / base + 2 * each * side[i] * h_.offset_y / track;
         wheel[i].load = std::max(0.0, load);
     }
@@ -292,6 +306,7 @@ void World::step(const PerWheel &wanted) {
     double drawn = 0;
     for (std::size_t i = 0; i < wheels; ++i) {
         if (std::fabs(duty[i]) < h_.dead_band[i]) duty[i] = 0;
+        if (h_.tyre_loss[i] > 0) radius_[i] = m_.radius * m_.radius_each[i] * (1 - h_.tyre_loss[i] * t / 120);
         drawn += std::fabs(duty[i] * wheel[i].current);
         current_now_[i] = wheel[i].current;
         const double hot = wheel[i].heat, constant = (1 + h_.constant_change[i]) * (1 - magnet_1_K * hot);

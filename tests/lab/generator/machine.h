@@ -90,6 +90,9 @@ class World {
     double motor_speed(int i) const { return backlash_ ? state_[motor_at_ + i] : state_[2 + i]; }
 
   private:
+    struct GustWave {
+        double rate, phase;
+    };
     using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 18, 1>;
     struct Forces {
         double F, Q, torque, I;
@@ -98,6 +101,9 @@ class World {
     double friction(int i, double w) const;
     double current(int i, double w) const;
     double shear(double s) const;
+    double mass() const { return h_.dropped > 0 && t > h_.dropped_time ? m_.mass * (1 - h_.dropped) : m_.mass; }
+    double pushed() const;
+    double waves() const;
     double muddy(std::size_t i) const;
     void set_loads();
     void set_grip();
@@ -108,6 +114,7 @@ class World {
     GroundField field_;
     Vector state_;
     bool relaxed_, backlash_;
+    std::vector<GustWave> weather_;
     int slip_at_ = 0, gear_at_ = 0, motor_at_ = 0;
     PerWheel voltage_{}, current_now_{}, radius_{}, KG_{}, ke_{}, Ra_{};
     std::deque<PerWheel> delayed_;
