@@ -68,7 +68,7 @@ TEST(MovesTogether, a_push_is_told_with_its_size) {
     ASSERT_TRUE(told);
     EXPECT_EQ(told->what, Together::What::push);
     EXPECT_NEAR(told->error, 4, 0.6);
-    EXPECT_GT(told->correlation, 0.85);                     // 16 of 17
+    EXPECT_GT(told->correlation, 0.85);                       // 16 of 17
     EXPECT_NEAR(told->size, 4 * 4 * 0.01 * 0.3 / 0.05, 0.15); // wheels, noises, A, N m/A over m: 0.96 N
     EXPECT_EQ(told->per_s, 0);
     EXPECT_EQ(told->per_m, 0);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double block_s = 0.5, slow_s = 5, quick_s = 0.1;
 constexpr double alike = 0.75, all_wheels = 1.2, accelerometer_alone = 0.8, turning = 5; // (1) to (3)
-constexpr double largest = 30;                                                          // noises, beyond which a row counts as so many
+constexpr double largest = 30;                                                           // noises, beyond which a row counts as so many
 constexpr std::size_t few_blocks = 40;
 constexpr double slope_too = 0.5;          // share of (2) from which a push is a slope: none of a clean log's
 constexpr double least_share = 0.5;        // of the squares that a sinusoid takes
@@ -66,7 +66,8 @@ Blocks blocks_of(const std::vector<Series> &series, double length_s) {
     Blocks out;
     out.mean.resize(series.size());
     for (const auto &[k, block] : sums) {
-        if (!std::all_of(block.begin(), block.end(), [&](const Sum &s) { return static_cast<double>(s.rows) >= 0.5 * usual && s.rows > 0; }))
+        if (!std::all_of(block.begin(), block.end(),
+                         [&](const Sum &s) { return static_cast<double>(s.rows) >= 0.5 * usual && s.rows > 0; }))
             continue;
         out.at_s.push_back((static_cast<double>(k) + 0.5) * length_s);
         for (std::size_t i = 0; i < series.size(); ++i) out.mean[i].push_back(block[i].e / static_cast<double>(block[i].rows));

@@ -57,39 +57,58 @@ bool swings_as_it_turns(const std::vector<double> &narrow, const std::vector<dou
     return false;
 }
 
-MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, double step_s, const std::function<MotionAtWidth(double)> &smoothed) {
-    std::vector<double> widths;
+MotionAtWidths motion_at_widths(WheelInput &input, double narrowest_s, double step_s,
+                                const std::function<MotionAtWidth(double)> &smoothed) {
+    MotionAtWidths out;
     if (input.half_s > one_width_does * narrowest_s && input.scatter_rad > 0)
-        for (double h = narrowest_s; h * std::sqrt(next_width) < input.half_s; h *= next_width) widths.push_back(h);
-    widths.push_back(input.half_s);
-    MotionAtWidth at = smoothed(widths.front());
-    if (widths.size() > 1) {
-        const WheelInput &narrow = at.parabolas, wide = smoothed(std::min(input.half_s, swing_width * narrowest_s)).parabolas;
-        input.swings = swings_as_it_turns(narrow.speed_rad_s, wide.speed_rad_s, wide.angle_rad,
-                                          static_cast<double>(narrow.speed_rad_s.size()) * step_s / narrowest_s);
-    }
-    MotionAtWidth out;
-    std::vector<double> low, high;
-    for (const double h : widths) {
-        if (h != widths.front()) at = smoothed(h);
-        const double within = agree * speed_scatter_rad_s(input, h);
-        if (low.empty()) {
-            const std::size_t count = at.parabolas.speed_rad_s.size();
-            low.assign(count, -std::numeric_limits<double>::infinity()), high.assign(count, std::numeric_limits<double>::infinity());
-            input.width_s.assign(count, h);
-            out = at;
-        }
+        for (double h = narrowest_s; h * std::sqrt(next_width) < input.half_s; h *= next_width) out.half_s.push_back(h);
+    out.half_s.push_back(input.half_s);
+    for (const double h : out.half_s) out.at.push_back(smoothed(h));
+    input.width_s.clear();
+    if (out.half_s.size() == 1) return out;
+    const std::vector<double> &narrow = out.at.front().parabolas.speed_rad_s;
+    const WheelInput wide = smoothed(std::min(input.half_s, swing_width * narrowest_s)).parabolas;
+    input.swings = swings_as_it_turns(narrow, wide.speed_rad_s, wide.angle_rad, static_cast<double>(narrow.size()) * step_s / narrowest_s);
+    std::vector<double> low(narrow.size(), -std::numeric_limits<double>::infinity()),
+        high(narrow.size(), std::numeric_limits<double>::infinity());
+    input.width_s.assign(narrow.size(), out.half_s.front());
+    for (std::size_t i = 0; i < out.half_s.size(); ++i) {
+        const std::vector<double> &speed = out.at[i].parabolas.speed_rad_s;
+        const double within = agree * speed_scatter_rad_s(input, out.half_s[i]);
         for (std::size_t k = 0; k < low.size(); ++k) {
-            low[k] = std::max(low[k], at.parabolas.speed_rad_s[k] - within),
-            high[k] = std::min(high[k], at.parabolas.speed_rad_s[k] + within);
-            if (low[k] > high[k]) continue; // for good: neither comes back
-            take_row(out, at, k), input.width_s[k] = h;
+            low[k] = std::max(low[k], speed[k] - within), high[k] = std::min(high[k], speed[k] + within);
+            if (low[k] <= high[k]) input.width_s[k] = out.half_s[i]; // else for good: neither comes back
         }
     }
-    if (widths.size() == 1) input.width_s.clear();
+    return out;
+}
+
+void agree_on_widths(const std::vector<WheelInput *> &alike) {
+    std::vector<double> least;
+    for (const WheelInput *input : alike) {
+        if (input->width_s.empty()) continue;
+        if (least.empty()) least = input->width_s;
+        for (std::size_t k = 0; k < least.size(); ++k) least[k] = std::min(least[k], input->width_s[k]);
+    }
+    for (WheelInput *input : alike)
+        if (!input->width_s.empty()) input->width_s = least;
+}
+
+MotionAtWidth take_widths(WheelInput &input, MotionAtWidths &&motion) {
+    MotionAtWidth out = motion.at.front();
+    for (std::size_t k = 0; k < input.width_s.size(); ++k) {
+        std::size_t i = 0;
+        while (i + 1 < motion.half_s.size() && motion.half_s[i + 1] <= input.width_s[k]) ++i;
+        take_row(out, motion.at[i], k), input.width_s[k] = motion.half_s[i];
+    }
     input.angle_rad = std::move(out.parabolas.angle_rad);
     input.speed_rad_s = std::move(out.parabolas.speed_rad_s), input.accel_rad_s2 = std::move(out.parabolas.accel_rad_s2);
     return out;
+}
+
+MotionAtWidth follow_motion(WheelInput &input, double narrowest_s, double step_s, const std::function<MotionAtWidth(double)> &smoothed) {
+    MotionAtWidths motion = motion_at_widths(input, narrowest_s, step_s, smoothed);
+    return take_widths(input, std::move(motion));
 }
 
 } // namespace traction::lab

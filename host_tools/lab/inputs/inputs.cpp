@@ -118,8 +118,7 @@ bool InputBuilder::grid_and_wheels() {
     const auto wheels = [this](double step_s) {
         data.wheel.assign(model.wheel.size(), {});
         if (!set_grid(step_s)) return false;
-        for (std::size_t i = 0; i < model.wheel.size(); ++i)
-            if (model.wheel[i].drive < 0) wheel_motion(i), travel(data.wheel[i]);
+        wheels_motion();
         for (std::size_t i = 0; i < model.wheel.size(); ++i)
             if (model.wheel[i].drive < 0) turn_with_side(i);
         for (std::size_t i = 0; i < model.wheel.size(); ++i)
@@ -178,7 +177,7 @@ bool InputBuilder::set_grid(double step_s) {
     return data.count >= 3;
 }
 
-void InputBuilder::wheel_motion(std::size_t i) {
+void InputBuilder::wheel_motion(std::size_t i, Found &found) {
     WheelInput &input = data.wheel[i];
     double scale = 0;
     const log::Signal *s = motion_signal(i, scale);
@@ -224,10 +223,9 @@ void InputBuilder::wheel_motion(std::size_t i) {
             slopes_of(at.parabolas), slopes_of(at.cubics);
             return at;
         };
-        const MotionAtWidth at = follow_motion(input, narrowest, data.step_s, smoothed);
-        const double noise = rounding_noise(count_rad, input.sample_s, half);
-        rounding_rad_s2 = std::max(rounding_rad_s2, noise);
-        follow_jumps(input, at.cubics, noise);
+        found.motion = motion_at_widths(input, narrowest, data.step_s, smoothed);
+        found.noise_rad_s2 = rounding_noise(count_rad, input.sample_s, half);
+        rounding_rad_s2 = std::max(rounding_rad_s2, found.noise_rad_s2);
     } else if (data.independent_rows) {
         for (std::size_t k = 0; k < data.count; ++k) input.speed_rad_s.push_back(interpolate(s->t_s, s->value, data.time(k)));
         input.angle_rad.assign(data.count, 0);
@@ -237,13 +235,50 @@ void InputBuilder::wheel_motion(std::size_t i) {
         input.speed_rad_s = std::move(parabola.value);
         input.accel_rad_s2 = std::move(parabola.slope);
         mark_gaps(parabola.distance_s, *s);
-        WheelInput sharp;
-        sharp.speed_rad_s = std::move(cubic.value), sharp.accel_rad_s2 = std::move(cubic.slope);
-        follow_jumps(input, sharp, 0);
+        found.sharp.speed_rad_s = std::move(cubic.value), found.sharp.accel_rad_s2 = std::move(cubic.slope);
         input.angle_rad.assign(data.count, 0);
         for (std::size_t k = 1; k < data.count; ++k)
             input.angle_rad[k] = input.angle_rad[k - 1] + 0.5 * data.step_s * (input.speed_rad_s[k] + input.speed_rad_s[k - 1]);
     }
+}
+
+// Wheels of one side that roll the same way turn alike but for their slips: what blurs one of them blurs all.
+std::vector<std::vector<std::size_t>> InputBuilder::sides() const {
+    std::vector<std::vector<std::size_t>> out;
+    const auto place = [&](std::size_t i) { return parameter(model.wheel[i].geometry, "y_m"); };
+    const auto alike = [&](std::size_t i, std::size_t j) {
+        return (place(i) > 0) == (place(j) > 0) && (place(i) < 0) == (place(j) < 0) &&
+               std::fabs(parameter(model.wheel[i].geometry, "heading_rad") - parameter(model.wheel[j].geometry, "heading_rad")) < 1e-6;
+    };
+    for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+        if (model.wheel[i].drive >= 0) continue;
+        const auto side = std::find_if(out.begin(), out.end(), [&](const auto &s) { return alike(s.front(), i); });
+        if (side == out.end())
+            out.push_back({i});
+        else
+            side->push_back(i);
+    }
+    return out;
+}
+
+void InputBuilder::wheels_motion() {
+    std::vector<Found> found(model.wheel.size());
+    for (std::size_t i = 0; i < model.wheel.size(); ++i)
+        if (model.wheel[i].drive < 0) wheel_motion(i, found[i]);
+    for (const std::vector<std::size_t> &side : sides()) {
+        std::vector<WheelInput *> inputs;
+        for (const std::size_t i : side) inputs.push_back(&data.wheel[i]);
+        agree_on_widths(inputs);
+        std::vector<char> jumps(data.count, 0);
+        for (const std::size_t i : side) {
+            if (!found[i].motion.at.empty()) found[i].sharp = take_widths(data.wheel[i], std::move(found[i].motion)).cubics;
+            if (!found[i].sharp.accel_rad_s2.empty()) add_jumps(data.wheel[i], found[i].sharp, found[i].noise_rad_s2, jumps);
+        }
+        for (const std::size_t i : side)
+            if (!found[i].sharp.accel_rad_s2.empty()) follow_jumps(data.wheel[i], found[i].sharp, jumps);
+    }
+    for (std::size_t i = 0; i < model.wheel.size(); ++i)
+        if (model.wheel[i].drive < 0) travel(data.wheel[i]);
 }
 
 void InputBuilder::turn_with_side(std::size_t i) {
@@ -300,8 +335,8 @@ double InputBuilder::rounding_noise(double count, double period, double half) {
     return gain * count / std::sqrt(12.0) * std::sqrt(period) / std::pow(half, 1.5);
 }
 
-// Where cubics and parabolas differ by more than noise, the wheel jumps: there the cubics serve.
-void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const {
+// Where cubics and parabolas differ by more than noise, the wheel jumps.
+void InputBuilder::add_jumps(const WheelInput &input, const WheelInput &sharp, double least_noise, std::vector<char> &jumps) const {
     constexpr double jump = 5; // standard deviations
     constexpr double calm = 0.2,
                      quantile = 0.2533; // the difference's noise: from its calmest fifth while the wheel turns, whatever the rest does
@@ -315,14 +350,21 @@ void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, doub
     std::nth_element(moving.begin(), place, moving.end());
     const double limit = jump * std::max(least_noise, *place / quantile);
     const auto half_steps = static_cast<std::size_t>(std::lround(0.5 * data.smoothing_half_s / data.step_s));
-    input.plain_speed_rad_s = input.speed_rad_s;
-    input.plain_accel_rad_s2 = std::exchange(input.accel_rad_s2, sharp.accel_rad_s2);
     for (std::size_t k = 0; k < data.count; ++k) {
         if (!(size[k] > limit * (input.width_s.empty() ? 1 : std::pow(input.half_s / input.width_s[k], 1.5)))) continue;
-        for (std::size_t j = k - std::min(k, half_steps); j <= std::min(data.count - 1, k + half_steps); ++j) {
-            input.speed_rad_s[j] = sharp.speed_rad_s[j];
-        }
+        for (std::size_t j = k - std::min(k, half_steps); j <= std::min(data.count - 1, k + half_steps); ++j) jumps[j] = 1;
     }
+}
+
+// Where the side jumps, the speeds by cubics serve; their accelerations everywhere.
+void InputBuilder::follow_jumps(WheelInput &input, const WheelInput &sharp, const std::vector<char> &jumps) const {
+    const bool turns = std::any_of(input.speed_rad_s.begin(), input.speed_rad_s.end(),
+                                   [&](double speed) { return std::fabs(speed) > data.standstill_rad_s; });
+    if (!turns) return;
+    input.plain_speed_rad_s = input.speed_rad_s;
+    input.plain_accel_rad_s2 = std::exchange(input.accel_rad_s2, sharp.accel_rad_s2);
+    for (std::size_t k = 0; k < data.count; ++k)
+        if (jumps[k] != 0) input.speed_rad_s[k] = sharp.speed_rad_s[k];
 }
 
 void InputBuilder::travel(WheelInput &input) const {

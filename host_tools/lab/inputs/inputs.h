@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dataset.h"
+#include "follow_motion.h"
 
 #include <string>
 #include <vector>
@@ -45,12 +46,20 @@ struct InputBuilder {
     double
     swing_rad_s() const; // of the wheels: root mean square of jerk over that of acceleration, where that is no rounding of the encoder
     double rounding_rad_s2 = 0; // what rounding leaves in an acceleration, of the coarsest wheel
-    void wheel_motion(std::size_t i);
+    struct Found {              // of a wheel's motion, before the wheels of a side agree
+        MotionAtWidths motion;
+        WheelInput sharp; // its speed and acceleration by cubics
+        double noise_rad_s2 = 0;
+    };
+    void wheel_motion(std::size_t i, Found &found);
+    void wheels_motion();
+    std::vector<std::vector<std::size_t>> sides() const;
     bool is_measured(std::size_t i) const;
     // A driven wheel whose speed the log has not: its motor holds it, so that it neither stands nor rolls freely. The mean of those driven
     // wheels of its side that are measured.
     void turn_with_side(std::size_t i);
-    void follow_jumps(WheelInput &input, const WheelInput &sharp, double least_noise) const;
+    void add_jumps(const WheelInput &input, const WheelInput &sharp, double least_noise, std::vector<char> &jumps) const;
+    void follow_jumps(WheelInput &input, const WheelInput &sharp, const std::vector<char> &jumps) const;
     static double rounding_of(const std::vector<double> &angle_rad);
     static double scatter_of(const std::vector<double> &angle_rad, double count_rad);
     static double rounding_noise(double count_rad, double period_s, double half_s);
