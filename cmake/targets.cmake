@@ -126,3 +126,11 @@ function(traction_test name)
     set_tests_properties(${name}_whole PROPERTIES LABELS "${T_LABEL};long" TIMEOUT 1800)
   endif()
 endfunction()
+
+# traction_waiting_test(NAME PLACE): a test that mostly waits, for a rover in real time or for a page to draw. These run
+# one after the other by PLACE, from the beginning on, and each takes one of the three places of the preset: the two processors are left to
+# tests that compute. Two of them at once would leave a processor idle, and disturb each other.
+function(traction_waiting_test name place)
+  math(EXPR cost "1000 - ${place}") # before all that compute
+  set_tests_properties(${name} PROPERTIES RESOURCE_LOCK clock COST ${cost})
+endfunction()

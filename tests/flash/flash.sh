@@ -128,8 +128,8 @@ says 'no version yet'
 
 flash 0 p0.tar # no starter: it waits for one
 says 'installed; no version runs there now'
-start_board() {
-    "$slot" --folder "$work/board" run --trial-seconds 40 >>starter.txt 2>&1 &
+start_board() { # start_board [SECONDS]: of a trial
+    "$slot" --folder "$work/board" run --trial-seconds "${1-40}" >>starter.txt 2>&1 &
     starter=$!
     running="$running $starter"
 }
@@ -233,8 +233,12 @@ says 'the old version runs; the new one did not come up: returned'
 says 'ended with exit code 3'
 { cat "$source/rovers/lhomme_desages.toml"; echo '# is deaf'; } >deaf_rover.toml
 pack deaf.tar deaf_rover.toml
+kill "$starter"
+wait "$starter" || true
+start_board 15 # a healthy one needs 10 s
+until_true 'the old version does not run under another starter' daemon_runs
 flash 1 deaf.tar
-says 'not healthy within 40 s: faults 00000020' # FAULT_RADAR_LOST
+says 'not healthy within 15 s: faults 00000020' # FAULT_RADAR_LOST
 run 0 "$slot" --folder board status
 says 'number 1, version'
 until_true 'the old version was not started again' daemon_runs

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace traction::lab {
 namespace {
@@ -106,15 +107,20 @@ TEST(Tolerance, a_share_that_cannot_be_is_told) {
 }
 
 // Without tolerances of their own 9 of 10 such logs were given names (up to four each).
-TEST(Tolerance, clean_logs_of_machines_whose_wheels_differ_get_no_name) {
-    for (const Soil soil : {Soil::sand, Soil::gravel, Soil::concrete})
-        for (const std::uint64_t seed : {7001u, 7002u}) {
-            const GeneratorConfig config = apart(soil, seed);
-            const Model model = parse_model(generator::data_sheet(config), "sheet");
-            const Diagnosis d = diagnose(model, make_dataset(model, generator::generate(config)), {});
-            EXPECT_EQ(d.kind, "nothing") << generator::name_of(soil) << ' ' << seed << ": " << d.text;
-        }
+class Apart : public testing::TestWithParam<std::tuple<Soil, std::uint64_t>> {};
+
+TEST_P(Apart, a_clean_log_of_a_machine_whose_wheels_differ_gets_no_name) {
+    const GeneratorConfig config = apart(std::get<0>(GetParam()), std::get<1>(GetParam()));
+    const Model model = parse_model(generator::data_sheet(config), "sheet");
+    const Diagnosis d = diagnose(model, make_dataset(model, generator::generate(config)), {});
+    EXPECT_EQ(d.kind, "nothing") << d.text;
 }
+
+INSTANTIATE_TEST_SUITE_P(Tolerance, Apart,
+                         testing::Combine(testing::Values(Soil::sand, Soil::gravel, Soil::concrete), testing::Values(7001u, 7002u)),
+                         [](const auto &one) {
+                             return generator::name_of(std::get<0>(one.param)) + "_" + std::to_string(std::get<1>(one.param));
+                         });
 
 // 95 % of 20 values: 15 and fewer would be a chance of 1 in 380.
 TEST(Tolerance, the_interval_of_a_wheel_is_that_of_the_shared_value_and_its_own) {

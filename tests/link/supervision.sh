@@ -10,6 +10,7 @@ cd "$work"
 daemon=
 end() { [ -z "$daemon" ] || { kill -TERM "$daemon" 2>/dev/null && wait "$daemon" 2>/dev/null; } || true; daemon=; }
 trap end EXIT INT TERM
+renice -n -10 -p $$ >/dev/null 2>&1 || true # who may, goes before what computes beside it
 fail() { echo "supervision.sh: $*"; for file in rover.err said; do [ ! -f $file ] || { echo "--- $file"; tail -n 20 $file; }; done; exit 1; }
 run() { # run EXPECTED_CODE ARGUMENT...: traction
     expected=$1
