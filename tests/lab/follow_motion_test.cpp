@@ -60,6 +60,30 @@ double error_of(const std::vector<double> &speed, double from, double to) {
     return std::sqrt(sum / n);
 }
 
+// Two wheels of a side, one of which seems to run evenly: bent by other widths they would slip against each other.
+TEST(FollowMotion, wheels_of_a_side_take_the_narrowest_of_theirs) {
+    Counted calm(0.4), lively(0.4);
+    const auto motion = [](Counted &wheel) {
+        return motion_at_widths(wheel.input, narrow_s, tick_s, [&](double width) { return wheel.at(width); });
+    };
+    MotionAtWidths of_calm = motion(calm), of_lively = motion(lively);
+    const std::vector<double> own = lively.input.width_s;
+    ASSERT_FALSE(own.empty());
+    calm.input.width_s.assign(samples, 0.4);
+    agree_on_widths({&calm.input, &lively.input});
+    EXPECT_EQ(calm.input.width_s, own);
+    EXPECT_EQ(lively.input.width_s, own);
+    take_widths(calm.input, std::move(of_calm)), take_widths(lively.input, std::move(of_lively));
+    EXPECT_EQ(calm.input.speed_rad_s, lively.input.speed_rad_s);
+    // a width that a wheel was not smoothed by: the next narrower that it was
+    Counted other(0.4);
+    MotionAtWidths of_other = motion(other);
+    other.input.width_s.assign(samples, 1.2 * narrow_s);
+    take_widths(other.input, std::move(of_other));
+    EXPECT_EQ(other.input.speed_rad_s, other.at(narrow_s).parabolas.speed_rad_s);
+    EXPECT_EQ(other.input.width_s, std::vector<double>(samples, narrow_s));
+}
+
 } // namespace
 
 TEST(FollowMotion, is_wide_where_a_wheel_runs_evenly_and_narrow_where_it_starts) {

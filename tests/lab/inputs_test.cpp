@@ -339,10 +339,25 @@ TEST(Inputs, a_wheel_that_is_read_more_narrowly_jumps_by_more) {
     sharp.accel_rad_s2[800] = 3 * limit;
     input.width_s.assign(1000, input.half_s);
     input.width_s[600] = input.width_s[800] = 0.5 * input.half_s;
-    builder.follow_jumps(input, sharp, 0);
+    std::vector<char> jumps(1000, 0);
+    builder.add_jumps(input, sharp, 0, jumps), builder.follow_jumps(input, sharp, jumps);
     EXPECT_EQ(input.speed_rad_s[400], 3);
     EXPECT_EQ(input.speed_rad_s[600], 2);
     EXPECT_EQ(input.speed_rad_s[800], 3);
+}
+
+// On stiff ground a difference of two wheels' smoothing is a pull between them.
+TEST(Inputs, wheels_of_a_side_are_smoothed_alike_and_sides_by_themselves) {
+    generator::GeneratorConfig config = generator::draw_fleet_case(1020007, "clean").config; // small, concrete
+    config.duration_s = 60;
+    const Model model = parse_model(generator::data_sheet(config), "sheet");
+    const Dataset data = make_dataset(model, generator::generate(config));
+    ASSERT_FALSE(data.wheel[0].width_s.empty());
+    EXPECT_NE(std::count(data.wheel[0].width_s.begin(), data.wheel[0].width_s.end(), data.wheel[0].width_s.front()),
+              static_cast<std::ptrdiff_t>(data.count));
+    EXPECT_EQ(data.wheel[0].width_s, data.wheel[2].width_s);
+    EXPECT_EQ(data.wheel[1].width_s, data.wheel[3].width_s);
+    EXPECT_NE(data.wheel[0].width_s, data.wheel[1].width_s);
 }
 
 // A log of angles is rounded to the encoder's counts, whatever decimals it is written with; without them the count was the last decimal's.

@@ -63,11 +63,12 @@ MotionAtWidths motion_at_widths(WheelInput &input, double narrowest_s, double st
     if (input.half_s > one_width_does * narrowest_s && input.scatter_rad > 0)
         for (double h = narrowest_s; h * std::sqrt(next_width) < input.half_s; h *= next_width) out.half_s.push_back(h);
     out.half_s.push_back(input.half_s);
-    for (const double h : out.half_s) out.at.push_back(smoothed(h));
     input.width_s.clear();
+    out.at.push_back(smoothed(out.half_s.front()));
     if (out.half_s.size() == 1) return out;
-    const std::vector<double> &narrow = out.at.front().parabolas.speed_rad_s;
     const WheelInput wide = smoothed(std::min(input.half_s, swing_width * narrowest_s)).parabolas;
+    for (std::size_t i = 1; i < out.half_s.size(); ++i) out.at.push_back(smoothed(out.half_s[i]));
+    const std::vector<double> &narrow = out.at.front().parabolas.speed_rad_s;
     input.swings = swings_as_it_turns(narrow, wide.speed_rad_s, wide.angle_rad, static_cast<double>(narrow.size()) * step_s / narrowest_s);
     std::vector<double> low(narrow.size(), -std::numeric_limits<double>::infinity()),
         high(narrow.size(), std::numeric_limits<double>::infinity());
