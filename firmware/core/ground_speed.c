@@ -77,7 +77,7 @@ static const float creep_sigmas2 = 6.25f; // of (25)
 static bool wheels_creep(const ground_speed_config_t *config, const ground_speed_state_t *state, float wheel_m_s)
 {
     if (!fixed_greater(config->still_m_s, 0.0f) || !fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) ||
-        state->unheard_ticks >= SILENT_TICKS || state->rolls_ticks > 0) {
+        (state->unheard_ticks >= SILENT_TICKS && !state->cover.on) || state->rolls_ticks > 0) {
         return false;
     }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
@@ -85,12 +85,27 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
     if (!fixed_greater(config->slow_m_s, mean_m_s) || fixed_greater(gains_m_s, beside_most * config->slow_m_s)) {
         return false;
     }
-    if (state->quiet > 0) {
+    if (state->quiet > 0 || state->cover.on) {
         return true;
     }
     const float beside_m_s = mean_m_s + beside_most * config->slow_m_s;
     const float most_m_s = fixed_greater(config->lowest_m_s, beside_m_s) ? config->lowest_m_s : beside_m_s; // (22)
     return state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) && !fixed_greater(state->value_heard_m_s, most_m_s);
+}
+
+static const float alone_noise_m_s = 0.02f, alone_slip = 0.1f; // of (42), assumed
+
+// (42): no radar, but wheels that rolled as long as there was one, and of which nothing has told since that they slip more or less.
+static bool wheels_alone(const ground_speed_config_t *config, ground_speed_state_t *state, bool wheels_part)
+{
+    if (!state->cover.on && state->unheard_ticks < SILENT_TICKS) {
+        return false;
+    }
+    if (ground_speed_body_departs(state) && fixed_greater(ground_speed_told_by_wheels(config, state, config->apart_told_m_s), 0.0f)) {
+        state->rolls = false;
+        state->rolled_values = 0;
+    }
+    return state->rolled_values > 0 && !wheels_part && !state->other_alive && state->rolls_ticks == 0;
 }
 
 // Where nothing is known, the wheels tell a little: the rim's speed, give or take what slips; but not against the radar.
@@ -101,8 +116,10 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     if (state->standstill && wheels_part) { // (33)
         ground_speed_follow_wheels(config, state, true);
     }
-    const float spread =
-        creeps ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s) : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
+    const bool alone = !creeps && wheels_alone(config, state, wheels_part);
+    const float spread = creeps  ? creep_noise_m_s + creep_slip * fabsf(wheel_m_s)
+                         : alone ? alone_noise_m_s + alone_slip * fabsf(wheel_m_s)
+                                 : config->wheel_noise_m_s + config->wheel_slip * fabsf(wheel_m_s);
     const float noise = ground_speed_square(spread);
     if (creeps) {
         ground_speed_follow_wheels(config, state, true);
@@ -118,9 +135,10 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
     }
     const bool denied = state->unheard_ticks < SILENT_TICKS && fixed_greater(fabsf(state->value_m_s - fabsf(wheel_m_s)), 2.0f * spread);
     const bool undecided = state->other_alive && state->unheard_ticks < SILENT_TICKS; // which sign it is, the radar tells
-    if (!denied && !undecided && fixed_greater(state->p_vv, 1.2f * noise)) {
+    if ((alone || (!denied && !undecided)) && fixed_greater(state->p_vv, 1.2f * noise)) {
         ground_speed_track_t track = ground_speed_best_of(state);
-        ground_speed_correct(config, &track, wheel_m_s - track.speed_m_s, 0.0f, noise);
+        const float slip_m_s = !alone ? 0.0f : wheel_m_s < 0.0f ? -state->beside_mean_m_s : state->beside_mean_m_s;
+        ground_speed_correct(config, &track, wheel_m_s + slip_m_s - track.speed_m_s, 0.0f, noise);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
     }

@@ -116,8 +116,8 @@
 // the wheels turn is of a body that has stopped, or of a radar that sees nothing any more: covered, in water, out of order. A stop is felt:
 // by the speed that was known last and what the accelerometer has felt since, with the bias of before, the body still goes where (38)
 // holds, and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever
-// (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise, (t - t_r)/T Qv, and an echo that
-// has become slow itself asks for 3/4 |R w|. Later than 3 s the estimate stands for e.
+// (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise and of the bias, (t - t_r)/T Qv + ((t - t_r)
+// 0.02 m/s^2)^2. Later than 3 s the estimate stands for e.
 //   |v'| < 0.12 m/s,  t_13 < 0.35 s,  no gyros                                        (39)  v': the accelerometer's word beside (13)
 // A body that a wall or soft ground stops at once is to (13) a slope that begins. Its echo falls silent, so a window in which it stopped
 // hears the part in which it moved, as fast as ever: where (39) holds, values tell nothing between the two words. If what was felt is over,
@@ -125,6 +125,17 @@
 // value std is at least half of what the wheels' word has taken away: nothing has told yet.
 // (40): where (7) wins and neither (10) nor (21) tells of a body that departs, wheels and accelerometer agree that nothing has happened: a
 // line may have begun. The claim holds what the speed leapt by, and 0.85 of it a value later.
+//   |d - d'| > 3 sqrt(R) + ...,  e^2/S > 9                                            (41)  while (18) holds and (10) and (21) tell of
+//   nothing
+// A body's window shares three quarters with the one before, so what neither wheels nor accelerometer feel begins slowly in it. A value
+// that leaps away at once is a line's, or noise, and tells nothing for two seconds, in which the first of them is told by its steadiness
+// (doppler.h); the claim covers 0.7 of what it leaves. A value that comes back ends it, and so does one that goes on: a slide that the
+// other values had hidden. (15) needs a value near zero: half of a step between values, and what a window that crosses it reads.
+//   v = R w + (d - R w)',  n = 0.02 m/s + |R w|/10                                    (42)  ()': mean until the radar was covered
+// Where no value comes, or (38) finds the radar covered, wheels that held (18) within the last second of values roll on until (10) and
+// (21) tell that the body departs: beyond n they are asked as in (20), and below slow they creep as there. Below 1.25 slow a quiet echo
+// tells of a stop only if it was felt. A covered radar hears its own noise now and then: fewer than four loud values in a row that
+// leave what is known are none.
 #ifndef TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 #define TRACTION_FIRMWARE_CORE_GROUND_SPEED_H
 
@@ -306,6 +317,7 @@ typedef struct {
     int32_t held_values;             // for which it was the same
     int32_t parted_values;           // of (18): until which it is not forgotten that radar and wheels have parted
     bool rolls;                      // of (18)
+    int32_t rolled_values;           // of (42): for which it may have held until the radar was covered
     uint32_t chore;                  // of a turn of CHORES, one a tick that has time
     int32_t quiet;
     int32_t loud;
@@ -327,6 +339,8 @@ typedef struct {
     ground_speed_side_t agile;                            // (7)
     float agile_sum;                                      // of (7)
     int32_t agile_left;                                   // values until it starts anew
+    float leap_from_m_s, leap_m_s;                        // of (41): the last value; what it left
+    int32_t leap_left;                                    // values that may still be refused
     float jolt_m_s;                                       // of (40)
     int32_t waits;                                        // tracks that have not seen the last Doppler value: 2 both, 1 the agile one
     float value_heard_m_s, value_accel_m_s2, value_trust; // the value as it came, the raw acceleration in its window

@@ -6,13 +6,15 @@
 
 static const float ticks_known = 300.0f; // 3 s: longer, the bias's error alone makes half of a rim's speed, assumed
 
-static const float heard_share = 0.6f; // a rim above it rolls at a speed that the radar hears, assumed
+static const float heard_share = 0.6f;   // [1] of slow_m_s: a rim above it rolls at a speed that the radar hears, assumed
+static const float covered_share = 0.3f; // [1] and above this where it did not hear it when it was faster, assumed
+static const float hardly_share = 1.25f; // [1] below it a quiet echo tells of no stop that was not felt, assumed
+static const float bias_m2_s4 = 4e-4f;   // (0.02 m/s^2)^2: how well it is known where it has settled, assumed
 
 // Where the speed was known last: V, the bias and the ticks since.
 typedef struct {
     int32_t q20;
     float speed_m_s, bias_m_s2, ticks;
-    float heard_m_s; // last
     bool value;
 } known_t;
 
@@ -20,18 +22,13 @@ typedef struct {
 static known_t known_last(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
     const float since_rest = (float)(int32_t)(state->slide.ticks - state->cover.rest_ended);
-    known_t out = {state->cover.rest_q20, 0.0f, state->cover.rest_bias_m_s2, state->cover.rested ? since_rest : ticks_known,
-                   config->speed_max_m_s, false};
+    known_t out = {state->cover.rest_q20, 0.0f, state->cover.rest_bias_m_s2, state->cover.rested ? since_rest : ticks_known, false};
     if (state->slide.held > 0) {
         const int32_t at = (state->slide.newest + SLIDE_VALUES - state->slide.held + 1) % SLIDE_VALUES;
         const float since = (float)(int32_t)(state->slide.ticks - state->slide.came[at]) + state->slide.tau_s[at] * config->per_tick_1_s;
         if (fixed_greater(out.ticks, since)) {
-            const known_t value = {state->slide.q20[at],
-                                   state->slide.sign[at] * state->slide.heard_m_s[at],
-                                   state->slide.bias_m_s2[at],
-                                   since,
-                                   state->slide.heard_m_s[state->slide.newest],
-                                   true};
+            const known_t value = {state->slide.q20[at], state->slide.sign[at] * state->slide.heard_m_s[at], state->slide.bias_m_s2[at],
+                                   since, true};
             out = value;
         }
     }
@@ -40,31 +37,46 @@ static known_t known_last(const ground_speed_config_t *config, const ground_spee
 
 void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_state_t *state, float wheel_m_s)
 {
-    const bool turns = fixed_greater(config->still_m_s, 0.0f) && fixed_greater(fabsf(wheel_m_s), heard_share * config->slow_m_s);
+    const float least_m_s = (state->cover.on ? covered_share : heard_share) * config->slow_m_s;
+    const bool turns = fixed_greater(config->still_m_s, 0.0f) && fixed_greater(fabsf(wheel_m_s), least_m_s);
     if (!turns) {
         state->cover.on = false;
         state->cover.stopped = false;
         state->cover.judged = false;
         return;
     }
+    if (state->cover.on) { // values before are none to compare with
+        state->loud = 0;
+        state->refused = 0;
+        ground_speed_forget_agile(state);
+    }
     if (state->cover.judged) {
         return;
     }
     const known_t from = known_last(config, state);
     if (!fixed_greater(ticks_known, from.ticks)) { // the wheels and what was known of old agree, or it fades
-        state->cover.on = fixed_greater(wheel_m_s < 0.0f ? -state->speed_m_s : state->speed_m_s, 0.5f * fabsf(wheel_m_s));
+        state->cover.on =
+            state->cover.on || fixed_greater(wheel_m_s < 0.0f ? -state->speed_m_s : state->speed_m_s, 0.5f * fabsf(wheel_m_s));
         return;
     }
+    const float time_s = from.ticks * config->tick_s;
     const float change_m_s = (float)fixed_wrap_difference(state->integral_q20[state->head], from.q20) * (1.0f / 1048576.0f);
-    const float expected = from.speed_m_s + change_m_s - from.ticks * config->tick_s * from.bias_m_s2; // (38)
+    const float expected = from.speed_m_s + change_m_s - time_s * from.bias_m_s2; // (38)
     const float along = wheel_m_s < 0.0f ? -expected : expected;
-    const float half_m_s = 0.5f * fabsf(wheel_m_s);
-    const float least_m_s = fixed_greater(half_m_s, from.heard_m_s) ? 1.5f * half_m_s : half_m_s; // the echo itself became slow
-    const float gap_m_s = along - least_m_s;
-    const bool sure = fixed_greater(ground_speed_square(gap_m_s), from.ticks * state->speed_noise_m2_s2);
-    state->cover.on = sure && fixed_greater(gap_m_s, 0.0f);
-    state->cover.stopped = sure && !state->cover.on && from.value; // after a rest a window is half of it still
-    state->cover.judged = state->cover.on || state->cover.stopped; // the first quiet value after a loud one tells best
+    const float gap_m_s = along - 0.5f * fabsf(wheel_m_s);
+    const float noise_m2_s2 = from.ticks * state->speed_noise_m2_s2 + ground_speed_square(time_s) * bias_m2_s4;
+    const bool sure = fixed_greater(ground_speed_square(gap_m_s), noise_m2_s2);
+    state->cover.stopped = sure && gap_m_s < 0.0f && from.value; // after a rest a window is half of it still
+    const bool hardly = from.value && fixed_greater(hardly_share * config->slow_m_s, fabsf(wheel_m_s));
+    const bool was = state->cover.on;
+    state->cover.on = !state->cover.stopped && ((sure && gap_m_s > 0.0f) || hardly);
+    if (state->cover.on && !was && state->quiet > 0) { // what has pulled it to a standstill was none
+        state->speed_m_s = expected;
+        state->bias_m_s2 = from.bias_m_s2;
+        state->p_vv += noise_m2_s2;
+        state->other_alive = false;
+    }
+    state->cover.judged = (state->cover.on && sure) || state->cover.stopped; // the first quiet value after a loud one tells best
 }
 
 void ground_speed_watch_cover(ground_speed_state_t *state)

@@ -42,6 +42,7 @@ static const float parts_sigmas2 = 16.0f;
 static const float parts_m2_s2 = 4e-4f; // (2 cm/s)^2
 
 enum { PARTED_VALUES = 24 }; // 3 s, assumed
+enum { ROLLED_VALUES = 8 };  // of (42): in the last of them a radar may have been covered already
 
 static bool is_close(float beside_m_s, float rim)
 {
@@ -57,6 +58,9 @@ static void watch_rolling(ground_speed_state_t *state)
     const bool parts = !beside && fixed_greater(ground_speed_square(left), parts_sigmas2 * state->value_noise_m2_s2 + parts_m2_s2); // (37)
     state->parted_values = parts ? PARTED_VALUES : state->parted_values > 0 ? state->parted_values - 1 : 0;
     state->rolls = state->parted_values == 0 && beside && is_close(state->beside_mean_m_s, rim);
+    state->rolled_values = state->rolls && state->rolls_ticks == 0 ? ROLLED_VALUES
+                           : state->rolled_values > 0              ? state->rolled_values - 1
+                                                                   : 0;
 }
 
 static const float scatter_share = 0.015f; // [1] of a value that enters the mean of (28): eight seconds

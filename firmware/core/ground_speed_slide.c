@@ -11,7 +11,8 @@ static const float slide_prior = 16.0f;      // 2 ln of the odds against a slide
 static const float slide_least = 8.0f;       // that the values must tell before it is asked
 static const float slide_sure = 2.0f;        // it is never taken at once: the next value decides
 static const float waver = 0.1f;
-static const float dip = 0.8f; // [1] assumed: the values spread by 2 to 8 %
+static const float dip = 0.8f;                                 // [1] assumed: the values spread by 2 to 8 %
+static const float through_share = 0.25f, through_m_s = 0.08f; // of (41): assumed, a step of six is a fifth of the ends' sum
 
 typedef struct {
     float t_s[SLIDE_VALUES];   // of the windows' middles, from the newest one's; the newest first
@@ -149,7 +150,8 @@ static bool dips(const recent_t *recent, int32_t count)
             return false;
         }
     }
-    return fixed_greater(dip * end, recent->d_m_s[least]);
+    const float through = through_m_s + through_share * (oldest + newest);
+    return fixed_greater(dip * end, recent->d_m_s[least]) && fixed_greater(through, recent->d_m_s[least]);
 }
 
 // (15) over `count` values; true where it has told.

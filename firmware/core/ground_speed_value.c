@@ -99,6 +99,7 @@ static void begin_anew(const ground_speed_config_t *config, ground_speed_state_t
     state->misfit = 1.0f;
     state->other_alive = false;
     state->against = 0;
+    state->leap_left = 0;
     state->rolls_ticks = 0;
     state->slide.held = 0;
     ground_speed_forget_agile(state);
@@ -135,6 +136,40 @@ static __attribute__((noinline)) void keep_below(const ground_speed_config_t *co
     state->refused = 0;
 }
 
+static const float leap_sigmas2 = 9.0f, leap_least_m2_s2 = 0.0009f; // of (41); (3 cm/s)^2
+static const float leap_stays = 0.5f, leap_moves = 1.5f;            // [1] of the leap, assumed
+static const float leap_claim = 0.7f;                               // [1] of it, assumed: either may be right
+
+enum { LOUD_AGAIN = 4 };   // of (42): a window's length
+enum { LEAP_VALUES = 16 }; // two seconds, in which a line at the echo's edge is told by its steadiness, doppler.h
+
+// (41): whether a value that is `left_m_s` off is one that the body cannot have made.
+static __attribute__((noinline)) bool leaps(const ground_speed_config_t *config, ground_speed_state_t *state, float left_m_s,
+                                            float noise_m2_s2, bool beyond)
+{
+    const float heard = state->value_heard_m_s;
+    const float step_m_s = heard - state->leap_from_m_s;
+    const float left = fabsf(left_m_s);
+    state->leap_from_m_s = heard;
+    if (state->leap_left > 0) {
+        const bool stays = fixed_greater(left, leap_stays * state->leap_m_s) && fixed_greater(leap_moves * state->leap_m_s, left);
+        state->leap_left = stays && !state->other_alive && state->rolls_ticks == 0 ? state->leap_left - 1 : 0;
+    } else if (beyond && state->rolls && state->refused == 0 && state->accepted && !state->other_alive && state->rolls_ticks == 0 &&
+               state->rolls_wait == 0 && fixed_greater(config->still_m_s, 0.0f) &&
+               fixed_greater(ground_speed_bias_known_m2_s4, state->p_bb) &&
+               fixed_greater(ground_speed_square(step_m_s), leap_sigmas2 * noise_m2_s2 + leap_least_m2_s2) &&
+               !(ground_speed_body_departs(state) &&
+                 fixed_greater(ground_speed_told_by_wheels(config, state, config->apart_told_m_s), 0.0f))) {
+        state->leap_left = LEAP_VALUES;
+        state->leap_m_s = left;
+    }
+    if (state->leap_left > 0) {
+        const float claim_m_s = leap_claim * left;
+        state->jolt_m_s = fixed_greater(claim_m_s, state->jolt_m_s) ? claim_m_s : state->jolt_m_s;
+    }
+    return state->leap_left > 0;
+}
+
 void ground_speed_update_doppler(const ground_speed_config_t *config, ground_speed_state_t *state, const ground_speed_input_t *input)
 {
     const ground_speed_past_t window = ground_speed_look_back(config, state, input->doppler_late_s);
@@ -157,7 +192,6 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     state->value_accel_m_s2 = window.accel_m_s2;
     const float trust = fixed_clamp(fixed_finite(input->doppler_trust), 1.0f, 1000.0f) * state->misfit;
     state->value_trust = early ? early_noise * trust : trust;
-    ground_speed_watch_radar(config, state);
     const ground_speed_value_t value = ground_speed_value_for(config, state, &track, rolls ? 0.0f : own_accel);
     const float measured = value.speed_m_s;
     const float noise = value.noise_m2_s2;
@@ -175,7 +209,14 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
         spread = ground_speed_spread_of(&track, own.tau_s) + noise;
         cost = ground_speed_square(nearest) / spread;
     }
-    state->waits = 2;
+    if (state->cover.on && state->loud < LOUD_AGAIN && fixed_greater(cost, ground_speed_square(config->gate_sigma))) {
+        return; // (42): noise that passes for an echo
+    }
+    const bool leapt = leaps(config, state, nearest, noise, fixed_greater(cost, leap_sigmas2));
+    if (leapt && (early || state->leap_left < LEAP_VALUES)) {
+        return;
+    }
+    ground_speed_watch_radar(config, state);
     state->value_m_s = measured;
     state->value_noise_m2_s2 = noise;
     state->value_tau_s = window.tau_s;
@@ -188,6 +229,10 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     if (!early) {
         ground_speed_remember(state);
     }
+    if (leapt) { // (15) may need it: a slide moves on
+        return;
+    }
+    state->waits = 2;
     watch_bias(config, state, &track, nearest, spread);
     if (cost > ground_speed_square(config->gate_sigma)) {
         if (state->accepted && state->refused < config->gate_patience) { // before the first, the wheels alone have told, and little

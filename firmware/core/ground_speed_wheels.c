@@ -103,6 +103,7 @@ static void begin_rolling(const ground_speed_config_t *config, ground_speed_stat
     claim_untold(state, state->apart_m_s);
     state->apart_m_s = 0.0f;
     state->rolls_ticks = ROLL_TICKS;
+    state->rolled_values = 0;
     ground_speed_forget_agile(state);
 }
 

@@ -214,6 +214,9 @@ std::vector<Row> rows() {
             Case closed;
             closed.closed = true, closed.duration_s = 30, closed.command_m_s = v, closed.echo_share = covered.echo_share;
             add("lost", "the same, closed loop", closed);
+            covered.echo_share = closed.echo_share = [](double t) { return t < 5 || t > 12 ? 1.0 : 0.0; };
+            add("lost", "radar covered for 7 s at " + std::to_string(v).substr(0, 3), covered);
+            add("lost", "covered for 7 s, closed loop", closed);
         }
         for (const double decel : {0.7, 1.5, 3.4})
             for (const double slope : {0.0, 5.0, -5.0}) { // it bogs down, and its wheels turn on

@@ -63,7 +63,7 @@ TEST(GroundSpeedCover, a_radar_that_is_covered_while_the_wheels_roll_on_is_no_st
             EXPECT_LT(at_most(rover), 0.1 + 0.1 * std::fabs(v)) << v << " after " << second;
             EXPECT_LT(at_most(rover), 2 * static_cast<double>(rover.out.std_m_s)) << v << " after " << second;
         }
-        EXPECT_GT(rover.out.std_m_s, 0.05f); // nothing tells of the speed but the wheels
+        EXPECT_GT(static_cast<double>(rover.out.std_m_s), 0.01 + 0.08 * std::fabs(v)); // nothing tells of the speed but the wheels
         rover.drive(2, 0, rover.v, Rover::echo);
         EXPECT_FALSE(rover.state.cover.on);
         EXPECT_LT(at_most(rover), 0.02) << v;
@@ -100,6 +100,47 @@ TEST(GroundSpeedCover, wheels_that_spin_up_under_a_body_that_feels_nothing_drive
     }
 }
 
+// (42): the accelerometer's bias is wrong by what it drifts in 30 s; before, the claim grew and the speed with it.
+TEST(GroundSpeedCover, wheels_that_rolled_as_long_as_the_radar_heard_roll_on) {
+    for (const double v : {0.1, 0.2, 0.4, 0.8, -0.3}) {
+        Rover rover = Rover::rolling(v);
+        for (int second = 1; second <= 30; ++second) {
+            rover.bias += 0.002;
+            rover.drive(1, 0, 1.08 * rover.v, Rover::quiet);
+            EXPECT_TRUE(rover.state.cover.on);
+            EXPECT_LT(at_most(rover), 0.05 + 0.12 * std::fabs(v)) << v << " after " << second;
+            EXPECT_LT(rover.out.std_m_s, 0.06 + 0.15 * std::fabs(v)) << v << " after " << second;
+        }
+    }
+}
+
+TEST(GroundSpeedCover, wheels_beside_which_the_body_departs_after_that_are_not_asked_so_any_more) {
+    Rover rover = Rover::rolling(0.4);
+    rover.drive(2, 0, 0.4, Rover::quiet);
+    EXPECT_GT(rover.state.rolled_values, 0);
+    EXPECT_LT(rover.out.std_m_s, 0.08f);
+    rover.drive(0.4, -1, 0.4, Rover::quiet); // it stops, or a slope begins
+    rover.drive(2, 0, 0.4, Rover::quiet);
+    EXPECT_EQ(rover.state.rolled_values, 0);
+    EXPECT_LT(at_most(rover), 2.5 * static_cast<double>(rover.out.std_m_s)); // nothing tells which
+}
+
+TEST(GroundSpeedCover, noise_that_passes_for_an_echo_now_and_then_is_none) {
+    Rover rover = Rover::rolling(0.4);
+    rover.drive(1, 0, 0.4, Rover::quiet);
+    for (int k = 0; k < 20; ++k) {
+        rover.v = k % 2 == 0 ? 0.9 : 0.2; // what it hears
+        rover.drive(0.24, 0, 0.4, Rover::echo);
+        rover.v = 0.4;
+        EXPECT_LT(at_most(rover), 0.03) << k;
+        rover.drive(0.96, 0, 0.4, Rover::quiet);
+        EXPECT_TRUE(rover.state.cover.on) << k;
+    }
+    rover.v = 0.6; // four in a row are heard, and believed two seconds later, (41)
+    rover.drive(4, 0, 0.4, Rover::echo);
+    EXPECT_LT(at_most(rover), 0.05);
+}
+
 TEST(GroundSpeedCover, is_no_part_of_the_papers_method) {
     ground_speed_config_t paper = ours();
     paper.method = GROUND_SPEED_PAPER;
@@ -115,7 +156,7 @@ TEST(GroundSpeedCover, is_no_part_of_the_papers_method) {
 
 // By the words of (38), of states made by hand.
 TEST(GroundSpeedCover, is_told_by_half_of_the_rims_speed_from_the_oldest_value_or_the_last_rest) {
-    int on = 0, off = 0, unknown = 0, of_rest = 0, slowed = 0;
+    int on = 0, off = 0, unknown = 0, of_rest = 0, hardly_heard = 0;
     std::uint32_t seed = 7;
     const auto between = [&](double low, double high) {
         seed = seed * 1664525u + 1013904223u;
@@ -158,12 +199,13 @@ TEST(GroundSpeedCover, is_told_by_half_of_the_rims_speed_from_the_oldest_value_o
                                    (V - state.slide.q20[oldest]) / 1048576 - 0.01 * ago * static_cast<double>(state.slide.bias_m_s2[oldest])
                              : (V - state.cover.rest_q20) / 1048576 - 0.01 * ago * static_cast<double>(state.cover.rest_bias_m_s2);
         const double along = (wheel < 0 ? -1 : 1) * (known ? e : static_cast<double>(state.speed_m_s));
-        const bool echo_slowed = known && value && newest < std::fabs(wheel) / 2;
-        const double least = (echo_slowed ? 0.75 : 0.5) * std::fabs(wheel);
-        if (std::fabs(along - least) < 1e-4 || std::fabs(std::fabs(wheel) - slow) < 1e-6) continue;
-        const double noise2 = ago * static_cast<double>(state.speed_noise_m2_s2), gap = along - least;
+        const double hears = 1.25 * static_cast<double>(ours().slow_m_s), gap = along - 0.5 * std::fabs(wheel);
+        if (std::fabs(gap) < 1e-4 || std::fabs(std::fabs(wheel) - slow) < 1e-6 || std::fabs(std::fabs(wheel) - hears) < 1e-6) continue;
+        const double noise2 = ago * static_cast<double>(state.speed_noise_m2_s2) + std::pow(0.01 * ago * 0.02, 2);
         if (known && std::fabs(std::fabs(gap) - std::sqrt(noise2)) < 1e-4) continue;
-        const bool is = std::fabs(wheel) > slow && gap > (known ? std::sqrt(noise2) : 0);
+        const bool stopped = std::fabs(wheel) > slow && known && value && gap < -std::sqrt(noise2);
+        const bool hardly = known && value && std::fabs(wheel) < hears && std::fabs(gap) < std::sqrt(noise2);
+        const bool is = std::fabs(wheel) > slow && (gap > (known ? std::sqrt(noise2) : 0) || hardly);
 
         ground_speed_input_t input{};
         input.doppler_fresh = input.doppler_quiet = true;
@@ -171,14 +213,22 @@ TEST(GroundSpeedCover, is_told_by_half_of_the_rims_speed_from_the_oldest_value_o
         input.accel_x_m_s2 = 0;
         input.accel_valid = true;
         input.elapsed_ticks = 1;
+        ground_speed_state_t pulled = state; // quiet values that were believed before
+        pulled.quiet = 3;
+        ground_speed_step(&ours(), &pulled, &input);
+        if (is && known) {
+            EXPECT_NEAR(pulled.speed_m_s, e, 0.011) << k; // the tick's own: at most 1 m/s^2
+        }
         ground_speed_step(&ours(), &state, &input);
         EXPECT_EQ(state.cover.on, is) << k << " wheel " << wheel << " e " << e << " known " << known << " value " << value;
         EXPECT_EQ(state.heard, !is); // what is covered is no value
-        EXPECT_EQ(state.cover.stopped, std::fabs(wheel) > slow && known && value && gap < -std::sqrt(noise2)) << k;
+        EXPECT_EQ(state.cover.stopped, stopped) << k;
+        EXPECT_EQ(state.cover.judged, stopped || (is && known && !hardly)) << k;
         (is ? on : off) += 1;
-        unknown += known ? 0 : 1, of_rest += known && !value ? 1 : 0, slowed += echo_slowed ? 1 : 0;
+        unknown += known ? 0 : 1, of_rest += known && !value ? 1 : 0, hardly_heard += is && hardly ? 1 : 0;
     }
-    EXPECT_GT(std::min({on, off, unknown, of_rest, slowed}), 100);
+    EXPECT_GT(std::min({on, off, unknown, of_rest}), 100);
+    EXPECT_GT(hardly_heard, 2);
 }
 
 } // namespace

@@ -301,6 +301,7 @@ TEST(GroundSpeed, gate_refuses_beyond_three_and_a_half_sigma_and_weighs_what_it_
 TEST(GroundSpeed, believes_a_new_speed_after_as_many_refusals_as_configured) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
     ground_speed_state_t state = settled(config, 0.3);
+    state.rolls = false; // else (41) asks for more
     for (int value = 1; value <= config.gate_patience + 1; ++value) {
         const ground_speed_input_t input = with_radar(0, 0.9);
         ground_speed_step(&config, &state, &input);
@@ -308,6 +309,50 @@ TEST(GroundSpeed, believes_a_new_speed_after_as_many_refusals_as_configured) {
             EXPECT_NEAR(state.speed_m_s, 0.3, 0.01) << value;
         } else {
             EXPECT_NEAR(state.speed_m_s, 0.9, 0.01); // nothing is known any more: the value is the estimate
+        }
+    }
+}
+
+// (41) by its words: wheels that roll, a value beyond three sigma that has left the one before by as much.
+TEST(GroundSpeed, a_value_that_leaps_away_from_rolling_wheels_tells_nothing_for_two_seconds) {
+    const ground_speed_config_t config = rover_config_default().ground_speed;
+    for (const double leap : {-0.15, 0.12, 0.2, 0.6}) {
+        ground_speed_state_t state = settled(config, 0.5);
+        state.rolls = true, state.other_alive = false, state.leap_from_m_s = 0.5f;
+        const ground_speed_state_t before = state;
+        for (int value = 1; value <= 16; ++value) {
+            const ground_speed_input_t input = with_radar(0, 0.5 + leap);
+            ground_speed_step(&config, &state, &input);
+            EXPECT_NEAR(state.speed_m_s, 0.5, 0.01) << value;
+            EXPECT_EQ(state.refused, 0) << value;
+            EXPECT_NEAR(state.jolt_m_s, 0.7 * std::fabs(leap), 0.01) << value;
+            EXPECT_GT(state.std_m_s, 0.65 * std::fabs(leap)) << value;
+            if (value == 5) { // it comes back
+                ground_speed_state_t back = state;
+                const ground_speed_input_t again = with_radar(0, 0.5);
+                ground_speed_step(&config, &back, &again);
+                EXPECT_EQ(back.leap_left, 0);
+                EXPECT_EQ(back.waits, 2);           // it counts
+                ground_speed_state_t moves = state; // or it goes on: a slide
+                const ground_speed_input_t further = with_radar(0, 0.5 + 1.6 * leap);
+                ground_speed_step(&config, &moves, &further);
+                EXPECT_EQ(moves.leap_left, 0);
+                EXPECT_EQ(moves.waits, 2);
+            }
+        }
+        for (int value = 0; value < 10; ++value) {
+            const ground_speed_input_t input = with_radar(0, 0.5 + leap);
+            ground_speed_step(&config, &state, &input);
+        }
+        EXPECT_NEAR(state.speed_m_s, 0.5 + leap, 0.05); // then it is believed
+        for (const int why : {0, 1, 2, 3, 4}) { // none where the wheels do not roll, the sign is open, (13) asks, and of what is no leap
+            ground_speed_state_t other = before;
+            other.rolls = why != 0, other.other_alive = why == 1, other.rolls_ticks = why == 2 ? 10 : 0;
+            other.leap_from_m_s = why == 3 ? static_cast<float>(0.5 + leap) : other.leap_from_m_s;
+            const ground_speed_input_t input = with_radar(0, why == 4 ? 0.53 : 0.5 + leap);
+            ground_speed_step(&config, &other, &input);
+            EXPECT_EQ(other.leap_left, 0) << why;
+            EXPECT_EQ(other.leap_from_m_s, static_cast<float>(why == 4 ? 0.53 : 0.5 + leap)) << why;
         }
     }
 }
