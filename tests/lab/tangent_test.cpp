@@ -267,7 +267,7 @@ TEST(Windows, take_the_mean_at_whatever_delay_and_remember_none_but_their_own) {
 
 TEST(Fit, that_need_not_be_ready_ends_where_the_other_does_and_gets_ready_when_asked) {
     int put_off = 0; // where the last step is of a third of a deviation and more
-    for (const auto &[duration_s, iterations] : {std::pair{28, 2}, {33, 1}, {36, 3}, {40, 2}, {44, 1}, {52, 2}, {56, 1}, {60, 4}}) {
+    for (const auto &[duration_s, iterations] : {std::pair{22, 3}, {26, 3}, {28, 2}, {29, 4}, {33, 1}, {36, 3}, {45, 3}, {60, 4}}) {
         const auto [model, data, physics] = sand(duration_s);
         Problem whole(data, physics, free_parameters(model, physics)), bare = whole;
         whole.fit({.iterations = iterations});

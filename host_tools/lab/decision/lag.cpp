@@ -13,9 +13,10 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double at_changes = 2;   // (1): of four logs whose slip does not lag at most 1.7, of eight whose does at least 2.1
-constexpr double a_change = 0.1;   // of the largest speed
-constexpr double enough_rows = 50; // of either kind
+constexpr double at_changes = 2;        // (1): of four logs whose slip does not lag at most 1.7, of eight whose does at least 2.1
+constexpr double a_change = 0.1;        // of the largest speed
+constexpr double enough_rows = 50;      // of either kind
+constexpr double within_the_blur = 0.3; // (2)
 
 double rim_speed_m_s(const Dataset &data, const Physics &physics) {
     std::vector<double> moving;
@@ -50,6 +51,9 @@ bool only_averages(const Problem &before, const HeldOut &left_before, const Prob
     const Dataset &data = before.data();
     const double length = longest_lag_m(with.physics()), speed = rim_speed_m_s(data, with.physics());
     if (data.independent_rows || data.count < 3 || !(speed > 0) || !(length > longest_lag_m(before.physics()))) return false;
+    double blurred_s = 0;
+    for (const WheelInput &w : data.wheel) blurred_s = std::max(blurred_s, w.half_s);
+    if (length / speed < within_the_blur * blurred_s) return true;
     const std::vector<char> changing = changing_steps(data, static_cast<std::size_t>(length / speed / data.step_s));
     const Eigen::VectorXd fall =
         (left_before.residual.cwiseAbs2() - left_with.residual.cwiseAbs2()).cwiseProduct(before.row_scale.cwiseAbs2());

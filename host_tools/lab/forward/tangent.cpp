@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector3d;
 
 // s' of (2) of wheel_laws.h at step k of a known series of slips.
-double memory_at(const std::vector<double> &slip, std::size_t k) {
-    return k == 0 ? 0 : remembered(k, slip[k - 1], k < 2 ? 0 : slip[k - 2]);
+double memory_at(const std::vector<double> &slip, std::size_t k, double order) {
+    return k == 0 ? 0 : remembered(k, order, slip[k - 1], k < 2 ? 0 : slip[k - 2]);
 }
 
 // What the moved parameters alone change at a step of the known motion: the body's rate, the traction of wheels first to last - 1.
@@ -31,7 +31,9 @@ class Moved {
         step_.remember_twist(k == 0 ? 0 : known_.twist_N[k - 1]);
         step_.prepare(k, v_before, accel_before, path, k == 0 ? 0 : known_.away_m[k - 1], first_, last_);
         for (std::size_t i = first_; i < last_; ++i) // who does not lag has no use for it
-            if (step_.lags(i)) step_.remember(i, memory_at(known_.wheel[i].slip, k), memory_at(known_.wheel[i].side_slip, k));
+            if (step_.lags(i))
+                step_.remember(i, memory_at(known_.wheel[i].slip, k, step_.order(i)),
+                               memory_at(known_.wheel[i].side_slip, k, step_.order(i)));
         Vector3d force = Vector3d::Zero();
         if (first_ == 0 && last_ == p_.wheel.size())
             force = step_.forces(q, nullptr);
@@ -109,7 +111,8 @@ class Follower {
         std::array<double, most_wheels> slip{}, side{}; // of the memory
         for (std::size_t i = 0; i < wheels; ++i) {
             if (!change_.step().lags(i)) continue;
-            slip[i] = remembered(k, slip_[i], slip_before_[i]), side[i] = remembered(k, side_[i], side_before_[i]);
+            const double order = change_.step().order(i);
+            slip[i] = remembered(k, order, slip_[i], slip_before_[i]), side[i] = remembered(k, order, side_[i], side_before_[i]);
             by_slip += known_.wheel[i].force_by_slip[k] * slip[i] + known_.wheel[i].force_by_side[k] * side[i];
         }
         by_slip = by_slip.cwiseProduct(
@@ -194,7 +197,7 @@ UnitResponse unit_response(const Dataset &data, const Physics &base, const Motio
         step.remember_twist(k == 0 ? 0 : known.twist_N[j]);
         step.prepare(k, known.v_m_s[j], k == 0 ? 0 : known.rate[j][0], k == 0 ? 0 : known.path_m[j], k == 0 ? 0 : known.away_m[j]);
         for (std::size_t i = 0; i < base.wheel.size(); ++i) {
-            step.remember(i, memory_at(known.wheel[i].slip, k), memory_at(known.wheel[i].side_slip, k));
+            step.remember(i, memory_at(known.wheel[i].slip, k, step.order(i)), memory_at(known.wheel[i].side_slip, k, step.order(i)));
             unit.force[i].push_back((step.force(i, {known.v_m_s[k], known.vy_m_s[k], known.yaw_rate_rad_s[k]}) - known.wheel[i].force[k]) /
                                     size);
             unit.traction[i].push_back((step.state(i).traction - known.wheel[i].traction_N[k]) / size);

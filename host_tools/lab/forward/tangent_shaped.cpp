@@ -65,7 +65,7 @@ template <std::size_t groups> class Shapes {
           freedom_(detail::freedom_of(data, physics)), per_N_{1 / physics.body.mass, freedom_.vy ? 1 / physics.body.mass : 0,
                                                               freedom_.yaw ? 1 / physics.body.yaw_inertia : 0} {
         const WheelStep step(data, physics);
-        for (std::size_t i = 0; i < physics.wheel.size(); ++i) lags_[i] = step.lags(i);
+        for (std::size_t i = 0; i < physics.wheel.size(); ++i) lags_[i] = step.lags(i), order_[i] = step.order(i);
         for (Lane3 *x : {&q_, &before_}) x->fill(Lanes(0.0));
         slip_.fill(Lanes(0.0));
         side_.fill(Lanes(0.0));
@@ -87,8 +87,8 @@ template <std::size_t groups> class Shapes {
                 const auto at = static_cast<Eigen::Index>(c);
                 force[c] += unit_.force[i][k][at] * f[i];
                 if (lags_[i])
-                    force[c] += known_.wheel[i].force_by_slip[k][at] * remembered(k, slip_[i], slip_before_[i]) +
-                                known_.wheel[i].force_by_side[k][at] * remembered(k, side_[i], side_before_[i]);
+                    force[c] += known_.wheel[i].force_by_slip[k][at] * remembered(k, order_[i], slip_[i], slip_before_[i]) +
+                                known_.wheel[i].force_by_side[k][at] * remembered(k, order_[i], side_[i], side_before_[i]);
             }
         }
         if (freedom_.observed && k >= data_.yaw_late) { // the gyro, on the change
@@ -119,7 +119,8 @@ template <std::size_t groups> class Shapes {
         Lanes traction = w.traction_N[k] + unit_.traction[i][k] * f + w.traction_by_accel[k] * accel_ + w.traction_by_path[k] * path_;
         for (std::size_t c = 0; c < 3; ++c) traction += w.traction_by_speed[k][static_cast<Eigen::Index>(c)] * q_[c];
         if (lags_[i]) {
-            const Lanes slip = remembered(k, slip_[i], slip_before_[i]), side = remembered(k, side_[i], side_before_[i]);
+            const Lanes slip = remembered(k, order_[i], slip_[i], slip_before_[i]),
+                        side = remembered(k, order_[i], side_[i], side_before_[i]);
             traction += w.traction_by_slip[k] * slip + w.traction_by_side[k] * side;
             slip_before_[i] = slip_[i], side_before_[i] = side_[i];
             slip_[i] = w.slip_by_slip[k] * slip;
@@ -155,6 +156,7 @@ template <std::size_t groups> class Shapes {
     detail::Freedom freedom_;
     std::array<double, 3> per_N_;
     std::array<bool, most_wheels> lags_{};
+    std::array<double, most_wheels> order_{};
     Lane3 q_, before_; // changes, as are the next
     Lanes accel_ = Lanes(0.0), path_ = Lanes(0.0);
     std::array<Lanes, most_wheels> slip_, side_, slip_before_, side_before_;

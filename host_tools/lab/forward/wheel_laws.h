@@ -1,8 +1,10 @@
 // wheel_laws.h - what the ground does to a wheel at a given slip and speed, for one wheel (double) or four side by side (Lane).
 //
 //   s = (R w - v) / max(|R w|, |v|)                 slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest        (1)
-//   s = (s' + h (R w - v)) / (1 + h g)              where it lags, by BDF2 as the body is: s' = (4 s_1 - s_2)/3, h = 2/3 of   (2)
-//                                                    the step over the relaxation length; the first two steps s_1 and all of it
+//   s = (s' + h (R w - v)) / (1 + h g)              where it lags, h of the step over the relaxation length L:             (2)
+//                                                    s' = s_1 + (b/3)(s_1 - s_2), h = (1 - b/3) step/L
+//   b = 1 / (1 + (k step^2/L)^2), k = gravity mu/sc, half of it (20)     BDF2 where the steps resolve the swing on the slip, (7)
+//                                                    sqrt(k/L), backward Euler where they do not
 //   g = m + r r^4/(m^4 + r^4),  m = max(|R w|, |v|),  r = 15 mm/s: at rest it is worn off (assumed)                       (5)
 //   sy = (sy' - h vy) / (1 + h g),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
 //   Ft / Fm = 1 - (1 - exp(-x)) / x, x = |s| / sc   (20) janosi;  1 - exp(-x)  (21) burckhardt                             (3)
@@ -77,11 +79,16 @@ template <typename T> inline T wears_m_s(const T &rim, const T &v) {
     return faster + rest_m_s * rest_4 / (square * square + rest_4);
 }
 
-// Of (2): the share of a step k that is implicit, and s' of the last slip and the one before. Backward Euler damps what swings at omega by
-// omega^2 step/4, as much as the slip's forgetting does at 0.3 m/s: a relaxation length was told up to a third too long.
-inline double implicit_share(std::size_t k) { return k < 2 ? 1.0 : 2.0 / 3; }
-template <typename T> inline T remembered(std::size_t k, const T &last, const T &before) {
-    return k < 2 ? last : T((4 * last - before) / 3);
+// (7). Backward Euler damps what swings at omega by omega^2 step/4, as much as the slip's forgetting does at 0.3 m/s: a relaxation length
+// was told up to a third too long. BDF2 rings where it does not resolve the swing.
+inline double second_order(double k_m_s2, double step_s, double relaxation_m) {
+    const double x = k_m_s2 * step_s * step_s / relaxation_m;
+    return 1 / (1 + x * x);
+}
+// Of (2): the share of a step k that is implicit, and s' of the last slip and the one before.
+inline double implicit_share(std::size_t k, double b) { return k < 2 ? 1.0 : 1 - b / 3; }
+template <typename T> inline T remembered(std::size_t k, double b, const T &last, const T &before) {
+    return k < 2 ? last : T(last + (b / 3) * (last - before));
 }
 
 // (2); h_1_m: 0 where it does not lag.

@@ -57,6 +57,9 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         s.gain = count_gain(w);
         s.sigma = sim::law::relaxation_length_m(w.relaxation, b.relaxation_m);
         s.lag_1_m = s.sigma > 0 ? data_.step_s / s.sigma : 0;
+        const double sc = std::max(1e-4, sim::law::shear_stiffness(w.sc, b.shear_change));
+        const double k_m_s2 = b.gravity * std::fabs(w.mu) / sc * (p_.soil_law == SoilLaw::burckhardt ? 1 : 0.5);
+        s.order = s.sigma > 0 ? second_order(k_m_s2, data_.step_s, s.sigma) : 0;
         s.free = data_.wheel[i].rolls_freely;
         play_ = play_ || w.play_rad > 0;
         lags_ = lags_ || s.sigma > 0;
@@ -119,7 +122,7 @@ void WheelStep::gather() {
 void WheelStep::prepare(std::size_t k, double v_before, double accel_before, double path_m, double away_m, std::size_t first,
                         std::size_t last) {
     t_ = data_.time(k), k_ = k;
-    if (lags_ && share_ != implicit_share(k)) lag_by(implicit_share(k));
+    if (lags_ && lag_step_ != std::min<std::size_t>(k, 2)) lag_at(std::min<std::size_t>(k, 2));
     if (grounds_)
         if (const RunPhysics *run = run_at(p_, t_); run != run_) stand_on(run);
     path_ = path_m;
@@ -134,11 +137,11 @@ void WheelStep::prepare(std::size_t k, double v_before, double accel_before, dou
     for (std::size_t i = first; i < std::min(last, n_); ++i) prepare_wheel(i, k, v_before);
 }
 
-void WheelStep::lag_by(double share) {
-    share_ = share;
+void WheelStep::lag_at(std::size_t k) {
+    lag_step_ = k;
     for (std::size_t i = 0; i < n_; ++i) {
         State &s = state_[i];
-        s.lag_1_m = s.sigma > 0 ? share * data_.step_s / s.sigma : 0;
+        s.lag_1_m = s.sigma > 0 ? implicit_share(k, s.order) * data_.step_s / s.sigma : 0;
         four_[i / 4].lag_1_m.set(i % 4, s.lag_1_m);
     }
 }
@@ -367,7 +370,7 @@ void WheelStep::commit() {
     if (play_ || lags_)
         for (std::size_t i = 0; i < n_; ++i) {
             State &s = state_[i];
-            remember(i, remembered(k_ + 1, s.slip, s.last_slip), remembered(k_ + 1, s.side_slip, s.last_side_slip));
+            remember(i, remembered(k_ + 1, s.order, s.slip, s.last_slip), remembered(k_ + 1, s.order, s.side_slip, s.last_side_slip));
             s.last_slip = s.slip, s.last_side_slip = s.side_slip, s.play_before = s.play;
         }
     if (!p_.halves) return;

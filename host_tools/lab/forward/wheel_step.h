@@ -50,7 +50,7 @@ class WheelStep {
     struct State {
         double x = 0, y = 0; // place from the centre of mass (longitudinal motion: from the middle)
         double arm_m = 0;    // to the left of the centre of mass: about it forces turn the body, however that moves
-        double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, lag_1_m = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0,
+        double c = 1, s = 0, radius = 0, gain = 1, sigma = 0, order = 0, lag_1_m = 0, plain_sc = 0.1, load_0 = 0, load_per_accel = 0,
                load_per_side = 0, load_per_twist = 0;
         double mu = 0, adhesion = 0, rolling_coefficient = 0, lateral = 0; // of the ground it stands on
         double rim = 0, w = 0, theta = 0, travel = 0, load = 0, Fm = 0, sc = 0.1, resistance_here = 0;
@@ -69,6 +69,7 @@ class WheelStep {
     }
     std::size_t wheels() const { return n_; }
     bool widen(bool wide); // vectors as wide as four numbers, or not: the same bits; what was chosen, for the processor may have none
+    double order(std::size_t i) const { return state_[i].order; }  // (7) of wheel_laws.h
     bool lags(std::size_t i) const { return state_[i].sigma > 0; } // its slips are carried from step to step: a relaxation length
     bool has_play() const { return play_; }
     bool has_terms() const { return motion_terms_; }
@@ -103,7 +104,7 @@ class WheelStep {
     double contact(std::size_t i, double v);
     void terms(std::size_t i, double v, double body_v, double &Fm, double &sc, double &extra, double &rolling) const;
     double load(std::size_t i) const; // without a measured load
-    void lag_by(double share);        // of the step, the implicit part
+    void lag_at(std::size_t k);       // lag_1_m of step k; from 2 on it stays
     void loads();
     void followers();
 
@@ -113,7 +114,7 @@ class WheelStep {
     std::array<State, most_wheels> state_{};
     std::array<double, most_wheels> ahead_{}, behind_{};
     std::size_t k_ = 0;
-    double share_ = 1;
+    std::size_t lag_step_ = 0;
     double t_ = 0, path_ = 0, away_ = 0, accel_ = 0, side_accel_ = 0, twist_ = 0, yaw_ = 0, yaw_rate_ = 0;
     std::array<Four, most_wheels / 4> four_;
     bool sideways_ = false;           // the body moves sideways as the forces have it, on wheels that grip

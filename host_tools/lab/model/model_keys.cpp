@@ -52,7 +52,7 @@ constexpr ModelKey sensors[] = {
     {"accel.left_m", "m", 0, -50, 50, 0, 0.005},
     {"gyro.noise_rad_s", "rad/s", 0, 0, 1e2, 0, 0},
     {"gyro.bias_rad_s", "rad/s", 0, -1, 1, 0, 0.003},
-    {"gyro.scale", "1", 0, -0.9, 5, 0, 0.01},
+    {"gyro.scale", "1", 0, -0.9, 5, 0, 0},
     {"radar.noise_m_s", "m/s", 0, 0, 1e2, 0, 0},
     {"radar.window_s", "s", 0.5, 0, 10, 0, 0},
     {"radar.delay_s", "s", 0, -5, 5, 0, 0.02},
