@@ -17,6 +17,7 @@ namespace {
 
 constexpr double share_that_matters = 0.5; // of what is not noise, assumed
 constexpr double least_gain_squares = 9;   // three deviations of white noise, where nearly all that the baseline leaves is noise
+constexpr double strange = 2;              // times the noise: the baseline may be in the wrong valley (assumed)
 constexpr double clearly_worse = 1.02;     // of the baseline's error: beyond such a size no better one is sought (assumed)
 constexpr double classes_tried = 26;       // catalogue effects that are not near copies of one another: about half of the catalogue
 
@@ -204,6 +205,11 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen) {
             Problem there = problem;
             there.theta.head(n) = base.theta;
             if (std::optional<Problem> other = from_afar(there, static_cast<std::size_t>(n), problem.cost())) problem = std::move(*other);
+            if (overall_error(base) > strange) { // and from what is stated: the law's absence has bent the baseline's numbers
+                there.theta.head(n).setZero();
+                if (std::optional<Problem> other = from_afar(there, static_cast<std::size_t>(n), problem.cost()))
+                    problem = std::move(*other);
+            }
         }
     } else {
         problem.quick_fit(base, 3);
@@ -251,6 +257,13 @@ void fit_from_the_sheet(const Trial &t, const Model &model, const Dataset &data,
     }
 }
 
+namespace {
+
+// Of its size: such a law's own fit does.
+bool linear_step_says_nothing(const Trial &t) { return !t.refitted && strongly_nonlinear(t.candidate.effect); }
+
+} // namespace
+
 void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
     t.by_rows = t.gain > std::max(options.least_gain * explainable, least_gain_squares) ||
                 t.best_balance_gain > options.least_gain_one; // ranks know nothing of the priors' penalty
@@ -260,7 +273,7 @@ void judge(Trial &t, double explainable, const DiagnoseOptions &options) {
         t.verdict = "not_significant";
     else if (!plausible_sign(t.candidate, t.value))
         t.verdict = "wrong_sign";
-    else if (!t.matters && !large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
+    else if (!t.matters && !linear_step_says_nothing(t) && !large_enough(t.candidate, t.refitted ? near_ends(t) : t.value))
         t.verdict = "too_small";
     else if (t.refitted && beyond_range(t.candidate, t.value))
         t.verdict = "beyond_range";
