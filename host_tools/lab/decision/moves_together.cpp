@@ -13,12 +13,12 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double block_s = 0.5, slow_s = 5, quick_s = 0.1;
-constexpr double alike = 0.75, all_wheels = 1.2, accelerometer_alone = 0.8, turning = 5; // (1) to (3)
-constexpr double largest = 30;                                                           // noises, beyond which a row counts as so many
+constexpr double push_block_s = 0.5, slow_s = 5, quick_s = 0.1;
+constexpr double pushed_alike = 0.75, all_wheels = 1.2, accelerometer_alone = 0.8, turning = 5; // (1) to (3)
+constexpr double largest = 30; // noises, beyond which a row counts as so many
 constexpr std::size_t few_blocks = 40;
 constexpr double slope_too = 0.5;          // share of (2) from which a push is a slope: none of a clean log's
-constexpr double least_share = 0.5;        // of the squares that a sinusoid takes
+constexpr double least_wave_share = 0.5;   // of the squares that a sinusoid takes
 constexpr double slowest = 0.05, most = 2; // [Hz, 1/m] of one
 
 struct Blocks {
@@ -95,7 +95,7 @@ double mean_correlation(const std::vector<std::vector<double>> &x) {
     return pairs > 0 ? sum / pairs : 0;
 }
 
-std::vector<double> mean_of(const std::vector<std::vector<double>> &x) {
+std::vector<double> over_wheels(const std::vector<std::vector<double>> &x) {
     std::vector<double> out(x.front().size(), 0);
     for (const std::vector<double> &one : x)
         for (std::size_t k = 0; k < out.size(); ++k) out[k] += one[k] / static_cast<double>(x.size());
@@ -114,7 +114,7 @@ double slow_error(const Problem &fitted, const Eigen::VectorXd &noise, BalanceKi
     const std::vector<std::size_t> list = balances_of(fitted.data(), kind);
     if (list.empty()) return 0;
     const std::vector<Series> one{series_of(fitted, noise, list.front())};
-    if (blocks_of(one, block_s).at_s.size() < few_blocks) return 0;
+    if (blocks_of(one, push_block_s).at_s.size() < few_blocks) return 0;
     const Blocks blocks = blocks_of(one, slow_s);
     if (blocks.at_s.size() < 2) return 0;
     *size = rms(blocks.mean.front()) * one.front().noise;
@@ -162,11 +162,11 @@ std::optional<Together> moves_together(Problem &fitted) {
         const WheelPhysics &w = physics.wheel[static_cast<std::size_t>(data.balance[b].wheel)];
         newton.push_back(wheels.back().noise * w.KG / rolling_radius(w));
     }
-    const Blocks blocks = wheels.size() < 2 ? Blocks{} : blocks_of(wheels, block_s);
+    const Blocks blocks = wheels.size() < 2 ? Blocks{} : blocks_of(wheels, push_block_s);
     Together out;
     if (blocks.at_s.size() >= few_blocks) {
-        out.error = rms(mean_of(blocks.mean)), out.correlation = mean_correlation(blocks.mean);
-        if (out.error > all_wheels && out.correlation > alike) {
+        out.error = rms(over_wheels(blocks.mean)), out.correlation = mean_correlation(blocks.mean);
+        if (out.error > all_wheels && out.correlation > pushed_alike) {
             const Blocks quick = blocks_of(wheels, quick_s);
             std::vector<double> pushed(quick.at_s.size(), 0), path_m;
             for (std::size_t i = 0; i < wheels.size(); ++i)
@@ -182,7 +182,7 @@ std::optional<Together> moves_together(Problem &fitted) {
             out.size = out.what == Together::What::slope ? felt_m_s2 : rms(coarse);
             const Wave time = best_wave(quick.at_s, pushed), path = best_wave(path_m, pushed);
             const Wave &wave = time.share > path.share ? time : path;
-            if (wave.share > least_share) {
+            if (wave.share > least_wave_share) {
                 (time.share > path.share ? out.per_s : out.per_m) = wave.rate;
                 out.amplitude_N = wave.amplitude, out.phase_rad = wave.phase_rad;
             }

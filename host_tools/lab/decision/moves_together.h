@@ -6,7 +6,7 @@
 //   rms(e) > 0.8                                                           accelerometer, 5 s                                 (2)
 //   rms(e) > 5                                                             yaw rate, 5 s                                      (3)
 //
-// A wheel's own ground, gear and sensors leave wheels apart: of 127 clean logs of three generators rho was 0.68 at most and the mean 1.1,
+// A wheel's own ground, gear and sensors leave wheels apart: of 126 clean logs of two hands rho was 0.68 at most and the mean 0.9,
 // none with both; (2) was 0.24 at most, (3) 2.7. What acts along the body alone leaves (1), gravity along it (1) and (2), a moment (3).
 #pragma once
 
