@@ -9,6 +9,7 @@
 #include "host_tools/lab/model/model.h"
 #include "host_tools/lab/next/manoeuvre.h"
 #include "host_tools/lab/result/addition.h"
+#include "host_tools/lab/session.h"
 #include "host_tools/rover/rover.h"
 #include "host_tools/simulate/simulate.h"
 
@@ -181,7 +182,11 @@ TEST(DrivesLog, a_hidden_effect_is_named_on_its_motor) {
 
 // Two motors share the load: that one's sensor tells too much or the other's too little may look alike, and then both are told.
 TEST(DrivesLog, a_gain_of_one_motors_current_is_told_with_the_others_at_most) {
-    const Diagnosis d = diagnose(model_on("sand"), make_dataset(model_on("sand"), driven("sand", "current_gain:change=0.15,wheel=1")), {});
+    Session session; // as traction diagnose has it: the log is asked for its ground's curve
+    session.model = model_on("sand"), session.runs = {driven("sand", "current_gain:change=0.15,wheel=1")};
+    ask_the_log(session);
+    const Diagnosed asked = diagnose_session(session, {});
+    const Diagnosis &d = asked.diagnosis;
     ASSERT_EQ(d.effects.size(), 1U) << d.text;
     std::vector<std::string> told = d.effects;
     if (!d.classes.empty()) told = d.classes[0].members;

@@ -59,6 +59,9 @@ TEST(Lag, within_the_blur_of_the_wheels_speeds_is_averaging) {
     for (WheelInput &w : blurred.rover.data.wheel) w.half_s = 4.1;
     EXPECT_FALSE(sharp.averages(0.5, 0.1));
     EXPECT_TRUE(blurred.averages(0.5, 0.1));
+    for (WheelPhysics &w : blurred.lags.wheel) w.relaxation = 0.3; // the sheet's own length, which a fit beside another name moves
+    blurred.lags.body.relaxation_m = 0;
+    EXPECT_FALSE(blurred.averages(0.5, 0.1));
 }
 
 TEST(Lag, changes_are_where_a_speed_has_gone_a_tenth_of_the_largest_within_its_time) {

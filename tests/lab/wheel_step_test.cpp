@@ -39,7 +39,8 @@ Dataset rolling(double yaw_rad_s, std::size_t count) {
     return data;
 }
 
-// (4) and (5) of wheel_laws.h in closed form: over n steps at a steady speed -vy / g (1 - (1 + h g)^-n), h = step over length.
+// (4), (5) and (7) of wheel_laws.h: with b of second order, from the third step on, s' = s_1 + (b/3)(s_1 - s_2) and h = (1 - b/3) step over
+// length. At a steady speed it comes as 1 - exp(-way/length), and at rest it goes.
 TEST(WheelStep, slip_across_comes_over_the_relaxation_length_and_goes_at_rest) {
     constexpr double relaxation_m = 0.1, aside_m_s = 0.02, rest_m_s = 0.015;
     Dataset data = rolling(0, 240);
@@ -48,21 +49,23 @@ TEST(WheelStep, slip_across_comes_over_the_relaxation_length_and_goes_at_rest) {
     Physics physics = make_physics(sliding("gravel"));
     for (WheelPhysics &w : physics.wheel) w.relaxation = relaxation_m, w.radius = radius_m, w.lateral = 0;
     WheelStep step(data, physics);
-    const double per_m = data.step_s / relaxation_m;
-    double side = 0;
+    const double x = 1.6 * 9.81 * physics.wheel[0].mu / physics.wheel[0].sc * 0.5 * data.step_s * data.step_s / relaxation_m; // (20)
+    const double b = 1 / (1 + std::pow(x, 6));
+    double side = 0, last = 0;
     for (std::size_t k = 0; k < data.count; ++k) {
         const bool rolls = k < stops;
         const double v = rolls ? speed_m_s : 0, aside = rolls ? aside_m_s : 0;
         step.prepare(k, v, 0, 0, 0);
         step.forces({v, aside, 0}, nullptr);
         const double g = v + rest_m_s / (1 + std::pow(v / rest_m_s, 4)); // m + r r^4 / (m^4 + r^4)
-        side = (side - per_m * aside) / (1 + per_m * g);
+        const double share = k < 2 ? 1 : 1 - b / 3, per_m = share * data.step_s / relaxation_m,
+                     memory = k < 2 ? side : side + b / 3 * (side - last);
+        last = std::exchange(side, (memory - per_m * aside) / (1 + per_m * g));
         for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(step.state(i).side_slip, side, 1e-12) << k; // rounding
         step.commit();
         if (k + 1 != stops) continue;
-        const double reach = per_m * speed_m_s, left = std::pow(1 + reach, -static_cast<double>(stops)), all = aside_m_s / speed_m_s;
-        EXPECT_NEAR(side, -all * (1 - left), 1e-6 * all);                      // (5) takes (r / v)^5 = 7e-8 of it
-        EXPECT_NEAR(left, std::exp(-static_cast<double>(stops) * reach), 0.1); // the length's own law, first order in reach = 0.08
+        const double all = aside_m_s / speed_m_s, way = static_cast<double>(stops) * data.step_s * speed_m_s; // of four lengths
+        EXPECT_NEAR(side, -all * (1 - std::exp(-way / relaxation_m)), 0.005 * all);                           // second order in 0.08
         EXPECT_NEAR(side, -all, 0.1 * all);
     }
     EXPECT_NEAR(side, -aside_m_s / speed_m_s * std::exp(-0.6), 0.1 * aside_m_s / speed_m_s); // 4 s at r over the length: 0.15 / s

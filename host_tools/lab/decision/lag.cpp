@@ -53,7 +53,8 @@ bool only_averages(const Problem &before, const HeldOut &left_before, const Prob
     if (data.independent_rows || data.count < 3 || !(speed > 0) || !(length > longest_lag_m(before.physics()))) return false;
     double blurred_s = 0;
     for (const WheelInput &w : data.wheel) blurred_s = std::max(blurred_s, w.half_s);
-    if (length / speed < within_the_blur * blurred_s) return true;
+    const bool by_a_name = with.physics().body.relaxation_m > before.physics().body.relaxation_m; // not the sheet's own, in a fit beside
+    if (by_a_name && length / speed < within_the_blur * blurred_s) return true;
     const std::vector<char> changing = changing_steps(data, static_cast<std::size_t>(length / speed / data.step_s));
     const Eigen::VectorXd fall =
         (left_before.residual.cwiseAbs2() - left_with.residual.cwiseAbs2()).cwiseProduct(before.row_scale.cwiseAbs2());

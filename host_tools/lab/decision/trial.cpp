@@ -17,7 +17,6 @@ namespace {
 
 constexpr double share_that_matters = 0.5; // of what is not noise, assumed
 constexpr double least_gain_squares = 9;   // three deviations of white noise, where nearly all that the baseline leaves is noise
-constexpr double bent_baseline = 2;        // times the noise: the baseline may be in the wrong valley (assumed)
 constexpr double clearly_worse = 1.02;     // of the baseline's error: beyond such a size no better one is sought (assumed)
 constexpr double classes_tried = 26;       // catalogue effects that are not near copies of one another: about half of the catalogue
 
@@ -205,11 +204,6 @@ void refit(Trial &t, const Problem &base, const Screen &base_screen) {
             Problem there = problem;
             there.theta.head(n) = base.theta;
             if (std::optional<Problem> other = from_afar(there, static_cast<std::size_t>(n), problem.cost())) problem = std::move(*other);
-            if (overall_error(base) > bent_baseline) { // and from what is stated: the law's absence has bent the baseline's numbers
-                there.theta.head(n).setZero();
-                if (std::optional<Problem> other = from_afar(there, static_cast<std::size_t>(n), problem.cost()))
-                    problem = std::move(*other);
-            }
         }
     } else {
         problem.quick_fit(base, 3);
