@@ -3,7 +3,7 @@
 //   s = (R w - v) / max(|R w|, |v|)                 slip (1) Lhomme-Desages, extended: bounded by 1, odd, 0 at rest        (1)
 //   s = (s' + h (R w - v)) / (1 + h g)              where it lags, h of the step over the relaxation length L:             (2)
 //                                                    s' = s_1 + (b/3)(s_1 - s_2), h = (1 - b/3) step/L
-//   b = 1 / (1 + (1.6 k step^2/L)^6), k = gravity mu/sc, half of it (20)     BDF2 where the steps resolve the swing on the slip, (7)
+//   b = 1 / (1 + (k step^2/L)^2), k = gravity mu/sc, half of it (20)     BDF2 where the steps resolve the swing on the slip, (7)
 //                                                    sqrt(k/L), backward Euler where they do not
 //   g = m + r r^4/(m^4 + r^4),  m = max(|R w|, |v|),  r = 15 mm/s: at rest it is worn off (assumed)                       (5)
 //   sy = (sy' - h vy) / (1 + h g),  -vy / max(|R w|, |v|) where it does not lag              sideways     (4)
@@ -82,8 +82,8 @@ template <typename T> inline T wears_m_s(const T &rim, const T &v) {
 // (7). Backward Euler damps what swings at omega by omega^2 step/4, as much as the slip's forgetting does at 0.3 m/s: a relaxation length
 // was told up to a third too long. BDF2 rings where it does not resolve the swing.
 inline double second_order(double k_m_s2, double step_s, double relaxation_m) {
-    const double x = 1.6 * k_m_s2 * step_s * step_s / relaxation_m, x_2 = x * x;
-    return 1 / (1 + x_2 * x_2 * x_2);
+    const double x = k_m_s2 * step_s * step_s / relaxation_m;
+    return 1 / (1 + x * x);
 }
 // Of (2): the share of a step k that is implicit, and s' of the last slip and the one before.
 inline double implicit_share(std::size_t k, double b) { return k < 2 ? 1.0 : 1 - b / 3; }
