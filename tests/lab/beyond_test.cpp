@@ -157,6 +157,18 @@ TEST(Shapes, a_resonance_at_a_speed_seldom_driven_shows_over_the_wheels_speed) {
     expect_as_fitted(d);
 }
 
+// A tank that swings on the rover, its frequency and its amplitude: before, nothing at twice the noise, or a friction over the speed.
+TEST(Shapes, a_force_that_swings_the_body_is_told_with_its_frequency) {
+    const Diagnosis d = ask(Soil::sand, "swinging_force:force_N=1.2,frequency_Hz=0.37", 41);
+    EXPECT_TRUE(d.effects.empty()) << d.text;
+    EXPECT_EQ(d.kind, "unknown") << d.text;
+    ASSERT_TRUE(d.unknown);
+    EXPECT_TRUE(d.unknown->of_body);
+    EXPECT_EQ(d.unknown->balance, "force on the body");
+    EXPECT_EQ(d.unknown->variable.find("time (it swings at 0.37"), 0U) << d.unknown->variable;
+    EXPECT_NEAR(std::stod(d.unknown->expression), 1.2, 0.12) << d.unknown->expression; // its amplitude comes first
+}
+
 // Something rubs from the first minute on: five values over time miss where it began, and a law of the path looked as much like it.
 TEST(Shapes, a_friction_that_begins_at_once_is_a_step_at_its_time) {
     const Diagnosis d = ask(Soil::concrete, "friction_step:torque_Nm=0.04,time_s=60", 38);

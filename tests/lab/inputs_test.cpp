@@ -358,6 +358,15 @@ TEST(Inputs, wheels_of_a_side_are_smoothed_alike_and_sides_by_themselves) {
     EXPECT_EQ(data.wheel[0].width_s, data.wheel[2].width_s);
     EXPECT_EQ(data.wheel[1].width_s, data.wheel[3].width_s);
     EXPECT_NE(data.wheel[0].width_s, data.wheel[1].width_s);
+    const auto jumps = [&](std::size_t i) { // where cubics serve
+        std::vector<bool> at;
+        for (std::size_t k = 0; k < data.count; ++k) at.push_back(data.wheel[i].speed_rad_s[k] != data.wheel[i].plain_speed_rad_s[k]);
+        return at;
+    };
+    EXPECT_GT(std::ranges::count(jumps(0), true), 10);
+    EXPECT_EQ(jumps(0), jumps(2));
+    EXPECT_EQ(jumps(1), jumps(3));
+    EXPECT_NE(jumps(0), jumps(1));
 }
 
 // A log of angles is rounded to the encoder's counts, whatever decimals it is written with; without them the count was the last decimal's.

@@ -329,6 +329,19 @@ TEST(Judge, takes_a_negative_size_of_what_may_have_either_sign_alone) {
     EXPECT_EQ(verdict({1e-9, 0}), "passes");
 }
 
+// A relaxation length of 0.13 m was 0.013 by its linear step, and not asked for that.
+TEST(Judge, finds_a_law_that_remembers_too_small_by_its_own_fit_alone) {
+    Trial t;
+    t.gain = 1000, t.p_value = t.own_p_value = 0, t.value = {0.01};
+    for (const bool refitted : {false, true})
+        for (const char *effect : {"relaxation_length", "backlash", "body_drag"}) {
+            t.candidate = candidate(effect); // of interest from 0.1 on
+            t.refitted = refitted, t.half_width = {0};
+            judge(t, 2500, {});
+            EXPECT_EQ(t.verdict, refitted || !strongly_nonlinear(effect) ? "too_small" : "passes") << effect << " " << refitted;
+        }
+}
+
 TEST(Nonlinear, are_play_and_lag_alone) {
     EXPECT_TRUE(strongly_nonlinear("backlash") && strongly_nonlinear("relaxation_length"));
     EXPECT_FALSE(strongly_nonlinear("body_drag") || strongly_nonlinear("") || strongly_nonlinear("slip_sinkage"));

@@ -5,7 +5,7 @@
 //   fall per row where a wheel's speed has changed by a tenth of the log's largest within length / median rim speed
 //       > 2 x fall per row elsewhere                                                                                                (1)
 // of the torque balances' held-out squares. And it takes longer than three tenths of the half width by which the wheels' speeds are
-// smoothed (2): of 21 logs with such a name those that were true took half of it and more, seven false ones 0.05 to 0.3 at 0.4 m/s.
+// smoothed (2): of 21 logs with such a name those that were true took half of it and more, six false ones 0.04 to 0.23, all at 0.4 m/s.
 #pragma once
 
 #include "host_tools/lab/fit/heldout.h"

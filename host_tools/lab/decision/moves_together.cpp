@@ -95,10 +95,11 @@ double mean_correlation(const std::vector<std::vector<double>> &x) {
     return pairs > 0 ? sum / pairs : 0;
 }
 
-std::vector<double> over_wheels(const std::vector<std::vector<double>> &x) {
+// Sum over the wheels, each times its weight.
+std::vector<double> over_wheels(const std::vector<std::vector<double>> &x, const std::vector<double> &weight) {
     std::vector<double> out(x.front().size(), 0);
-    for (const std::vector<double> &one : x)
-        for (std::size_t k = 0; k < out.size(); ++k) out[k] += one[k] / static_cast<double>(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t k = 0; k < out.size(); ++k) out[k] += weight[i] * x[i][k];
     return out;
 }
 
@@ -110,14 +111,14 @@ std::vector<std::size_t> balances_of(const Dataset &data, BalanceKind kind) {
 }
 
 // rms of a signal's means over slow blocks; 0 where there are too few.
-double slow_error(const Problem &fitted, const Eigen::VectorXd &noise, BalanceKind kind, double *size) {
+double slow_error(const Problem &fitted, const Eigen::VectorXd &noise, BalanceKind kind, double &size) {
     const std::vector<std::size_t> list = balances_of(fitted.data(), kind);
     if (list.empty()) return 0;
     const std::vector<Series> one{series_of(fitted, noise, list.front())};
     if (blocks_of(one, push_block_s).at_s.size() < few_blocks) return 0;
     const Blocks blocks = blocks_of(one, slow_s);
     if (blocks.at_s.size() < 2) return 0;
-    *size = rms(blocks.mean.front()) * one.front().noise;
+    size = rms(blocks.mean.front()) * one.front().noise;
     return rms(blocks.mean.front());
 }
 
@@ -145,126 +146,127 @@ Wave best_wave(const std::vector<double> &x, const std::vector<double> &y) {
     return best;
 }
 
+// What pushes the body along, by the currents of its wheels: less than the model expects where it is pushed ahead.
+struct Wheels {
+    std::vector<Series> series;
+    std::vector<double> share, newton; // of the mean; what a noise of each current is at its rim, against the motion
+};
+
+Wheels wheels_of(const Problem &fitted, const Eigen::VectorXd &noise) {
+    Wheels out;
+    const Physics physics = fitted.physics();
+    for (const std::size_t b : balances_of(fitted.data(), BalanceKind::current_torque)) {
+        out.series.push_back(series_of(fitted, noise, b));
+        const WheelPhysics &w = physics.wheel[static_cast<std::size_t>(fitted.data().balance[b].wheel)];
+        out.newton.push_back(-out.series.back().noise * w.KG / rolling_radius(w));
+    }
+    out.share.assign(out.series.size(), 1 / static_cast<double>(out.series.size()));
+    return out;
+}
+
+// (1); its size [N], and the wave that is most of it.
+std::optional<Together> push_on(Problem &fitted, const Wheels &wheels) {
+    if (wheels.series.size() < 2) return std::nullopt;
+    const Blocks blocks = blocks_of(wheels.series, push_block_s);
+    if (blocks.at_s.size() < few_blocks) return std::nullopt;
+    Together out;
+    out.error = rms(over_wheels(blocks.mean, wheels.share)), out.correlation = mean_correlation(blocks.mean);
+    if (!(out.error > all_wheels && out.correlation > pushed_alike)) return std::nullopt;
+    out.size = rms(over_wheels(blocks.mean, wheels.newton));
+    const Blocks quick = blocks_of(wheels.series, quick_s);
+    const std::vector<double> pushed = over_wheels(quick.mean, wheels.newton), &path = fitted.forward().motion().path_m;
+    const Dataset &data = fitted.data();
+    std::vector<double> path_m;
+    for (const double t : quick.at_s)
+        path_m.push_back(
+            path[static_cast<std::size_t>(std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(path.size() - 1)))]);
+    const Wave in_time = best_wave(quick.at_s, pushed), along = best_wave(path_m, pushed);
+    const bool of_time = in_time.share > along.share;
+    const Wave &wave = of_time ? in_time : along;
+    if (!(wave.share > least_wave_share)) return out;
+    (of_time ? out.per_s : out.per_m) = wave.rate;
+    out.amplitude_N = wave.amplitude, out.phase_rad = wave.phase_rad;
+    return out;
+}
+
 } // namespace
 
 std::optional<Together> moves_together(Problem &fitted) {
-    const Dataset &data = fitted.data();
-    if (data.independent_rows) return std::nullopt;
+    if (fitted.data().independent_rows) return std::nullopt;
     const Eigen::VectorXd noise = fitted.noise_rows();
     double felt_m_s2 = 0, turned_rad_s = 0;
-    const double felt = slow_error(fitted, noise, BalanceKind::accel, &felt_m_s2),
-                 turned = slow_error(fitted, noise, BalanceKind::yaw_rate, &turned_rad_s);
-    std::vector<Series> wheels;
-    std::vector<double> newton; // that a noise of each wheel's current is at its rim
-    const Physics physics = fitted.physics();
-    for (const std::size_t b : balances_of(data, BalanceKind::current_torque)) {
-        wheels.push_back(series_of(fitted, noise, b));
-        const WheelPhysics &w = physics.wheel[static_cast<std::size_t>(data.balance[b].wheel)];
-        newton.push_back(wheels.back().noise * w.KG / rolling_radius(w));
+    const double felt = slow_error(fitted, noise, BalanceKind::accel, felt_m_s2),
+                 turned = slow_error(fitted, noise, BalanceKind::yaw_rate, turned_rad_s);
+    if (std::optional<Together> push = push_on(fitted, wheels_of(fitted, noise))) {
+        if (felt > slope_too * accelerometer_alone) push->what = Together::What::slope, push->size = felt_m_s2;
+        return push;
     }
-    const Blocks blocks = wheels.size() < 2 ? Blocks{} : blocks_of(wheels, push_block_s);
     Together out;
-    if (blocks.at_s.size() >= few_blocks) {
-        out.error = rms(over_wheels(blocks.mean)), out.correlation = mean_correlation(blocks.mean);
-        if (out.error > all_wheels && out.correlation > pushed_alike) {
-            const Blocks quick = blocks_of(wheels, quick_s);
-            std::vector<double> pushed(quick.at_s.size(), 0), path_m;
-            for (std::size_t i = 0; i < wheels.size(); ++i)
-                for (std::size_t k = 0; k < pushed.size(); ++k) pushed[k] -= newton[i] * quick.mean[i][k];
-            std::vector<double> coarse(blocks.at_s.size(), 0);
-            for (std::size_t i = 0; i < wheels.size(); ++i)
-                for (std::size_t k = 0; k < coarse.size(); ++k) coarse[k] -= newton[i] * blocks.mean[i][k];
-            const Motion &motion = fitted.forward().motion();
-            for (const double t : quick.at_s)
-                path_m.push_back(motion.path_m[static_cast<std::size_t>(
-                    std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(motion.path_m.size() - 1)))]);
-            out.what = felt > slope_too * accelerometer_alone ? Together::What::slope : Together::What::push;
-            out.size = out.what == Together::What::slope ? felt_m_s2 : rms(coarse);
-            const Wave time = best_wave(quick.at_s, pushed), path = best_wave(path_m, pushed);
-            const Wave &wave = time.share > path.share ? time : path;
-            if (wave.share > least_wave_share) {
-                (time.share > path.share ? out.per_s : out.per_m) = wave.rate;
-                out.amplitude_N = wave.amplitude, out.phase_rad = wave.phase_rad;
-            }
-            return out;
-        }
-    }
-    out = {};
-    if (felt > accelerometer_alone) {
+    if (felt > accelerometer_alone)
         out.what = Together::What::accelerometer, out.error = felt, out.size = felt_m_s2;
-        return out;
-    }
-    if (turned > turning) {
+    else if (turned > turning)
         out.what = Together::What::turn, out.error = turned, out.size = turned_rad_s;
-        return out;
-    }
-    return std::nullopt;
+    else
+        return std::nullopt;
+    return out;
 }
 
-UnknownShape shape_of(const Together &what) {
-    UnknownShape told;
+namespace {
+
+struct Told {
+    const char *balance, *target, *unit; // of UnknownShape
+    const char *signal, *before, *after; // of the words, the latter about the size
+};
+
+const Told &told_as(Together::What what) {
+    static constexpr Told told[] = {
+        {"force on the body", "body_force", "N", "", "a force on the body of", "N that no law of the model has"},
+        {"force on the body by a slope", "body_force", "N", " and the accelerometer", "gravity along the body of",
+         "m/s^2, a slope that the model does not have"},
+        {"acceleration felt", "sensor.accel", "m/s^2", "accelerometer alone", "",
+         "m/s^2): its mounting, its temperature, or gravity along a body that tips"},
+        {"moment on the body", "body_moment", "N m", "yaw rate", "",
+         "rad/s): a moment on the body that no law of the model has, or a side's wheels that are not what they were"}};
+    return told[static_cast<std::size_t>(what)];
+}
+
+// amplitude sin(2 pi rate x + phase), as an effect of the user's own has it.
+std::string wave_of(const Together &what, double rate, const char *over) {
     char text[160];
-    told.of_body = true;
-    told.at_a_guess = what.per_s == 0 && what.per_m == 0;
-    told.target = std::string(target_name(what.what == Together::What::accelerometer ? TermTarget::accel : TermTarget::body_force));
-    const auto of = [&](const char *push, const char *slope, const char *felt, const char *turn) {
-        switch (what.what) {
-        case Together::What::push:
-            return std::string(push);
-        case Together::What::slope:
-            return std::string(slope);
-        case Together::What::accelerometer:
-            return std::string(felt);
-        case Together::What::turn:
-            break;
-        }
-        return std::string(turn);
-    };
-    told.balance = of("force on the body", "force on the body by a slope", "acceleration felt", "moment on the body");
-    told.unit_y = of("N", "N", "m/s^2", "N m");
-    told.variable = std::string("nothing that was tried"), told.expression = std::string("0");
+    std::snprintf(text, sizeof text, "%.4g*sin(%.5g*%s %+.3g)", what.amplitude_N, 2 * std::numbers::pi * rate, over, what.phase_rad);
+    return text;
+}
+
+} // namespace
+
+UnknownShape shape_of(const Together &what) {
+    const Told &as = told_as(what.what);
+    UnknownShape told;
+    char text[80] = "nothing that was tried";
+    told.of_body = true, told.at_a_guess = what.per_s == 0 && what.per_m == 0;
+    told.balance = std::string(as.balance), told.target = std::string(as.target), told.unit_y = std::string(as.unit);
+    told.expression = std::string("0");
     if (what.per_s > 0) {
         std::snprintf(text, sizeof text, "time (it swings at %.3g Hz)", what.per_s);
-        told.variable = std::string(text), told.unit_x = std::string("s");
-        std::snprintf(text, sizeof text, "%.4g*sin(%.5g*t %+.3g)", what.amplitude_N, 2 * std::numbers::pi * what.per_s, what.phase_rad);
-        told.expression = std::string(text);
+        told.unit_x = std::string("s"), told.expression = wave_of(what, what.per_s, "t");
     } else if (what.per_m > 0) {
         std::snprintf(text, sizeof text, "path travelled (a wave of %.3g m)", 1 / what.per_m);
-        told.variable = std::string(text), told.unit_x = std::string("m");
-        std::snprintf(text, sizeof text, "%.4g*sin(%.5g*X %+.3g)", what.amplitude_N, 2 * std::numbers::pi * what.per_m, what.phase_rad);
-        told.expression = std::string(text);
+        told.unit_x = std::string("m"), told.expression = wave_of(what, what.per_m, "X");
     }
+    told.variable = std::string(text);
     return told;
 }
 
 std::string together_words(const Together &what) {
+    const Told &as = told_as(what.what);
     char text[400];
-    switch (what.what) {
-    case Together::What::push:
+    if (what.correlation > 0)
         std::snprintf(text, sizeof text,
-                      "what is left moves all wheels together (correlation %.2f, %.1f times a row's noise): a force on the body of %.3g N "
-                      "that no law of the model has",
-                      what.correlation, what.error, what.size);
-        break;
-    case Together::What::slope:
-        std::snprintf(text, sizeof text,
-                      "what is left moves all wheels and the accelerometer together (correlation %.2f, %.1f times a row's noise): gravity "
-                      "along the body of %.3g m/s^2, a slope that the model does not have",
-                      what.correlation, what.error, what.size);
-        break;
-    case Together::What::accelerometer:
-        std::snprintf(text, sizeof text,
-                      "the accelerometer alone is missed slowly, by %.1f times its noise (%.3g m/s^2): its mounting, its temperature, or "
-                      "gravity along a body that tips",
-                      what.error, what.size);
-        break;
-    case Together::What::turn:
-        std::snprintf(text, sizeof text,
-                      "the yaw rate is missed slowly, by %.1f times its noise (%.3g rad/s): a moment on the body that no law of the model "
-                      "has, or a side's wheels that are not what they were",
-                      what.error, what.size);
-        break;
-    }
+                      "what is left moves all wheels%s together (correlation %.2f, %.1f times a row's noise): %s %.3g %s", as.signal,
+                      what.correlation, what.error, as.before, what.size, as.after);
+    else
+        std::snprintf(text, sizeof text, "the %s is missed slowly, by %.1f times its noise (%.3g %s", as.signal, what.error, what.size,
+                      as.after);
     return text;
 }
 

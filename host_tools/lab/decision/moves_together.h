@@ -21,9 +21,9 @@ struct Together {
     enum class What { push, slope, accelerometer, turn } what = What::push;
     double error = 0;       // of (1), (2) or (3), in noises
     double correlation = 0; // of (1)
-    double size = 0;        // rms of what is missing [N, m/s^2, m/s^2, rad/s]
-    // A sinusoid that is more than half of it, over time [Hz] or over the path [1/m]; 0: none. size_of: its amplitude [N], phase at 0
-    // [rad].
+    double size = 0;        // rms of what is missing: a push [N], a slope or the accelerometer [m/s^2], a turn [rad/s]
+    // A sinusoid over time [Hz] or over the path [1/m] that is more than half of the push; 0: none. Its amplitude, and its phase where time
+    // or path is 0 [rad].
     double per_s = 0, per_m = 0, amplitude_N = 0, phase_rad = 0;
 };
 
