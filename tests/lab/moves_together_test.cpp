@@ -56,9 +56,20 @@ TEST(MovesTogether, a_sound_rover_and_wheels_that_are_missed_apart_have_none) {
     FourWheels one;
     add(one, 2, chance(30, 1)); // its mean over the wheels is beyond 1.2 noises
     EXPECT_FALSE(together(one));
-    FourWheels little;
-    add_to_all_wheels(little, chance(0.9, 1)); // and the noise of a mean of four, 0.5: 1.03
-    EXPECT_FALSE(together(little));
+}
+
+// Wheels that go together to a half, and wheels that go together by little of what is known of their currents.
+TEST(MovesTogether, both_of_its_limits_are_asked) {
+    FourWheels half;
+    add_to_all_wheels(half, chance(2, 1));
+    for (unsigned i = 0; i < 4; ++i) add(half, i, chance(2, 100 + 7 * i)); // correlation 4/9, mean over the wheels 2.3
+    EXPECT_FALSE(together(half));
+    for (const double size : {3.0, 5.0}) {
+        FourWheels rover;
+        add_to_all_wheels(rover, chance(size, 1));
+        for (std::size_t i = 0; i < 4; ++i) rover.data.balance[i].noise *= 3; // the log is three times better than it says
+        EXPECT_EQ(together(rover).has_value(), size > 4) << size;             // correlation 0.9 and 0.96, mean 1.01 and 1.67
+    }
 }
 
 TEST(MovesTogether, a_push_is_told_with_its_size) {
