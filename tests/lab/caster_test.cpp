@@ -3,6 +3,7 @@
 #include "host_tools/check/check.h"
 #include "host_tools/lab/decision/diagnose.h"
 #include "host_tools/lab/forward/make_dataset.h"
+#include "host_tools/lab/forward/motion.h"
 #include "host_tools/lab/forward/wheel_step.h"
 #include "host_tools/lab/gate.h"
 #include "host_tools/lab/result/addition.h"
@@ -96,6 +97,28 @@ TEST(Caster, of_a_wheel_that_grips_sideways_holds_sideways_and_does_not_pull) {
         EXPECT_EQ(step.state(caster).traction, 0);
         EXPECT_LT(force[1] * aside, 0);
     }
+}
+
+// It was taken for a machine on rollers by its caster: a path without a sign, and a force of the body along the velocity.
+TEST(Caster, leaves_the_machine_its_way_forward_and_backward) {
+    Model model = two_and_caster();
+    model.motion = BodyMotion::planar;
+    for (WheelSpec &wheel : model.wheel) wheel.grips_sideways = wheel.driven;
+    const Physics physics = make_physics(model);
+    Dataset data = rolling(-7);
+    data.step_s = 0.02;
+    data.count = 50;
+    for (auto &wheel : data.wheel)
+        for (auto *series : {&wheel.speed_rad_s, &wheel.accel_rad_s2, &wheel.angle_rad}) series->assign(data.count, series->front());
+    data.yaw_rate_rad_s.assign(data.count, 0);
+    Motion back;
+    integrate(data, physics, back, nullptr, false);
+    EXPECT_LT(back.v_m_s.back(), -0.1);
+    EXPECT_NEAR(back.path_m.back(), back.v_m_s.back() * 1, 0.1 * std::fabs(back.v_m_s.back()));
+    for (WheelSpec &wheel : model.wheel) wheel.grips_sideways = false;
+    Motion rollers;
+    integrate(data, make_physics(model), rollers, nullptr, false);
+    EXPECT_GE(rollers.path_m.back(), 0);
 }
 
 TEST(Caster, is_told_and_a_motors_wheel_without_a_speed_is_told_otherwise) {

@@ -164,6 +164,10 @@ TEST(MovesTogether, a_diagnosis_tells_it_and_looks_at_the_rover) {
     const Story story = tell(compare(pushed.model, pushed.data, false), d, nullptr);
     EXPECT_NE(story.sure.find("something acts on the rover as a whole"), std::string::npos) << story.sure;
     EXPECT_EQ(story.next.find("Look for what acts on the rover itself"), 0U) << story.next;
+    EXPECT_TRUE(d.unknown->at_a_guess); // of chance: on nothing that was tried, and no headline says so
+    EXPECT_NE(story.headline.find("No effect of the catalogue explains it: force on the body."), std::string::npos) << story.headline;
+    EXPECT_NE(story.missing.find("nothing that was tried tells what it depends on"), std::string::npos) << story.missing;
+    EXPECT_EQ(story.missing.find("which depends on"), std::string::npos) << story.missing;
 }
 
 // A law that moves all wheels is what it is called.

@@ -14,8 +14,8 @@ namespace detail {
 
 Freedom freedom_of(const Dataset &data, const Physics &physics) {
     const bool planar = physics.motion == BodyMotion::planar;
-    const bool omni =
-        planar && std::find(physics.grips_sideways.begin(), physics.grips_sideways.end(), false) != physics.grips_sideways.end();
+    const bool omni = // a caster beside wheels that grip leaves the body its direction
+        planar && std::find(physics.grips_sideways.begin(), physics.grips_sideways.end(), true) == physics.grips_sideways.end();
     return {planar, planar || data.yaw_free, omni, planar ? data.gyro : data.yaw_free && !data.yaw_rate_rad_s.empty()};
 }
 

@@ -82,14 +82,18 @@ std::string good_enough(const Comparison &c, const Diagnosis &d) {
     return "Not known: the error is more than noise, and nothing that was tried explains it. " + farthest_words(c);
 }
 
+// Something acts on the body, and on what it depends is not known.
+bool guessed_body(const Diagnosis &d) { return d.unknown && d.unknown->of_body && d.unknown->at_a_guess; }
+
 std::string missing(const Comparison &c, const Diagnosis &d) {
     if (d.kind == "wrong_model") return d.text;
     std::string text;
     for (const CandidateResult &a : d.accepted) text += (text.empty() ? "" : " And ") + titled(a.candidate) + ": " + size_of(a) + ".";
     text += class_words(d);
     if (d.unknown && d.unknown->instead_of.empty())
-        text += (text.empty() ? "" : " ") + std::string("Something that is in no catalogue: ") + d.unknown->balance +
-                ", which depends on " + d.unknown->variable + ".";
+        text +=
+            (text.empty() ? "" : " ") + std::string("Something that is in no catalogue: ") + d.unknown->balance +
+            (guessed_body(d) ? "; nothing that was tried tells what it depends on." : ", which depends on " + d.unknown->variable + ".");
     if (!d.nearest.empty()) text += " Nearest in the catalogue, and not named: " + joined(d.nearest, ", ") + ".";
     if (!text.empty()) return text;
     return c.adjusted < close_to_noise ? "Nothing that this log can show." : "Nothing that was tried: what is left has another cause.";
@@ -120,8 +124,8 @@ std::string how_sure(const Comparison &c, const Diagnosis &d) {
     }
     if (d.unknown && d.unknown->of_body)
         return std::string("Sure that something acts on the rover as a whole (notes); ") +
-               (d.unknown->at_a_guess ? "nothing that was tried tells what it depends on."
-                                      : "that it depends on " + d.unknown->variable + " is the best of what was tried.");
+               (guessed_body(d) ? "nothing that was tried tells what it depends on."
+                                : "that it depends on " + d.unknown->variable + " is the best of what was tried.");
     if (d.unknown && d.unknown->at_a_guess)
         return "Sure that one wheel is unlike the others (notes); that it depends on " + d.unknown->variable +
                " is the best of what was tried.";
@@ -185,8 +189,9 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
                           ((d.unknown && d.unknown->instead_of.empty()) || explained(d) < most_of_it ? "a part of it. " : "it. ") +
                           story.left;
     else if (d.unknown)
-        story.headline += ". No effect of the catalogue explains it: it depends on " + d.unknown->variable +
-                          (d.unknown->at_a_guess ? ", at a guess." : ".");
+        story.headline += guessed_body(d) ? ". No effect of the catalogue explains it: " + d.unknown->balance + "."
+                                          : ". No effect of the catalogue explains it: it depends on " + d.unknown->variable +
+                                                (d.unknown->at_a_guess ? ", at a guess." : ".");
     else
         story.headline += c.adjusted < close_to_noise && !d.moved.empty()
                               ? ". That is close to the noise, with " + joined(d.moved, " and ") + " far from what is stated."

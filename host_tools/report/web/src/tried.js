@@ -19,6 +19,9 @@ export function found(result) {
 export function unknown(result) {
   const u = result.unknown;
   if (!u) return null;
+  if (u.expression === '0') { // something is there, and no curve
+    return section('unknown', 'Unexplained', `Unexplained: ${u.balance}`, h('p', {}, `It depends on ${u.variable}.`));
+  }
   return section('unknown', u.instead_of ? 'Or' : 'Unexplained', `${u.instead_of ? `Or, instead of ${u.instead_of}, it` : 'Unexplained:'} depends on ${u.variable}`,
     h('p', {}, u.instead_of ? `In no catalogue, and it explains as much: ${u.balance}. This log cannot tell them apart.` : `No known effect has this shape: ${u.balance ?? 'what is left'}, over ${u.variable}.`), list(u.x).length ? shape(u) : null,
     u.expression && [h('p', {}, 'As an expression for an effect of your own:'), copyable(u.expression, 'expression')]);
