@@ -471,6 +471,27 @@ TEST(Check, a_gyro_that_turns_farther_than_the_cameras_heading_is_told_by_how_mu
     }
 }
 
+// A side that slips more turns faster and pushes less: straight ahead the machine turns towards it, which is no wrong sign.
+TEST(Check, a_gyros_sign_is_judged_by_turns_and_not_by_a_straight_drives_slip) {
+    const auto without_camera = [](log::Log log) {
+        std::erase_if(log.signals, [](const log::Signal &s) { return s.name.starts_with("camera."); });
+        return log;
+    };
+    log::Log straight = without_camera(drive({.rich = false}));
+    for (const char *left : {"wheel0.speed_rad_s", "wheel2.speed_rad_s"}) {
+        log::Signal &speed = at(straight, left);
+        for (std::size_t k = 0; k < speed.t_s.size(); ++k) speed.value[k] *= 1 + 0.06 * std::sin(0.7 * speed.t_s[k]);
+    }
+    log::Signal &gyro = at(straight, "imu.gyro_z_rad_s");
+    for (std::size_t k = 0; k < gyro.t_s.size(); ++k) gyro.value[k] = 0.05 * std::sin(0.7 * gyro.t_s[k]); // to the left
+    const check::Report report = check::check(straight, {}, spec_rover());
+    EXPECT_EQ(report.find("sign"), nullptr) << listed(report, Severity::warning);
+
+    log::Log turned_round = without_camera(good());
+    scale(turned_round, "imu.gyro_z_rad_s", -1);
+    ASSERT_NE(check::check(turned_round, {}).find("sign", "imu.gyro_z_rad_s"), nullptr);
+}
+
 TEST(Check, tells_a_clock_that_stands_still_once_and_not_for_each_column) {
     std::string text = "t_s,wheel0.speed_rad_s,wheel1.speed_rad_s,wheel2.speed_rad_s\n";
     for (int i = 0; i < 400; ++i) text.append(i < 300 ? std::to_string(0.01 * i) : "2.99").append(",1,2,3\n");

@@ -2,9 +2,11 @@
 
 #include "inputs.h"
 #include "smooth.h"
+#include "track_heading.h"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace traction::lab {
 
@@ -235,6 +237,33 @@ struct Builder : InputBuilder {
         add(std::move(balance));
     }
 
+    double on_grid(const std::vector<double> &series, double t) const {
+        const double k = std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(data.count - 1));
+        const auto a = static_cast<std::size_t>(k), b = std::min(a + 1, data.count - 1);
+        return series[a] + (k - static_cast<double>(a)) * (series[b] - series[a]);
+    }
+
+    // No driven wheel rolls sideways or is turned.
+    bool goes_along_its_heading() const {
+        return std::all_of(model.wheel.begin(), model.wheel.end(), [](const WheelSpec &w) {
+            return !w.driven || (w.grips_sideways && std::fabs(parameter(w.geometry, "heading_rad")) < 1e-3);
+        });
+    }
+
+    // Mean way of the rims of the wheels whose motion is known, from the log's begin [m].
+    std::vector<double> rim_way() const {
+        std::vector<double> way(data.count, 0);
+        double wheels = 0;
+        for (std::size_t i = 0; i < model.wheel.size(); ++i) {
+            if (data.wheel[i].rolls_freely) continue;
+            wheels += 1;
+            const double radius = parameter(model.wheel[i].geometry, "radius_m");
+            for (std::size_t k = 0; k < data.count; ++k) way[k] += radius * data.wheel[i].speed_rad_s[k] * data.step_s;
+        }
+        for (std::size_t k = 0; k < data.count; ++k) way[k] = (k > 0 ? way[k - 1] : 0) + way[k] / std::max(1.0, wheels);
+        return way;
+    }
+
     void camera() {
         const log::Signal *x = signal("camera.x_m"), *y = signal("camera.y_m"), *angle = signal("camera.yaw_rad");
         if (x == nullptr) {
@@ -249,35 +278,42 @@ struct Builder : InputBuilder {
         side.kind = BalanceKind::camera_y, side.name = "camera.left_m", side.title = "camera displacement, to the left";
         turn.kind = BalanceKind::camera_yaw, turn.name = "camera.yaw_rad", turn.title = "camera heading change", turn.unit = "rad";
         if (angle != nullptr) turn.noise = std::sqrt(2.0) * std::max(1e-4, noise_from_differences(angle->value));
-        const double mx = parameter(model.sensors, "camera.x_m"), my = parameter(model.sensors, "camera.y_m"),
-                     mount = parameter(model.sensors, "camera.yaw_rad");
-        const double spacing = std::max(0.28, 0.99 * sample_period(*x));
-        struct Pose {
-            double t, x, y, yaw;
+        const std::complex<double> lever_m(parameter(model.sensors, "camera.x_m"), parameter(model.sensors, "camera.y_m"));
+        const double spacing = std::max(0.28, 0.99 * sample_period(*x)), mount = parameter(model.sensors, "camera.yaw_rad");
+        const auto heading = [&](double t) {
+            if (angle != nullptr) return interpolate(angle->t_s, yaw, t) + mount;
+            return data.yaw_rad.empty() ? 0 : on_grid(data.yaw_rad, t);
         };
-        const auto pose = [&](std::size_t i) {
-            const double t = x->t_s[i];
-            double heading = angle != nullptr ? interpolate(angle->t_s, yaw, t) + mount : 0;
-            if (angle == nullptr && !data.yaw_rad.empty() && data.count > 0) {
-                const double k = std::clamp((t - data.start_s) / data.step_s, 0.0, static_cast<double>(data.count - 1));
-                heading = data.yaw_rad[static_cast<std::size_t>(k)];
-            }
-            const double py = y != nullptr ? interpolate(y->t_s, y->value, t) : 0;
-            return Pose{t, x->value[i] - (mx * std::cos(heading) - my * std::sin(heading)),
-                        py - (mx * std::sin(heading) + my * std::cos(heading)), heading};
+        const auto place = [&](std::size_t i) {
+            return std::complex<double>(x->value[i], y != nullptr ? interpolate(y->t_s, y->value, x->t_s[i]) : 0);
         };
-        Pose a = pose(0);
-        for (std::size_t i = 1; i < x->t_s.size(); ++i) {
-            if (x->t_s[i] - a.t < spacing) continue;
-            const Pose b = pose(i);
-            if (b.t - a.t < 3 * spacing && usable(a.t, b.t)) {
-                const double c = std::cos(0.5 * (a.yaw + b.yaw)), s = std::sin(0.5 * (a.yaw + b.yaw));
-                for (Balance *balance : {&along, &side, &turn}) balance->t0_s.push_back(a.t), balance->t1_s.push_back(b.t);
-                along.measured.push_back((b.x - a.x) * c + (b.y - a.y) * s);
-                side.measured.push_back(-(b.x - a.x) * s + (b.y - a.y) * c);
-                turn.measured.push_back(b.yaw - a.yaw);
+        const std::vector<double> rim_m = rim_way();
+        std::vector<TrackRow> rows;
+        double ended = -1;
+        for (std::size_t i = 1, from = 0; i < x->t_s.size(); ++i) {
+            const double t0 = x->t_s[from], t1 = x->t_s[i];
+            if (t1 - t0 < spacing) continue;
+            if (t1 - t0 < 3 * spacing && usable(t0, t1)) {
+                rows.push_back({place(i) - place(from), on_grid(rim_m, t1) - on_grid(rim_m, t0), {heading(t0), heading(t1)}, t0 != ended});
+                for (Balance *balance : {&along, &side, &turn}) balance->t0_s.push_back(t0), balance->t1_s.push_back(t1);
+                ended = t1;
             }
-            a = b;
+            from = i;
+        }
+        std::vector<double> delta_rad(rows.size(), 0);
+        if (angle == nullptr && y != nullptr && goes_along_its_heading()) {
+            delta_rad = track_heading(rows, lever_m, along.noise).delta_rad;
+            say(delta_rad.empty()
+                    ? "camera.x_m and y_m without camera.yaw_rad: no heading lays them along the wheels' way: the camera balance is "
+                      "left out (imu.gyro_z_rad_s tells how the machine turns)"
+                    : "no camera.yaw_rad: the heading is the gyro's, turned until the wheels' way lies on the track");
+            if (delta_rad.empty()) return;
+        }
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const std::complex<double> way = way_of_body(rows[i], lever_m, delta_rad[i]);
+            along.measured.push_back(way.real());
+            side.measured.push_back(way.imag());
+            turn.measured.push_back(rows[i].turned_rad[1] - rows[i].turned_rad[0]);
         }
         add(std::move(along));
         if (model.motion == BodyMotion::planar && y != nullptr) add(std::move(side));
