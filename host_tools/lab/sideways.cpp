@@ -37,7 +37,7 @@ bool has_bends(const Model &model, const Dataset &data) {
 } // namespace
 
 bool drifts_sideways(const Model &model, const Dataset &data) {
-    if (model.motion != BodyMotion::longitudinal || !data.yaw_free || !data.gyro || data.yaw_rate_rad_s.size() != data.count ||
+    if (model.motion != BodyMotion::longitudinal || !data.yaw_free || data.yaw_rate_rad_s.size() != data.count ||
         data.wheel.size() != model.wheel.size() || !may_drift(model) || !has_bends(model, data))
         return false;
     const auto fitted = [&](BodyMotion motion) {
@@ -49,7 +49,7 @@ bool drifts_sideways(const Model &model, const Dataset &data) {
         return problem;
     };
     const Problem straight = fitted(BodyMotion::longitudinal), sideways = fitted(BodyMotion::planar);
-    return fall_between(as_fitted(straight), as_fitted(sideways), straight.row_scale.cwiseAbs2()).sure();
+    return fall_of_unlikelihood(straight, sideways).sure();
 }
 
 } // namespace traction::lab

@@ -2,8 +2,8 @@
 //
 // In a bend a skid steer's middle drifts outwards until the side forces are M v r, and front and rear wheels meet the ground at different
 // angles: pull and currents differ by that. So does the middle of a machine with one axle before or behind it. No number is added, so the
-// log alone decides: both motions are fitted, and the sideways one is taken where the weighted squares it leaves are less, by more than the
-// standard error of that over blocks of 5 s.
+// log alone decides: both motions are fitted, and the sideways one is taken where the log is likelier by it, each by its own scales, by
+// more than the standard error of that over blocks of 5 s.
 #pragma once
 
 #include "host_tools/lab/inputs/dataset.h"

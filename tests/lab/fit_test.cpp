@@ -1,6 +1,7 @@
 // The fit itself (fit/), on a machine that is linear in all that is fitted and on rows made by hand.
 #include "host_tools/lab/fit/checkpoint.h"
 #include "host_tools/lab/fit/distribution.h"
+#include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/fit/normal_equations.h"
 #include "host_tools/lab/fit/remainder.h"
@@ -438,6 +439,46 @@ TEST(Settled, fit_has_scales_that_no_longer_move_it) {
     none.fit({});
     none.settle();
     EXPECT_EQ(none.theta[0], 0);
+}
+
+// Two wheels have 0.1 A more friction than the two others, whose sensors are four times as rough; the model has one friction for all.
+// Scales that follow the residual have two optima, a fifth of the way and nearly all of it: from the model's number the first.
+TEST(Settled, fit_does_not_stay_where_its_scales_have_weighed_down_what_it_misses) {
+    FourWheels rover;
+    for (const std::size_t b : {1U, 3U}) rover.data.balance[b].noise = 0.04;
+    Model truth = rover.model;
+    for (const std::size_t w : {0U, 2U}) truth.wheel[w].motor.at("coulomb_Nm").value += 0.03;
+    rover.measure(make_physics(truth));
+    for (WheelSpec &w : rover.model.wheel) w.motor.at("coulomb_Nm").prior = 0.1;
+    const Physics physics = make_physics(rover.model);
+    Problem settled(rover.data, physics, free_parameters(rover.model, physics));
+    settled.settle();
+    const Problem fitted = fitted_problem(rover.model, rover.data);
+    EXPECT_GT(settled.balance_rms(0, true), 5); // the trap is there
+    for (const std::size_t b : {0U, 2U}) EXPECT_LT(fitted.balance_rms(b, true), 2) << b;
+    EXPECT_LT(unlikelihood(fitted).sum(), unlikelihood(settled).sum());
+    EXPECT_LT(overall_error(fitted), 0.7 * overall_error(settled));
+}
+
+TEST(Unlikelihood, is_twice_the_negative_logarithm_of_the_normal_density_and_falls_over_blocks) {
+    FourWheels rover;
+    const Physics physics = make_physics(rover.model);
+    Problem one(rover.data, physics, free_parameters(rover.model, physics));
+    one.settle();
+    Problem other = one;
+    other.row_scale *= 0.5;
+    other.residual *= 3;
+    const Eigen::VectorXd rows = unlikelihood(other);
+    for (Eigen::Index r = 0; r < rows.size(); r += 17) {
+        const double sigma = 1 / other.row_scale[r], z = other.residual[r] / sigma;
+        EXPECT_NEAR(rows[r], z * z + 2 * std::log(sigma), 1e-9);
+    }
+    const Fall fall = fall_of_unlikelihood(other, one);
+    EXPECT_NEAR(fall.sum, (rows - unlikelihood(one)).sum(), 1e-6);
+    EXPECT_NEAR(fall.of_block.sum(), fall.sum, 1e-6);
+    EXPECT_TRUE(fall.sure());
+    EXPECT_FALSE(fall_of_unlikelihood(one, other).sure());
+    EXPECT_FALSE(fall_of_unlikelihood(one, one).sure());
 }
 
 TEST(Error, of_all_is_the_root_mean_over_balances_in_noises) {

@@ -103,15 +103,30 @@ HeldOut held_out(const Problem &fitted) {
     return out;
 }
 
-Fall fall_between(const HeldOut &before, const HeldOut &after, const Eigen::VectorXd &weight) {
+namespace {
+
+Fall over_blocks(const HeldOut &of, const Eigen::VectorXd &fall_of_row) {
     Fall fall;
-    fall.of_block = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(before.blocks));
-    for (Eigen::Index r = 0; r < before.residual.size(); ++r)
-        fall.of_block[static_cast<Eigen::Index>(before.block[static_cast<std::size_t>(r)])] +=
-            (before.residual[r] * before.residual[r] - after.residual[r] * after.residual[r]) * weight[r];
+    fall.of_block = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(of.blocks));
+    for (Eigen::Index r = 0; r < fall_of_row.size(); ++r)
+        fall.of_block[static_cast<Eigen::Index>(of.block[static_cast<std::size_t>(r)])] += fall_of_row[r];
     fall.sum = fall.of_block.sum();
     fall.error = sum_error(fall.of_block);
     return fall;
+}
+
+} // namespace
+
+Fall fall_between(const HeldOut &before, const HeldOut &after, const Eigen::VectorXd &weight) {
+    return over_blocks(before, (before.residual.cwiseAbs2() - after.residual.cwiseAbs2()).cwiseProduct(weight));
+}
+
+Eigen::VectorXd unlikelihood(const Problem &problem) {
+    return problem.residual.cwiseProduct(problem.row_scale).cwiseAbs2() - 2 * problem.row_scale.array().log().matrix();
+}
+
+Fall fall_of_unlikelihood(const Problem &before, const Problem &after) {
+    return over_blocks(as_fitted(before), unlikelihood(before) - unlikelihood(after));
 }
 
 } // namespace traction::lab

@@ -35,6 +35,13 @@ struct Fall {
 };
 Fall fall_between(const HeldOut &before, const HeldOut &after, const Eigen::VectorXd &row_weight);
 
+// Per row: -2 log likelihood by the problem's own scales, but for what is the same for all.
+Eigen::VectorXd unlikelihood(const Problem &problem);
+
+// The same of the rows' likelihood, of two models as fitted, each by its own scales. Squares by one model's scales do not compare two
+// models where the first has weighed down what it misses.
+Fall fall_of_unlikelihood(const Problem &before, const Problem &after);
+
 // The weights by which the squares add up to the square of `error`.
 Eigen::VectorXd noise_weight(const Problem &problem);
 

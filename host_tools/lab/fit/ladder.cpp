@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace traction::lab {
 
@@ -56,6 +57,32 @@ Problem held_back(const Problem &fitted, Problem other) {
     return other;
 }
 
+// Scales follow the residual: a wheel that the first steps missed is weighed down and stays missed, though there are numbers by which all
+// wheels follow.
+constexpr double unlike = 1.5, missed = 1.2; // times each other; times noise
+
+bool wheels_are_missed_unlike(const Problem &fitted) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t b = 0; b < fitted.data().balance.size(); ++b) {
+        if (fitted.data().balance[b].kind != BalanceKind::current_torque) continue;
+        const double error = fitted.balance_rms(b, true);
+        least = std::min(least, error), most = std::max(most, error);
+    }
+    return most > unlike * least && overall_error(fitted) > missed;
+}
+
+double unlikely(const Problem &fitted) { return unlikelihood(fitted).sum() + fitted.theta.cwiseAbs2().dot(fitted.prior_precision()); }
+
+// The fit from where all rows are weighed by their sensors' noise, where that is likelier and misses less.
+Problem weighed_alike(Problem fitted) {
+    Problem other = fitted;
+    other.row_scale = other.noise_rows().cwiseInverse();
+    other.jacobian.resize(0, 0);
+    other.gauss_newton(4);
+    other.settle_from_here();
+    return unlikely(other) < unlikely(fitted) && overall_error(other) < overall_error(fitted) ? other : fitted;
+}
+
 } // namespace
 
 std::optional<Problem> from_afar(const Problem &problem, std::size_t parameter, double least) {
@@ -80,6 +107,7 @@ Problem fitted_problem(const Model &model, const Dataset &data) {
         Problem other = held_back(best, stated);
         if (overall_error(other) < overall_error(best)) best = std::move(other);
     }
+    if (wheels_are_missed_unlike(best)) best = weighed_alike(std::move(best));
     Problem first = best;
     double least = first.cost();
     for (std::size_t i = 0; i < best.parameters.size(); ++i) {
