@@ -171,6 +171,29 @@ TEST(Evidence, of_a_law_beside_a_softer_ground_is_asked_on_the_ground_as_it_was)
     }
 }
 
+// A tick of 0.1 s, tau = (0.002 + 6 * 0.05^2 / 4) 3 / 0.3^2 = 0.1917 s: 0.261.
+TEST(Evidence, of_an_accelerometers_scale_is_more_than_what_reading_it_once_a_tick_makes) {
+    FourWheels rover;
+    const Physics physics = make_physics(rover.model);
+    EXPECT_NEAR(sawtooth_share(rover.data, physics), 0.5 * 0.1 / 0.1917, 0.001);
+    Dataset unknown = rover.data;
+    for (WheelInput &w : unknown.wheel) w.voltage_t_s.clear();
+    EXPECT_EQ(sawtooth_share(unknown, physics), 0);
+    Candidate scale = touching(stage_sensors);
+    scale.effect = "accel_scale";
+    Candidate other = scale;
+    other.effect = "accel_tilt";
+    for (const double change : {-0.28, 0.28, 0.35}) { // 1.2 * 0.261 = 0.313
+        Physics moved = physics;
+        moved.body.accel_scale = change;
+        Problem before(rover.data, physics, {}), with(rover.data, moved, {});
+        before.linearise(), with.linearise();
+        const HeldOut left_before = as_fitted(before), left_with = as_fitted(with);
+        EXPECT_EQ(evidence_of(scale, before, left_before, with, left_with).smooths, std::fabs(change) < 0.313) << change;
+        EXPECT_FALSE(evidence_of(other, before, left_before, with, left_with).smooths) << change;
+    }
+}
+
 TEST(Spared, are_the_squared_stated_deviations_that_a_name_leaves) {
     const Dataset data = data_of(1, 4, 0.5);
     Problem before = problem_of(data, {parameter("a", "x", 1, 0.5), parameter("b", "x", 1, 2), parameter("c", "x", 1, 0)},

@@ -5,6 +5,9 @@
 #include "rounds.h"
 #include "uneven_grip.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace traction::lab {
 
 namespace {
@@ -13,11 +16,31 @@ Evidence falls_of(const Problem &before, const HeldOut &left_before, const HeldO
     return {fall_between(left_before, left_with, before.row_scale.cwiseAbs2()), fall_between(left_before, left_with, noise_weight(before))};
 }
 
+bool reads_at_one_time(const Candidate &candidate, const Problem &with) {
+    return candidate.effect == "accel_scale" &&
+           std::fabs(with.physics().body.accel_scale) < 1.2 * sawtooth_share(with.data(), with.physics());
+}
+
 } // namespace
+
+double sawtooth_share(const Dataset &data, const Physics &physics) {
+    double share = 0, driven = 0;
+    for (const bool one : physics.driven) driven += one ? 1 : 0;
+    for (std::size_t i = 0; i < physics.wheel.size() && i < data.wheel.size(); ++i) {
+        const WheelPhysics &w = physics.wheel[i];
+        const std::vector<double> &t = data.wheel[i].voltage_t_s;
+        if (!physics.driven[i] || t.size() < 3 || !(w.KG * w.ke > 0)) continue;
+        const double tick_s = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
+        const double tau_s = (w.J + physics.body.mass * w.radius * w.radius / driven) * w.Ra / (w.KG * w.ke);
+        share = std::max(share, 0.5 * tick_s / tau_s);
+    }
+    return share;
+}
 
 Evidence evidence_of(const Candidate &candidate, const Problem &before, const HeldOut &left_before, const Problem &with,
                      const HeldOut &left_with) {
     Evidence out = falls_of(before, left_before, left_with);
+    out.smooths = reads_at_one_time(candidate, with);
     if ((candidate.touched & stage_motion) == 0) return out;
     const Scatter scatter(before, &with);
     const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();

@@ -4,7 +4,13 @@
 //
 // in units of noise and on the scales of the model without it. Beyond smoothing a name must gain a twentieth of what scatter may be of the
 // squares; where a softer ground beside it is all that smooths, (1) is asked with the ground as it was. A law that lags must gain where
-// speeds change (lag.h), a grip that falls with slip in what the wheels have in common (uneven_grip.h).
+// speeds change (lag.h), a grip that falls with slip in what the wheels have in common (uneven_grip.h). An accelerometer's scale must be more
+// than what reading it once a tick makes:
+//
+//   tick / (2 tau),   tau = (J + M R^2 / n) Ra / (KG ke)                                                                            (2)
+//
+// A duty holds for a tick, in which the body's acceleration falls by tick / tau as its n motors gain speed; a sensor that is read at always
+// the same time of it reads up to half of that more or less than the mean.
 #pragma once
 
 #include "host_tools/lab/fit/heldout.h"
@@ -18,13 +24,16 @@ namespace traction::lab {
 // (1), on the scales of the model without the name and in units of noise.
 struct Evidence {
     Fall scaled, noise;
-    bool smooths = false; // that is all it does, or its like (lag.h, uneven_grip.h): none
+    bool smooths = false; // that is all it does, or its like (lag.h, uneven_grip.h, (2)): none
     bool falls() const { return !smooths && scaled.sure() && noise.sure(); }
 };
 
 // before: fitted without the candidate; with: the whole model with it, on the scales of `before`; their held-out errors.
 Evidence evidence_of(const Candidate &candidate, const Problem &before, const HeldOut &left_before, const Problem &with,
                      const HeldOut &left_with);
+
+// (2), of the wheel where it is most; 0 where no voltage is known.
+double sawtooth_share(const Dataset &data, const Physics &physics);
 
 // Squared stated deviations that are spared by it.
 double spared_by(const Problem &before, const Problem &with);

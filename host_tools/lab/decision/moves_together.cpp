@@ -14,7 +14,8 @@ namespace traction::lab {
 namespace {
 
 constexpr double push_block_s = 0.5, slow_s = 5, quick_s = 0.1;
-constexpr double pushed_alike = 0.75, all_wheels = 1.2, accelerometer_alone = 0.8, turning = 5; // (1) to (3)
+constexpr double pushed_alike[] = {0.75, 0.6}, all_wheels[] = {1.2, 3}; // (1): from the first to the second in a straight line
+constexpr double accelerometer_alone = 0.8, turning = 5;                // (2), (3)
 constexpr double largest = 30; // noises, beyond which a row counts as so many
 constexpr std::size_t few_blocks = 40;
 constexpr double slope_too = 0.5;          // share of (2) from which a push is a slope: none of a clean log's
@@ -165,13 +166,18 @@ Wheels wheels_of(const Problem &fitted, const Eigen::VectorXd &noise) {
 }
 
 // (1); its size [N], and the wave that is most of it.
+double least_correlation(double error) {
+    const double strong = std::clamp((error - all_wheels[0]) / (all_wheels[1] - all_wheels[0]), 0.0, 1.0);
+    return pushed_alike[0] + strong * (pushed_alike[1] - pushed_alike[0]);
+}
+
 std::optional<Together> push_on(Problem &fitted, const Wheels &wheels) {
     if (wheels.series.size() < 2) return std::nullopt;
     const Blocks blocks = blocks_of(wheels.series, push_block_s);
     if (blocks.at_s.size() < few_blocks) return std::nullopt;
     Together out;
     out.error = rms(over_wheels(blocks.mean, wheels.share)), out.correlation = mean_correlation(blocks.mean);
-    if (!(out.error > all_wheels && out.correlation > pushed_alike)) return std::nullopt;
+    if (!(out.error > all_wheels[0] && out.correlation > least_correlation(out.error))) return std::nullopt;
     out.size = rms(over_wheels(blocks.mean, wheels.newton));
     const Blocks quick = blocks_of(wheels.series, quick_s);
     const std::vector<double> pushed = over_wheels(quick.mean, wheels.newton), &path = fitted.forward().motion().path_m;

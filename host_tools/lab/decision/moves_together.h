@@ -3,6 +3,7 @@
 // Of the means over blocks of the residuals, in units of a row's noise:
 //
 //   rho = mean_(i != j) corr(e_i, e_j) > 0.75,  rms(mean_i e_i) > 1.2      currents by torque of all wheels, 0.5 s            (1)
+//   rho > 0.6 where that mean is above 3, between them in a straight line
 //   rms(e) > 0.8                                                           accelerometer, 5 s                                 (2)
 //   rms(e) > 5                                                             yaw rate, 5 s                                      (3)
 //

@@ -93,15 +93,15 @@ std::vector<Limit> limits_of(const Problem &problem) {
         const bool own_bound = value < p.minimum + slack || value > p.maximum - slack;
         const bool may_be_absent = p.prior == 0 || p.prior > 0.5 * std::fabs(p.base);
         if (own_bound && p.minimum == 0 && value < slack && may_be_absent) continue; // what is not there
-        list.push_back({name_of(p), p.unit, p.own ? increment : value, !own_bound});
+        list.push_back({name_of(p), p.unit, p.own ? increment : value, p.own, !own_bound});
     }
     return list;
 }
 
 std::string limit_text(const Limit &limit) {
     char text[300];
-    std::snprintf(text, sizeof text, "%s stands at its limit, %.4g%s%s%s: widen it or doubt the model", limit.parameter.c_str(),
-                  limit.value, limit.unit == "1" || limit.unit.empty() ? "" : " ", limit.unit == "1" ? "" : limit.unit.c_str(),
+    std::snprintf(text, sizeof text, "%s stands at its limit, %s%.4g%s%s%s: widen it or doubt the model", limit.parameter.c_str(),
+                  limit.own ? "off from the other wheels' by " : "", limit.value, limit.unit == "1" || limit.unit.empty() ? "" : " ", limit.unit == "1" ? "" : limit.unit.c_str(),
                   limit.of_prior ? " (six of its prior's deviations)" : "");
     return text;
 }

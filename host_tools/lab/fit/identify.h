@@ -17,6 +17,7 @@ namespace traction::lab {
 struct Limit {
     std::string parameter, unit;
     double value = 0;
+    bool own = false;      // a wheel's own, and `value` its difference from what the wheels share
     bool of_prior = false; // six of its prior's deviations from the model's value; else the parameter's own minimum or maximum
 };
 

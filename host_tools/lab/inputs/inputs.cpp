@@ -206,10 +206,7 @@ void InputBuilder::wheel_motion(std::size_t i, Found &found) {
                                                                                                data.standstill_rad_s, slope_noise));
             wide > 1.2 * half) {
             half = wide;
-            char text[160];
-            std::snprintf(text, sizeof text, "%s scatters from sample to sample: the wheel's speed is smoothed over +-%.2f s",
-                          s->name.c_str(), half);
-            say(text);
+            scattering.push_back(s->name), widest_smoothing_s = std::max(widest_smoothing_s, half);
         }
         if (widen > 1) data.smoothing_half_s = half;
         const double count_rad = rounding_of(angle);
@@ -265,6 +262,14 @@ void InputBuilder::wheels_motion() {
     std::vector<Found> found(model.wheel.size());
     for (std::size_t i = 0; i < model.wheel.size(); ++i)
         if (model.wheel[i].drive < 0) wheel_motion(i, found[i]);
+    if (!scattering.empty()) {
+        const std::size_t more = scattering.size() - 1;
+        char text[240];
+        std::snprintf(text, sizeof text, "%s%s scatter%s from sample to sample: the wheels' speeds are smoothed over up to +-%.2f s",
+                      scattering.front().c_str(), more > 0 ? (" and " + std::to_string(more) + " more").c_str() : "", more > 0 ? "" : "s",
+                      widest_smoothing_s);
+        say(text);
+    }
     for (const std::vector<std::size_t> &side : sides()) {
         std::vector<WheelInput *> inputs;
         for (const std::size_t i : side) inputs.push_back(&data.wheel[i]);

@@ -51,6 +51,8 @@ struct InputBuilder {
         WheelInput sharp; // its speed and acceleration by cubics
         double noise_rad_s2 = 0;
     };
+    std::vector<std::string> scattering{}; // signals whose speeds are smoothed more widely than their samples alone ask for, and the widest
+    double widest_smoothing_s = 0;
     void wheel_motion(std::size_t i, Found &found);
     void wheels_motion();
     std::vector<std::vector<std::size_t>> sides() const;

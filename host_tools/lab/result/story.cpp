@@ -85,6 +85,15 @@ std::string good_enough(const Comparison &c, const Diagnosis &d) {
 // Something acts on the body, and on what it depends is not known.
 bool guessed_body(const Diagnosis &d) { return d.unknown && d.unknown->of_body && d.unknown->at_a_guess; }
 
+// Numbers of the sheet that the fit takes to their limits or far from what is stated.
+std::vector<std::string> far_from_stated(const Diagnosis &d) {
+    std::vector<std::string> list;
+    for (const Limit &limit : d.limits)
+        if (limit.of_prior && !limit.parameter.starts_with("sensors.")) list.push_back(limit.parameter);
+    list.insert(list.end(), d.moved.begin(), d.moved.end());
+    return list;
+}
+
 std::string missing(const Comparison &c, const Diagnosis &d) {
     if (d.kind == "wrong_model") return d.text;
     std::string text;
@@ -169,6 +178,8 @@ std::string what_next(const Comparison &c, const Diagnosis &d, const NextExperim
     if (c.adjusted < close_to_noise && !d.moved.empty())
         return "Check " + joined(d.moved, " and ") + " on the machine: where it is as stated, something that acts alike is missing.";
     if (c.adjusted < close_to_noise) return "Nothing: use the model.";
+    if (const std::vector<std::string> off = far_from_stated(d); !off.empty())
+        return "Check " + joined(off, " and ") + " on the machine: the model file is wrong there, or something that acts alike is missing.";
     if (d.not_excited.empty()) return "Look at where the model fails, and try a law of your own: traction add --effect-file.";
     return "Drive what this log lacks: traction next --all proposes the drive for what it could not show.";
 }
@@ -192,11 +203,15 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
         story.headline += guessed_body(d) ? ". No effect of the catalogue explains it: " + d.unknown->balance + "."
                                           : ". No effect of the catalogue explains it: it depends on " + d.unknown->variable +
                                                 (d.unknown->at_a_guess ? ", at a guess." : ".");
-    else
+    else {
+        const std::vector<std::string> off = far_from_stated(d);
         story.headline += c.adjusted < close_to_noise && !d.moved.empty()
                               ? ". That is close to the noise, with " + joined(d.moved, " and ") + " far from what is stated."
                           : c.adjusted < close_to_noise ? ". That is close to the noise: nothing is missing that this log could show."
-                                                        : ". Nothing found that explains it. " + story.next;
+                          : off.empty()                 ? ". Nothing found that explains it. " + story.next
+                                                        : ". No effect explains it, but " + joined(off, " and ") +
+                                                              (off.size() > 1 ? " are" : " is") + " far from what is stated. " + story.next;
+    }
     return story;
 }
 
