@@ -390,6 +390,12 @@ TEST(Round, asks_more_of_a_law_that_wanders_with_the_ground) {
     EXPECT_FALSE(falls(0.971, 0.1));
 }
 
+TEST(Round, of_another_sensor_is_what_no_number_of_the_sheet_does) {
+    for (const char *law : {"radar_pitch", "camera_scale", "gyro_delay"}) EXPECT_TRUE(of_another_sensor(candidate(law))) << law;
+    for (const char *law : {"accel_tilt", "current_gain", "voltage_gain", "encoder_missed", "grade", ""})
+        EXPECT_FALSE(of_another_sensor(candidate(law))) << law;
+}
+
 TEST(Round, knows_a_law_that_takes_half_of_what_is_no_noise_of_a_model_that_misses_by_far) {
     const auto takes = [](double before, double after) { return takes_most(held_at({}, before), held_at({}, after)); };
     EXPECT_TRUE(takes(3, 2.2));  // 8 squares beyond noise, 3.84

@@ -415,7 +415,7 @@ class Search {
     void drop_beside_bent_sheet(Problem &last) {
         for (std::size_t i = d_.accepted.size(); i-- > 0;) {
             if (!(furthest_of_sheet(last) > bent_sheet)) return;
-            if (d_.accepted[i].p_value < sure_rows) continue;
+            if (d_.accepted[i].p_value < sure_rows || of_another_sensor(d_.accepted[i].candidate)) continue;
             const Candidate one = d_.accepted[i].candidate;
             Model without = model_without(d_.model, one);
             Problem less = fitted(without, &last);

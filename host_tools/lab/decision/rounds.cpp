@@ -222,6 +222,11 @@ bool wanders(const Candidate &c) {
     return std::find(std::begin(laws), std::end(laws), c.effect) != std::end(laws);
 }
 
+bool of_another_sensor(const Candidate &c) {
+    static constexpr std::string_view sensors[] = {"radar_", "camera_", "gyro_"};
+    return std::any_of(std::begin(sensors), std::end(sensors), [&](std::string_view name) { return c.effect.starts_with(name); });
+}
+
 namespace {
 
 bool falls_by(double of_all, double of_one, const HeldOut &before, const HeldOut &after, const Dataset &data) {

@@ -93,6 +93,10 @@ std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trial
 // A law of a place, or of the way behind a wheel: whatever ground wanders, and whatever an encoder scatters, has a bit of it somewhere.
 bool wanders(const Candidate &candidate);
 
+// A law of the radar, the camera or the gyro alone. Of the sheet no number acts as such a one does, so that one which stays far from its
+// own speaks of something else.
+bool of_another_sensor(const Candidate &candidate);
+
 // Whether a name lowers the held-out error by as much as a name must, of all or of one balance; what wanders, of all.
 bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data, bool wanders = false);
 
