@@ -97,6 +97,20 @@ static bool turns(const control_config_t *config, float rim_m_s)
     return fixed_greater(fabsf(rim_m_s), 0.75f * config->ground_speed.slow_m_s);
 }
 
+// [1] of the fastest speed that the template holds, assumed. Rain and whoever walks ahead of the radar tell of such speeds as
+// well; a body that is so fast has wheels that turn as fast, or was felt to be thrown.
+static const float beyond_share = 0.5f;
+
+static bool may_be_beyond(const control_config_t *config, const control_state_t *state, float rim_m_s)
+{
+    const doppler_template_t *beam = config->doppler.beam;
+    const float least_m_s = beam->speed_m_s[beam->speeds - 1] * config->doppler.scale;
+    const float known_m_s = fabsf(state->ground_speed.speed_m_s);
+    const float told_m_s = fixed_greater(fabsf(rim_m_s), known_m_s) ? fabsf(rim_m_s) : known_m_s;
+    const bool wheels = fixed_greater(config->ground_speed.still_m_s, 0.0f); // else nobody contradicts the radar
+    return !wheels || fixed_greater(told_m_s, beyond_share * least_m_s);
+}
+
 static ground_speed_output_t estimate_speed(const control_config_t *config, control_state_t *state, const sense_output_t *sense,
                                             const sensor_frame_t *frame, trace_t *trace)
 {
@@ -109,11 +123,12 @@ static ground_speed_output_t estimate_speed(const control_config_t *config, cont
     doppler_output_t doppler = state->heard;
     doppler.late_samples += missing + arrival.count;
     state->heard = doppler_step(&config->doppler, &state->doppler, frame->radar_count, arrival.count);
+    const float rim_m_s = rim_hint_m_s(config, sense);
     if (doppler.fresh) {
-        state->beyond = !doppler.beyond ? 0 : state->beyond + (state->beyond < BEYOND_VALUES ? 1 : 0);
+        const bool beyond = doppler.beyond && may_be_beyond(config, state, rim_m_s);
+        state->beyond = !beyond ? 0 : state->beyond + (state->beyond < BEYOND_VALUES ? 1 : 0);
         state->doppler_m_s = doppler.speed_m_s;
     }
-    const float rim_m_s = rim_hint_m_s(config, sense);
     const ground_speed_input_t input = {
         .accel_x_m_s2 = sense->level_m_s2,
         .doppler_m_s = doppler.speed_m_s,

@@ -29,6 +29,11 @@ sensor_frame_t rolling_frame(uint32_t tick) {
     return frame;
 }
 
+double wide_top(const control_config_t &config) { // the fastest speed that the radar's band holds
+    const doppler_template_t &beam = *config.doppler.beam;
+    return static_cast<double>(beam.speed_m_s[beam.speeds - 1]) * static_cast<double>(config.doppler.scale);
+}
+
 std::vector<trace_t> run(command_t command, uint32_t ticks) {
     const control_config_t config = rover_config_default();
     control_state_t state;
@@ -334,15 +339,18 @@ TEST(ControlTrace, a_limited_wheel_gets_the_duty_of_its_continuous_current_and_i
         }
 }
 
-// SPEED_BEYOND: three values in a row of more speed than the band holds; a tick without a value is none of them.
+// SPEED_BEYOND: three values in a row of more speed than the band holds, of a body of which something else tells half as much; a tick
+// without a value is none of them.
 TEST(ControlTrace, three_values_beyond_the_band_in_a_row_are_a_fault) {
-    const control_config_t config = rover_config_default();
     for (const int between : {0, 1, 12}) {
+        control_config_t config = rover_config_default();
         control_state_t state;
         control_reset(&config, &state);
         command_t command = {};
         command.mode = MODE_WHEEL_SPEED;
         uint32_t tick = 0;
+        const double top = wide_top(config);
+        double known = 0.6 * top;
         const auto value = [&](bool beyond) {
             for (int k = 0; k < between; ++k) {
                 const sensor_frame_t frame = rolling_frame(tick++);
@@ -354,12 +362,27 @@ TEST(ControlTrace, three_values_beyond_the_band_in_a_row_are_a_fault) {
             state.heard.trust = 1;
             state.heard.beyond = beyond;
             state.heard.speed_m_s = 0.2f;
+            state.ground_speed.speed_m_s = static_cast<float>(known);
             const sensor_frame_t frame = rolling_frame(tick++);
             return (control_step(&config, &state, &command, &frame).faults & FAULT_SPEED_BEYOND) != 0;
         };
         for (const bool beyond : {true, true, false, true, false, true, true}) EXPECT_FALSE(value(beyond)) << between;
         EXPECT_TRUE(value(true));
         EXPECT_TRUE(value(true));
+        known = 0;
+        command.mode = MODE_STOP; // takes the latch away where its cause is gone
+        EXPECT_FALSE(value(false));
+        for (int k = 0; k < 5; ++k) EXPECT_FALSE(value(true)) << between; // it stands: someone else runs there
+        for (const double sign : {1.0, -1.0}) {
+            known = 0.48 * sign * top;
+            for (int k = 0; k < 5; ++k) EXPECT_FALSE(value(true)) << between;
+            known = 0.52 * sign * top;
+            for (int k = 0; k < 3; ++k) EXPECT_EQ(value(true), k == 2) << between;
+            EXPECT_FALSE(value(false));
+        }
+        known = 0;
+        config.ground_speed.still_m_s = 0; // without wheels nobody contradicts the radar
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(value(true), k == 2) << between;
     }
 }
 
