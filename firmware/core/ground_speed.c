@@ -181,7 +181,8 @@ static void state_std(const ground_speed_config_t *config, ground_speed_state_t 
         // (3) does not see what the accelerometer's noise has done since the window's middle: V carries it on both sides.
         const float rest = fixed_bits(state->felt_m_s) == 0u ? 1.0f : 1.0f - felt_takes * state->felt_trust; // of it, that (14) leaves
         const float own = state->p_vv + state->unseen_m2_s2 * rest;
-        const float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (28)
+        float calm = fixed_greater(own, state->calm_at_m2_s2) ? own - state->calm_less_m2_s2 : own * state->calm; // (28)
+        calm = state->cover.on && fixed_greater(calm, own) ? own : calm;                                          // no value tells there
         variance = calm + state->apart_claim_m2_s2 + ground_speed_square(state->alike_m_s) + ground_speed_square(state->jolt_m_s);
         variance += state->other_alive ? state->doubt_m2_s2 : 0.0f;
     }

@@ -85,11 +85,12 @@
 // what that value tells, it tells against the winner's cost. (27): that values have refuted the sign that the wheels had asked for answers
 // them; they do not ask again for two seconds, unless a line was taken off. A refutation that nobody asked for, as at a start, answers
 // nothing.
-//   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Q tau,  g = 2 mean e^2/S, from 0.25 to 1         (28)
+//   std^2 = P' + ...,  P' = P - (1 - g) min(P, R),  P = P_vv + Q tau,  g = 2 mean e^2/S, from 0.25 to 4         (28)
 // Values share three quarters of their samples with the one before, and R counts each as if it stood alone: where the claim is right, e^2/S
 // is a half in the mean (outdoors_bench --only calm: 0.46 to 0.65), and so it is taken to be at first. Where it is less for eight seconds,
-// this radar on this ground is better than R, and so is the claim; the filter's gains, odds and limits stay with R. Not while both signs
-// live or wheels part.
+// this radar on this ground is better than R, and so is the claim; where it is more, on ground of few scatterers or under a body that
+// sways, the claim is wider: (8) begins at twice as much. The filter's gains, odds and limits stay with R. Not while both signs live or
+// wheels part; nor is it wider while (38) holds, where no value comes that could scatter.
 //   at rest:  std^2 = min(P_vv, 0.16 mean X^2 + m^2)                                  (29)  m of (24)
 // What moves a standing estimate is the accelerometer's noise q a tick, held by v = 0 give or take 1 cm/s in each of them: (1 - k)^2 q/(1 -
 // (1 - k)^2) = 2 q with the gain k = 0.18 of the stated noise, and X has 12.5 q (derived here). A body that rocks on its wheels is in X

@@ -67,13 +67,14 @@ static const float scatter_share = 0.015f; // [1] of a value that enters the mea
 static const float scatter_most = 12.25f;  // [1] the gate's square
 static const float calm_times = 2.0f;      // [1] 1 over what e^2/S is where the claim is right
 static const float calm_least = 0.25f;     // [1] half of the standard deviation, assumed
+static const float calm_most = 4.0f;       // [1] twice it, assumed
 
 // (28)
 static void watch_scatter(ground_speed_state_t *state)
 {
     state->scatter += scatter_share * (fixed_clamp(state->value_scatter, 0.0f, scatter_most) - state->scatter);
     const bool known = !state->other_alive && !state->value_parts;
-    state->calm = known ? fixed_clamp(calm_times * state->scatter, calm_least, 1.0f) : 1.0f;
+    state->calm = known ? fixed_clamp(calm_times * state->scatter, calm_least, calm_most) : 1.0f;
     state->calm_at_m2_s2 = state->value_noise_m2_s2;
     state->calm_less_m2_s2 = (1.0f - state->calm) * state->value_noise_m2_s2;
 }

@@ -490,28 +490,34 @@ TEST(GroundSpeed, wheels_of_a_turn_on_a_slope_do_not_ask_for_the_other_sign) {
 }
 
 // Values drawn from the model that the filter has: independent errors of variance R, windows of the Hann window's square.
+// (28). A window shares three quarters of its samples with the one before; R is twice the variance of a value on the reference's ground,
+// and `times` what another ground, or a body that sways, makes of it. Before, the claim did not follow beyond 1: 0.80 and 0.68 of the error
+// at 2 and 4.
 TEST(GroundSpeed, knows_its_own_uncertainty) {
     const ground_speed_config_t config = rover_config_default().ground_speed;
-    clutter::Random random{41};
-    ground_speed_state_t state;
-    ground_speed_reset(&config, &state);
-    const double v = 0.4, R = 3e-5 + 5.8e-4 * v;
-    double square = 0, claimed = 0;
-    int n = 0;
-    for (int k = 0; k < 200000; ++k) {
-        const double accel = 0.05 + 0.2 * random.normal(); // constant speed, a bias, 0.2 m/s^2 of noise
-        const bool value = k % 12 == 0;
-        const ground_speed_input_t input = value ? with_radar(accel, v + std::sqrt(R) * random.normal()) : only_accel(accel);
-        const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
-        if (k > 1000) {
-            square += std::pow(static_cast<double>(out.speed_m_s) - v, 2);
-            claimed += std::pow(static_cast<double>(out.std_m_s), 2);
-            ++n;
+    for (const double times : {0.5, 1.0, 2.0, 4.0}) {
+        clutter::Random random{41};
+        ground_speed_state_t state;
+        ground_speed_reset(&config, &state);
+        const double v = 0.4, R = 3e-5 + 5.8e-4 * v;
+        double square = 0, claimed = 0, quarter[4] = {};
+        int n = 0, values = 0;
+        for (int k = 0; k < 200000; ++k) {
+            const double accel = 0.05 + 0.2 * random.normal(); // constant speed, a bias, 0.2 m/s^2 of noise
+            const bool value = k % 12 == 0;
+            if (value) quarter[values++ % 4] = std::sqrt(times * R / 8) * random.normal();
+            const double z = v + quarter[0] + quarter[1] + quarter[2] + quarter[3];
+            const ground_speed_input_t input = value ? with_radar(accel, z) : only_accel(accel);
+            const ground_speed_output_t out = ground_speed_step(&config, &state, &input);
+            if (k > 1000) {
+                square += std::pow(static_cast<double>(out.speed_m_s) - v, 2);
+                claimed += std::pow(static_cast<double>(out.std_m_s), 2);
+                ++n;
+            }
         }
+        std::printf("%.1f R: rms error %.2f cm/s, claimed %.2f cm/s\n", times, 100 * std::sqrt(square / n), 100 * std::sqrt(claimed / n));
+        EXPECT_NEAR(std::sqrt(claimed / square), 1, 0.2) << times; // assumed: e^2/S counts what four values share as one error
     }
-    std::printf("rms error %.2f cm/s, claimed %.2f cm/s\n", 100 * std::sqrt(square / n), 100 * std::sqrt(claimed / n));
-    EXPECT_NEAR(std::sqrt(square / claimed), 1,
-                0.1); // the claim is made at the values; between them noise adds up to 12 * 4e-6 of 2.3e-4 m^2/s^2
 }
 
 TEST(GroundSpeed, measures_the_accelerometers_noise_and_never_believes_less_than_stated) {
