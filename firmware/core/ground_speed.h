@@ -106,7 +106,15 @@
 // minutes of (19) begin anew. And what has stood knows that it stood: no value after it is a first one, which nothing gates.
 // (33): where it stands and its wheels part it turns on the spot, on a slope through gravity's share. It rests, so X is the bias's error
 // and is followed as in (23), whatever the radar says of it: a hum that it hears meanwhile is loud.
-// (34): a second track whose sign is surely the best's, against the wheels', is no other sign: it is dropped, and the wheels may ask.
+// (34): a second track whose sign is surely the best's, against the wheels', is no other sign: it is dropped, and the wheels may ask. Not
+// for a second after (13) has ended: the wheels' word, which has lost, and the accelerometer's have had one sign a window ago, and it may
+// come back.
+// (43): a value that leaves its own mean refutes the wheels' word of (13) only where the accelerometer's word explains it better, and then
+// with 12 of the odds, as much as one value may tell of a sign: the word that has lost is followed as the other. A value that both miss, of
+// few scatterers or of a body that pitches onto the slope, tells little between them.
+// (44): a value that is a limit, (22), does not contradict wheels that creep below it; nor does silence, where the last value was below
+// slow: what hears no echo of a body that creeps hears its own noise, quiet or like no echo at all. Where such wheels are below still_m_s,
+// (38) begins there as at the end of a rest: wheels that are held creep by a count now and then, and never rest.
 // (35): where (7) wins with the other sign, what was best before it stays as that sign, at the odds of L, if it was sure of its slope (0.1
 // m/s^2): a bias that jumped to and fro tells the same as a body that turned round, until the values tell.
 // (36): where (7) wins with the best's own sign while the other lives, the other stays: a bias that jumps is the best's excuse, and costs
@@ -286,6 +294,8 @@ typedef struct {
     float integral_rest_m_s;                    // part of V below one unit
     float one_sided;                            // m of (4)
     float misfit;                               // of (8), 1 or more
+    bool value_at_most;                         // (22) of the last value
+    bool roll_denied;                           // of (13): the last value left its mean while the best track rolled
     float scatter;                              // of (28): mean of e^2/S
     float calm, calm_at_m2_s2, calm_less_m2_s2; // g, R, (1 - g) R
     float apart_m_s;                            // X of (10)

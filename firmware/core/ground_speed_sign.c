@@ -199,6 +199,10 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
                        (state->rolls ? rolls_pull * config->wheel_pull : config->wheel_pull) * (float)with +
                        config->force_pull * (state->speed_m_s < 0.0f ? -force : force);
     state->odds += moot_value ? 0.0f : told;
+    if (state->roll_denied && fixed_greater(state->value_cost, cost)) { // (43)
+        state->odds -= most_told;
+    }
+    state->roll_denied = false;
     if (moot_value && fixed_greater(state->odds, stop_odds) && ground_speed_force_is_over(config, state)) {
         state->odds = stop_odds;
     }
@@ -215,7 +219,7 @@ void ground_speed_update_other(const ground_speed_config_t *config, ground_speed
     const bool one = !fixed_greater(apart * apart, 0.5f * (state->p_vv + state->other.at.p_vv));
     const bool refuted = !(state->odds < config->sign_sure);
     const bool same = sure && !won && (sign < 0.0f) == (state->value_sign < 0.0f);
-    const bool moot = same && with < 0 && state->rolls_ticks == 0;                                          // (34)
+    const bool moot = same && with < 0 && state->rolls_ticks == 0 && state->rolls_wait == 0;                // (34)
     state->against = refuted && !won && with < 0 && state->against < 0 ? -ANSWERED_VALUES : state->against; // (27)
     state->other_alive = !one && !refuted && !moot;
     if (won) {

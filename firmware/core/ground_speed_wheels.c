@@ -14,7 +14,6 @@ static const float wheel_jump_m_s2 = 10.0f; // faster, no torque changes a rim: 
 
 static const float rolling_slip_m2_s2 = 9e-4f; // (3 cm/s)^2: what slip changes by where a slope begins, assumed
 static const float sway_times = 2.0f;          // a sine's peak over its mean square
-static const float refuted = 100.0f;           // 2 ln of odds: for certain
 static const float rest_share = 0.0625f;       // [1] of a look that enters (24): about 16 ticks
 static const float beside_share = 0.25f;       // [1] of a value that enters its mean: half a second
 
@@ -60,9 +59,7 @@ void ground_speed_watch_radar(const ground_speed_config_t *config, ground_speed_
     const float before = state->value_beside_m_s;
     state->value_beside_m_s = state->value_heard_m_s - fabsf(state->wheel_mean_m_s);
     if (state->rolls_ticks > 0) {
-        if (radar_departs(config, state, rolling_slip_m2_s2)) {
-            state->odds -= refuted;
-        }
+        state->roll_denied = radar_departs(config, state, rolling_slip_m2_s2);
     } else {
         const bool denied = ground_speed_gyro_tells(config, state) &&
                             fixed_greater(ground_speed_told_by_wheels(config, state, config->roll_told_m_s), 0.0f) &&
@@ -240,7 +237,6 @@ void ground_speed_no_rolling(ground_speed_state_t *state)
         state->rolls_ticks = 0;
         state->rolls_wait = ROLL_AGAIN_TICKS;
         state->gyro_tried = false;
-        state->other_alive = false;
         state->apart_m_s = 0.0f;
         ground_speed_forget_agile(state);
     }

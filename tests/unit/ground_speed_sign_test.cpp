@@ -178,8 +178,8 @@ TEST(GroundSpeedSign, wheels_or_friction_against_the_sign_ask_anew_after_half_a_
 TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_decide) {
     const ground_speed_config_t &config = ours();
     Any any{{25}};
-    int won = 0, stayed = 0, merged = 0, given_up = 0, anew = 0, answered = 0, unasked = 0, kept = 0, moot = 0;
-    for (int k = 0; k < 4000; ++k) {
+    int won = 0, stayed = 0, merged = 0, given_up = 0, anew = 0, answered = 0, unasked = 0, kept = 0, moot = 0, disowned = 0, late = 0;
+    for (int k = 0; k < 9000; ++k) {
         ground_speed_state_t state = any.past(config);
         any.value(config, state);
         if (any.one_in(2)) state.value_m_s = narrow(std::fabs(wide(state.value_wheel_m_s)) * any.between(0.8, 1.1));
@@ -195,6 +195,8 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
         state.odds = narrow(any.one_in(3) ? any.between(14, 18) : any.between(0, 18));
         state.rolls = any.one_in(2);
         state.rolls_ticks = any.one_in(4) ? 10 : 0;
+        state.rolls_wait = any.one_in(3) ? 50 : 0;
+        state.roll_denied = any.one_in(3);
         state.agile_sum = 1;
         state.refused = any.one_in(3) ? 1 + static_cast<int32_t>(any.next() % 4) : 0;
         state.misfit = narrow(any.one_in(2) ? any.between(1, 1.49) : any.between(1.51, 4));
@@ -216,10 +218,15 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
         if (was.rolls && with < 0 && odds > 4) odds = 4, anew++; // (18)
         odds += std::clamp(cost - wide(was.value_cost), -12.0, 12.0) + with * (was.rolls ? 3.0 : 0.5) +
                 0.25 * (was.speed_m_s < 0 ? -force : force);
+        const bool disowns = was.roll_denied && cost < wide(was.value_cost); // (13): and the other word explains it better
+        if (was.roll_denied && near(cost, wide(was.value_cost), 1e-2)) continue;
+        odds -= disowns ? 12 : 0;
         if (near(std::fabs(told), 18, 1e-2) || near(odds, 0, 1e-2) || near(std::fabs(odds), 18, 1e-2)) continue;
         if (near(wide(was.value_m_s), 1.15 * std::fabs(wide(was.value_wheel_m_s)))) continue;
         ground_speed_update_other(&config, &state);
         EXPECT_NEAR(state.odds, std::fabs(odds), 1e-2) << k;
+        EXPECT_FALSE(state.roll_denied); // one value, once
+        disowned += disowns && odds < 0 ? 1 : 0;
         ground_speed_track_t best = ground_speed_best_of(&was), other = at;
         if (odds < 0) { // they change places, as of now
             ground_speed_move(&config, &other, narrow(passed(was, 0, 1)), 0.01f, was.speed_noise_m2_s2, config.bias_noise_m2_s4);
@@ -247,8 +254,9 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
         if (std::fabs(apart * apart / both - 1) < 1e-2) continue;
         const bool one = apart * apart < both;                                      // they have met
         const bool same = std::fabs(told) >= 18 && sign * wide(was.value_sign) > 0; // (34)
-        const bool dropped = odds > 0 && same && with < 0 && was.rolls_ticks == 0;
-        const bool alive = !one && !dropped && std::fabs(odds) < 18 && !(odds < 0 && was.rolls_ticks > 0);
+        const bool dropped = odds > 0 && same && with < 0 && was.rolls_ticks == 0 && was.rolls_wait == 0;
+        const bool alive = !one && !dropped && std::fabs(odds) < 18; // the wheels' word, too, where it has lost
+        late += odds > 0 && same && with < 0 && was.rolls_ticks == 0 && was.rolls_wait > 0 && alive ? 1 : 0;
         EXPECT_EQ(state.other_alive, alive) << k;
         const double doubt = 1 / (1 + std::pow(1 + std::fmin(100, std::fabs(odds)) / 16, 8));
         EXPECT_NEAR(state.doubt_m_s, alive ? doubt * apart : 0, 1e-3);
@@ -257,8 +265,8 @@ TEST(GroundSpeedSign, the_other_sign_sees_each_value_a_tick_later_and_the_odds_d
         given_up += !one && std::fabs(odds) > 18 ? 1 : 0;
         moot += dropped && !one && std::fabs(odds) < 18 ? 1 : 0;
     }
-    EXPECT_GT(std::min({won, stayed, merged, given_up, anew, answered, unasked, kept, moot}), 20)
-        << answered << ' ' << unasked << ' ' << kept << ' ' << moot;
+    EXPECT_GT(std::min({won, stayed, merged, given_up, anew, answered, unasked, kept, moot, disowned, late}), 20)
+        << answered << ' ' << unasked << ' ' << kept << ' ' << moot << ' ' << disowned << ' ' << late;
 }
 
 // --- a sign that is held, (17), and wheels that roll, (18)

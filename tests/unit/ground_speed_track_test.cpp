@@ -636,7 +636,7 @@ TEST(GroundSpeedTrack, wheels_whose_word_is_taken_carry_the_speed_and_the_rest_i
         EXPECT_EQ(state.rolls_ticks, 0);
         EXPECT_EQ(state.rolls_wait, 100);
         EXPECT_FALSE(state.gyro_tried);
-        EXPECT_FALSE(state.other_alive);
+        EXPECT_TRUE(state.other_alive); // a value may turn it again
         EXPECT_EQ(state.apart_m_s, 0);
     }
 }
@@ -669,7 +669,7 @@ TEST(GroundSpeedTrack, the_radars_value_beside_the_wheels_is_averaged_and_refute
         EXPECT_NEAR(state.value_beside_m_s, beside, 1e-6);
         if (was.rolls_ticks > 0) {
             EXPECT_EQ(state.beside_mean_m_s, was.beside_mean_m_s);
-            EXPECT_EQ(state.odds<-50, left2> limit) << k;
+            EXPECT_EQ(state.roll_denied, left2 > limit) << k;
             EXPECT_EQ(state.gyro_denied, was.gyro_denied);
             refuted += left2 > limit ? 1 : 0;
             continue;
