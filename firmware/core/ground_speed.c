@@ -73,11 +73,12 @@ static const float creep_noise_m_s = 0.015f, creep_slip = 0.2f, beside_most = 5.
 static const float creep_alike = 4.0f;    // [1]
 static const float creep_sigmas2 = 6.25f; // of (25)
 
-// (20): a wheel's word counts, if there are wheels.
+// (20), (44): a wheel's word counts, if there are wheels.
 static bool wheels_creep(const ground_speed_config_t *config, const ground_speed_state_t *state, float wheel_m_s)
 {
     if (!fixed_greater(config->still_m_s, 0.0f) || !fixed_greater(config->slow_m_s, fabsf(wheel_m_s)) ||
-        (state->unheard_ticks >= SILENT_TICKS && !state->cover.on) || state->rolls_ticks > 0) {
+        (state->unheard_ticks >= SILENT_TICKS && !state->cover.on && !fixed_greater(config->slow_m_s, state->value_heard_m_s)) ||
+        state->rolls_ticks > 0) {
         return false;
     }
     const float mean_m_s = fabsf(state->wheel_mean_m_s);
@@ -90,7 +91,8 @@ static bool wheels_creep(const ground_speed_config_t *config, const ground_speed
     }
     const float beside_m_s = mean_m_s + beside_most * config->slow_m_s;
     const float most_m_s = fixed_greater(config->lowest_m_s, beside_m_s) ? config->lowest_m_s : beside_m_s; // (22)
-    return state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) && !fixed_greater(state->value_heard_m_s, most_m_s);
+    return state->accepted && fixed_greater(config->slow_m_s, state->value_heard_m_s) &&
+           (state->value_at_most || !fixed_greater(state->value_heard_m_s, most_m_s));
 }
 
 static const float alone_noise_m_s = 0.02f, alone_slip = 0.1f; // of (42), assumed
@@ -131,6 +133,9 @@ static void ask_wheels(const ground_speed_config_t *config, ground_speed_state_t
         ground_speed_correct(config, &track, innovation, 0.0f, creep_alike * noise);
         ground_speed_keep_best(state, &track);
         state->other_alive = false;
+        if (fixed_greater(config->still_m_s, fabsf(wheel_m_s))) {
+            ground_speed_watch_rest(state); // (44)
+        }
         return;
     }
     const bool denied = state->unheard_ticks < SILENT_TICKS && fixed_greater(fabsf(state->value_m_s - fabsf(wheel_m_s)), 2.0f * spread);

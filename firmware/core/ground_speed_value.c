@@ -183,7 +183,8 @@ void ground_speed_update_doppler(const ground_speed_config_t *config, ground_spe
     if (early && fabsf(own_accel) > early_accel_m_s2) {
         return; // w of (3) is that of a full window
     }
-    if (!early && is_at_most(config, heard, input->doppler_trust) && fixed_greater(heard, fabsf(middle))) {
+    state->value_at_most = !early && is_at_most(config, heard, input->doppler_trust);
+    if (state->value_at_most && fixed_greater(heard, fabsf(middle))) {
         keep_below(config, state, &window, middle, heard);
         return;
     }

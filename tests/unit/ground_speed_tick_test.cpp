@@ -338,7 +338,7 @@ TEST(GroundSpeedTick, each_chore_has_its_turn_and_a_busy_tick_has_none) {
 // (20), and what wheels tell where nothing is known.
 TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_known) {
     Any any{{36}};
-    int crept = 0, asked = 0, silent = 0, denied = 0, doubted = 0, spun = 0;
+    int crept = 0, asked = 0, silent = 0, denied = 0, doubted = 0, spun = 0, unheard = 0, rested = 0;
     for (int k = 0; k < 6000; ++k) {
         ground_speed_state_t state = calm(any);
         state.chore = any.one_in(2) ? 2 : 10;
@@ -357,6 +357,7 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         state.rolls_ticks = any.one_in(5) ? 10 : 0;
         state.quiet = any.one_in(3) ? 1 : 0;
         state.accepted = any.one_in(2);
+        state.value_at_most = any.one_in(3);
         state.value_heard_m_s = narrow(any.between(0.02, 0.16));
         state.value_m_s = narrow(any.between(0, 1));
         state.wheel_q20 = state.integral_q20[state.head];
@@ -367,12 +368,17 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         const double slow = wide(ours().slow_m_s), heard = wide(was.value_heard_m_s);
         const bool silence = was.unheard_ticks + 1 >= 25; // two values missed
         if (std::fabs(mean - slow) < 1e-5 || std::fabs(heard - mean - 0.05) < 1e-5) continue;
-        const bool deaf = was.quiet > 0 || (was.accepted && heard < slow && heard < mean + 0.05);
+        // a value that is a limit, (22), contradicts no wheels below it
+        const bool deaf = was.quiet > 0 || (was.accepted && heard < slow && (was.value_at_most || heard < mean + 0.05));
         const double gains = std::fabs(w - wide(was.asked_m_s)); // a rim that spins up passes through there
         EXPECT_EQ(state.asked_m_s, was.wheel_m_s);
         if (std::fabs(gains - 0.05) < 1e-5) continue;
-        const bool steady = std::fabs(w) < slow && mean < slow && !silence && was.rolls_ticks == 0 && deaf, creeps = steady && gains < 0.05;
-        spun += steady && !creeps ? 1 : 0;
+        const bool lost = silence && heard >= slow; // what was loud and is silent now
+        const bool steady = std::fabs(w) < slow && mean < slow && !lost && was.rolls_ticks == 0 && deaf, creeps = steady && gains < 0.05;
+        spun += steady && !creeps ? 1 : 0, unheard += creeps && silence ? 1 : 0;
+        const bool at_rest = creeps && std::fabs(w) < wide(ours().still_m_s);
+        EXPECT_EQ(state.cover.rested, was.cover.rested || at_rest) << k;
+        rested += at_rest && !was.cover.rested ? 1 : 0;
         const double spread = creeps ? 0.015 + 0.2 * std::fabs(w) : 0.1 + 0.5 * std::fabs(w);
         const bool denies = !silence && std::fabs(wide(was.value_m_s) - std::fabs(w)) > 2 * spread;
         const bool undecided = !silence && was.other_alive; // which sign it is, the radar tells
@@ -392,7 +398,8 @@ TEST(GroundSpeedTick, wheels_are_believed_where_they_creep_or_nothing_else_is_kn
         EXPECT_EQ(state.other_alive, was.other_alive && gain == 0) << k;
         crept += creeps ? 1 : 0, asked += !creeps && asks ? 1 : 0, silent += asks && silence ? 1 : 0, denied += denies && !creeps ? 1 : 0;
     }
-    EXPECT_GT(std::min({crept, asked, silent, denied, doubted, crept - doubted, spun}), 100);
+    EXPECT_GT(std::min({crept, asked, silent, denied, doubted, crept - doubted, spun, unheard}), 100);
+    EXPECT_GT(rested, 20);
 }
 
 TEST(GroundSpeedTick, the_standard_deviation_holds_all_that_is_not_known) {
