@@ -136,8 +136,12 @@ Run drive(const Case &now, std::uint64_t seed, const control_config_t &config) {
                 const double way = path + 0.3 * pitch + (now.waves_m ? now.waves_m(t) : 0);
                 const bool dead = now.radar_dead && now.radar_dead(t);
                 const double share = now.echo_share ? now.echo_share(t) : 1;
-                const double heard = now.scatterers ? front.filtered(share * ground->echo(way, z))
-                                                    : low.step(high.step(share * now.echo_count * echo->at(way, z)));
+                const bool walks = now.walker_m && now.walker_m(t) != 0;
+                const double walker_m = walks ? 3 + now.walker_m(t) : 0;
+                const auto both = [&](auto &of) { return share * of(way, z) + (walks ? of(walker_m, 0) : 0); };
+                const auto near = [echo](double x, double up) { return echo->at(x, up); };
+                const auto scattered = [ground](double x, double up) { return ground->echo(x, up); };
+                const double heard = now.scatterers ? front.filtered(both(scattered)) : low.step(high.step(now.echo_count * both(near)));
                 const double own = dead ? 0.3 : now.scatterers ? 0 : white; // noise of the converter
                 const double count = 512 + now.offset_count + own * noise.normal() +
                                      (dead ? 0 : heard + (t < now.tone_from_s ? 0 : now.tone_count * std::sin(2 * pi * now.tone_Hz * t)));

@@ -56,6 +56,7 @@ struct Case {
     double echo_count = 75, snr_dB = 25, offset_count = 0; // rms; of white noise over the whole band; of the converter, beyond 512
     double tone_Hz = 0, tone_count = 0;                    // amplitude
     double tone_from_s = 0;                                // it begins
+    std::function<double(double)> walker_m;                // way of whoever walks in the beam, with an echo as large as the ground's
     double heave_m = 0, heave_Hz = 8, pitch_rad = 0;       // amplitudes,
     double still_s = 0;                                    // from when on: what stands does not shake
     double lost_share = 0, lost_ticks_share = 0;           // radar samples lost at random; radar ticks lost whole

@@ -304,7 +304,7 @@ void stand_first(Row &row, double stood) {
     now.duration_s += late, now.settle_s += late, now.still_s = stood;
     row.fault_by_s += row.fault_by_s >= 0 ? late : 0;
     later(now.slope), later(now.radar_dead), later(now.radar_silent);
-    later(now.echo_share), later(now.lift_m), later(now.accel_more), later(now.turn), later(now.waves_m);
+    later(now.echo_share), later(now.lift_m), later(now.accel_more), later(now.turn), later(now.waves_m), later(now.walker_m);
     for (auto *of : {&now.speed, &now.wheel}) {
         if (*of) *of = [=, inner = *of](double t) { return t > late ? inner(t - late) : ramp(t, stood, late, 0, inner(0)); };
     }

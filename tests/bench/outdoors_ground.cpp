@@ -173,6 +173,33 @@ void add_first_hour(Rows &all) {
     add(all, "is pushed by hand, to", 0.4, now);
 }
 
+// What a third generator, which is not kept here, has shown first.
+void add_found(Rows &all) {
+    for (const double slope : {-10.0, 10.0}) { // the radar reads 6 cm/s too much just as a slope has begun
+        for (const double at : {0.1, 0.2, 0.3}) {
+            Case now;
+            now.closed = true, now.duration_s = 14, now.settle_s = 1.5;
+            now.slope = [slope](double t) { return slope * deg * ramp(t, 5, 5.1, 0, 1); };
+            now.waves_m = [at](double t) { return 0.08 * (ramp(t, 5 + at, 5.4 + at, 0, 0.4)); };
+            add(all, "step, a value off " + std::to_string(at).substr(0, 3) + " s later, deg", slope, now);
+        }
+    }
+    for (const double snr : {20.0, 10.0}) { // it stops, its wheels are held and creep, and the ground tilts: a ferry, a raft of planks
+        Case now;
+        now.snr_dB = snr;
+        now.speed = [](double t) { return ramp(t, 5, 5.3, 0.4, 0) + ramp(t, 16, 16.5, 0, 0.3) + (t > 5.3 && t < 16 ? 0.004 : 0); };
+        now.wheel = now.speed;
+        now.slope = [](double t) { return 8 * deg * std::sin(2 * pi * t / 4); };
+        add(all, "stops where the ground tilts, SNR", snr, now);
+    }
+    for (const double v : {0.0, 0.3}) {
+        Case now;
+        now.speed = [v](double t) { return v * ramp(t, 2, 2.5, 0, 1); };
+        now.walker_m = [](double t) { return t < 6 ? 0 : 1.9 * (std::fmin(t, 9) - 6); }; // legs swing twice as fast as one walks
+        add(all, "someone runs through the beam", v, now);
+    }
+}
+
 } // namespace
 
 std::vector<Row> ground_rows() {
@@ -184,6 +211,7 @@ std::vector<Row> ground_rows() {
     add_ends_of_the_band(all);
     add_warmth(all);
     add_first_hour(all);
+    add_found(all);
     return all;
 }
 

@@ -145,4 +145,61 @@ TEST(OutdoorsUnseen, the_second_generators_echo_has_unit_power_and_one_value_at_
     EXPECT_LT(apart, 1e-3 * power); // 30 dB below it: as the quantisation of an echo of 10 counts
 }
 
+// (13): a value that left its mean by 6 cm/s just as a slope had begun refuted the wheels for certain, though the accelerometer's word
+// explained it no better, and nobody was left to speak for them: 24 to 32 cm/s, 1.8 m/s off for a moment, wrong sign for up to 2.8 s, and
+// the loop 0.43 m/s beside its command.
+TEST(OutdoorsUnseen, one_value_that_is_off_does_not_refute_wheels_under_which_a_slope_begins) {
+    for (const bool scatterers : {false, true}) {
+        for (const double after : {0.2, 0.3}) {
+            outdoors::Score sum;
+            double off = 0;
+            for (std::uint64_t seed = 1; seed < 9; ++seed) {
+                Case now;
+                now.scatterers = scatterers, now.closed = true, now.duration_s = 14, now.settle_s = 1.5;
+                now.slope = [](double t) { return -10 * outdoors::pi / 180 * std::fmin(1, std::fmax(0, 10 * (t - 5))); };
+                now.waves_m = [after](double t) { return 0.08 * std::fmin(0.4, std::fmax(0, t - 5 - after)); };
+                const outdoors::Run run = outdoors::drive(now, seed, rover_config_default());
+                const outdoors::Score score = outdoors::score(now, run);
+                sum.square += score.square, sum.nees_sum += score.nees_sum, sum.n += score.n;
+                EXPECT_EQ(score.faults, 0u) << seed;
+                for (const outdoors::Step &step : run.steps)
+                    off = step.t > 6.5 ? std::fmax(off, std::fabs(step.speed - now.command_m_s)) : off;
+            }
+            EXPECT_LE(std::sqrt(sum.square / sum.n), 0.15) << scatterers << after;
+            EXPECT_LE(sum.nees_sum / sum.n, 2) << scatterers << after;
+            EXPECT_LE(off, 0.1) << scatterers << after;
+        }
+    }
+}
+
+// (20), (22), (38): held wheels creep by a count now and then, the radar's own noise is all that it hears, and the accelerometer feels the
+// ground tilt. Its word alone was followed for seconds: 49 cm/s, 2.2 m/s off for a moment, NEES 3.5.
+TEST(OutdoorsUnseen, a_rover_that_has_stopped_does_not_drive_off_where_the_ground_tilts) {
+    outdoors::Score sum;
+    for (std::uint64_t seed = 1; seed < 9; ++seed) {
+        Case now;
+        now.scatterers = true, now.snr_dB = 20, now.duration_s = 16;
+        now.speed = [](double t) { return t < 5 ? 0.4 : std::fmax(0.004, 0.4 - (t - 5) / 0.75); };
+        now.wheel = now.speed;
+        now.slope = [](double t) { return 8 * outdoors::pi / 180 * std::sin(2 * outdoors::pi * t / 4); };
+        const outdoors::Score score = of_seed(now, seed);
+        sum.square += score.square, sum.nees_sum += score.nees_sum, sum.n += score.n;
+        sum.worst = std::fmax(sum.worst, score.worst);
+    }
+    EXPECT_LE(std::sqrt(sum.square / sum.n), 0.2);
+    EXPECT_LE(sum.nees_sum / sum.n, 2);
+}
+
+// SPEED_BEYOND is of the body: legs, drops and vehicles in the beam are as fast, while the wheels turn slowly and nothing was felt.
+TEST(OutdoorsUnseen, someone_who_runs_through_the_beam_is_no_fault_of_the_rover) {
+    for (const double v : {0.0, 0.3}) {
+        for (std::uint64_t seed = 1; seed < 5; ++seed) {
+            Case now;
+            now.duration_s = 12, now.speed = [v](double t) { return v * std::fmin(1, std::fmax(0, t - 2)); };
+            now.walker_m = [](double t) { return t < 6 ? 0 : 1.9 * (std::fmin(t, 9) - 6); };
+            EXPECT_EQ(of_seed(now, seed).faults, 0u) << v << ", seed " << seed;
+        }
+    }
+}
+
 } // namespace
