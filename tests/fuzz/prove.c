@@ -43,7 +43,7 @@ static int16_t any_sample(int low, int high) { return (int16_t)Frama_C_interval(
     N(doppler.weigh_lines) N(doppler.relief_masked) N(doppler.weigh_young)                                                                 \
     N(heard.fresh) N(heard.busy) N(heard.quiet) N(heard.dead) N(heard.beyond) N(heard.rest) N(heard.strange) N(heard.relieved)             \
     N(heard.spoilt) N(sense.standing) N(sense.timed) N(circuit.past[0].driven) N(circuit.past[1].driven) N(driven) N(saturated) N(braking)                                   \
-    N(ground_speed.other_alive) N(ground_speed.heard) N(ground_speed.accepted) N(ground_speed.standstill) N(ground_speed.relieved) N(ground_speed.cover.on) N(ground_speed.cover.stopped) N(ground_speed.cover.judged) N(ground_speed.cover.rested) N(ground_speed.rolls)         \
+    N(ground_speed.other_alive) N(ground_speed.heard) N(ground_speed.accepted) N(ground_speed.standstill) N(ground_speed.relieved) N(ground_speed.cover.on) N(ground_speed.cover.stopped) N(ground_speed.cover.judged) N(ground_speed.cover.rested) N(ground_speed.rolls) N(ground_speed.roll_denied) N(ground_speed.value_at_most)         \
     N(sense.lean.calm_known) N(ground_speed.gyro_tried) N(ground_speed.value_parts) N(safety.started) N(safety.counting) N(safety.bridges_counting)
 // clang-format on
 
