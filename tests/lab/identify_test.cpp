@@ -37,8 +37,8 @@ TEST(Limits, are_told_of_what_stands_at_its_range_or_at_six_deviations_but_not_o
     EXPECT_TRUE(six[0].of_prior);
     EXPECT_DOUBLE_EQ(six[1].value, -0.6); // of a wheel's own what it differs
     EXPECT_EQ(limit_text(six[0]), "motor.x stands at its limit, 1.6 N (six of its prior's deviations): widen it or doubt the model");
-    EXPECT_EQ(limit_text(six[1]),
-              "motor.x on wheel 1 stands at its limit, off from the other wheels' by -0.6 (six of its prior's deviations): widen it or doubt the model");
+    EXPECT_EQ(limit_text(six[1]), "motor.x on wheel 1 stands at its limit, off from the other wheels' by -0.6 (six of its prior's "
+                                  "deviations): widen it or doubt the model");
     EXPECT_TRUE(limits_of(at({absent}, {-0.5})).empty()); // an effect of no size
     EXPECT_TRUE(limits_of(at({wide}, {-0.5})).empty());   // known so little that it may be nothing
     const std::vector<Limit> there = limits_of(at({narrow}, {-0.5}));

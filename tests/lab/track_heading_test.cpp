@@ -101,12 +101,14 @@ log::Log by_antenna(log::Log log, double turn_rad) {
 }
 
 const Balance *forward(const Dataset &data) {
-    const auto found = std::find_if(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::camera_x; });
+    const auto found =
+        std::find_if(data.balance.begin(), data.balance.end(), [](const Balance &b) { return b.kind == BalanceKind::camera_x; });
     return found == data.balance.end() ? nullptr : &*found;
 }
 
 bool says(const Dataset &data, const std::string &words) {
-    return std::any_of(data.messages.begin(), data.messages.end(), [&](const std::string &m) { return m.find(words) != std::string::npos; });
+    return std::any_of(data.messages.begin(), data.messages.end(),
+                       [&](const std::string &m) { return m.find(words) != std::string::npos; });
 }
 
 // Root mean square of what the rows of one read otherwise than those of the other, which began shift_s later.
@@ -135,7 +137,8 @@ TEST(TrackHeading, of_an_antenna_reads_the_way_that_a_camera_with_a_heading_read
     const JoinedRuns joined = join_runs({antenna, by_antenna(log, -0.7)}); // each run's frame is its own
     const Dataset two = make_dataset(model, joined.log);
     ASSERT_NE(forward(two), nullptr);
-    for (const double start_s : joined.start_s) EXPECT_LT(difference_m(*told, *forward(two), start_s - joined.start_s[0]), 0.5 * told->noise);
+    for (const double start_s : joined.start_s)
+        EXPECT_LT(difference_m(*told, *forward(two), start_s - joined.start_s[0]), 0.5 * told->noise);
 }
 
 TEST(TrackHeading, that_nothing_tells_leaves_the_place_out_aloud) {

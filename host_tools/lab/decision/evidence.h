@@ -4,8 +4,8 @@
 //
 // in units of noise and on the scales of the model without it. Beyond smoothing a name must gain a twentieth of what scatter may be of the
 // squares; where a softer ground beside it is all that smooths, (1) is asked with the ground as it was. A law that lags must gain where
-// speeds change (lag.h), a grip that falls with slip in what the wheels have in common (uneven_grip.h). An accelerometer's scale must be more
-// than what reading it once a tick makes:
+// speeds change (lag.h), a grip that falls with slip in what the wheels have in common (uneven_grip.h). An accelerometer's scale must be
+// more than what reading it once a tick makes:
 //
 //   tick / (2 tau),   tau = (J + M R^2 / n) Ra / (KG ke)                                                                            (2)
 //

@@ -16,7 +16,7 @@ namespace {
 constexpr double push_block_s = 0.5, slow_s = 5, quick_s = 0.1;
 constexpr double pushed_alike[] = {0.75, 0.6}, all_wheels[] = {1.2, 3}; // (1): from the first to the second in a straight line
 constexpr double accelerometer_alone = 0.8, turning = 5;                // (2), (3)
-constexpr double largest = 30; // noises, beyond which a row counts as so many
+constexpr double largest = 30;                                          // noises, beyond which a row counts as so many
 constexpr std::size_t few_blocks = 40;
 constexpr double slope_too = 0.5;          // share of (2) from which a push is a slope: none of a clean log's
 constexpr double least_wave_share = 0.5;   // of the squares that a sinusoid takes

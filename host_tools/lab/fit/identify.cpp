@@ -101,8 +101,8 @@ std::vector<Limit> limits_of(const Problem &problem) {
 std::string limit_text(const Limit &limit) {
     char text[300];
     std::snprintf(text, sizeof text, "%s stands at its limit, %s%.4g%s%s%s: widen it or doubt the model", limit.parameter.c_str(),
-                  limit.own ? "off from the other wheels' by " : "", limit.value, limit.unit == "1" || limit.unit.empty() ? "" : " ", limit.unit == "1" ? "" : limit.unit.c_str(),
-                  limit.of_prior ? " (six of its prior's deviations)" : "");
+                  limit.own ? "off from the other wheels' by " : "", limit.value, limit.unit == "1" || limit.unit.empty() ? "" : " ",
+                  limit.unit == "1" ? "" : limit.unit.c_str(), limit.of_prior ? " (six of its prior's deviations)" : "");
     return text;
 }
 

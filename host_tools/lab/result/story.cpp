@@ -209,8 +209,8 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
                               ? ". That is close to the noise, with " + joined(d.moved, " and ") + " far from what is stated."
                           : c.adjusted < close_to_noise ? ". That is close to the noise: nothing is missing that this log could show."
                           : off.empty()                 ? ". Nothing found that explains it. " + story.next
-                                                        : ". No effect explains it, but " + joined(off, " and ") +
-                                                              (off.size() > 1 ? " are" : " is") + " far from what is stated. " + story.next;
+                                        : ". No effect explains it, but " + joined(off, " and ") + (off.size() > 1 ? " are" : " is") +
+                                              " far from what is stated. " + story.next;
     }
     return story;
 }
