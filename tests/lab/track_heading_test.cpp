@@ -55,7 +55,7 @@ TEST(TrackHeading, is_found_in_any_frame_beside_a_gyro_that_drifts_and_after_a_p
     Ride drive;
     ride(drive, 120, 2.5, 0, 1);
     ride(drive, 90, -1.2, 40, 2); // another frame, another zero
-    const TrackHeading found = track_heading(drive.rows, lever_m, noise_m);
+    const TrackHeading found = track_heading(drive.rows, lever_m, noise_m, step_s);
     ASSERT_EQ(found.delta_rad.size(), drive.rows.size());
     EXPECT_GT(found.agreement, 0.98);
     for (std::size_t i = 0; i < drive.rows.size(); ++i) { // 0.05: the gyro's drift in half a window, at a drive's ends
@@ -65,6 +65,25 @@ TEST(TrackHeading, is_found_in_any_frame_beside_a_gyro_that_drifts_and_after_a_p
     }
 }
 
+// A satellite receiver's fix a second.
+TEST(TrackHeading, has_a_window_of_seconds_and_not_of_rows) {
+    Ride drive;
+    ride(drive, 240, 2.5, 0, 1);
+    std::vector<TrackRow> slow;
+    std::vector<double> delta_rad;
+    for (std::size_t i = 0; i + 4 <= drive.rows.size(); i += 4) {
+        TrackRow row = drive.rows[i];
+        for (std::size_t j = i + 1; j < i + 4; ++j) row.way_m += drive.rows[j].way_m, row.rim_m += drive.rows[j].rim_m;
+        row.turned_rad[1] = drive.rows[i + 3].turned_rad[1];
+        slow.push_back(row);
+        delta_rad.push_back(0.5 * (drive.delta_rad[i + 1] + drive.delta_rad[i + 2]));
+    }
+    const TrackHeading found = track_heading(slow, lever_m, noise_m, 4 * step_s);
+    ASSERT_EQ(found.delta_rad.size(), slow.size());
+    for (std::size_t i = 0; i < slow.size(); ++i) // the drift in half a window at the ends is 0.05, in 40 s 0.2
+        EXPECT_LT(std::fabs(std::remainder(found.delta_rad[i] - delta_rad[i], 2 * std::numbers::pi)), 0.1) << i;
+}
+
 TEST(TrackHeading, of_a_track_that_is_not_these_wheels_is_none) {
     Ride drive;
     ride(drive, 120, 0, 0, 1);
@@ -72,10 +91,10 @@ TEST(TrackHeading, of_a_track_that_is_not_these_wheels_is_none) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(-std::numbers::pi, std::numbers::pi);
     for (TrackRow &row : other) row.way_m = std::polar(std::abs(row.way_m), any(random));
-    EXPECT_TRUE(track_heading(other, lever_m, noise_m).delta_rad.empty());
+    EXPECT_TRUE(track_heading(other, lever_m, noise_m, step_s).delta_rad.empty());
     for (TrackRow &row : other) row.rim_m = 0; // nothing turns
-    EXPECT_TRUE(track_heading(other, lever_m, noise_m).delta_rad.empty());
-    EXPECT_TRUE(track_heading({}, lever_m, noise_m).delta_rad.empty());
+    EXPECT_TRUE(track_heading(other, lever_m, noise_m, step_s).delta_rad.empty());
+    EXPECT_TRUE(track_heading({}, lever_m, noise_m, step_s).delta_rad.empty());
 }
 
 generator::GeneratorConfig curves() {
@@ -133,6 +152,15 @@ TEST(TrackHeading, of_an_antenna_reads_the_way_that_a_camera_with_a_heading_read
     EXPECT_LT(difference_m(*told, *found, 0), 0.5 * told->noise);
     EXPECT_TRUE(says(without, "the heading is the gyro's, turned until the wheels' way lies on the track"));
     EXPECT_FALSE(says(with, "no camera.yaw_rad"));
+
+    generator::GeneratorConfig own_frame = curves();
+    own_frame.habits.heading = false; // the same drive and noise, the track alone and turned
+    const log::Log track = generator::generate(own_frame);
+    EXPECT_EQ(track.find("camera.yaw_rad"), nullptr);
+    EXPECT_GT(std::fabs(track.find("camera.y_m")->value.back() - log.find("camera.y_m")->value.back()), 1);
+    const Dataset of_track = make_dataset(model, track);
+    ASSERT_NE(forward(of_track), nullptr);
+    EXPECT_LT(difference_m(*told, *forward(of_track), 0), 0.5 * told->noise);
 
     const JoinedRuns joined = join_runs({antenna, by_antenna(log, -0.7)}); // each run's frame is its own
     const Dataset two = make_dataset(model, joined.log);

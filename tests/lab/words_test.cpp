@@ -186,6 +186,16 @@ TEST(Words, a_model_whose_numbers_the_fit_took_far_is_not_called_good) {
     EXPECT_FALSE(has(story.next, "use the model")) << story.next;
     EXPECT_TRUE(has(story.next, "Check motor.coulomb_Nm")) << story.next;
     EXPECT_FALSE(has(story.headline, "nothing is missing")) << story.headline;
+
+    c.adjusted = 3.3; // nothing explains it, and numbers are far off or at their limits: those first
+    d.limits = {{"motor.viscous_Nms", "N m s", 0.2, false, true},
+                {"sensors.accel.lag_s", "s", 0.06, false, true},
+                {"soil.mu", "1", 0, false, false}};
+    const Story unexplained = tell(c, d, nullptr);
+    EXPECT_TRUE(has(unexplained.next, "Check motor.viscous_Nms and motor.coulomb_Nm on the machine")) << unexplained.next;
+    EXPECT_TRUE(has(unexplained.headline, unexplained.next)) << unexplained.headline;
+    d.limits.clear(), d.moved.clear();
+    EXPECT_FALSE(has(tell(c, d, nullptr).next, "Check")) << tell(c, d, nullptr).next;
 }
 
 TEST(Words, a_wrong_number_is_not_surely_wrong_where_an_effect_acts_as_it_does) {

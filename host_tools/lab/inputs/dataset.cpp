@@ -264,51 +264,57 @@ struct Builder : InputBuilder {
         return way;
     }
 
+    // Rows of the track, from fix to fix at least `spacing` apart; their times are those of `balance`.
+    std::vector<TrackRow> track(const log::Signal &x, const log::Signal *y, const log::Signal *angle, double spacing, Balance &balance) {
+        const std::vector<double> yaw = angle != nullptr ? unwrapped(angle->value) : std::vector<double>(), rim_m = rim_way();
+        const double mount = parameter(model.sensors, "camera.yaw_rad");
+        const auto heading = [&](double t) {
+            if (angle != nullptr) return interpolate(angle->t_s, yaw, t) + mount;
+            return data.yaw_rad.empty() ? 0 : on_grid(data.yaw_rad, t);
+        };
+        const auto place = [&](std::size_t i) {
+            return std::complex<double>(x.value[i], y != nullptr ? interpolate(y->t_s, y->value, x.t_s[i]) : 0);
+        };
+        std::vector<TrackRow> rows;
+        for (std::size_t i = 1, from = 0; i < x.t_s.size(); ++i) {
+            const double t0 = x.t_s[from], t1 = x.t_s[i];
+            if (t1 - t0 < spacing) continue;
+            if (t1 - t0 < 3 * spacing && usable(t0, t1)) {
+                rows.push_back({place(i) - place(from),
+                                on_grid(rim_m, t1) - on_grid(rim_m, t0),
+                                {heading(t0), heading(t1)},
+                                balance.t1_s.empty() || balance.t1_s.back() != t0});
+                balance.t0_s.push_back(t0), balance.t1_s.push_back(t1);
+            }
+            from = i;
+        }
+        return rows;
+    }
+
     void camera() {
         const log::Signal *x = signal("camera.x_m"), *y = signal("camera.y_m"), *angle = signal("camera.yaw_rad");
         if (x == nullptr) {
             say("camera.x_m is missing: the camera balance is left out");
             return;
         }
-        const std::vector<double> yaw = angle != nullptr ? unwrapped(angle->value) : std::vector<double>();
         Balance along{BalanceKind::camera_x, -1, "camera.forward_m", "camera displacement, forward", "m", 0, "", {}, {}, {}, {}, {}};
-        const double noise = sample_noise(*x, "camera.noise_m", along.noise_source);
-        along.noise = std::sqrt(2.0) * noise;
-        Balance side = along, turn = along;
-        side.kind = BalanceKind::camera_y, side.name = "camera.left_m", side.title = "camera displacement, to the left";
-        turn.kind = BalanceKind::camera_yaw, turn.name = "camera.yaw_rad", turn.title = "camera heading change", turn.unit = "rad";
-        if (angle != nullptr) turn.noise = std::sqrt(2.0) * std::max(1e-4, noise_from_differences(angle->value));
+        const double spacing = std::max(0.28, 0.99 * sample_period(*x));
+        along.noise = std::sqrt(2.0) * sample_noise(*x, "camera.noise_m", along.noise_source);
+        const std::vector<TrackRow> rows = track(*x, y, angle, spacing, along);
         const std::complex<double> lever_m(parameter(model.sensors, "camera.x_m"), parameter(model.sensors, "camera.y_m"));
-        const double spacing = std::max(0.28, 0.99 * sample_period(*x)), mount = parameter(model.sensors, "camera.yaw_rad");
-        const auto heading = [&](double t) {
-            if (angle != nullptr) return interpolate(angle->t_s, yaw, t) + mount;
-            return data.yaw_rad.empty() ? 0 : on_grid(data.yaw_rad, t);
-        };
-        const auto place = [&](std::size_t i) {
-            return std::complex<double>(x->value[i], y != nullptr ? interpolate(y->t_s, y->value, x->t_s[i]) : 0);
-        };
-        const std::vector<double> rim_m = rim_way();
-        std::vector<TrackRow> rows;
-        double ended = -1;
-        for (std::size_t i = 1, from = 0; i < x->t_s.size(); ++i) {
-            const double t0 = x->t_s[from], t1 = x->t_s[i];
-            if (t1 - t0 < spacing) continue;
-            if (t1 - t0 < 3 * spacing && usable(t0, t1)) {
-                rows.push_back({place(i) - place(from), on_grid(rim_m, t1) - on_grid(rim_m, t0), {heading(t0), heading(t1)}, t0 != ended});
-                for (Balance *balance : {&along, &side, &turn}) balance->t0_s.push_back(t0), balance->t1_s.push_back(t1);
-                ended = t1;
-            }
-            from = i;
-        }
         std::vector<double> delta_rad(rows.size(), 0);
         if (angle == nullptr && y != nullptr && goes_along_its_heading()) {
-            delta_rad = track_heading(rows, lever_m, along.noise).delta_rad;
+            delta_rad = track_heading(rows, lever_m, along.noise, spacing).delta_rad;
             say(delta_rad.empty()
                     ? "camera.x_m and y_m without camera.yaw_rad: no heading lays them along the wheels' way: the camera balance is "
                       "left out (imu.gyro_z_rad_s tells how the machine turns)"
                     : "no camera.yaw_rad: the heading is the gyro's, turned until the wheels' way lies on the track");
             if (delta_rad.empty()) return;
         }
+        Balance side = along, turn = along;
+        side.kind = BalanceKind::camera_y, side.name = "camera.left_m", side.title = "camera displacement, to the left";
+        turn.kind = BalanceKind::camera_yaw, turn.name = "camera.yaw_rad", turn.title = "camera heading change", turn.unit = "rad";
+        if (angle != nullptr) turn.noise = std::sqrt(2.0) * std::max(1e-4, noise_from_differences(angle->value));
         for (std::size_t i = 0; i < rows.size(); ++i) {
             const std::complex<double> way = way_of_body(rows[i], lever_m, delta_rad[i]);
             along.measured.push_back(way.real());

@@ -9,7 +9,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr std::size_t half_window = 36; // rows of 0.28 s: 10 s
+constexpr double half_window_s = 10;
 constexpr double known_to_rad = 0.02;
 constexpr double least_agreement = 0.9; // cos of 0.45 rad: below it this is not the track of these wheels
 
@@ -31,7 +31,8 @@ Complex way_of_body(const TrackRow &row, Complex lever_m, double delta_rad) {
     return without_lever(row, lever_m, delta_rad) * std::conj(middle(row) * std::polar(1.0, delta_rad));
 }
 
-TrackHeading track_heading(const std::vector<TrackRow> &rows, Complex lever_m, double noise_m) {
+TrackHeading track_heading(const std::vector<TrackRow> &rows, Complex lever_m, double noise_m, double row_s) {
+    const auto half_window = static_cast<std::size_t>(std::max(1.0, half_window_s / row_s));
     const std::size_t count = rows.size();
     TrackHeading out;
     std::vector<double> delta(count, 0);

@@ -18,7 +18,7 @@ struct TrackRow { // from one fix to a later one
     std::complex<double> way_m;
     double rim_m = 0;              // the wheels' way, forward positive
     double turned_rad[2] = {0, 0}; // integral of the gyro at its ends
-    bool begins = false;           // the row before it does not end where this begins, or lies beyond a pause
+    bool begins = false;           // the row before it does not end where this begins: the log or the track paused
 };
 
 struct TrackHeading {
@@ -29,7 +29,7 @@ struct TrackHeading {
 // The way of the body's middle in its own frame: forward, left. delta_rad turns what is in `turned_rad` to the track's frame.
 std::complex<double> way_of_body(const TrackRow &row, std::complex<double> lever_m, double delta_rad);
 
-// lever_m: of the point that is tracked from the middle, forward and left; noise_m: of a row's way.
-TrackHeading track_heading(const std::vector<TrackRow> &rows, std::complex<double> lever_m, double noise_m);
+// lever_m: of the point that is tracked from the middle, forward and left; noise_m: of a row's way; row_s: its length.
+TrackHeading track_heading(const std::vector<TrackRow> &rows, std::complex<double> lever_m, double noise_m, double row_s);
 
 } // namespace traction::lab

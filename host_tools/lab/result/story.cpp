@@ -203,15 +203,11 @@ Story tell(const Comparison &c, const Diagnosis &d, const NextExperiment *next) 
         story.headline += guessed_body(d) ? ". No effect of the catalogue explains it: " + d.unknown->balance + "."
                                           : ". No effect of the catalogue explains it: it depends on " + d.unknown->variable +
                                                 (d.unknown->at_a_guess ? ", at a guess." : ".");
-    else {
-        const std::vector<std::string> off = far_from_stated(d);
+    else
         story.headline += c.adjusted < close_to_noise && !d.moved.empty()
                               ? ". That is close to the noise, with " + joined(d.moved, " and ") + " far from what is stated."
                           : c.adjusted < close_to_noise ? ". That is close to the noise: nothing is missing that this log could show."
-                          : off.empty()                 ? ". Nothing found that explains it. " + story.next
-                                        : ". No effect explains it, but " + joined(off, " and ") + (off.size() > 1 ? " are" : " is") +
-                                              " far from what is stated. " + story.next;
-    }
+                                                        : ". Nothing found that explains it. " + story.next;
     return story;
 }
 

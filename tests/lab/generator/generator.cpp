@@ -18,6 +18,8 @@ constexpr double h_s = 1e-3, g_m_s2 = 9.81;
 constexpr double accel_noise = 0.2, accel_bias_sd = 0.05, gyro_noise = 0.01;
 constexpr double battery_noise_V = 0.01, radar_relative = 0.07, radar_floor_m_s = 0.005, radar_window_s = 0.5, radar_every_s = 0.125;
 constexpr double camera_noise_m = 0.001, camera_noise_rad = 0.004, camera_hz = 7;
+
+double frame_of_antenna(std::uint64_t seed) { return 1 + static_cast<double>(seed % 5); } // [rad] from where the rover begins
 constexpr double counts_per_turn = 6000;
 
 // Turns the world into the columns of a log.
@@ -147,9 +149,13 @@ class Recorder {
         next_camera_ += 1 / camera_hz;
         const auto late = std::min(past_.size() - 1, static_cast<std::size_t>(std::lround(h_.camera_delay / h_s)));
         const Pose &pose = past_[past_.size() - 1 - late];
-        put("camera.x_m", stamp_, pose.x * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal());
-        put("camera.y_m", stamp_, pose.y * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal());
-        put("camera.yaw_rad", stamp_, pose.yaw + scale_ * camera_noise_rad * noise_.normal());
+        const double x = pose.x * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal();
+        const double y = pose.y * (1 + h_.camera_scale) + scale_ * camera_noise_m * noise_.normal();
+        const double frame_rad = c_.habits.heading ? 0 : frame_of_antenna(c_.seed), c = std::cos(frame_rad), s = std::sin(frame_rad);
+        put("camera.x_m", stamp_, c * x - s * y);
+        put("camera.y_m", stamp_, s * x + c * y);
+        const double yaw = pose.yaw + scale_ * camera_noise_rad * noise_.normal();
+        if (c_.habits.heading) put("camera.yaw_rad", stamp_, yaw);
     }
 
     const GeneratorConfig &c_;

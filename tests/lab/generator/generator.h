@@ -31,6 +31,7 @@ struct Habits {
     double sag = 0;       // share of its voltage that the battery loses over the log, evenly
     double soft = 1;      // of the battery's internal resistance
     bool gyro = true, accel = true;
+    bool heading = true; // of the camera; without it an antenna's track, in a frame of its own
 };
 
 struct GeneratorConfig {

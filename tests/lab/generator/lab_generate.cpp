@@ -114,8 +114,9 @@ int run(int argc, char **argv) {
     app.add_option("--noise", habits.noise, "of the sensors, over what the header states")->check(CLI::Range(0.0, 100.0));
     app.add_option("--begin", habits.begin_s, "the log begins that late [s]")->check(CLI::Range(0.0, 3600.0));
     app.add_option("--sag", habits.sag, "share of its voltage that the battery loses")->check(CLI::Range(0.0, 0.5));
-    app.add_option("--without", without, "a sensor that is not there; may be given again")
-        ->check(CLI::IsMember({"camera", "radar", "battery", "gyro", "accel"}));
+    app.add_option("--without", without,
+                   "a sensor that is not there (heading: the camera's; its track is in a frame of its own); may be given again")
+        ->check(CLI::IsMember({"camera", "heading", "radar", "battery", "gyro", "accel"}));
     app.add_flag("--current-at-end", blind.config.chain.current_at_end, "currents sampled once, at the end of the PWM period");
     app.add_flag("--angle-only", blind.config.chain.angle_only, "wheel angles, no counts");
     app.add_flag("--foreign", blind.config.chain.foreign, "a CSV of its own, which --map reads");
@@ -145,6 +146,7 @@ int run(int argc, char **argv) {
         (sensor == "camera"    ? c.camera
          : sensor == "radar"   ? c.radar
          : sensor == "battery" ? c.battery
+         : sensor == "heading" ? c.habits.heading
          : sensor == "gyro"    ? c.habits.gyro
                                : c.habits.accel) = false;
     }
