@@ -11,7 +11,7 @@ namespace {
 constexpr double pi = 3.141592653589793;
 constexpr double least_turn = 0.1; // of the speed, by which the sides' speeds differ in a turn
 
-std::vector<double> magnitude(std::vector<double> values) {
+std::vector<double> without_sign(std::vector<double> values) {
     for (double &v : values) v = std::fabs(v);
     return values;
 }
@@ -323,7 +323,7 @@ void Motion::yaw() {
             if (side(i) != 0) apart[k] -= side(i) * grid_.wheel[i].speed[k] / (side(i) > 0 ? left : right);
     }
     // Driven straight ahead a side turns faster than the other where it slips more, and the machine turns towards it.
-    const bool turns = quantile(magnitude(smooth(apart, 5)), 0.97) > least_turn * quantile(magnitude(grid_.mean_speed), 0.97);
+    const bool turns = quantile(without_sign(smooth(apart, 5)), 0.97) > least_turn * quantile(without_sign(grid_.mean_speed), 0.97);
     const double with_wheels =
         two_sides && turns && machine_.wheels_point_forward && !wheels_blamed() ? correlation(smooth(grid_.gyro, 5), smooth(apart, 5)) : 0;
     if (!grid_.camera_yaw_rate.empty() && !blamed("camera.yaw")) {

@@ -13,12 +13,6 @@ constexpr double half_window_s = 10;
 constexpr double known_to_rad = 0.02;
 constexpr double least_agreement = 0.9; // cos of 0.45 rad: below it this is not the track of these wheels
 
-// What (1) sums before each row, and the square of the wheels' way, which says how well the sum tells an angle.
-struct Sums {
-    std::vector<Complex> turned;
-    std::vector<double> way2;
-};
-
 Complex middle(const TrackRow &row) { return std::polar(1.0, 0.5 * (row.turned_rad[0] + row.turned_rad[1])); }
 
 Complex without_lever(const TrackRow &row, Complex lever_m, double delta_rad) {
@@ -39,19 +33,21 @@ TrackHeading track_heading(const std::vector<TrackRow> &rows, Complex lever_m, d
     std::vector<bool> known(count, false);
     const int passes = lever_m == Complex() ? 1 : 4; // the lever's own part follows the heading
     for (int pass = 0; pass < passes; ++pass) {
-        Sums sums{{Complex()}, {0}};
+        // What (1) sums before each row, and the square of the wheels' way, which says how well the sum tells an angle.
+        std::vector<Complex> turned = {Complex()};
+        std::vector<double> way2 = {0};
         for (std::size_t i = 0; i < count; ++i) {
             const Complex way = pass == 0 ? rows[i].way_m : without_lever(rows[i], lever_m, delta[i]);
-            sums.turned.push_back(sums.turned.back() + way * std::conj(rows[i].rim_m * middle(rows[i])));
-            sums.way2.push_back(sums.way2.back() + rows[i].rim_m * rows[i].rim_m);
+            turned.push_back(turned.back() + way * std::conj(rows[i].rim_m * middle(rows[i])));
+            way2.push_back(way2.back() + rows[i].rim_m * rows[i].rim_m);
         }
         for (std::size_t first = 0, last; first < count; first = last) {
             for (last = first + 1; last < count && !rows[last].begins;) ++last;
             for (std::size_t i = first; i < last; ++i) {
                 for (std::size_t half = half_window;; half *= 2) {
                     const std::size_t a = i - std::min(half, i - first), b = std::min(last, i + half + 1);
-                    known[i] = noise_m < known_to_rad * std::sqrt(sums.way2[b] - sums.way2[a]);
-                    if (known[i]) delta[i] = std::arg(sums.turned[b] - sums.turned[a]);
+                    known[i] = noise_m < known_to_rad * std::sqrt(way2[b] - way2[a]);
+                    if (known[i]) delta[i] = std::arg(turned[b] - turned[a]);
                     if (known[i] || (a == first && b == last)) break;
                 }
             }
