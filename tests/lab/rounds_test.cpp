@@ -396,6 +396,16 @@ TEST(Round, of_another_sensor_is_what_no_number_of_the_sheet_does) {
         EXPECT_FALSE(of_another_sensor(candidate(law))) << law;
 }
 
+TEST(Round, stands_beside_a_bent_sheet_by_sure_rows_or_as_another_sensors_of_a_model_that_fits) {
+    for (const auto &[law, p, left, stands] : {std::tuple{"rolling_resistance", 1e-9, 3.0, true},
+                                               {"rolling_resistance", 1e-7, 1.1, false},
+                                               {"gyro_scale", 1e-3, 1.9, true},
+                                               {"gyro_scale", 1e-3, 2.1, false},
+                                               {"gyro_scale", 1e-9, 2.1, true},
+                                               {"accel_tilt", 1e-3, 1.1, false}})
+        EXPECT_EQ(stands_beside_bent_sheet(candidate(law), p, left), stands) << law << " " << p << " " << left;
+}
+
 TEST(Round, knows_a_law_that_takes_half_of_what_is_no_noise_of_a_model_that_misses_by_far) {
     const auto takes = [](double before, double after) { return takes_most(held_at({}, before), held_at({}, after)); };
     EXPECT_TRUE(takes(3, 2.2));  // 8 squares beyond noise, 3.84

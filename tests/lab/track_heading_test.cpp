@@ -152,6 +152,7 @@ TEST(TrackHeading, of_an_antenna_reads_the_way_that_a_camera_with_a_heading_read
     EXPECT_LT(difference_m(*told, *found, 0), 0.5 * told->noise);
     EXPECT_TRUE(says(without, "the heading is the gyro's, turned until the wheels' way lies on the track"));
     EXPECT_FALSE(says(with, "no camera.yaw_rad"));
+    EXPECT_TRUE(with.camera_heading && !without.camera_heading);
 
     generator::GeneratorConfig own_frame = curves();
     own_frame.habits.heading = false; // the same drive and noise, the track alone and turned

@@ -415,7 +415,7 @@ class Search {
     void drop_beside_bent_sheet(Problem &last) {
         for (std::size_t i = d_.accepted.size(); i-- > 0;) {
             if (!(furthest_of_sheet(last) > bent_sheet)) return;
-            if (d_.accepted[i].p_value < sure_rows || of_another_sensor(d_.accepted[i].candidate)) continue;
+            if (stands_beside_bent_sheet(d_.accepted[i].candidate, d_.accepted[i].p_value, overall_error(last))) continue;
             const Candidate one = d_.accepted[i].candidate;
             Model without = model_without(d_.model, one);
             Problem less = fitted(without, &last);
@@ -611,8 +611,6 @@ class Search {
         refresh(problem, Screen(problem));
     }
 
-    // Times the noise, of a fit with a number at its limit, that may be in the wrong valley: assumed.
-    static constexpr double strange = 2;
     static constexpr double far_off = 8; // times its noise, of a balance that is missed by far (uneven ground leaves up to six): assumed
     // Stated deviations. Of 446 logs (docs/lab_diary.md, Two effects) 25 had a name for the sheet's sake alone: five left a
     // number 4.4 and farther off, and none of those was there; the others left none more than 3.8 off.
@@ -621,7 +619,6 @@ class Search {
     static constexpr double hardly_more = 1.05; // of the error: laws asked by scales of their own that differ by less are a class (assumed)
     static constexpr double one_story = 1.02;   // of the error: a valley that the verbs share is told, though it be so much higher
     static constexpr double least_ahead = 0.001; // of the held-out error: laws that do the same differ by less (assumed)
-    static constexpr double sure_rows = 1e-8;    // of a corrected p: those five had 1e-5 and more; one that is there had 1e-19 (925021)
     const Dataset &data_;
     const Model &stated_;
     const DiagnoseOptions &options_;

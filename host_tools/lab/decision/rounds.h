@@ -97,6 +97,14 @@ bool wanders(const Candidate &candidate);
 // own speaks of something else.
 bool of_another_sensor(const Candidate &candidate);
 
+// Whether a name may stand for which the data sheet alone speaks, though another of the sheet's numbers stays far off beside it: its rows
+// are very sure of their little (p_value, corrected), or it is another sensor's and no more than `strange` times the noise is left. Where
+// more is, what the model lacks moves every sensor's rows against the rest.
+bool stands_beside_bent_sheet(const Candidate &candidate, double p_value, double error_left);
+
+// Times the noise that is left: the model misses by far.
+constexpr double strange = 2;
+
 // Whether a name lowers the held-out error by as much as a name must, of all or of one balance; what wanders, of all.
 bool falls_notably(const HeldOut &before, const HeldOut &after, const Dataset &data, bool wanders = false);
 

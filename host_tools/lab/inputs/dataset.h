@@ -67,6 +67,7 @@ struct Dataset {
     std::vector<WheelInput> wheel;
     std::vector<double> yaw_rate_rad_s;       // empty when unknown
     std::vector<double> yaw_rad;              // empty when unknown: integral of the rate, or the camera's
+    bool camera_heading = false;              // yaw_rad is the camera's
     std::vector<double> body_speed_m_s;       // imposed speed; empty otherwise
     std::vector<std::vector<double>> load_N;  // measured load per wheel; empty when not logged
     std::vector<double> supply_t_s, supply_V; // battery, or one constant

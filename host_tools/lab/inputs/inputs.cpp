@@ -452,6 +452,7 @@ void InputBuilder::yaw() {
     data.yaw_free = model.motion == BodyMotion::longitudinal && sides > 1e-3 && model.wheel.size() > 1;
     if (data.yaw_free && data.yaw_rate_rad_s.empty())
         say("no yaw rate (imu.gyro_z_rad_s or camera.yaw_rad): how the body turns follows from its wheels and the model's ground alone");
+    data.camera_heading = camera != nullptr;
     if (camera != nullptr) {
         const std::vector<double> angle = unwrapped(camera->value);
         for (std::size_t k = 0; k < data.count; ++k) data.yaw_rad.push_back(interpolate(camera->t_s, angle, data.time(k)));
