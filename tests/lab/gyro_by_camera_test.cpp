@@ -1,6 +1,6 @@
 // A gyro's scale by the camera's heading (gyro_by_camera.h), of turns made by hand: what is recovered, what it denies, where it is silent.
-#include "host_tools/lab/decision/gyro_by_camera.h"
 #include "host_tools/lab/decision/evidence.h"
+#include "host_tools/lab/decision/gyro_by_camera.h"
 #include "tests/lab/four_wheels.h"
 #include "tests/lab/linear_machine.h"
 
@@ -17,7 +17,8 @@ using namespace hand_made;
 const double pace_rad_s = 2 * std::acos(-1.0) / 7;
 
 struct Turns {
-    double scale = 0, offset_rad_s = 0, late_s = 0, noise_rad = 0, strays_rad_s = 0 /* times root s */, hiss_rad_s = 0, fastest_rad_s = 0.6, duration_s = 80, step_s = 0.01;
+    double scale = 0, offset_rad_s = 0, late_s = 0, noise_rad = 0, strays_rad_s = 0 /* times root s */, hiss_rad_s = 0, fastest_rad_s = 0.6,
+           duration_s = 80, step_s = 0.01;
 };
 
 // Turns to and fro of 7 s; a gyro that reads (1 + scale) of the rate and an offset more, a camera that is late.
@@ -33,8 +34,8 @@ Dataset turning(const Turns &is, std::uint32_t seed = 1) {
         strayed_rad += is.strays_rad_s * std::sqrt(data.step_s) * normal(random);
         data.yaw_rate_rad_s.push_back((1 + is.scale) * is.fastest_rad_s * std::sin(pace_rad_s * t) + is.offset_rad_s +
                                       is.hiss_rad_s * normal(random));
-        data.yaw_rad.push_back(is.fastest_rad_s / pace_rad_s * (1 - std::cos(pace_rad_s * (t - is.late_s))) + is.noise_rad * normal(random) +
-                               strayed_rad);
+        data.yaw_rad.push_back(is.fastest_rad_s / pace_rad_s * (1 - std::cos(pace_rad_s * (t - is.late_s))) +
+                               is.noise_rad * normal(random) + strayed_rad);
     }
     return data;
 }
