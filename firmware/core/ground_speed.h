@@ -126,7 +126,9 @@
 // by the speed that was known last and what the accelerometer has felt since, with the bias of before, the body still goes where (38)
 // holds, and quiet values are none until a loud one comes or the wheels are slow. Where it does not hold after a value it stands, whatever
 // (13) has made of it. Neither is told by less than a sigma of the accelerometer's noise and of the bias, (t - t_r)/T Qv + ((t - t_r)
-// 0.02 m/s^2)^2. Later than 3 s the estimate stands for e.
+// 0.02 m/s^2)^2, or by as much more as that bias was unsure; of one that had not settled (0.04 m/s^2) a newer value is r. A stop is two
+// sigma below half of the rim, and no faster than what is quiet: a radar hears nothing of a body that changes its speed by much in a window
+// either, and its wheels pass zero. Each quiet value asks anew: what has stopped may set off. Later than 3 s the estimate stands for e.
 //   |v'| < 0.12 m/s,  t_13 < 0.35 s,  no gyros                                        (39)  v': the accelerometer's word beside (13)
 // A body that a wall or soft ground stops at once is to (13) a slope that begins. Its echo falls silent, so a window in which it stopped
 // hears the part in which it moved, as fast as ever: where (39) holds, values tell nothing between the two words. If what was felt is over,
@@ -251,6 +253,7 @@ typedef struct {
     float sign[SLIDE_VALUES];           // of the best track in the middle of its window
     float tau_s[SLIDE_VALUES];          // of (3), when it came
     float bias_m_s2[SLIDE_VALUES];      // before its window, nearly
+    float bias_m2_s4[SLIDE_VALUES];     // and the variance that it had then
     uint32_t ticks, came[SLIDE_VALUES]; // a count of ticks, and where it stood then
     int32_t q20[SLIDE_VALUES];          // V in its window's middle
 } ground_speed_slide_t;
@@ -265,7 +268,8 @@ typedef struct {
     bool rested;  // the end of the last rest is known
     uint32_t rest_ended;
     int32_t rest_q20;
-    float rest_bias_m_s2;                   // then
+    float rest_bias_m_s2; // then
+    float before_m2_s4[GROUND_SPEED_BEFORE];
     float before_m_s2[GROUND_SPEED_BEFORE]; // that the last values left: within a window (13) may have made a slope of a stop
 } ground_speed_cover_t;
 

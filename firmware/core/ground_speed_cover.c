@@ -6,31 +6,50 @@
 
 static const float ticks_known = 300.0f; // 3 s: longer, the bias's error alone makes half of a rim's speed, assumed
 
-static const float heard_share = 0.6f;   // [1] of slow_m_s: a rim above it rolls at a speed that the radar hears, assumed
-static const float covered_share = 0.3f; // [1] and above this where it did not hear it when it was faster, assumed
-static const float hardly_share = 1.25f; // [1] below it a quiet echo tells of no stop that was not felt, assumed
-static const float bias_m2_s4 = 4e-4f;   // (0.02 m/s^2)^2: how well it is known where it has settled, assumed
+static const float heard_share = 0.6f;        // [1] of slow_m_s: a rim above it rolls at a speed that the radar hears, assumed
+static const float covered_share = 0.3f;      // [1] and above this where it did not hear it when it was faster, assumed
+static const float hardly_share = 1.25f;      // [1] below it a quiet echo tells of no stop that was not felt, assumed
+static const float settled_m2_s4 = 4e-4f;     // (0.02 m/s^2)^2: how well the bias is known at best, assumed
+static const float unsettled_m2_s4 = 1.6e-3f; // (0.04 m/s^2)^2: a jump's is more than that, assumed
+static const float stop_sigmas2 = 4.0f;       // assumed
 
 // Where the speed was known last: V, the bias and the ticks since.
 typedef struct {
     int32_t q20;
-    float speed_m_s, bias_m_s2, ticks;
+    float speed_m_s, bias_m_s2, bias_m2_s4, ticks;
     bool value;
 } known_t;
 
-// The oldest of the last values, or the end of the last rest.
+static known_t known_by(const ground_speed_config_t *config, const ground_speed_state_t *state, int32_t ago)
+{
+    const int32_t at = (state->slide.newest + SLIDE_VALUES - ago) % SLIDE_VALUES;
+    const float since = (float)(int32_t)(state->slide.ticks - state->slide.came[at]) + state->slide.tau_s[at] * config->per_tick_1_s;
+    const float unsure = state->slide.bias_m2_s4[at];
+    const known_t value = {state->slide.q20[at],
+                           state->slide.sign[at] * state->slide.heard_m_s[at],
+                           state->slide.bias_m_s2[at],
+                           fixed_greater(unsure, settled_m2_s4) ? unsure : settled_m2_s4,
+                           since,
+                           true};
+    return value;
+}
+
+// The oldest of the last values, or the end of the last rest; where a value's bias had not settled, a newer one whose had.
 static known_t known_last(const ground_speed_config_t *config, const ground_speed_state_t *state)
 {
     const float since_rest = (float)(int32_t)(state->slide.ticks - state->cover.rest_ended);
-    known_t out = {state->cover.rest_q20, 0.0f, state->cover.rest_bias_m_s2, state->cover.rested ? since_rest : ticks_known, false};
-    if (state->slide.held > 0) {
-        const int32_t at = (state->slide.newest + SLIDE_VALUES - state->slide.held + 1) % SLIDE_VALUES;
-        const float since = (float)(int32_t)(state->slide.ticks - state->slide.came[at]) + state->slide.tau_s[at] * config->per_tick_1_s;
-        if (fixed_greater(out.ticks, since)) {
-            const known_t value = {state->slide.q20[at], state->slide.sign[at] * state->slide.heard_m_s[at], state->slide.bias_m_s2[at],
-                                   since, true};
-            out = value;
-        }
+    const known_t rest = {
+        state->cover.rest_q20, 0.0f, state->cover.rest_bias_m_s2, settled_m2_s4, state->cover.rested ? since_rest : ticks_known, false};
+    if (state->slide.held == 0) {
+        return rest;
+    }
+    known_t out = known_by(config, state, state->slide.held - 1);
+    if (!fixed_greater(rest.ticks, out.ticks)) {
+        return rest;
+    }
+    for (int32_t i = state->slide.held - 2; i >= 0 && fixed_greater(out.bias_m2_s4, unsettled_m2_s4); i--) {
+        const known_t newer = known_by(config, state, i);
+        out = fixed_greater(out.bias_m2_s4, newer.bias_m2_s4) ? newer : out;
     }
     return out;
 }
@@ -64,19 +83,23 @@ void ground_speed_judge_quiet(const ground_speed_config_t *config, ground_speed_
     const float expected = from.speed_m_s + change_m_s - time_s * from.bias_m_s2; // (38)
     const float along = wheel_m_s < 0.0f ? -expected : expected;
     const float gap_m_s = along - 0.5f * fabsf(wheel_m_s);
-    const float noise_m2_s2 = from.ticks * state->speed_noise_m2_s2 + ground_speed_square(time_s) * bias_m2_s4;
-    const bool sure = fixed_greater(ground_speed_square(gap_m_s), noise_m2_s2);
-    state->cover.stopped = sure && gap_m_s < 0.0f && from.value; // after a rest a window is half of it still
+    const float noise_m2_s2 = from.ticks * state->speed_noise_m2_s2 + ground_speed_square(time_s) * from.bias_m2_s4;
+    const float gap2 = ground_speed_square(gap_m_s);
+    const bool goes_on = gap_m_s > 0.0f && fixed_greater(gap2, noise_m2_s2);
+    const float beyond_m_s = fabsf(expected) - config->slow_m_s; // of what the radar would hear
+    const bool slow = !fixed_greater(beyond_m_s, 0.0f) || fixed_greater(noise_m2_s2, ground_speed_square(beyond_m_s));
+    const bool falls_short = gap_m_s < 0.0f && fixed_greater(gap2, stop_sigmas2 * noise_m2_s2);
+    state->cover.stopped = falls_short && slow && from.value; // after a rest a window is half of it still
     const bool hardly = from.value && fixed_greater(hardly_share * config->slow_m_s, fabsf(wheel_m_s));
     const bool was = state->cover.on;
-    state->cover.on = !state->cover.stopped && ((sure && gap_m_s > 0.0f) || hardly);
-    if (state->cover.on && !was && state->quiet > 0) { // what has pulled it to a standstill was none
+    state->cover.on = goes_on || (hardly && !state->cover.stopped);
+    if (state->cover.on && !was && state->quiet >= config->quiet_needed) { // what has pulled it to a standstill was none
         state->speed_m_s = expected;
         state->bias_m_s2 = from.bias_m_s2;
         state->p_vv += noise_m2_s2;
         state->other_alive = false;
     }
-    state->cover.judged = (state->cover.on && sure) || state->cover.stopped; // the first quiet value after a loud one tells best
+    state->cover.judged = goes_on; // the first quiet value after a loud one tells best; what has stopped may set off
 }
 
 void ground_speed_watch_cover(ground_speed_state_t *state)
@@ -85,10 +108,13 @@ void ground_speed_watch_cover(ground_speed_state_t *state)
     state->cover.stopped = false;
     state->cover.judged = false;
     state->slide.bias_m_s2[state->slide.newest] = state->cover.before_m_s2[GROUND_SPEED_BEFORE - 1];
+    state->slide.bias_m2_s4[state->slide.newest] = state->cover.before_m2_s4[GROUND_SPEED_BEFORE - 1];
     for (int32_t i = GROUND_SPEED_BEFORE - 1; i > 0; i--) {
         state->cover.before_m_s2[i] = state->cover.before_m_s2[i - 1];
+        state->cover.before_m2_s4[i] = state->cover.before_m2_s4[i - 1];
     }
     state->cover.before_m_s2[0] = state->bias_m_s2;
+    state->cover.before_m2_s4[0] = state->p_bb;
 }
 
 void ground_speed_watch_rest(ground_speed_state_t *state)
@@ -99,5 +125,6 @@ void ground_speed_watch_rest(ground_speed_state_t *state)
     state->cover.rest_bias_m_s2 = state->bias_m_s2;
     for (int32_t i = 0; i < GROUND_SPEED_BEFORE; i++) {
         state->cover.before_m_s2[i] = state->bias_m_s2;
+        state->cover.before_m2_s4[i] = settled_m2_s4;
     }
 }

@@ -331,6 +331,33 @@ TEST(SecondRover, holds_a_slip) {
     }
 }
 
+// To and fro by duty at up to 5 m/s^2: a window holds so many speeds that no value comes but about the turning points, and the wheels pass
+// zero. Goals of the estimator's rows: it knows (NEES <= 2), no wrong sign for more than 0.5 s, no false fault.
+TEST(SecondRover, shaken_to_and_fro_is_not_lost) {
+    const std::string shaken = cruise(0.4, 4) +
+                               "[[drive]]\nfor_s = 12.0\nmode = \"open_loop\"\nduty = { amplitude = 0.9, period_s = 2.0 }\n"
+                               "[[drive]]\nfor_s = 3.0\nmode = \"stop\"\n";
+    for (const char *soil : {"concrete", "gravel", "sand", "loam", "snow"})
+        for (std::uint64_t seed = 1; seed <= 4; seed++) {
+            const SimulationResult result = run(heavy_on(soil, shaken, 20), seed);
+            EXPECT_EQ(result.faults, 0u) << soil << ' ' << seed;
+            const log::Signal &v = *result.truth.find("truth.speed_m_s"), &e = *result.log.find("estimate.speed_m_s"),
+                              &std = *result.log.find("estimate.speed_std_m_s");
+            ASSERT_EQ(v.value.size(), e.value.size());
+            ASSERT_EQ(std.value.size(), e.value.size());
+            double nees = 0;
+            int wrong_ticks = 0, longest = 0;
+            for (std::size_t i = 0; i < v.value.size(); i++) {
+                nees += std::pow((e.value[i] - v.value[i]) / std.value[i], 2) / static_cast<double>(v.value.size());
+                const bool wrong = e.value[i] * v.value[i] < 0 && std::min(std::fabs(e.value[i]), std::fabs(v.value[i])) > 0.05;
+                wrong_ticks = wrong ? wrong_ticks + 1 : 0;
+                longest = std::max(longest, wrong_ticks);
+            }
+            EXPECT_LE(nees, 2) << soil << ' ' << seed;
+            EXPECT_LE(longest, 50) << soil << ' ' << seed;
+        }
+}
+
 // What it would be without its description: two encoders count the other way, every scale is another.
 TEST(SecondRover, does_not_drive_under_the_reference_firmware) {
     sim::Scenario scenario = heavy_on("concrete", cruise(0.4), 13);
