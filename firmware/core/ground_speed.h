@@ -268,9 +268,9 @@ typedef struct {
     bool rested;  // the end of the last rest is known
     uint32_t rest_ended;
     int32_t rest_q20;
-    float rest_bias_m_s2; // then
-    float before_m2_s4[GROUND_SPEED_BEFORE];
-    float before_m_s2[GROUND_SPEED_BEFORE]; // that the last values left: within a window (13) may have made a slope of a stop
+    float rest_bias_m_s2;                    // then
+    float before_m_s2[GROUND_SPEED_BEFORE];  // that the last values left: within a window (13) may have made a slope of a stop
+    float before_m2_s4[GROUND_SPEED_BEFORE]; // and its variance; 0, as if it had settled, until there are so many values
 } ground_speed_cover_t;
 
 // A track that moves on at Doppler values alone.

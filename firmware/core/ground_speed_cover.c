@@ -11,7 +11,7 @@ static const float covered_share = 0.3f;      // [1] and above this where it did
 static const float hardly_share = 1.25f;      // [1] below it a quiet echo tells of no stop that was not felt, assumed
 static const float settled_m2_s4 = 4e-4f;     // (0.02 m/s^2)^2: how well the bias is known at best, assumed
 static const float unsettled_m2_s4 = 1.6e-3f; // (0.04 m/s^2)^2: a jump's is more than that, assumed
-static const float stop_sigmas2 = 4.0f;       // assumed
+static const float stop_sigmas2 = 4.0f;       // [1] two sigma, squared, assumed
 
 // Where the speed was known last: V, the bias and the ticks since.
 typedef struct {

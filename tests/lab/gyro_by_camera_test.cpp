@@ -59,7 +59,7 @@ TEST(GyroByCamera, misses_by_no_more_than_its_standard_error_says) {
             squares += (seen->scale - is.scale) * (seen->scale - is.scale) / (seen->error * seen->error);
         }
         EXPECT_LT(squares / draws, 1) << is.noise_rad;
-        EXPECT_GT(squares / draws, 0.3) << is.noise_rad; // twice two, half of which it needs not
+        EXPECT_GT(squares / draws, 0.3) << is.noise_rad; // no more than twice too wide
     }
 }
 

@@ -1,4 +1,7 @@
 // (38) of ground_speed.h: an echo that falls silent is of a body that has stopped, or of a radar that sees nothing any more.
+extern "C" {
+#include "firmware/core/ground_speed_parts.h"
+}
 #include "firmware/core/rover_config.h"
 
 #include <gtest/gtest.h>
@@ -152,6 +155,24 @@ TEST(GroundSpeedCover, is_no_part_of_the_papers_method) {
     ground_speed_step(&paper, &papers, &input);
     EXPECT_TRUE(ours_state.cover.on);
     EXPECT_FALSE(papers.cover.on);
+}
+
+// A value stands beside the bias before its window, three values ago, and beside what was known of it then; at rest both are known.
+TEST(GroundSpeedCover, remembers_the_bias_of_three_values_ago_and_how_unsure_it_was) {
+    ground_speed_state_t state;
+    ground_speed_reset(&ours(), &state);
+    for (int k = 0; k < 8; ++k) {
+        state.slide.newest = k % SLIDE_VALUES;
+        state.bias_m_s2 = 0.1f * static_cast<float>(k), state.p_bb = 0.01f * static_cast<float>(k + 1);
+        ground_speed_watch_cover(&state);
+        if (k < GROUND_SPEED_BEFORE) continue;
+        EXPECT_EQ(state.slide.bias_m_s2[state.slide.newest], 0.1f * static_cast<float>(k - GROUND_SPEED_BEFORE)) << k;
+        EXPECT_EQ(state.slide.bias_m2_s4[state.slide.newest], 0.01f * static_cast<float>(k - GROUND_SPEED_BEFORE + 1)) << k;
+    }
+    ground_speed_watch_rest(&state);
+    ground_speed_watch_cover(&state);
+    EXPECT_EQ(state.slide.bias_m_s2[state.slide.newest], state.bias_m_s2);
+    EXPECT_EQ(state.slide.bias_m2_s4[state.slide.newest], 4e-4f); // (0.02 m/s^2)^2
 }
 
 // By the words of (38), of states made by hand.
