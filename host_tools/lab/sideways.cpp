@@ -13,6 +13,8 @@ namespace {
 
 constexpr double bend_m_s2 = 0.03;      // v r: less than that, and the middle drifts by less than a hundredth of what slip lets it
 constexpr double share_of_bends = 0.02; // of the samples, at least
+constexpr const char *grip = "lateral_scrub";
+constexpr double grip_from = 0.25; // of its coefficient's search: from nothing it may end in a valley of its own
 
 // Wheels that hold sideways, before or behind the middle: a skid steer's, or the one axle of a machine whose middle lies elsewhere.
 bool may_drift(const Model &model) {
@@ -34,22 +36,49 @@ bool has_bends(const Model &model, const Dataset &data) {
     return static_cast<double>(bends) > share_of_bends * static_cast<double>(data.count);
 }
 
+// Whether the last balance, the camera's displacement to the left, is predicted surely worse by the body that drifts than by one that has no
+// such motion at all: the fit then drifts to make something else right.
+bool misses_the_camera(const Problem &straight, const Problem &sideways) {
+    Eigen::VectorXd weight = Eigen::VectorXd::Zero(straight.residual.size());
+    const auto rows = static_cast<Eigen::Index>(straight.data().balance.back().measured.size());
+    weight.tail(rows) = straight.noise_rows().tail(rows).cwiseAbs2().cwiseInverse();
+    return fall_between(as_fitted(sideways), as_fitted(straight), weight).sure();
+}
+
+bool has_grip(const Model &model) {
+    return std::any_of(model.effects.begin(), model.effects.end(), [](const EffectUse &use) { return use.name == grip; });
+}
+
+EffectUse sideways_grip() {
+    EffectUse use;
+    use.name = grip;
+    Parameter &p = use.parameters["coefficient"];
+    p.value = grip_from, p.minimum = 0, p.given = true;
+    return use;
+}
+
 } // namespace
 
 bool drifts_sideways(const Model &model, const Dataset &data) {
     if (model.motion != BodyMotion::longitudinal || !data.yaw_free || data.yaw_rate_rad_s.size() != data.count ||
         data.wheel.size() != model.wheel.size() || !may_drift(model) || !has_bends(model, data))
         return false;
-    const auto fitted = [&](BodyMotion motion) {
-        Model tried = model;
+    Dataset asked = data;
+    if (!data.camera_left.measured.empty()) asked.balance.push_back(data.camera_left);
+    const auto fitted = [&](Model tried, BodyMotion motion) {
         tried.motion = motion;
         const Physics physics = make_physics(tried);
-        Problem problem(data, physics, free_parameters(tried, physics));
+        Problem problem(asked, physics, free_parameters(tried, physics));
         problem.fit({.ready = false});
         return problem;
     };
-    const Problem straight = fitted(BodyMotion::longitudinal), sideways = fitted(BodyMotion::planar);
-    return fall_of_unlikelihood(straight, sideways).sure();
+    const Problem straight = fitted(model, BodyMotion::longitudinal), sideways = fitted(model, BodyMotion::planar);
+    if (!fall_of_unlikelihood(straight, sideways).sure()) return false;
+    if (asked.balance.size() > data.balance.size() && misses_the_camera(straight, sideways)) return false;
+    if (has_grip(model)) return true;
+    Model gripping = model;
+    gripping.effects.push_back(sideways_grip());
+    return fall_of_unlikelihood(fitted(gripping, BodyMotion::longitudinal), sideways).sure();
 }
 
 } // namespace traction::lab

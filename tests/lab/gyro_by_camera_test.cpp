@@ -1,6 +1,7 @@
 // A gyro's scale by the camera's heading (gyro_by_camera.h), of turns made by hand: what is recovered, what it denies, where it is silent.
 #include "host_tools/lab/decision/evidence.h"
 #include "host_tools/lab/decision/gyro_by_camera.h"
+#include "host_tools/lab/decision/turned_by_wheels.h"
 #include "tests/lab/four_wheels.h"
 #include "tests/lab/linear_machine.h"
 
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 
 namespace traction::lab {
 namespace {
@@ -104,6 +106,59 @@ TEST(GyroByCamera, does_not_look_across_the_end_of_a_run) {
     EXPECT_GT(gyro_by_camera(two)->error, 0.05);
 }
 
+// What the wheels' speeds have of the gyro's rate.
+void turn_by_wheels(Dataset &data, const Physics &physics, double share) {
+    for (std::size_t i = 0; i < physics.wheel.size(); ++i)
+        for (std::size_t k = 0; k < data.count; ++k)
+            data.wheel[i].speed_rad_s[k] = 2 - share * physics.wheel[i].y / physics.wheel[i].radius * data.yaw_rate_rad_s[k];
+}
+
+TEST(TurnedByWheels, where_their_speeds_have_the_yaw_rate_and_not_the_ground) {
+    FourWheels rover;
+    Physics physics = make_physics(rover.model);
+    Dataset data = rover.data;
+    data.yaw_rate_rad_s = turning({.offset_rad_s = 0.3, .duration_s = static_cast<double>(data.count) * data.step_s, .step_s = data.step_s})
+                              .yaw_rate_rad_s;
+    ASSERT_EQ(data.yaw_rate_rad_s.size(), data.count);
+    for (const auto &[share, turned] : {std::pair(1.5, true), {0.81, true}, {0.79, false}, {0.0, false}, {-1.0, false}}) {
+        turn_by_wheels(data, physics, share);
+        EXPECT_EQ(turned_by_wheels(data, physics), turned) << share;
+    }
+    Dataset hissing = data; // what the encoders scatter turns nothing
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal(0, 5);
+    for (WheelInput &w : hissing.wheel)
+        for (double &speed : w.speed_rad_s) speed += normal(random);
+    EXPECT_FALSE(turned_by_wheels(hissing, physics));
+    Physics rollers = physics;
+    rollers.grips_sideways.assign(rollers.grips_sideways.size(), false);
+    EXPECT_TRUE(turned_by_wheels(data, rollers)) << "(1) is not theirs";
+    Dataset without = data;
+    without.yaw_rate_rad_s.clear();
+    EXPECT_TRUE(turned_by_wheels(without, physics));
+    for (WheelPhysics &w : physics.wheel) w.y = 0.3;
+    EXPECT_TRUE(turned_by_wheels(data, physics)) << "all on one line";
+}
+
+TEST(Evidence, of_a_gyros_scale_is_none_where_the_ground_turns_the_machine) {
+    FourWheels rover;
+    const Physics physics = make_physics(rover.model);
+    Candidate scale = candidate("gyro_scale");
+    scale.touched = stage_sensors;
+    for (const double share : {0.5, 1.2}) {
+        Dataset data = rover.data;
+        data.gyro = true, data.camera_heading = false;
+        data.yaw_rate_rad_s =
+            turning({.duration_s = static_cast<double>(data.count) * data.step_s, .step_s = data.step_s}).yaw_rate_rad_s;
+        turn_by_wheels(data, physics, share);
+        Physics moved = physics;
+        moved.body.gyro_scale = 0.1;
+        Problem before(data, physics, {}), with(data, moved, {});
+        before.linearise(), with.linearise();
+        EXPECT_EQ(evidence_of(scale, before, as_fitted(before), with, as_fitted(with)).smooths, share < 1);
+    }
+}
+
 TEST(Evidence, of_a_gyros_scale_is_none_where_the_camera_denies_it) {
     FourWheels rover;
     const Physics physics = make_physics(rover.model);
@@ -116,6 +171,7 @@ TEST(Evidence, of_a_gyros_scale_is_none_where_the_camera_denies_it) {
             Dataset with_turns = rover.data;
             with_turns.gyro = true, with_turns.camera_heading = camera;
             with_turns.yaw_rate_rad_s = turns.yaw_rate_rad_s, with_turns.yaw_rad = turns.yaw_rad;
+            turn_by_wheels(with_turns, physics, 1);
             Physics moved = physics;
             moved.body.gyro_scale = named;
             Problem before(with_turns, physics, {}), with(with_turns, moved, {});

@@ -720,6 +720,9 @@ TEST(Tolerances, are_strained_by_what_is_no_law_of_the_machine) {
     EXPECT_FALSE(strains_sheet(36.1, 3.1, 3, 9));
     EXPECT_FALSE(strains_sheet(-1e6, 1, 0.948, 9)); // more than a tenth of the squares: what explains as much may
     EXPECT_TRUE(strains_sheet(-1e6, 1, 0.949, 9));
+    EXPECT_FALSE(strains_sheet(-1e6, 1.066, 1.038, 9)); // close to the noise: 0.43 of what is not noise
+    EXPECT_TRUE(strains_sheet(-1e6, 1.066, 1.041, 9));  // 0.39 of it
+    EXPECT_TRUE(strains_sheet(-1e6, 0.99, 0.96, 9));    // where all is noise there is no such share
     EXPECT_TRUE(strains_sheet(-4.1, 0.1, 0.1, 1));
     EXPECT_FALSE(strains_sheet(-3.9, 0.1, 0.1, 1));
 }

@@ -431,16 +431,21 @@ TEST(Round, asks_scales_of_its_own_of_three_that_are_not_unlikely_and_may_be_tol
     };
     std::vector<Trial> all = {refitted("a", 0.449, 10), refitted("b", 0.451, 90), refitted("c", 0.01, 30), refitted("d", 0.01, 20),
                               refitted("e", 0.01, 15)};
-    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{2, 3, 4}));
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003, 3), (std::vector<std::size_t>{2, 3, 4}));
     all[3].refitted = false;
-    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{2, 4, 0}));
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003, 3), (std::vector<std::size_t>{2, 4, 0}));
     all[2].verdict = "too_small"; // was refused for another reason
-    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{4, 0}));
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003, 3), (std::vector<std::size_t>{4, 0}));
     all[4].gain = 0;
-    EXPECT_EQ(worth_scales_of_its_own(all, 0.003), (std::vector<std::size_t>{0}));
-    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, -0.5)}, 0.003).empty()); // of a sign that cannot be
-    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 0.05)}, 0.003).empty()); // of no interest
-    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 1)}, 0.003).empty());    // at its limit
+    EXPECT_EQ(worth_scales_of_its_own(all, 0.003, 3), (std::vector<std::size_t>{0}));
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, -0.5)}, 0.003, 3).empty()); // of a sign that cannot be
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 0.05)}, 0.003, 3).empty()); // of no interest
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 1)}, 0.003, 3).empty());    // at its limit
+    EXPECT_EQ(worth_scales_of_its_own({refitted("soil_patch", 1, 10)}, 0.003, 2.1), (std::vector<std::size_t>{0})); // in few blocks
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("soil_patch", 1, 10)}, 0.003, 1.9).empty()); // the model hardly misses
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("soil_gradient", 1, 10)}, 0.003, 2.1).empty());
+    EXPECT_TRUE(is_of_few_blocks(refitted("resistance_patch", 0.451, 10), 0.003));
+    EXPECT_FALSE(is_of_few_blocks(refitted("resistance_patch", 0.449, 10), 0.003));
 }
 
 TEST(Afar, the_one_that_gains_most_and_more_than_the_winner_may_take_its_place) {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace traction::lab {
 namespace {
@@ -53,6 +54,23 @@ TEST(Sideways, ARoverThatIsHeldOnItsLineIsNot) { // the generator's middle does 
         config.drive = drive, config.duration_s = 60, config.seed = 77;
         const Model model = parse_model(generator::data_sheet(config), "sheet");
         EXPECT_FALSE(drifts_sideways(model, make_dataset(model, generator::generate(config)))) << drive;
+    }
+}
+
+// A sideways grip that the model lacks turns it too; a drift would make it half right, and what is named beside it false. Without either
+// rule both were followed, without the camera's the second alone (it drifts by what its grip does not explain).
+TEST(Sideways, WhatASidewaysGripTurnsIsNotFollowed) {
+    for (const auto &[size, camera] : {std::pair(generator::Size::small, false), {generator::Size::large, true}}) {
+        generator::GeneratorConfig config;
+        config.size = size, config.soil = generator::Soil::concrete, config.drive = "curves", config.duration_s = 60, config.seed = 77,
+        config.apart = true;
+        config.hidden = {generator::parse_setting("lateral_scrub:coefficient=0.25")};
+        const Model model = parse_model(generator::data_sheet(config), "sheet");
+        log::Log log = generator::generate(config);
+        if (!camera) std::erase_if(log.signals, [](const log::Signal &s) { return s.name == "camera.y_m"; });
+        const Dataset data = make_dataset(model, log);
+        EXPECT_EQ(data.camera_left.measured.empty(), !camera);
+        EXPECT_FALSE(drifts_sideways(model, data)) << camera;
     }
 }
 

@@ -237,7 +237,7 @@ class Search {
     // Those asked by scales of their own that leave hardly more of all that was fitted: the log does not tell them apart.
     std::vector<std::string> fit_as_well(const std::vector<Trial> &trials, std::size_t winner, const Problem &problem, double error) const {
         std::vector<std::string> list;
-        for (const std::size_t i : worth_scales_of_its_own(trials, options_.p_limit)) {
+        for (const std::size_t i : worth_scales_of_its_own(trials, options_.p_limit, held_.error)) {
             if (i == winner) continue;
             Model model = d_.model;
             model.effects.push_back(effect_of(trials[i].candidate, trials[i].value));
@@ -255,11 +255,13 @@ class Search {
 
     // A large missing law has blown the scales up: of those that are not unlikely on them, a fit with scales of its own tells.
     std::optional<Next> by_scales_of_its_own(std::vector<Trial> &trials, std::size_t &winner, const Problem &problem) {
-        for (const std::size_t i : worth_scales_of_its_own(trials, options_.p_limit)) {
+        for (const std::size_t i : worth_scales_of_its_own(trials, options_.p_limit, held_.error)) {
             const std::string verdict = trials[i].verdict;
             std::optional<Next> next = with(trials[i], problem);
             const auto noise = [&] { return d_.stated_fit->noise_rows(); };
-            if (next && (takes_most(held_, next->held) || takes_most_of_one(held_, next->held, data_, noise())) &&
+            const bool few = is_of_few_blocks(trials[i], options_.p_limit);
+            if (next && few) next = placed(trials[i], std::move(*next), problem);
+            if (next && (takes_most(held_, next->held) || (!few && takes_most_of_one(held_, next->held, data_, noise()))) &&
                 !refused_fits_better(trials, problem, overall_error(next->problem))) {
                 winner = i;
                 twins_[trials[i].candidate.label()] = fit_as_well(trials, i, problem, overall_error(next->problem));
@@ -268,6 +270,17 @@ class Search {
             trials[i].verdict = verdict;
         }
         return std::nullopt;
+    }
+
+    // Where a place of the ground begins and ends its candidates know by cells of the path alone.
+    std::optional<Next> placed(Trial &t, Next &&on_cells, const Problem &before) {
+        Model model = d_.model;
+        model.effects.push_back(effect_of(t.candidate, t.value));
+        on_cells.problem.get_ready();
+        if (!place_patch(model, data_, t.candidate.effect, on_cells.problem)) return std::move(on_cells);
+        for (auto &[key, value] : t.candidate.variant) value = model.effects.back().parameters.at(key).value;
+        t.value = sizes_of(t, on_cells.problem);
+        return with(t, before);
     }
 
     // What explains the most of that which is near may be no more than what a law that is seen from afar leaves of it: where with the

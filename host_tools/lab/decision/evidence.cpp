@@ -4,6 +4,7 @@
 #include "host_tools/lab/fit/scatter.h"
 #include "lag.h"
 #include "rounds.h"
+#include "turned_by_wheels.h"
 #include "uneven_grip.h"
 
 #include <algorithm>
@@ -22,8 +23,9 @@ bool reads_at_one_time(const Candidate &candidate, const Problem &with) {
            std::fabs(with.physics().body.accel_scale) < 1.2 * sawtooth_share(with.data(), with.physics());
 }
 
-bool camera_denies(const Candidate &candidate, const Problem &with) {
+bool gyro_is_denied(const Candidate &candidate, const Problem &with) {
     if (candidate.effect != "gyro_scale") return false;
+    if (!turned_by_wheels(with.data(), with.physics())) return true;
     const std::optional<ScaleByPeer> seen = gyro_by_camera(with.data());
     return seen && seen->denies(with.physics().body.gyro_scale);
 }
@@ -47,7 +49,7 @@ double sawtooth_share(const Dataset &data, const Physics &physics) {
 Evidence evidence_of(const Candidate &candidate, const Problem &before, const HeldOut &left_before, const Problem &with,
                      const HeldOut &left_with) {
     Evidence out = falls_of(before, left_before, left_with);
-    out.smooths = reads_at_one_time(candidate, with) || camera_denies(candidate, with);
+    out.smooths = reads_at_one_time(candidate, with) || gyro_is_denied(candidate, with);
     if ((candidate.touched & stage_motion) == 0) return out;
     const Scatter scatter(before, &with);
     const Eigen::VectorXd weight = before.row_scale.cwiseAbs2();

@@ -24,7 +24,7 @@ namespace traction::lab {
 // (1), on the scales of the model without the name and in units of noise.
 struct Evidence {
     Fall scaled, noise;
-    bool smooths = false; // that is all it does, or its like (lag.h, uneven_grip.h, gyro_by_camera.h, (2)): none
+    bool smooths = false; // that is all it does, or its like (lag.h, uneven_grip.h, gyro_by_camera.h, turned_by_wheels.h, (2)): none
     bool falls() const { return !smooths && scaled.sure() && noise.sure(); }
 };
 

@@ -204,11 +204,16 @@ bool takes_most_of_one(const HeldOut &before, const HeldOut &after, const Datase
 
 double unlikely_from(double p_limit) { return not_unlikely * p_limit; }
 
-std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit) {
+bool is_of_few_blocks(const Trial &trial, double p_limit) {
+    return is_patch(trial.candidate.effect) && !(trial.p_value < unlikely_from(p_limit));
+}
+
+std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit, double heldout_error) {
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const Trial &t = trials[i];
-        if (t.verdict == "not_significant" && t.refitted && t.p_value < unlikely_from(p_limit) && t.gain > 0 &&
+        const bool likely = t.p_value < unlikely_from(p_limit) || (is_of_few_blocks(t, p_limit) && heldout_error > strange);
+        if (t.verdict == "not_significant" && t.refitted && likely && t.gain > 0 &&
             plausible_sign(t.candidate, t.value) && large_enough(t.candidate, t.value) && !beyond_range(t.candidate, t.value))
             list.push_back(i);
     }

@@ -87,8 +87,12 @@ bool takes_most_of_one(const HeldOut &before, const HeldOut &after, const Datase
 // up, its own rows hardly count on them, and only a fit with scales of its own tells.
 double unlikely_from(double p_limit);
 
-// Those whose refit on the baseline's scales is not unlikely and large, the largest fall of the error first, at most three.
-std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit);
+// A place of the ground that is driven over in few blocks: no rank of them tells it, however much it explains.
+bool is_of_few_blocks(const Trial &trial, double p_limit);
+
+// Those whose refit on the baseline's scales is not unlikely and large, the largest fall of the error first, at most three; and places in
+// few blocks, where the model misses by far.
+std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit, double heldout_error);
 
 // A law of a place, or of the way behind a wheel: whatever ground wanders, and whatever an encoder scatters, has a bit of it somewhere.
 bool wanders(const Candidate &candidate);

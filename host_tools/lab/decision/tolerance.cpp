@@ -16,6 +16,7 @@ constexpr double most_rise = 2;       // standard errors of the held-out error b
 constexpr double farthest = 3;        // opened deviations: a data sheet that is wrong by more is no tolerance
 constexpr double contradicted = 5.99; // stated deviations: six are a fit's limit; a natural end that is nearer contradicts no sheet
 constexpr double a_good_deal = 0.1;   // of the squares: what explains as much may strain the sheet
+constexpr double most_beyond_noise = 0.4; // and what explains as much of those that are not noise
 constexpr double a_part = 0.25;       // of the effect's reduction, at least, that a rival must reach by the linear step
 
 struct Group {
@@ -143,7 +144,9 @@ bool tolerances_pay(double spared, double error_in_noise, std::size_t broken, do
 }
 
 bool strains_sheet(double spared, double error_before, double error_with, double least) {
-    return -spared > drawn_by_misses(error_with, least) && error_with * error_with > (1 - a_good_deal) * error_before * error_before;
+    const double before = error_before * error_before, fall = before - error_with * error_with;
+    return -spared > drawn_by_misses(error_with, least) && fall < a_good_deal * before &&
+           !(before > 1 && fall > most_beyond_noise * (before - 1));
 }
 
 std::optional<ToleranceRival> tolerance_rival(const Problem &before, const Problem &with, std::size_t strengths) {

@@ -322,7 +322,10 @@ struct Builder : InputBuilder {
             turn.measured.push_back(rows[i].turned_rad[1] - rows[i].turned_rad[0]);
         }
         add(std::move(along));
-        if (model.motion == BodyMotion::planar && y != nullptr) add(std::move(side));
+        if (model.motion == BodyMotion::planar && y != nullptr)
+            add(std::move(side));
+        else if (y != nullptr)
+            data.camera_left = std::move(side);
         if (angle != nullptr && signal("imu.gyro_z_rad_s") == nullptr) add(std::move(turn));
     }
 

@@ -44,6 +44,7 @@ Dataset stretch(const Dataset &data, double from_s, double to_s) {
     out.start_s = data.time(first), out.count = count;
     out.duration_s = static_cast<double>(count) * data.step_s;
     for (Balance &b : out.balance) keep_rows(b, out.start_s, data.time(end));
+    keep_rows(out.camera_left, out.start_s, data.time(end));
     std::erase_if(out.balance, [](const Balance &b) { return b.measured.empty(); });
     std::erase_if(out.run_start_s, [&](double t) { return t > data.time(end); });
     return out;
