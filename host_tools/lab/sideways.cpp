@@ -36,8 +36,8 @@ bool has_bends(const Model &model, const Dataset &data) {
     return static_cast<double>(bends) > share_of_bends * static_cast<double>(data.count);
 }
 
-// Whether the last balance, the camera's displacement to the left, is predicted surely worse by the body that drifts than by one that has no
-// such motion at all: the fit then drifts to make something else right.
+// Whether the last balance, the camera's displacement to the left, is predicted surely worse by the body that drifts than by one that has
+// no such motion at all: the fit then drifts to make something else right.
 bool misses_the_camera(const Problem &straight, const Problem &sideways) {
     Eigen::VectorXd weight = Eigen::VectorXd::Zero(straight.residual.size());
     const auto rows = static_cast<Eigen::Index>(straight.data().balance.back().measured.size());

@@ -92,6 +92,18 @@ TEST(Doubt, tells_the_mass_first_with_the_value_that_would_describe_the_log) {
         for (std::size_t j = i + 1; j < d->suspects.size(); ++j) EXPECT_NE(d->suspects[i].quantity, d->suspects[j].quantity);
 }
 
+// A skid steer whose track is stated 8 % too wide: camera, radar and all wheels were told to read a speed falsely, alike.
+TEST(Doubt, tells_the_track_in_place_of_several_sensors_that_would_have_to_be_wrong_alike) {
+    generator::GeneratorConfig config;
+    config.drive = "curves", config.seed = 5201, config.duration_s = 60, config.apart = true;
+    Model model = parse_model(generator::data_sheet(config), "sheet");
+    for (WheelSpec &wheel : model.wheel) wheel.geometry.at("y_m").value *= 1.08;
+    const Diagnosis d = diagnose(model, make_dataset(model, generator::generate(config)), {});
+    EXPECT_EQ(d.kind, "wrong_model") << d.text;
+    EXPECT_TRUE(d.accepted.empty());
+    EXPECT_NE(d.text.find("the track"), std::string::npos) << d.text;
+}
+
 TEST(Doubt, tells_a_datum_that_the_fit_moved_within_a_deviation_that_was_stated_too_wide) {
     Model model = sheet();
     for (WheelSpec &wheel : model.wheel) times(wheel.motor, "coulomb_Nm", 20);

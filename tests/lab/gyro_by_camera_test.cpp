@@ -117,8 +117,8 @@ TEST(TurnedByWheels, where_their_speeds_have_the_yaw_rate_and_not_the_ground) {
     FourWheels rover;
     Physics physics = make_physics(rover.model);
     Dataset data = rover.data;
-    data.yaw_rate_rad_s = turning({.offset_rad_s = 0.3, .duration_s = static_cast<double>(data.count) * data.step_s, .step_s = data.step_s})
-                              .yaw_rate_rad_s;
+    data.yaw_rate_rad_s =
+        turning({.offset_rad_s = 0.3, .duration_s = static_cast<double>(data.count) * data.step_s, .step_s = data.step_s}).yaw_rate_rad_s;
     ASSERT_EQ(data.yaw_rate_rad_s.size(), data.count);
     for (const auto &[share, turned] : {std::pair(1.5, true), {0.81, true}, {0.79, false}, {0.0, false}, {-1.0, false}}) {
         turn_by_wheels(data, physics, share);
@@ -148,8 +148,7 @@ TEST(Evidence, of_a_gyros_scale_is_none_where_the_ground_turns_the_machine) {
     for (const double share : {0.5, 1.2}) {
         Dataset data = rover.data;
         data.gyro = true, data.camera_heading = false;
-        data.yaw_rate_rad_s =
-            turning({.duration_s = static_cast<double>(data.count) * data.step_s, .step_s = data.step_s}).yaw_rate_rad_s;
+        data.yaw_rate_rad_s = turning({.duration_s = static_cast<double>(data.count) * data.step_s, .step_s = data.step_s}).yaw_rate_rad_s;
         turn_by_wheels(data, physics, share);
         Physics moved = physics;
         moved.body.gyro_scale = 0.1;

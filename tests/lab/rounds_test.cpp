@@ -441,9 +441,9 @@ TEST(Round, asks_scales_of_its_own_of_three_that_are_not_unlikely_and_may_be_tol
     EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, -0.5)}, 0.003, 3).empty()); // of a sign that cannot be
     EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 0.05)}, 0.003, 3).empty()); // of no interest
     EXPECT_TRUE(worth_scales_of_its_own({refitted("a", 0.01, 10, 1)}, 0.003, 3).empty());    // at its limit
-    EXPECT_EQ(worth_scales_of_its_own({refitted("soil_patch", 1, 10)}, 0.003, 2.1), (std::vector<std::size_t>{0})); // in few blocks
-    EXPECT_TRUE(worth_scales_of_its_own({refitted("soil_patch", 1, 10)}, 0.003, 1.9).empty()); // the model hardly misses
-    EXPECT_TRUE(worth_scales_of_its_own({refitted("soil_gradient", 1, 10)}, 0.003, 2.1).empty());
+    EXPECT_EQ(worth_scales_of_its_own({refitted("soil_patch", 1, 10)}, 0.003, 5.1), (std::vector<std::size_t>{0})); // in few blocks
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("soil_patch", 1, 10)}, 0.003, 4.9).empty()); // as uneven ground makes it miss
+    EXPECT_TRUE(worth_scales_of_its_own({refitted("soil_gradient", 1, 10)}, 0.003, 5.1).empty());
     EXPECT_TRUE(is_of_few_blocks(refitted("resistance_patch", 0.451, 10), 0.003));
     EXPECT_FALSE(is_of_few_blocks(refitted("resistance_patch", 0.449, 10), 0.003));
 }

@@ -161,7 +161,8 @@ TEST(Runs, a_name_that_predicts_no_run_that_was_left_out_is_said_to) {
     const std::vector<std::string> both = {"sand.csv", "gravel.csv"};
     const Session one = logs.open(parse_model(sheet(Soil::sand, 42), "sheet"), both);
     const Answer as_one = diagnose_answer(one, logs.request(both), {}, false);
-    ASSERT_FALSE(as_one.json.at("accepted").empty()); // a soft place where the second run begins: of this joined log it is true
+    ASSERT_FALSE(as_one.json.at("accepted").empty())
+        << as_one.text; // a soft place where the second run begins: of this joined log it is true
     bool told = false;
     for (const auto &message : as_one.json.at("messages"))
         told = told || message.get<std::string>().find("no run that was left out is predicted better") == 0;

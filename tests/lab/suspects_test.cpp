@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace traction::lab {
 namespace {
@@ -297,6 +300,45 @@ TEST(Suspect, beside_nothing_that_was_named_must_halve_the_error_and_beat_a_shap
 }
 
 // The share that is looked for is the largest that the rule above accepts.
+TEST(Track, is_asked_where_two_witnesses_of_a_speed_are_said_to_read_it_falsely) {
+    const auto names = [](std::initializer_list<std::pair<const char *, int>> list) {
+        const Dataset data = hand_made::data_of(1, 2, 1);
+        std::vector<FreeParameter> parameters;
+        for (const auto &[owner, wheel] : list) {
+            parameters.push_back(hand_made::parameter(owner, "change", 0, 1));
+            parameters.back().wheel = wheel;
+        }
+        const auto n = static_cast<Eigen::Index>(parameters.size());
+        return names_several_scales(hand_made::problem_of(data, parameters, Eigen::MatrixXd::Zero(2, n), Eigen::VectorXd::Zero(2)));
+    };
+    EXPECT_TRUE(names({{"camera_scale", -1}, {"radar_scale", -1}}));
+    EXPECT_TRUE(names({{"wheel_radius", -1}, {"gyro_scale", -1}}));
+    EXPECT_FALSE(names({{"wheel_radius", -1}, {"encoder_missed", -1}})); // the wheels are one witness
+    EXPECT_FALSE(names({{"camera_scale", -1}, {"wheel_radius", 2}}));    // one wheel is none
+    EXPECT_FALSE(names({{"camera_scale", -1}, {"accel_scale", -1}}));
+    EXPECT_FALSE(names({}));
+}
+
+TEST(Track, takes_their_place_where_it_is_off_by_three_percent_and_does_nine_tenths_of_what_they_do) {
+    const auto does = [](double fitted, double error) {
+        return does_as_much({"the track", 1, fitted, "1", error, track().gross, false}, 2, 1); // 4 squares, of which the names leave 1
+    };
+    EXPECT_TRUE(does(1.031, 1.13));  // 2.72 of their 3
+    EXPECT_FALSE(does(1.031, 1.15)); // 2.68
+    EXPECT_FALSE(does(1.029, 1));
+    EXPECT_TRUE(does(0.97, 1));
+    EXPECT_FALSE(does(0.972, 1));
+}
+
+TEST(Track, is_set_free_by_a_tenth_as_a_ruler_may_be_off) {
+    Model m = two_wheels();
+    EXPECT_FALSE(set_free(m, track(), 1)) << "a model made by hand that has none";
+    m.rover["track_scale"].value = 1;
+    EXPECT_TRUE(set_free(m, track(), 0.9));
+    EXPECT_DOUBLE_EQ(m.rover["track_scale"].value, 0.9);
+    EXPECT_DOUBLE_EQ(m.rover["track_scale"].prior, 0.09);
+}
+
 TEST(Suspect, is_looked_for_up_to_the_share_that_would_be_told) {
     for (const std::size_t accepted : {0U, 1U, 2U, 3U})
         for (const double left : {2.0, 5.0, 6.0, 8.0, 9.0, 10.0}) {

@@ -4,6 +4,7 @@
 #include "host_tools/lab/fit/heldout.h"
 #include "host_tools/lab/fit/ladder.h"
 #include "host_tools/lab/forward/rounding.h"
+#include "rounds.h"
 #include "suspects.h"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ struct Freed {
 };
 
 // The datum from `start` times what is stated; where it ends at the edge of what it may be, once more from there.
-Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, double start) {
+Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, double start, const Problem *near = nullptr) {
     Freed out;
     out.datum = &datum;
     for (int round = 0; round < 4; ++round) {
@@ -66,6 +67,7 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
         if (!set_free(model, datum, start)) return {};
         const Physics physics = make_physics(model);
         Problem problem(data, physics, free_parameters(model, physics));
+        if (near != nullptr) take_increments(problem, *near);
         problem.fit({.iterations = 3, .ready = false});
         const double error = overall_error(problem);
         double moved = 0, ratio = 1;
@@ -86,6 +88,21 @@ Freed gross_error(const Model &stated, const Dataset &data, const Datum &datum, 
         start = *next;
     }
     return out;
+}
+
+// A search for the track ends in a valley of its own where it begins far from it: on the stretch where the model fails most it is found
+// from either side, on the whole log from there.
+Freed best_track(const Model &stated, const Problem &first) {
+    const auto best_from = [&](const Dataset &data, std::initializer_list<double> starts, const Problem *near) {
+        Freed best;
+        for (const double start : starts)
+            if (Freed f = gross_error(stated, data, track(), start, near);
+                !f.suspect.quantity.empty() && (best.suspect.quantity.empty() || f.suspect.error < best.suspect.error))
+                best = std::move(f);
+        return best;
+    };
+    const Freed there = best_from(worst_stretch(first), {1.0, 0.9, 1.1}, nullptr);
+    return there.suspect.quantity.empty() ? Freed() : best_from(first.data(), {there.suspect.fitted / there.suspect.stated}, &first);
 }
 
 std::vector<Freed> freed(const Model &stated, const Dataset &data, const std::vector<const Datum *> &asked) {
@@ -201,18 +218,26 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     Doubt out;
     out.error = before;
     if (nothing_found) out.suspects = moved_grossly(stated, first, out.error);
-    if (!at_bound && !far_off && out.suspects.empty() && !is_suspicious(worst_misfit(first), accepted, before, after)) return std::nullopt;
+    const bool scales = names_several_scales(last),
+               suspicious = at_bound || far_off || !out.suspects.empty() || is_suspicious(worst_misfit(first), accepted, before, after);
+    if (!suspicious && !scales) return std::nullopt;
     const double left = after * (1 - shape_gain);
     const double need = largest_share(accepted, before, left);
     std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
-    if (is_no_ground(before))
+    if (!suspicious)
+        ;
+    else if (is_no_ground(before))
         found = freed(stated, data, all_data());
     else if (data.independent_rows || fit_scatter(first) < need * before)
         found = freed(stated, data, promising_data(stated, first, need));
+    if (scales || (suspicious && first.data().yaw_free)) found.push_back(best_track(stated, first));
     for (Freed &f : found) {
+        if (f.suspect.quantity.empty()) continue;
         const auto lead = [&] { return lead_of(last, *f.problem); };
         const auto relieves = [&] { return strained(last) && !strained(*f.problem); };
-        if (is_suspect(f.suspect, accepted, before, left, relieves, lead, [&] { return kin_of(last, *f.datum); }))
+        if (scales && f.datum == &track() && does_as_much(f.suspect, before, left))
+            out.suspects.push_back(f.suspect);
+        else if (is_suspect(f.suspect, accepted, before, left, relieves, lead, [&] { return kin_of(last, *f.datum); }))
             out.suspects.push_back(std::move(f.suspect));
     }
     out.suspects = told_once(std::move(out.suspects));

@@ -91,7 +91,7 @@ double unlikely_from(double p_limit);
 bool is_of_few_blocks(const Trial &trial, double p_limit);
 
 // Those whose refit on the baseline's scales is not unlikely and large, the largest fall of the error first, at most three; and places in
-// few blocks, where the model misses by far.
+// few blocks, where the model misses by more than five times the noise: uneven ground takes less.
 std::vector<std::size_t> worth_scales_of_its_own(const std::vector<Trial> &trials, double p_limit, double heldout_error);
 
 // A law of a place, or of the way behind a wheel: whatever ground wanders, and whatever an encoder scatters, has a bit of it somewhere.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,8 @@ constexpr double one_name = 0.9;      // it must explain more than one effect, o
 constexpr double much_better = 0.5;   // of the error as stated
 constexpr double better = 0.75;       // the same, where an effect was named
 constexpr double as_much = 1.02;      // of the error that what was named leaves
+constexpr double ruler = 0.1;         // how far a track may be off
+constexpr double nearly_all = 0.9;    // of the squares that several names of scales explain
 constexpr double sure = 2;            // standard errors of the blocks' differences
 constexpr double suspicious = 0.15;   // (1) of doubt.h, before effects
 constexpr double all_of_it = 0.9;     // the same with all that was accepted: of the signal itself
@@ -29,6 +32,7 @@ constexpr double looked_at_s = 20;    // what is grossly wrong shows wherever th
 constexpr Datum data_of_a_model[] = {
     {"rover", "mass_kg", "the mass", 1.3}, // on stiff ground a log was seen to tell it no better than 1.2
     {"wheel", "radius_m", "the wheels' radius", 1.25},
+    {"rover", "track_scale", "the track (the wheels' y_m, all times)", 1.03}, // a ruler's mistake; no effect of the catalogue is it
     {"motor", "torque_constant_Nm_A", "the torque constant (of the wheel's side of the gear)"},
     {"motor", "back_emf_Vs_rad", "the back-EMF (of the wheel's side of the gear)"},
     {"motor", "resistance_ohm", "the motors' resistance", 1.4, true},
@@ -44,8 +48,14 @@ constexpr Datum data_of_a_model[] = {
 
 std::vector<const Datum *> all_data() {
     std::vector<const Datum *> list;
-    for (const Datum &datum : data_of_a_model) list.push_back(&datum);
+    for (const Datum &datum : data_of_a_model)
+        if (&datum != &track()) list.push_back(&datum);
     return list;
+}
+
+const Datum &track() {
+    return *std::find_if(std::begin(data_of_a_model), std::end(data_of_a_model),
+                         [](const Datum &datum) { return std::string_view(datum.key) == "track_scale"; });
 }
 
 std::vector<Parameter *> values_of(Model &model, const Datum &datum) {
@@ -65,7 +75,7 @@ bool set_free(Model &model, const Datum &datum, double start) {
     for (Parameter *p : values_of(model, datum)) {
         if (!(p->value > 0)) continue;
         p->value *= start;
-        p->prior = p->value;
+        p->prior = &datum == &track() ? ruler * p->value : p->value;
         p->fixed = false;
         p->minimum = 0.01 * p->value, p->maximum = 6 * p->value;
         any = true;
@@ -185,6 +195,18 @@ const Datum *number_of(std::string_view effect) {
 
 Kin kin_of(const Problem &last, const Datum &datum) {
     return has_law(last, datum, numbers) ? Kin::its_number : has_law(last, datum, likenesses) ? Kin::acts_alike : Kin::none;
+}
+
+bool names_several_scales(const Problem &last) {
+    std::set<std::string_view> names;
+    for (const FreeParameter &p : last.parameters)
+        for (const std::string_view one : {"camera_scale", "radar_scale", "wheel_radius", "encoder_missed", "gyro_scale"})
+            if (p.owner == one && p.wheel < 0) names.insert(one == "encoder_missed" ? "wheel_radius" : one);
+    return names.size() > 1;
+}
+
+bool does_as_much(const Suspect &s, double before, double left) {
+    return is_gross(s) && before * before - s.error * s.error > nearly_all * (before * before - left * left);
 }
 
 double largest_share(std::size_t accepted, double before, double left) {

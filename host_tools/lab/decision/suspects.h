@@ -20,7 +20,7 @@ struct Datum {
     bool more_is_an_effect = false; // of the catalogue: whether it is the cause has been decided there, only less is a matter of the model
     double little = 0;              // a difference, in its unit, that is none, whatever its ratio: where the fit has moved it by itself
 };
-std::vector<const Datum *> all_data();
+std::vector<const Datum *> all_data(); // but for the track, which is asked by itself
 
 std::vector<Parameter *> values_of(Model &model, const Datum &datum);
 
@@ -62,6 +62,13 @@ const Datum *number_of(std::string_view effect);
 // acts as the datum does. Of such two the effect is told.
 enum class Kin { none, acts_alike, its_number };
 Kin kin_of(const Problem &last, const Datum &datum);
+
+// Whether what was named has two of these witnesses of a speed read falsely: camera, radar, gyro, all wheels. That they agree with one
+// another is likelier than that all are wrong, and what is wrong is then how the machine turns by its wheels: the track.
+bool names_several_scales(const Problem &last);
+const Datum &track();
+// The track alone explains nine tenths of what those names do (assumed): one mistake is simpler than several.
+bool does_as_much(const Suspect &suspect, double before, double left);
 
 // Of the error as stated, `before`, the largest share that is_suspect() lets a datum leave; `left`: what is left with all that was
 // accepted.

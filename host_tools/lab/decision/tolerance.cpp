@@ -12,12 +12,12 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double most_rise = 2;       // standard errors of the held-out error by which a name that the tolerances decide may raise it
-constexpr double farthest = 3;        // opened deviations: a data sheet that is wrong by more is no tolerance
-constexpr double contradicted = 5.99; // stated deviations: six are a fit's limit; a natural end that is nearer contradicts no sheet
-constexpr double a_good_deal = 0.1;   // of the squares: what explains as much may strain the sheet
+constexpr double most_rise = 2;           // standard errors of the held-out error by which a name that the tolerances decide may raise it
+constexpr double farthest = 3;            // opened deviations: a data sheet that is wrong by more is no tolerance
+constexpr double contradicted = 5.99;     // stated deviations: six are a fit's limit; a natural end that is nearer contradicts no sheet
+constexpr double a_good_deal = 0.1;       // of the squares: what explains as much may strain the sheet
 constexpr double most_beyond_noise = 0.4; // and what explains as much of those that are not noise
-constexpr double a_part = 0.25;       // of the effect's reduction, at least, that a rival must reach by the linear step
+constexpr double a_part = 0.25;           // of the effect's reduction, at least, that a rival must reach by the linear step
 
 struct Group {
     std::string name;

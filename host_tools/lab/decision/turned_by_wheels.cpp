@@ -7,7 +7,7 @@ namespace traction::lab {
 
 namespace {
 
-constexpr double least_share = 0.8;
+constexpr double of_measured = 0.8;
 
 } // namespace
 
@@ -38,7 +38,7 @@ bool turned_by_wheels(const Dataset &data, const Physics &physics) {
         const double b = data.yaw_rate_rad_s[k] - measured;
         both += (rate[k] - mean) * b, squares += b * b;
     }
-    return both / arms >= least_share * squares;
+    return both / arms >= of_measured * squares;
 }
 
 } // namespace traction::lab

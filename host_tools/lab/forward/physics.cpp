@@ -44,6 +44,7 @@ constexpr Key keys[] = {
     {"rover", "mass_kg", nullptr, &B::mass, stage_motion},
     {"rover", "yaw_inertia_kg_m2", nullptr, &B::yaw_inertia, stage_motion},
     {"rover", "centre_height_m", nullptr, &B::centre_height, stage_motion},
+    {"rover", "track_scale", nullptr, &B::track_scale, stage_motion},
     {"sensors", "duty.delay_s", nullptr, &B::voltage_delay0, stage_voltage},
     {"sensors", "current.delay_s", nullptr, &B::current_delay, stage_torque | stage_voltage},
     {"sensors", "accel.bias_m_s2", nullptr, &B::accel_bias0, stage_sensors},
@@ -249,7 +250,8 @@ Physics make_physics(const Model &model) {
     for (const Key &key : keys)
         if (key.in_body != nullptr)
             physics.body.*key.in_body = value_of(std::string(key.table) == "rover" ? model.rover : model.sensors, key.key);
-    if (!(physics.body.yaw_inertia > 0)) { // a plate under the wheels
+    if (!(physics.body.track_scale > 0)) physics.body.track_scale = 1; // a model made by hand
+    if (!(physics.body.yaw_inertia > 0)) {                             // a plate under the wheels
         double largest_arm2 = 0;
         for (const WheelPhysics &w : physics.wheel) largest_arm2 = std::max(largest_arm2, w.x * w.x + w.y * w.y);
         physics.body.yaw_inertia = std::max(1e-6, physics.body.mass * largest_arm2 * 2 / 3);

@@ -39,6 +39,7 @@ inline bool same_side(const WheelPhysics &a, const WheelPhysics &b) { return a.y
 
 struct BodyPhysics : sim::BodyEffects {
     double mass = 0, yaw_inertia = 0, centre_height = 0, gravity = 9.81, battery_V = 0;
+    double track_scale = 1; // of the wheels' y
     double voltage_delay0 = 0, current_delay = 0, accel_bias0 = 0, accel_delay0 = 0, accel_lag0 = 0, accel_ahead0 = 0, accel_left0 = 0,
            gyro_bias = 0, gyro_scale0 = 0, radar_scale0 = 0, radar_delay = 0, radar_lead = 0, camera_scale0 = 0, camera_delay0 = 0;
 };

@@ -49,8 +49,8 @@ WheelStep::WheelStep(const Dataset &data, const Physics &physics) : data_(data),
         State &s = state_[i];
         feels_path_ = feels_path_ || sim::needs_any(w, sim::needs_path);
         s.x = sideways_ ? sim::law::mass_offset_m(w.x, b.offset_x_m) : w.x;
-        s.y = sideways_ ? sim::law::mass_offset_m(w.y, b.offset_y_m) : w.y;
-        s.arm_m = sim::law::mass_offset_m(w.y, b.offset_y_m);
+        s.y = sideways_ ? sim::law::mass_offset_m(b.track_scale * w.y, b.offset_y_m) : b.track_scale * w.y;
+        s.arm_m = sim::law::mass_offset_m(b.track_scale * w.y, b.offset_y_m);
         s.c = std::cos(w.heading);
         s.s = std::sin(w.heading);
         s.radius = rolling_radius(w);
@@ -381,7 +381,7 @@ void WheelStep::commit() {
 void WheelStep::loads() {
     Eigen::Matrix3d S = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < n_; ++i) {
-        const Eigen::Vector3d X(1, p_.wheel[i].x, p_.wheel[i].y);
+        const Eigen::Vector3d X(1, p_.wheel[i].x, p_.body.track_scale * p_.wheel[i].y);
         S += X * X.transpose();
     }
     const Eigen::Matrix3d share = S.completeOrthogonalDecomposition().pseudoInverse();
@@ -389,7 +389,7 @@ void WheelStep::loads() {
     const double W = b.mass * b.gravity, height = sim::law::load_transfer_m(b.centre_height, b.raised_m);
     const Eigen::Vector3d static_loads(W, sim::law::mass_offset_Nm(W, b.offset_x_m), sim::law::mass_offset_Nm(W, b.offset_y_m));
     for (std::size_t i = 0; i < n_; ++i) {
-        const Eigen::Vector3d X(1, p_.wheel[i].x, p_.wheel[i].y);
+        const Eigen::Vector3d X(1, p_.wheel[i].x, p_.body.track_scale * p_.wheel[i].y);
         state_[i].load_0 = X.dot(share * static_loads);
         const double M_h = b.mass * height;
         if (p_.halves) {

@@ -76,7 +76,7 @@ struct Dataset {
     std::size_t yaw_late = 1;                 // steps by which what draws the model's yaw rate is late: else a row would meet its own noise
     std::vector<char> gap;                    // 1 where a wheel's speed is not known
     std::vector<Balance> balance;
-    Balance camera_left;               // of a machine that is not followed sideways: what it might be asked of that (sideways.h); often no rows
+    Balance camera_left; // of a machine that is not followed sideways: what it might be asked of that (sideways.h); often no rows
     std::vector<std::string> messages; // what is missing and what that removes
     double smoothing_half_s = 0;       // half width of the encoder's parabolas, of the last wheel and before half_width_for() widens them
     double accel_bias_prior_m_s2 = 0;  // header bias.imu.accel_x_m_s2: the sensor's own word on its offset; 0: none

@@ -12,7 +12,7 @@ namespace {
 constexpr ModelKey rover[] = {
     {"mass_kg", "kg", 0, 0, 1e5, 0, 0},          {"yaw_inertia_kg_m2", "kg m^2", 0, 0, 1e5, 0.05, 0},
     {"centre_height_m", "m", 0, 0, 10, 0, 0},    {"gravity_m_s2", "m/s^2", 9.81, 0, 30, 0, 0},
-    {"battery_voltage_V", "V", 0, 0, 1e3, 0, 0},
+    {"battery_voltage_V", "V", 0, 0, 1e3, 0, 0}, {"track_scale", "1", 1, 0.2, 5, 0, 0},
 };
 constexpr ModelKey wheel[] = {
     {"x_m", "m", 0, -50, 50, 0, 0},         {"y_m", "m", 0, -50, 50, 0, 0},
