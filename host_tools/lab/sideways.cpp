@@ -36,13 +36,15 @@ bool has_bends(const Model &model, const Dataset &data) {
     return static_cast<double>(bends) > share_of_bends * static_cast<double>(data.count);
 }
 
-// Whether the last balance, the camera's displacement to the left, is predicted surely worse by the body that drifts than by one that has
-// no such motion at all: the fit then drifts to make something else right.
-bool misses_the_camera(const Problem &straight, const Problem &sideways) {
+// What the last balance, the camera's displacement to the left, says of a body that drifts beside one that has no such motion at all.
+enum class Seen { nothing, drift, none };
+Seen seen_by_camera(const Problem &straight, const Problem &sideways) {
     Eigen::VectorXd weight = Eigen::VectorXd::Zero(straight.residual.size());
     const auto rows = static_cast<Eigen::Index>(straight.data().balance.back().measured.size());
     weight.tail(rows) = straight.noise_rows().tail(rows).cwiseAbs2().cwiseInverse();
-    return fall_between(as_fitted(sideways), as_fitted(straight), weight).sure();
+    const HeldOut one = as_fitted(straight), other = as_fitted(sideways);
+    if (fall_between(one, other, weight).sure()) return Seen::drift;
+    return fall_between(other, one, weight).sure() ? Seen::none : Seen::nothing;
 }
 
 bool has_grip(const Model &model) {
@@ -74,8 +76,9 @@ bool drifts_sideways(const Model &model, const Dataset &data) {
     };
     const Problem straight = fitted(model, BodyMotion::longitudinal), sideways = fitted(model, BodyMotion::planar);
     if (!fall_of_unlikelihood(straight, sideways).sure()) return false;
-    if (asked.balance.size() > data.balance.size() && misses_the_camera(straight, sideways)) return false;
-    if (has_grip(model)) return true;
+    const Seen seen = asked.balance.size() > data.balance.size() ? seen_by_camera(straight, sideways) : Seen::nothing;
+    if (seen == Seen::none) return false;
+    if (seen == Seen::drift || has_grip(model)) return true;
     Model gripping = model;
     gripping.effects.push_back(sideways_grip());
     return fall_of_unlikelihood(fitted(gripping, BodyMotion::longitudinal), sideways).sure();

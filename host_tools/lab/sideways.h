@@ -4,8 +4,9 @@
 // angles: pull and currents differ by that. So does the middle of a machine with one axle before or behind it. No number is added, so the
 // log alone decides: both motions are fitted, and the sideways one is taken where the log is likelier by it, each by its own scales, by
 // more than the standard error of that over blocks of 5 s. Where a camera sees the track its displacement to the left is a row of both, and
-// has the last word: what is predicted worse than by no sideways motion at all is not followed (a sideways grip that the model lacks bends
-// a straight machine's yaw rate and currents, and a drift that the camera does not see made them half as wrong).
+// has the last word: a motion that it predicts better than none is followed, one that it predicts worse is not. Where it says nothing, or
+// is not there, what a sideways grip (`lateral_scrub`) explains as well is none: it bends a straight machine's yaw rate and currents, and a
+// drift that is not there made them half as wrong.
 #pragma once
 
 #include "host_tools/lab/inputs/dataset.h"
