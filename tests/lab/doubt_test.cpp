@@ -92,6 +92,18 @@ TEST(Doubt, tells_the_mass_first_with_the_value_that_would_describe_the_log) {
         for (std::size_t j = i + 1; j < d->suspects.size(); ++j) EXPECT_NE(d->suspects[i].quantity, d->suspects[j].quantity);
 }
 
+TEST(Track, puts_the_wheels_where_its_scale_says) {
+    const Case plain(sheet());
+    Model wide = sheet();
+    for (WheelSpec &wheel : wide.wheel) wheel.geometry.at("y_m").value *= 1.08;
+    const auto predicted = [&](const Model &model) { return Forward(plain.data).predict(make_physics(model)); };
+    const Eigen::VectorXd as_stated = predicted(plain.model), too_wide = predicted(wide);
+    wide.rover.at("track_scale").value = 1 / 1.08;
+    const double tells = (too_wide - as_stated).cwiseAbs().maxCoeff();
+    EXPECT_GT(tells, 0.01);
+    EXPECT_LT((predicted(wide) - as_stated).cwiseAbs().maxCoeff(), 1e-3 * tells);
+}
+
 // A skid steer whose track is stated 8 % too wide: camera, radar and all wheels were told to read a speed falsely, alike.
 TEST(Doubt, tells_the_track_in_place_of_several_sensors_that_would_have_to_be_wrong_alike) {
     generator::GeneratorConfig config;

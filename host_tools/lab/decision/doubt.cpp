@@ -224,11 +224,9 @@ std::optional<Doubt> doubt(const Model &stated, const Dataset &data, Problem &fi
     const double left = after * (1 - shape_gain);
     const double need = largest_share(accepted, before, left);
     std::vector<Freed> found; // looked for where that is cheap; everywhere where nothing is known of so large an error
-    if (!suspicious)
-        ;
-    else if (is_no_ground(before))
+    if (suspicious && is_no_ground(before))
         found = freed(stated, data, all_data());
-    else if (data.independent_rows || fit_scatter(first) < need * before)
+    else if (suspicious && (data.independent_rows || fit_scatter(first) < need * before))
         found = freed(stated, data, promising_data(stated, first, need));
     if (scales || (suspicious && first.data().yaw_free)) found.push_back(best_track(stated, first));
     for (Freed &f : found) {

@@ -17,7 +17,7 @@ bool turned_by_wheels(const Dataset &data, const Physics &physics) {
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         if (data.wheel[i].rolls_freely) continue;
         if (!physics.grips_sideways[i] || physics.wheel[i].heading != 0) return true;
-        middle_m += physics.wheel[i].y, ++wheels;
+        middle_m += physics.body.track_scale * physics.wheel[i].y, ++wheels;
     }
     if (!(wheels > 0)) return true;
     middle_m /= wheels;
@@ -25,7 +25,7 @@ bool turned_by_wheels(const Dataset &data, const Physics &physics) {
     std::vector<double> rate(data.count, 0);
     for (std::size_t i = 0; i < physics.wheel.size(); ++i) {
         if (data.wheel[i].rolls_freely) continue;
-        const double arm = physics.wheel[i].y - middle_m, per_speed = arm * physics.wheel[i].radius;
+        const double arm = physics.body.track_scale * physics.wheel[i].y - middle_m, per_speed = arm * physics.wheel[i].radius;
         arms += arm * arm;
         for (std::size_t k = 0; k < data.count; ++k) rate[k] -= per_speed * data.wheel[i].speed_rad_s[k];
     }
